@@ -1,0 +1,57 @@
+"""Frames and snapshots: the facts one simulator reports.
+
+A frame is what changed in one simulator in one tick; a snapshot is everything there is
+at one tick. Both say what is, never what anyone believes.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.world.values import AgentState, Box, DroppedItem, Event, Items, Position
+
+__all__ = ["BlockGrid", "Frame", "Snapshot"]
+
+BlockGrid = npt.NDArray[np.int32]
+"""Block state ids of a box, shape `Box.shape`, C order; -1 is unknown."""
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """What changed in one simulator during one tick.
+
+    Attributes:
+        tick: The tick that ended; frames of one timeline have rising ticks.
+        agents: Agents whose state changed, with their new state; None: left the world.
+        blocks: Positions whose block changed, with the new block state id.
+        containers: Containers whose content changed, with all they hold now; None where
+            there is no container any more.
+        items: Item entities that changed; None: gone.
+        events: What happened, in order.
+    """
+
+    tick: int
+    agents: Mapping[str, AgentState | None] = field(default_factory=dict)
+    blocks: Mapping[Position, int] = field(default_factory=dict)
+    containers: Mapping[Position, Items | None] = field(default_factory=dict)
+    items: Mapping[int, DroppedItem | None] = field(default_factory=dict)
+    events: tuple[Event, ...] = ()
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing changed and nothing happened."""
+        return not (self.agents or self.blocks or self.containers or self.items or self.events)
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """All of one simulator at one tick; the grid is not to be written to."""
+
+    tick: int
+    box: Box
+    blocks: BlockGrid
+    containers: Mapping[Position, Items]
+    agents: Mapping[str, AgentState]
+    items: Mapping[int, DroppedItem] = field(default_factory=dict)

@@ -1,0 +1,146 @@
+"""Frozen values every room speaks: positions, agents, containers, events, frames.
+
+Coordinates are scenario coordinates: blocks are named by their lower corner (integers),
+agents by the middle of their feet (floats), y is up. Angles are Mineflayer's radians:
+yaw 0 looks along -z, pi/2 along -x; pitch is positive upwards. Time is counted in ticks
+of 50 ms.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any
+
+__all__ = [
+    "EQUIPMENT_SLOTS",
+    "EYE_HEIGHT",
+    "TICKS_PER_SECOND",
+    "AgentState",
+    "Box",
+    "DroppedItem",
+    "Event",
+    "EventKind",
+    "Items",
+    "Point",
+    "Position",
+]
+
+TICKS_PER_SECOND = 20
+EYE_HEIGHT = 1.62
+EQUIPMENT_SLOTS = ("head", "chest", "legs", "feet", "main_hand", "off_hand")
+
+Position = tuple[int, int, int]
+"""A block position, in scenario coordinates."""
+
+Point = tuple[float, float, float]
+"""A point in space, in blocks, scenario coordinates."""
+
+Items = Mapping[str, int]
+"""Item name to count; counts are positive."""
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """The part of space a scenario plays in: two inclusive corners of block positions."""
+
+    low: Position
+    high: Position
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Number of blocks along x, y and z."""
+        (x0, y0, z0), (x1, y1, z1) = self.low, self.high
+        return (x1 - x0 + 1, y1 - y0 + 1, z1 - z0 + 1)
+
+    def __contains__(self, position: Position) -> bool:
+        return all(
+            low <= value <= high
+            for low, value, high in zip(self.low, position, self.high, strict=True)
+        )
+
+    def index(self, position: Position) -> tuple[int, int, int]:
+        """Index of a position in a dense array of shape `shape`."""
+        return (
+            position[0] - self.low[0],
+            position[1] - self.low[1],
+            position[2] - self.low[2],
+        )
+
+    def positions(self) -> Iterator[Position]:
+        """All block positions, x slowest, z fastest (the order of a dense array)."""
+        for x in range(self.low[0], self.high[0] + 1):
+            for y in range(self.low[1], self.high[1] + 1):
+                for z in range(self.low[2], self.high[2] + 1):
+                    yield (x, y, z)
+
+
+class EventKind(StrEnum):
+    """What can happen during a tick (semantics, section 1)."""
+
+    CHAT = "chat"
+    THINK = "think"
+    MOVE_TO = "move_to"
+    MINE_BLOCK = "mine_block"
+    PLACE_BLOCK = "place_block"
+    CRAFT_ITEM = "craft_item"
+    SMELT_ITEM = "smelt_item"
+    GET_ITEM_FROM_CHEST = "get_item_from_chest"
+    DEPOSIT_ITEM_INTO_CHEST = "deposit_item_into_chest"
+    OPEN_CONTAINER = "open_container"
+    USE_LEVER = "use_lever"
+    GIVE_ITEM_TO_OTHER = "give_item_to_other"
+    RECEIVE_ITEM_FROM_OTHER = "receive_item_from_other"
+    EMOTE = "emote"
+    BLOCK_UPDATE = "block_update"
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something that happened during one tick.
+
+    Attributes:
+        kind: What happened.
+        actor: The agent who did it; None for a block update nobody is named for.
+        detail: The part a witness sees. By kind: `text` (chat, think), `position` of a
+            block (mine_block, place_block, use_lever, containers, block_update),
+            `block` (a block state text), `items` (name -> count), `other` (an agent),
+            `powered` (use_lever), `name` (emote), `destination` (move_to, a point).
+    """
+
+    kind: EventKind
+    actor: str | None
+    detail: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class AgentState:
+    """Pose and possessions of one agent, as they are (not as anyone believes them).
+
+    Attributes:
+        position: Middle of the feet, blocks.
+        yaw: Radians, Mineflayer's convention.
+        pitch: Radians, positive upwards.
+        on_ground: Whether the agent stands on something.
+        equipment: Slot of `EQUIPMENT_SLOTS` to item name; an absent slot is empty.
+        inventory: Item name to count, what is worn or held included.
+        health: Half hearts, 0 to 20.
+        food: Half drumsticks, 0 to 20.
+    """
+
+    position: Point
+    yaw: float = 0.0
+    pitch: float = 0.0
+    on_ground: bool = True
+    equipment: Mapping[str, str] = field(default_factory=dict)
+    inventory: Items = field(default_factory=dict)
+    health: float = 20.0
+    food: float = 20.0
+
+
+@dataclass(frozen=True, slots=True)
+class DroppedItem:
+    """An item entity lying in the world."""
+
+    name: str
+    count: int
+    position: Point
