@@ -1,0 +1,48 @@
+"""What a nest starts from: the world at tick 0, the rules of perception, priors, a script."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from beliefnest.belief.entries import InitialBelief
+from beliefnest.perception.options import Perception
+from beliefnest.world.frames import Snapshot
+
+__all__ = ["Setting", "Step"]
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One step of a script: programs that run together in the real world.
+
+    Attributes:
+        programs: Agent name to the text of its program.
+        label: What the step is, for progress and messages ("sally puts the diamond away").
+        where: Where the step is written, for messages ("sally_anne.yaml:41").
+        timeout_ticks: Ticks after which the step has failed.
+    """
+
+    programs: Mapping[str, str]
+    label: str = ""
+    where: str = ""
+    timeout_ticks: int = 1200
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """Everything a nest needs to open; a scenario with one condition chosen gives one.
+
+    Attributes:
+        name: Name of the scenario.
+        snapshot: The real world at its first tick.
+        perception: What agents can perceive.
+        static_blocks: Names of blocks that everybody knows from the start.
+        initial_beliefs: Further priors, at any depth.
+        script: What happens in the real world, in order.
+    """
+
+    name: str
+    snapshot: Snapshot
+    perception: Perception = field(default_factory=Perception)
+    static_blocks: frozenset[str] = frozenset()
+    initial_beliefs: tuple[InitialBelief, ...] = ()
+    script: tuple[Step, ...] = ()

@@ -1,0 +1,81 @@
+"""What agents can perceive: the options of the observation function (semantics, section 3)."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from beliefnest.errors import InputError
+
+__all__ = ["ContainerMode", "Hearing", "Perception", "Radius"]
+
+ContainerMode = Literal["opaque", "transparent"]
+
+
+@dataclass(frozen=True, slots=True)
+class Radius:
+    """Hearing up to a distance.
+
+    Attributes:
+        blocks: Greatest distance between listener's and speaker's feet, in blocks.
+    """
+
+    blocks: float
+
+
+Hearing = Literal["global", "sight"] | Radius
+
+
+def _hearing(value: object) -> Hearing:
+    match value:
+        case "global" | "sight" | Radius():
+            return value  # type: ignore[return-value]  # narrowed by the pattern
+        case {"radius": int() | float() as blocks} if blocks > 0:
+            return Radius(float(blocks))
+        case _:
+            raise InputError(
+                f"hearing is {value!r}; it must be 'global', 'sight' or {{'radius': BLOCKS}}"
+            )
+
+
+@dataclass(frozen=True)
+class Perception:
+    """Options of perception; the same for every agent at every depth.
+
+    Attributes:
+        max_visible_distance: Greatest distance from an eye to the centre of a visible
+            block, in blocks; None: no limit.
+        field_of_view: Full angle of the cone of sight around yaw and pitch, in degrees;
+            360 sees all around.
+        hearing: `global` (everyone hears everything), `sight` (an agent hears whom it
+            sees), or `Radius(r)`, also written `{"radius": r}`.
+        containers: `opaque` contents are known by opening or witnessing, `transparent`
+            contents are perceived whenever the container's block is seen.
+        transparent_blocks: Names of further blocks that do not block sight.
+        negative_evidence: Whether a believed pose becomes unknown when its place is
+            seen to be empty.
+
+    Raises:
+        InputError: An option is out of range or of the wrong kind.
+    """
+
+    max_visible_distance: float | None = 20.0
+    field_of_view: float = 360.0
+    hearing: Hearing | Mapping[str, float] = "global"
+    containers: ContainerMode = "opaque"
+    transparent_blocks: Iterable[str] = ()
+    negative_evidence: bool = False
+
+    def __post_init__(self) -> None:
+        distance = self.max_visible_distance
+        if distance is not None and not distance > 0:
+            raise InputError(f"max_visible_distance is {distance!r}; it must be above 0, or None")
+        if not 0 < self.field_of_view <= 360:
+            raise InputError(
+                f"field_of_view is {self.field_of_view!r} degrees; it must be above 0 and up to 360"
+            )
+        if self.containers not in ("opaque", "transparent"):
+            raise InputError(
+                f"containers is {self.containers!r}; it must be 'opaque' or 'transparent'"
+            )
+        object.__setattr__(self, "hearing", _hearing(self.hearing))
+        object.__setattr__(self, "transparent_blocks", tuple(sorted(set(self.transparent_blocks))))
