@@ -1,0 +1,341 @@
+"""What Minecraft knows of its blocks and items: names, state ids, collision shapes.
+
+The facts are minecraft-data's (MIT); `bodies/node/registry.js` writes them into one file
+when the package is built. Block states are written `name` or `name[a=b,c=d]`; a
+`minecraft:` before the name is accepted and never given back.
+"""
+
+import difflib
+import functools
+import itertools
+import math
+import re
+from bisect import bisect_right
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+
+import msgspec
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.errors import BodyError, InputError, UnknownNameError
+
+__all__ = ["AIR", "CONTAINER_NAMES", "BoxBounds", "Registry"]
+
+AIR = 0
+"""State id of air; the protocol has kept it in every version."""
+
+CONTAINER_NAMES = frozenset(
+    {"chest", "trapped_chest", "barrel", "furnace", "blast_furnace", "smoker"}
+)
+"""Blocks whose contents the simulators follow."""
+
+BoxBounds = tuple[float, float, float, float, float, float]
+"""A box in blocks from the block's lower corner: x0, y0, z0, x1, y1, z1."""
+
+_FORMAT = 1
+_BUNDLE = Path(__file__).parents[1] / "_bundle"
+_STATE_TEXT = re.compile(r"(?:minecraft:)?([a-z0-9_]+)(?:\[([^\[\]]*)\])?")
+_PROPERTY_TEXT = re.compile(r"\s*([a-z0-9_]+)\s*=\s*([a-z0-9_]+)\s*")
+_CLEAR_NAMES = frozenset({"glass", "tinted_glass", "glass_pane", "barrier", "ice"})
+_CLEAR_SUFFIXES = ("_stained_glass", "_stained_glass_pane")
+
+
+class _BlockFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    name: str
+    first_state: int
+    last_state: int
+    default_state: int
+    properties: list[tuple[str, list[str]]]
+    shapes: list[int]
+    solid: bool
+    lets_light_through: bool
+
+
+class _RegistryFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    format: int
+    minecraft: str
+    blocks: list[_BlockFile]
+    shapes: list[list[BoxBounds]]
+    items: list[tuple[str, int]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Block:
+    """One block: its states count through its properties, the last one fastest."""
+
+    name: str
+    first_state: int
+    default_values: tuple[str, ...]
+    properties: tuple[tuple[str, tuple[str, ...]], ...]
+
+    def state_id(self, chosen: Mapping[str, str]) -> int:
+        """State id with the chosen values; the others are those of the default state."""
+        offset = 0
+        for (name, values), default in zip(self.properties, self.default_values, strict=True):
+            value = chosen.get(name, default)
+            if value not in values:
+                raise UnknownNameError(
+                    f"block {self.name!r} has no {name}={value}; "
+                    f"{name} is one of {', '.join(values)}"
+                )
+            offset = offset * len(values) + values.index(value)
+        return self.first_state + offset
+
+    def values(self, state_id: int) -> tuple[str, ...]:
+        """Values of the properties in a state, in the order of `properties`."""
+        offset = state_id - self.first_state
+        found: list[str] = []
+        for _, values in reversed(self.properties):
+            offset, index = divmod(offset, len(values))
+            found.append(values[index])
+        return tuple(reversed(found))
+
+
+@dataclass(frozen=True, eq=False)
+class Registry:
+    """Blocks and items of one Minecraft version.
+
+    Attributes:
+        version: Minecraft version, as `1.20.4`.
+        states: Number of block states; ids are 0 to states - 1.
+        airs: State ids of air, cave air and void air.
+        default_transparent: bool (states,): glass of every kind, barrier, ice, and
+            states without collision box.
+        state_shape: int32 (states,): number of each state's collision shape.
+        shape_start: int32 (shapes + 1,): shape k's boxes are rows shape_start[k] to
+            shape_start[k + 1] - 1 of `shape_boxes`.
+        shape_boxes: float64 (n, 6): boxes as `BoxBounds`. They may reach out of the
+            block: a fence is 1.5 high.
+    """
+
+    version: str
+    states: int
+    airs: tuple[int, ...]
+    default_transparent: npt.NDArray[np.bool_]
+    state_shape: npt.NDArray[np.int32]
+    shape_start: npt.NDArray[np.int32]
+    shape_boxes: npt.NDArray[np.float64]
+    _blocks: Mapping[str, _Block]
+    _first_states: Sequence[int]
+    _block_order: Sequence[_Block]
+    _items: Mapping[str, int]
+
+    @staticmethod
+    def load(version: str = "1.20.4") -> "Registry":
+        """The registry of a Minecraft version, read once per process.
+
+        Raises:
+            BodyError: The package was not built, or its registry file is damaged.
+        """
+        return _load(version)
+
+    @property
+    def air(self) -> int:
+        """State id of air."""
+        return AIR
+
+    def state_id(self, text: str) -> int:
+        """State id of a text such as `oak_slab[type=top]`.
+
+        Raises:
+            InputError: The text has not the form `name` or `name[a=b,c=d]`.
+            UnknownNameError: No such block, property or value.
+        """
+        name, chosen = _parse_state(text)
+        block = self._block(name)
+        known = [property_name for property_name, _ in block.properties]
+        for property_name in chosen:
+            if property_name not in known:
+                has = f"it has {', '.join(known)}" if known else "it has none"
+                raise UnknownNameError(f"block {name!r} has no property {property_name!r}; {has}")
+        return block.state_id(chosen)
+
+    def text(self, state_id: int) -> str:
+        """Canonical text of a state: `name`, or `name[a=b,c=d]` sorted by property name.
+
+        Raises:
+            UnknownNameError: No such state id.
+        """
+        properties = self.properties(state_id)
+        if not properties:
+            return self.name(state_id)
+        inner = ",".join(f"{name}={properties[name]}" for name in sorted(properties))
+        return f"{self.name(state_id)}[{inner}]"
+
+    def name(self, state_id: int) -> str:
+        """Name of a state's block, without properties.
+
+        Raises:
+            UnknownNameError: No such state id.
+        """
+        return self._block_of(state_id).name
+
+    def properties(self, state_id: int) -> dict[str, str]:
+        """Property name to value, in the order in which the version lists them.
+
+        Raises:
+            UnknownNameError: No such state id.
+        """
+        block = self._block_of(state_id)
+        names = (name for name, _ in block.properties)
+        return dict(zip(names, block.values(state_id), strict=True))
+
+    def boxes(self, state_id: int) -> tuple[BoxBounds, ...]:
+        """Collision boxes of a state, in blocks from the block's lower corner.
+
+        Raises:
+            UnknownNameError: No such state id.
+        """
+        self._block_of(state_id)
+        shape = self.state_shape[state_id]
+        rows = self.shape_boxes[self.shape_start[shape] : self.shape_start[shape + 1]]
+        return tuple((x0, y0, z0, x1, y1, z1) for x0, y0, z0, x1, y1, z1 in rows.tolist())
+
+    def state_ids(self, name: str) -> range:
+        """All state ids of a block.
+
+        Raises:
+            UnknownNameError: No such block.
+        """
+        block = self._block(_bare(name))
+        count = math.prod(len(values) for _, values in block.properties)
+        return range(block.first_state, block.first_state + count)
+
+    def is_container(self, name: str) -> bool:
+        """Whether the simulators follow the contents of the block of that name."""
+        return _bare(name) in CONTAINER_NAMES
+
+    def has_block(self, name: str) -> bool:
+        """Whether there is a block of that name (a name without properties)."""
+        return _bare(name) in self._blocks
+
+    def has_item(self, name: str) -> bool:
+        """Whether there is an item of that name."""
+        return _bare(name) in self._items
+
+    def item_stack(self, name: str) -> int:
+        """How many of an item fit in one slot.
+
+        Raises:
+            UnknownNameError: No such item.
+        """
+        bare = _bare(name)
+        if bare not in self._items:
+            raise UnknownNameError(
+                f"no item {name!r} in Minecraft {self.version}{_nearest(bare, self._items)}"
+            )
+        return self._items[bare]
+
+    def _block(self, name: str) -> _Block:
+        if name not in self._blocks:
+            raise UnknownNameError(
+                f"no block {name!r} in Minecraft {self.version}{_nearest(name, self._blocks)}"
+            )
+        return self._blocks[name]
+
+    def _block_of(self, state_id: int) -> _Block:
+        if not 0 <= state_id < self.states:
+            raise UnknownNameError(
+                f"no block state {state_id} in Minecraft {self.version}; "
+                f"ids are 0 to {self.states - 1} (-1 in a grid is unknown and has no name)"
+            )
+        return self._block_order[bisect_right(self._first_states, state_id) - 1]
+
+
+def _bare(name: str) -> str:
+    return name.removeprefix("minecraft:")
+
+
+def _nearest(name: str, names: Iterable[str]) -> str:
+    close = difflib.get_close_matches(name, names, n=3)
+    return f"; did you mean {' or '.join(close)}?" if close else ""
+
+
+def _parse_state(text: str) -> tuple[str, dict[str, str]]:
+    """Name and chosen properties of a block state text."""
+    match = _STATE_TEXT.fullmatch(text.strip())
+    if match is None:
+        raise InputError(f"{text!r} is not a block; write name or name[property=value,...]")
+    name, inner = match.groups()
+    chosen: dict[str, str] = {}
+    for part in inner.split(",") if inner else ():
+        pair = _PROPERTY_TEXT.fullmatch(part)
+        if pair is None:
+            raise InputError(f"{part!r} in {text!r} is not of the form property=value")
+        if pair[1] in chosen:
+            raise InputError(f"{text!r} gives {pair[1]!r} twice; give it once")
+        chosen[pair[1]] = pair[2]
+    return name, chosen
+
+
+@functools.lru_cache(maxsize=4)
+def _load(version: str) -> Registry:
+    path = _BUNDLE / f"registry-{version}.msgpack"
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError:
+        raise BodyError(
+            f"there is no registry of Minecraft {version} at {path}: "
+            "build the package with `pip install .`"
+        ) from None
+    try:
+        file = msgspec.msgpack.decode(content, type=_RegistryFile)
+    except msgspec.MsgspecError as error:
+        raise BodyError(
+            f"{path} is damaged ({error}): build it anew with `pip install .`"
+        ) from None
+    if (file.format, file.minecraft) != (_FORMAT, version):
+        raise BodyError(
+            f"{path} holds Minecraft {file.minecraft}, format {file.format}, where {version}, "
+            f"format {_FORMAT} was expected: build it anew with `pip install .`"
+        )
+    return _build(file)
+
+
+def _build(file: _RegistryFile) -> Registry:
+    blocks = sorted((_block_from(entry) for entry in file.blocks), key=lambda b: b.first_state)
+    by_name = {block.name: block for block in blocks}
+    state_shape = _state_shapes(file)
+    counts = np.array([len(boxes) for boxes in file.shapes], dtype=np.int32)
+    shape_boxes = np.array(list(itertools.chain(*file.shapes)), dtype=np.float64).reshape(-1, 6)
+    transparent = counts[state_shape] == 0
+    for entry in file.blocks:
+        if entry.name in _CLEAR_NAMES or entry.name.endswith(_CLEAR_SUFFIXES):
+            transparent[entry.first_state : entry.last_state + 1] = True
+    shape_start = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
+    for table in (transparent, state_shape, shape_start, shape_boxes):
+        table.flags.writeable = False
+    return Registry(
+        version=file.minecraft,
+        states=len(state_shape),
+        airs=tuple(by_name[name].first_state for name in ("air", "cave_air", "void_air")),
+        default_transparent=transparent,
+        state_shape=state_shape,
+        shape_start=shape_start,
+        shape_boxes=shape_boxes,
+        _blocks=MappingProxyType(by_name),
+        _first_states=tuple(block.first_state for block in blocks),
+        _block_order=tuple(blocks),
+        _items=MappingProxyType(dict(file.items)),
+    )
+
+
+def _block_from(entry: _BlockFile) -> _Block:
+    properties = tuple((name, tuple(values)) for name, values in entry.properties)
+    plain = _Block(entry.name, entry.first_state, (), properties)
+    return _Block(entry.name, entry.first_state, plain.values(entry.default_state), properties)
+
+
+def _state_shapes(file: _RegistryFile) -> npt.NDArray[np.int32]:
+    shapes = np.full(max(entry.last_state for entry in file.blocks) + 1, -1, dtype=np.int32)
+    for entry in file.blocks:
+        shapes[entry.first_state : entry.last_state + 1] = entry.shapes
+    if (shapes < 0).any():
+        raise BodyError(
+            f"the registry of Minecraft {file.minecraft} leaves out block state "
+            f"{int(np.argmin(shapes))}: build the package anew with `pip install .`"
+        )
+    return shapes
