@@ -1,0 +1,311 @@
+"""Who sees what: line of sight through a grid of blocks (semantics, section 3).
+
+A block is seen if, from the eye, a ray inside the field of view reaches one of its sample
+points without entering the shape of another opaque block, and its middle is within the
+greatest visible distance. Sample points are the middle and, for each face strictly turned
+to the eye, the face's middle and its corners pulled in by 0.01. Every block can be seen,
+air and unknown ones included; the latter hide nothing, nor does anything outside the grid.
+
+Entering means to overlap the inside of a box for more than 1e-9 blocks. A ray that lies
+in the plane of a face is free if it is free when moved by 1e-7 to either side. Limits of
+distance and angle are inclusive, to 1e-9. The kernels are compiled on first use.
+"""
+
+import functools
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.world.frames import BlockGrid
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import EYE_HEIGHT, Point, Position
+
+if TYPE_CHECKING:
+    from beliefnest.perception.rays import Codes, Shapes
+    from beliefnest.perception.views import Eye
+
+__all__ = ["AGENT_SAMPLE_HEIGHTS", "BODY_CENTRE_HEIGHT", "Geometry", "Sight"]
+
+BODY_CENTRE_HEIGHT = 0.9
+"""Height of an agent's middle above its feet, in blocks."""
+
+AGENT_SAMPLE_HEIGHTS = (EYE_HEIGHT, BODY_CENTRE_HEIGHT, 0.05)
+"""Heights above the feet of the points by which an agent is seen, in blocks."""
+
+BoolArray = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Sight:
+    """How agents see; the same for every agent at every depth.
+
+    Attributes:
+        registry: Names and shapes of blocks.
+        max_visible_distance: Greatest distance from the eye to a block's middle or an
+            agent's body centre, in blocks; None: no limit.
+        field_of_view: Full angle of the cone of sight, in degrees; 360 sees all around.
+        transparent_blocks: Names of blocks that hide nothing, beside those of
+            `Registry.default_transparent`.
+
+    Raises:
+        UnknownNameError: A name of `transparent_blocks` is no block.
+    """
+
+    registry: Registry
+    max_visible_distance: float | None = 20.0
+    field_of_view: float = 360.0
+    transparent_blocks: Iterable[str] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "transparent_blocks", tuple(self.transparent_blocks))
+        self._transparent  # noqa: B018 - a wrong name is to be told here, not at the first look
+
+    def geometry(self, blocks: BlockGrid, origin: Position) -> "Geometry":
+        """Prepare a grid for many looks.
+
+        Args:
+            blocks: Block state ids, int32 (nx, ny, nz); -1 is unknown.
+            origin: Position of blocks[0, 0, 0].
+
+        Raises:
+            InputError: The grid is not three-dimensional.
+            UnknownNameError: A value is neither a block state id nor -1.
+        """
+        from beliefnest.perception import views
+
+        _check_grid(blocks, self.registry.states)
+        codes = np.zeros([size + 2 for size in blocks.shape], dtype=np.uint16)
+        codes[1:-1, 1:-1, 1:-1] = self._state_codes[blocks]
+        views.mark_intruded(codes, self._reaches)
+        codes.flags.writeable = False
+        return Geometry(self, origin, codes)
+
+    def visible_blocks(
+        self, blocks: BlockGrid, origin: Position, eye: Point, yaw: float, pitch: float
+    ) -> BoolArray:
+        """`Geometry.visible_blocks` of a grid looked at once."""
+        return self.geometry(blocks, origin).visible_blocks(eye, yaw, pitch)
+
+    def sees_blocks(
+        self,
+        blocks: BlockGrid,
+        origin: Position,
+        eye: Point,
+        yaw: float,
+        pitch: float,
+        positions: npt.ArrayLike,
+    ) -> BoolArray:
+        """`Geometry.sees_blocks` of a grid looked at once."""
+        return self.geometry(blocks, origin).sees_blocks(eye, yaw, pitch, positions)
+
+    def sees_points(
+        self,
+        blocks: BlockGrid,
+        origin: Position,
+        eye: Point,
+        yaw: float,
+        pitch: float,
+        points: npt.ArrayLike,
+    ) -> BoolArray:
+        """`Geometry.sees_points` of a grid looked at once."""
+        return self.geometry(blocks, origin).sees_points(eye, yaw, pitch, points)
+
+    def sees_agents(
+        self,
+        blocks: BlockGrid,
+        origin: Position,
+        eye: Point,
+        yaw: float,
+        pitch: float,
+        feet: npt.ArrayLike,
+    ) -> BoolArray:
+        """`Geometry.sees_agents` of a grid looked at once."""
+        return self.geometry(blocks, origin).sees_agents(eye, yaw, pitch, feet)
+
+    def blocker(
+        self, blocks: BlockGrid, origin: Position, eye: Point, point: Point
+    ) -> Position | None:
+        """`Geometry.blocker` of a grid looked at once."""
+        return self.geometry(blocks, origin).blocker(eye, point)
+
+    @functools.cached_property
+    def _transparent(self) -> BoolArray:
+        transparent = self.registry.default_transparent.copy()
+        for name in self.transparent_blocks:
+            ids = self.registry.state_ids(name)
+            transparent[ids.start : ids.stop] = True
+        return transparent
+
+    @functools.cached_property
+    def _state_codes(self) -> npt.NDArray[np.uint16]:
+        """Code (as in `rays`) of each state, and at the end that of unknown."""
+        from beliefnest.perception import rays
+
+        shape_codes = np.arange(len(self.registry.shape_start) - 1) + rays.FIRST_SHAPE
+        sizes = np.diff(self.registry.shape_start)
+        for shape in np.flatnonzero(sizes == 1):
+            box = self.registry.shape_boxes[self.registry.shape_start[shape]]
+            if (box == (0, 0, 0, 1, 1, 1)).all():
+                shape_codes[shape] = rays.FULL
+        codes = shape_codes[self.registry.state_shape]
+        codes[self._transparent] = rays.EMPTY
+        return np.append(codes, rays.EMPTY).astype(np.uint16)
+
+    @functools.cached_property
+    def _reaches(self) -> npt.NDArray[np.uint8]:
+        """By code, the sides at which its shape reaches out of the cell, one bit for each."""
+        from beliefnest.perception import rays
+
+        starts, boxes = self._shapes
+        reaches = np.zeros(len(starts) - 1 + rays.FIRST_SHAPE, dtype=np.uint8)
+        for shape in range(len(starts) - 1):
+            rows = boxes[starts[shape] : starts[shape + 1]]
+            for axis in range(3):
+                low, high = (rows[:, axis] < 0).any(), (rows[:, axis + 3] > 1).any()
+                reaches[shape + rays.FIRST_SHAPE] |= int(low) << 2 * axis
+                reaches[shape + rays.FIRST_SHAPE] |= int(high) << 2 * axis + 1
+        return reaches
+
+    @functools.cached_property
+    def _shapes(self) -> "Shapes":
+        return self.registry.shape_start, self.registry.shape_boxes
+
+
+@dataclass(frozen=True, eq=False)
+class Geometry:
+    """A grid of blocks prepared for looks; make it with `Sight.geometry`.
+
+    Positions and points are scenario coordinates. An eye is a point; yaw and pitch are
+    Mineflayer's radians (yaw 0 looks along -z, pi/2 along -x, positive pitch up) and
+    matter only for a field of view below 360 degrees.
+
+    Attributes:
+        sight: How agents see.
+        origin: Position of the grid's low corner.
+        codes: What each cell holds, as described in `rays`, read-only.
+    """
+
+    sight: Sight
+    origin: Position
+    codes: "Codes"
+
+    def with_blocks(self, changes: Mapping[Position, int]) -> "Geometry":
+        """The geometry with other block states (-1: unknown) at some positions of the grid.
+
+        Raises:
+            InputError: A position lies outside the grid.
+            UnknownNameError: A value is neither a block state id nor -1.
+        """
+        from beliefnest.perception import views
+
+        codes = self.codes.copy()
+        states = self.sight.registry.states
+        for position, state in changes.items():
+            cell = tuple(p - o for p, o in zip(position, self.origin, strict=True))
+            if not all(0 <= c < size - 2 for c, size in zip(cell, codes.shape, strict=True)):
+                raise InputError(f"position {position} lies outside the grid at {self.origin}")
+            _check_states(state, state, states)
+            i, j, k = cell
+            code = int(self.sight._state_codes[state])
+            views.set_code(codes, self.sight._reaches, (i + 1, j + 1, k + 1), code)
+        codes.flags.writeable = False
+        return Geometry(self.sight, self.origin, codes)
+
+    def visible_blocks(self, eye: Point, yaw: float, pitch: float) -> BoolArray:
+        """Which blocks of the grid are seen: bool (nx, ny, nz)."""
+        from beliefnest.perception import views
+
+        return views.visible_blocks(self.codes, self.sight._shapes, self._eye(eye, yaw, pitch))
+
+    def sees_blocks(
+        self, eye: Point, yaw: float, pitch: float, positions: npt.ArrayLike
+    ) -> BoolArray:
+        """Which of the blocks at integer positions (n, 3), in or out of the grid, are seen."""
+        from beliefnest.perception import views
+
+        rows = _rows(positions)
+        if rows.dtype.kind not in "iu" and len(rows):
+            raise InputError(f"block positions are of type {rows.dtype}; give integers")
+        cells = rows.astype(np.int64) + (1 - np.array(self.origin))
+        return views.seen_blocks(self.codes, self.sight._shapes, self._eye(eye, yaw, pitch), cells)
+
+    def sees_points(self, eye: Point, yaw: float, pitch: float, points: npt.ArrayLike) -> BoolArray:
+        """Which of the points (n, 3) are seen; each has to be within the visible distance."""
+        from beliefnest.perception import views
+
+        local = self._local(points)
+        seer = self._eye(eye, yaw, pitch)
+        shapes = self.sight._shapes
+        return views.near_points(seer, local) & views.seen_points(self.codes, shapes, seer, local)
+
+    def sees_agents(self, eye: Point, yaw: float, pitch: float, feet: npt.ArrayLike) -> BoolArray:
+        """Which of the agents with feet at (n, 3) are seen.
+
+        One of the points at `AGENT_SAMPLE_HEIGHTS` has to be seen, and the body centre
+        has to be within the visible distance.
+        """
+        from beliefnest.perception import views
+
+        local = self._local(feet)
+        seer = self._eye(eye, yaw, pitch)
+        heights = np.array([(0.0, height, 0.0) for height in AGENT_SAMPLE_HEIGHTS])
+        samples = (local[:, None, :] + heights).reshape(-1, 3)
+        seen = views.seen_points(self.codes, self.sight._shapes, seer, samples)
+        near = views.near_points(seer, local + (0.0, BODY_CENTRE_HEIGHT, 0.0))
+        return near & seen.reshape(-1, len(heights)).any(axis=1)
+
+    def blocker(self, eye: Point, point: Point) -> Position | None:
+        """Position of the first block whose shape the ray from eye to point enters."""
+        from beliefnest.perception import rays
+
+        start, end = self._local([eye, point]).tolist()
+        i, j, k = rays.hidden_by(
+            self.codes, self.sight._shapes, rays.NOWHERE, tuple(start), tuple(end)
+        )
+        if i < 0:
+            return None
+        x, y, z = self.origin
+        return (x + i - 1, y + j - 1, z + k - 1)
+
+    def _local(self, points: npt.ArrayLike) -> npt.NDArray[np.float64]:
+        """Points in coordinates of the codes, which have a margin of one cell."""
+        return _rows(points).astype(np.float64) + (1.0 - np.array(self.origin))
+
+    def _eye(self, eye: Point, yaw: float, pitch: float) -> "Eye":
+        x, y, z = (float(e) + (1 - o) for e, o in zip(eye, self.origin, strict=True))
+        level = math.cos(pitch)
+        look = (-math.sin(yaw) * level, math.sin(pitch), -math.cos(yaw) * level)
+        angle, far = self.sight.field_of_view, self.sight.max_visible_distance
+        cos_half = -2.0 if angle >= 360 else math.cos(math.radians(angle) / 2)
+        return (x, y, z), look, cos_half, math.inf if far is None else float(far)
+
+
+def _rows(points: npt.ArrayLike) -> npt.NDArray[np.generic]:
+    rows = np.asarray(points)
+    if rows.size == 0:
+        return rows.reshape(0, 3)
+    if rows.ndim != 2 or rows.shape[1] != 3:
+        raise InputError(f"points have shape {rows.shape}; give rows of x, y, z")
+    return rows
+
+
+def _check_grid(blocks: BlockGrid, states: int) -> None:
+    if blocks.ndim != 3 or blocks.size == 0 or blocks.dtype.kind not in "iu":
+        raise InputError(
+            f"a grid of blocks has shape {blocks.shape} of {blocks.dtype}; "
+            "give block state ids along x, y and z"
+        )
+    _check_states(int(blocks.min()), int(blocks.max()), states)
+
+
+def _check_states(low: int, high: int, states: int) -> None:
+    if low < -1 or high >= states:
+        wrong = low if low < -1 else high
+        raise UnknownNameError(
+            f"no block state {wrong}; ids are 0 to {states - 1}, and -1 is unknown"
+        )
