@@ -1,0 +1,53 @@
+'use strict'
+/** A Mineflayer bot with pathfinder at the client's end of a connection. */
+const { createHash } = require('node:crypto')
+const mineflayer = require('mineflayer')
+const { pathfinder } = require('mineflayer-pathfinder')
+const { chargePathfinder } = require('./pathing')
+
+// mineflayer injects its plugins in a timer of its own, which Node fires after this long.
+const INJECTION_MS = 1
+
+/**
+ * Starts a bot; it is usable `INJECTION_MS` of virtual time later.
+ * @param {object} client a connection's client end
+ * @param {import('../time/clock').Clock} clock
+ */
+function startBot (client, clock) {
+  const bot = mineflayer.createBot({
+    client,
+    username: client.username,
+    version: client.version,
+    hideErrors: true,
+    logErrors: false,
+    brand: 'vanilla'
+  })
+  bot.setMaxListeners(0)
+  bot.once('inject_allowed', () => {
+    bot.loadPlugin(pathfinder)
+    chargePathfinder(bot, clock)
+  })
+  return bot
+}
+
+/**
+ * Makes a bot stand still and finish what it was doing: path, digging, controls, window.
+ */
+function stopBot (bot) {
+  bot.pathfinder.setGoal(null)
+  if (bot.targetDigBlock) bot.stopDigging()
+  bot.clearControlStates()
+  if (bot.currentWindow) bot.closeWindow(bot.currentWindow)
+  bot.deactivateItem()
+}
+
+/** @returns {string} a player id (UUID) that depends on nothing but the agent's name */
+function agentUuid (agent) {
+  const bytes = createHash('md5').update(`OfflinePlayer:${agent}`).digest()
+  bytes[6] = (bytes[6] & 0x0f) | 0x30
+  bytes[8] = (bytes[8] & 0x3f) | 0x80
+  const hex = bytes.toString('hex')
+  return [hex.slice(0, 8), hex.slice(8, 12), hex.slice(12, 16), hex.slice(16, 20), hex.slice(20)].join('-')
+}
+
+module.exports = { agentUuid, INJECTION_MS, startBot, stopBot }

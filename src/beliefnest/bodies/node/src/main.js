@@ -1,0 +1,49 @@
+'use strict'
+/**
+ * The Minecraft side of BeliefNest: one process with the server and all bots, driven over
+ * descriptor 3, ended by the end of descriptor 3 or 4.
+ */
+const net = require('node:net')
+const path = require('node:path')
+const { Worker } = require('node:worker_threads')
+const { Clock } = require('./time/clock')
+const { installTime } = require('./time/install')
+
+const CHANNEL = 3
+const LIFELINE = 4
+
+function main () {
+  const clock = new Clock('')
+  installTime(clock)
+  require('./prepare').prepare()
+  const { Channel } = require('./channel/channel')
+  const { Session } = require('./session')
+
+  new Worker(path.join(__dirname, 'channel', 'lifeline.js'), { workerData: { descriptor: LIFELINE } })
+    .on('error', fail)
+  const stream = new net.Socket({ fd: CHANNEL, readable: true, writable: true })
+  const session = new Session(clock, message => channel.send(message))
+  let turn = Promise.resolve()
+  const channel = new Channel(stream, request => {
+    turn = turn.then(() => answer(request)).catch(fail)
+  })
+  async function answer (request) {
+    channel.send(await session.answer(request))
+    if (request.op === 'shutdown') stream.end(() => process.exit(0))
+  }
+  stream.on('end', () => process.exit(0))
+  stream.on('error', () => process.exit(1))
+  process.on('unhandledRejection', note)
+}
+
+// A promise nobody waits for was rejected, for instance by a program that has ended.
+function note (error) {
+  process.stderr.write(`unhandled rejection: ${error?.stack ?? error}\n`)
+}
+
+function fail (error) {
+  process.stderr.write(`${error.stack}\n`)
+  process.exit(1)
+}
+
+main()

@@ -1,0 +1,60 @@
+'use strict'
+/**
+ * One registry, one Block class, one Item class ... per Minecraft version. The packages make
+ * new ones on every call (for every bot), at 3 to 4 times the cost of everything else.
+ */
+
+// In the order in which they load one another.
+const MEMOISED = [
+  'minecraft-data', 'prismarine-registry', 'prismarine-biome', 'prismarine-block',
+  'prismarine-chunk', 'prismarine-item', 'prismarine-windows', 'prismarine-entity',
+  'prismarine-chat', 'prismarine-world', 'prismarine-recipe'
+]
+
+/**
+ * @param {Function} make takes a version text or a registry
+ * @returns {Function} the same, but it makes only one thing per version
+ */
+function memoised (make) {
+  const made = new Map()
+  function remembered (versionOrRegistry, ...rest) {
+    if (rest.length > 0 || !versionOrRegistry) return make(versionOrRegistry, ...rest)
+    const key = typeof versionOrRegistry === 'object'
+      ? versionOrRegistry.version.minecraftVersion
+      : String(versionOrRegistry)
+    if (!made.has(key)) made.set(key, make(versionOrRegistry))
+    return made.get(key)
+  }
+  return Object.assign(remembered, make)
+}
+
+/** Block objects by state, copied by reference: `new Block` works out all its properties anew. */
+function cacheBlocks (registry) {
+  const Block = require('prismarine-block')(registry)
+  const Chunk = require('prismarine-chunk')(registry)
+  const prototypes = new Map()
+  const fromStateId = Block.fromStateId
+  Chunk.prototype.getBlock = function getBlock (position) {
+    const stateId = this.getBlockStateId(position)
+    let known = prototypes.get(stateId)
+    if (known === undefined) {
+      known = fromStateId(stateId, 0)
+      prototypes.set(stateId, known)
+    }
+    const block = Object.assign(Object.create(Block.prototype), known)
+    block.computedStates = {}
+    block.entity = this.getBlockEntity(position)
+    return block
+  }
+}
+
+/** For running from source; the bundle does the same when it is built (see build.js). */
+function memoiseInstalled () {
+  for (const name of MEMOISED) {
+    const path = require.resolve(name)
+    require(path)
+    require.cache[path].exports = memoised(require.cache[path].exports)
+  }
+}
+
+module.exports = { MEMOISED, memoised, memoiseInstalled, cacheBlocks }

@@ -1,0 +1,122 @@
+'use strict'
+/** Translates packets between the server's world and a region's scenario coordinates. */
+const { TO_CLIENT, TO_SERVER } = require('./packets')
+
+// Points cross in steps of 2^-24 blocks: such a number plus a whole offset is exact, so that
+// what a region computes does not depend on where in the world it lies.
+const STEPS = 2 ** 24
+// block_dig's later statuses (drop, release, swap) carry a meaningless location of zeros.
+const LAST_DIG_STATUS_WITH_PLACE = 2
+const FIXED_POINT = 8
+const CHUNK_WIDTH = 16
+
+/** A change of coordinates: whole chunks along x and z, and a renaming of players. */
+class Shift {
+  constructor (dx, dz, rename) {
+    this.dx = dx
+    this.dz = dz
+    this.rename = rename
+  }
+
+  coordinates (place, scale, round) {
+    const moved = { ...place }
+    moved.x = round(place.x) + this.dx * scale
+    moved.z = round(place.z) + this.dz * scale
+    if (place.y !== undefined) moved.y = round(place.y)
+    return moved
+  }
+
+  chunk (place, x, z) {
+    return {
+      ...place,
+      [x]: place[x] + this.dx / CHUNK_WIDTH,
+      [z]: place[z] + this.dz / CHUNK_WIDTH
+    }
+  }
+
+  text (value) {
+    if (typeof value === 'string') return this.rename(value)
+    if (Array.isArray(value)) return value.map(entry => this.text(entry))
+    if (value === null || typeof value !== 'object') return value
+    return Object.fromEntries(Object.entries(value).map(([key, entry]) => [key, this.text(entry)]))
+  }
+}
+
+const same = value => value
+const toStep = value => Math.round(value * STEPS) / STEPS
+
+/** One function per kind of packets.js: (shift, value, entry, packet) -> new value. */
+const KINDS = {
+  point: (shift, place) => shift.coordinates(place, 1, toStep),
+  block: (shift, place) => shift.coordinates(place, 1, same),
+  flat: (shift, place) => shift.coordinates(place, 1, same),
+  fixed: (shift, place) => shift.coordinates(place, FIXED_POINT, same),
+  absolute: (shift, packet) => shiftAbsolute(shift, packet),
+  chunk: (shift, place, entry) => shift.chunk(place, entry.x, entry.z),
+  chunks: (shift, list) => list.map(item => ({ ...item, position: shift.chunk(item.position, 'x', 'z') })),
+  death: (shift, death) => ({ ...death, location: shift.coordinates(death.location, 1, same) }),
+  dig: (shift, packet) => packet.status > LAST_DIG_STATUS_WITH_PLACE
+    ? packet
+    : { ...packet, location: shift.coordinates(packet.location, 1, same) },
+  players: (shift, list) => list.map(item => item.player === undefined
+    ? item
+    : { ...item, player: { ...item.player, name: shift.rename(item.player.name) } }),
+  text: (shift, component) => shift.text(component),
+  words: (shift, words) => words.split(' ').map(word => shift.rename(word)).join(' ')
+}
+
+// A teleport's coordinate is a distance, not a place, where its flag says so.
+function shiftAbsolute (shift, packet) {
+  const moved = shift.coordinates(packet, 1, toStep)
+  if (packet.flags & 1) moved.x = packet.x
+  if (packet.flags & 4) moved.z = packet.z
+  return moved
+}
+
+function apply (shift, entries, packet) {
+  let result = packet
+  for (const entry of entries) {
+    const change = KINDS[entry.kind]
+    if (entry.field === undefined) {
+      result = change(shift, result, entry)
+    } else if (result[entry.field] !== undefined && result[entry.field] !== null) {
+      result = { ...result, [entry.field]: change(shift, result[entry.field], entry) }
+    }
+  }
+  return result
+}
+
+class Translator {
+  /**
+   * @param {{x: number, z: number}} origin where scenario (0, y, 0) lies in the server's
+   *   world; multiples of 16
+   * @param {Map<string, string>} [agentOf] the agent's name of each of the server's names
+   */
+  constructor (origin, agentOf = new Map()) {
+    const nameOf = new Map([...agentOf].map(([server, agent]) => [agent, server]))
+    this.clientward = new Shift(-origin.x, -origin.z, renamer(agentOf))
+    this.serverward = new Shift(origin.x, origin.z, renamer(nameOf))
+  }
+
+  /** @returns {object} a copy of the packet for the bot */
+  toClient (name, packet) {
+    const entries = TO_CLIENT[name]
+    return entries === undefined ? { ...packet } : apply(this.clientward, entries, packet)
+  }
+
+  /** @returns {object} a copy of the packet for the server */
+  toServer (name, packet) {
+    const entries = TO_SERVER[name]
+    return entries === undefined ? { ...packet } : apply(this.serverward, entries, packet)
+  }
+}
+
+function renamer (names) {
+  if (names.size === 0) return same
+  const escaped = [...names.keys()].sort((a, b) => b.length - a.length)
+    .map(name => name.replace(/[.*+?^${}()|[\]\\]/g, '\\$&'))
+  const pattern = new RegExp(`(?<![A-Za-z0-9_])(?:${escaped.join('|')})(?![A-Za-z0-9_])`, 'g')
+  return text => text.replace(pattern, name => names.get(name))
+}
+
+module.exports = { Translator }

@@ -1,0 +1,146 @@
+'use strict'
+/**
+ * Minecraft connections inside one process: packets are handed over as objects, in order,
+ * without sockets, compression or encryption. Both ends look like node-minecraft-protocol
+ * clients that have reached the `play` state.
+ */
+const { EventEmitter } = require('node:events')
+
+class MemoryEnd extends EventEmitter {
+  /**
+   * @param {object} link what both ends share: `version`, `supportFeature`, `report(error)`
+   * @param {string} username
+   * @param {string} uuid
+   */
+  constructor (link, username, uuid) {
+    super()
+    this.setMaxListeners(0)
+    this.link = link
+    this.version = link.version
+    this.protocolVersion = link.protocolVersion
+    this.username = username
+    this.uuid = uuid
+    this.state = 'play'
+    this.latency = 0
+    this.ended = false
+    this.settings = {}
+    this.socket = { remoteAddress: 'memory', destroy () {} }
+  }
+
+  supportFeature (feature) {
+    return this.link.supportFeature(feature)
+  }
+
+  /** Sends a packet; the other end gets it after the code that runs now. */
+  write (name, params) {
+    if (this.ended) return
+    this.link.post(this.peer, name, this.translate(name, params))
+  }
+
+  writeBundle (packets) {
+    for (const [name, params] of packets) this.write(name, params)
+  }
+
+  /** Ends both sides at once. */
+  end (reason) {
+    if (this.ended) return
+    this.ended = true
+    this.peer.end(reason)
+    this.emit('end', reason)
+  }
+
+  /** Plugin channels carry nothing a scenario knows of. */
+  registerChannel () {}
+  unregisterChannel () {}
+  writeChannel () {}
+}
+
+class ClientEnd extends MemoryEnd {
+  /** What a player types: a command or words. */
+  chat (message) {
+    if (message.startsWith('/')) this.write('chat_command', { command: message.slice(1) })
+    else this.write('chat_message', { message })
+  }
+
+  deliver (name, params) {
+    if (name === 'system_chat') {
+      const formattedMessage = JSON.stringify(this.link.readChat(params.content))
+      this.emit('systemChat', { formattedMessage, positionId: params.isActionBar ? 2 : 1 })
+    }
+    this.emit('packet', params, { name, state: 'play' })
+    this.emit(name, params, { name, state: 'play' })
+  }
+}
+
+class ServerEnd extends MemoryEnd {
+  /** Handlers on the server side may be async; what they throw is reported all the same. */
+  deliver (name, params) {
+    for (const listener of this.listeners(name)) {
+      const result = listener.call(this, params)
+      if (result instanceof Promise) result.catch(this.link.report)
+    }
+  }
+}
+
+/** A queue for the packets of one region, so that they arrive in the order they were sent. */
+class Mail {
+  /** @param {(error: Error) => void} report hears what a packet's handlers throw */
+  constructor (report) {
+    this.report = report
+    this.waiting = []
+    this.scheduled = false
+  }
+
+  post (end, name, params) {
+    if (params === null) return
+    this.waiting.push({ end, name, params })
+    if (this.scheduled) return
+    this.scheduled = true
+    queueMicrotask(() => this.handOver())
+  }
+
+  handOver () {
+    for (let index = 0; index < this.waiting.length; index++) {
+      const { end, name, params } = this.waiting[index]
+      if (end.ended) continue
+      try {
+        end.deliver(name, params)
+      } catch (error) {
+        this.report(error)
+      }
+    }
+    this.waiting.length = 0
+    this.scheduled = false
+  }
+}
+
+/**
+ * @param {object} options
+ * @param {import('prismarine-registry').Registry} options.registry of the Minecraft version
+ * @param {Mail} options.mail of the region
+ * @param {import('./translate').Translator} options.translator between the two sides
+ * @param {string} options.username as the server knows the player
+ * @param {string} options.agent as the client knows itself
+ * @param {string} options.uuid
+ * @param {(content: object) => object} options.readChat chat component from its NBT form
+ * @returns {{client: ClientEnd, server: ServerEnd}}
+ */
+function connect ({ registry, mail, translator, username, agent, uuid, readChat }) {
+  const link = {
+    version: registry.version.minecraftVersion,
+    protocolVersion: registry.version.version,
+    supportFeature: registry.supportFeature,
+    readChat,
+    report: mail.report,
+    post: (end, name, params) => mail.post(end, name, params)
+  }
+  const client = new ClientEnd(link, agent, uuid)
+  const server = new ServerEnd(link, username, uuid)
+  client.peer = server
+  server.peer = client
+  client.translate = (name, params) => translator.toServer(name, params)
+  server.translate = (name, params) => translator.toClient(name, params)
+  return { client, server }
+}
+
+module.exports = { connect, Mail }

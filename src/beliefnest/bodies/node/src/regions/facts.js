@@ -1,0 +1,69 @@
+'use strict'
+/** What is the case in a region, as the channel says it: read from the server, never from bots. */
+
+const DECIMALS = 1e6
+
+/** @returns {number} rounded as the channel asks for; never -0, which msgpack would keep */
+function rounded (value) {
+  return Math.round(value * DECIMALS) / DECIMALS + 0
+}
+
+function agentState (region, player) {
+  const { inventory, equipment } = player.possessions()
+  return {
+    position: region.toScenario(player.position).map(rounded),
+    yaw: rounded(player.pose.yaw),
+    pitch: rounded(player.pose.pitch),
+    on_ground: player.onGround,
+    equipment,
+    inventory: sorted(inventory),
+    health: player.health,
+    food: player.food
+  }
+}
+
+function sorted (items) {
+  return Object.fromEntries(Object.entries(items).sort(([a], [b]) => (a < b ? -1 : 1)))
+}
+
+/** @returns {Array} [x, y, z, items or null] of containers that changed since the last call */
+function changedContainers (serv, region) {
+  return serv.containers.drainChanges(position => region.contains(position)).map(position => {
+    const items = serv.containers.get(position)
+    return [...region.toScenario(position), items === null ? null : sorted(items)]
+  })
+}
+
+/** @returns {Array} [x, y, z, items] of all containers in the box */
+function containerStates (serv, region) {
+  const all = []
+  region.box.forEach((x, y, z) => {
+    const items = serv.containers.get(region.toServer([x, y, z]))
+    if (items !== null) all.push([x, y, z, sorted(items)])
+  })
+  return all
+}
+
+/** @returns {object} agents of the active region by name */
+function agentStates (serv, region) {
+  return Object.fromEntries(serv.players.map(player => [player.agent, agentState(region, player)]))
+}
+
+/** @returns {object} dropped items of the active region by entity id */
+function itemStates (serv, region) {
+  const items = {}
+  for (const { id, item, position } of serv.itemEntities(place => region.contains(place))) {
+    items[id] = { name: item.name, count: item.count, position: region.toScenario(position).map(rounded) }
+  }
+  return items
+}
+
+/** @returns {string} e.g. `lever[face=floor,facing=north,powered=true]` */
+function blockText (serv, stateId) {
+  const { name, properties } = serv.blocks.describe(stateId)
+  const entries = Object.entries(properties).sort(([a], [b]) => (a < b ? -1 : 1))
+  if (entries.length === 0) return name
+  return `${name}[${entries.map(([key, value]) => `${key}=${value}`).join(',')}]`
+}
+
+module.exports = { agentStates, blockText, changedContainers, containerStates, itemStates }

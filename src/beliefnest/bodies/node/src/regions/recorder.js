@@ -1,0 +1,90 @@
+'use strict'
+/** Collects what changes in a region during a tick, and makes frames of it. */
+const { agentStates, blockText, changedContainers, itemStates } = require('./facts')
+
+// Details of events that say where something is.
+const PLACES = ['position', 'destination']
+
+class Recorder {
+  constructor (serv, region) {
+    this.serv = serv
+    this.region = region
+    this.known = { agents: new Map(), items: new Map() }
+    this.clear()
+  }
+
+  clear () {
+    this.blocks = new Map()
+    this.events = []
+  }
+
+  event ({ kind, actor, detail }) {
+    this.events.push({ kind, actor, detail })
+  }
+
+  /** An event of a server plugin, whose places are in server coordinates. */
+  serverEvent ({ kind, actor, detail }) {
+    const translated = { ...detail }
+    for (const key of PLACES) {
+      const place = detail[key]
+      if (place === undefined) continue
+      const [x, y, z] = Array.isArray(place) ? place : [place.x, place.y, place.z]
+      translated[key] = this.region.toScenario({ x, y, z })
+    }
+    this.event({ kind, actor, detail: translated })
+  }
+
+  /** A block of the server's world became `state`. */
+  blockChanged (position, state) {
+    if (!this.region.contains(position)) return
+    const place = this.region.toScenario(position)
+    this.blocks.set(place.join(), [...place, state])
+    this.event({
+      kind: 'block_update', actor: null, detail: { position: place, block: blockText(this.serv, state) }
+    })
+  }
+
+  /** Takes the present state as known, so that frames tell only what differs from it. */
+  settle () {
+    this.changes('agents', agentStates(this.serv, this.region))
+    this.changes('items', itemStates(this.serv, this.region))
+    changedContainers(this.serv, this.region)
+    this.clear()
+  }
+
+  /** @returns {object | null} the FRAME of the tick that ended; null if nothing changed */
+  frame () {
+    const frame = {
+      region: this.region.name,
+      tick: this.region.tick,
+      agents: this.changes('agents', agentStates(this.serv, this.region)),
+      blocks: [...this.blocks.values()],
+      containers: changedContainers(this.serv, this.region),
+      items: this.changes('items', itemStates(this.serv, this.region)),
+      events: this.events
+    }
+    this.clear()
+    const quiet = Object.keys(frame.agents).length === 0 && frame.blocks.length === 0 &&
+      frame.containers.length === 0 && Object.keys(frame.items).length === 0 && frame.events.length === 0
+    return quiet ? null : frame
+  }
+
+  changes (part, present) {
+    const known = this.known[part]
+    const changed = {}
+    for (const [key, state] of Object.entries(present)) {
+      const text = JSON.stringify(state)
+      if (known.get(key) === text) continue
+      known.set(key, text)
+      changed[key] = state
+    }
+    for (const key of known.keys()) {
+      if (key in present) continue
+      known.delete(key)
+      changed[key] = null
+    }
+    return changed
+  }
+}
+
+module.exports = { Recorder }

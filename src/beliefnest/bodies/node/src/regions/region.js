@@ -1,0 +1,77 @@
+'use strict'
+/** One isolated place of the world: its box, its time, its players, and how it is addressed. */
+const { Vec3 } = require('vec3')
+const { Context } = require('../time/clock')
+const { Mail } = require('../net/transport')
+const { BadRequest } = require('../channel/errors')
+const { Translator } = require('../net/translate')
+const { regionalState } = require('../server/regional')
+const { columnsOf } = require('./columns')
+
+class Region {
+  /**
+   * @param {object} options
+   * @param {string} options.name
+   * @param {string} options.seed of its random numbers
+   * @param {import('./box').Box} options.box
+   * @param {{x: number, z: number}} options.origin from the allotment
+   * @param {number} options.tick the tick that has ended
+   */
+  constructor ({ name, seed, box, origin, tick }) {
+    this.name = name
+    this.box = box
+    this.origin = origin
+    this.tick = tick
+    this.context = new Context(seed)
+    this.state = regionalState()
+    this.columns = columnsOf(box, origin)
+    this.faults = []
+    this.mail = new Mail(fault => this.faults.push(fault))
+    this.translator = new Translator(origin)
+    this.bodies = new Map()
+    this.recorder = null
+  }
+
+  /**
+   * @returns {{bot: object, player: object}} of an agent
+   * @throws {BadRequest} if it is not here
+   */
+  body (agent) {
+    const body = this.bodies.get(agent)
+    if (body === undefined) {
+      throw new BadRequest(`there is no agent ${agent} in region ${this.name}; there are: ${[...this.bodies.keys()].join(', ') || 'none'}`)
+    }
+    return body
+  }
+
+  /** An event of this tick; positions in `detail` are scenario coordinates. */
+  emit (event) {
+    this.recorder.event(event)
+  }
+
+  /** @returns {[number, number, number]} scenario coordinates of a server place */
+  toScenario ({ x, y, z }) {
+    return [x - this.origin.x, y, z - this.origin.z]
+  }
+
+  /** @returns {Vec3} server coordinates of a scenario place */
+  toServer ([x, y, z]) {
+    return new Vec3(x + this.origin.x, y, z + this.origin.z)
+  }
+
+  /** Whether a server place is inside the box. */
+  contains ({ x, y, z }) {
+    return this.box.contains(
+      Math.floor(x) - this.origin.x, Math.floor(y), Math.floor(z) - this.origin.z)
+  }
+
+  /** @throws {Error} the first fault of the server side since the last call */
+  raiseFaults () {
+    if (this.faults.length === 0) return
+    const [fault] = this.faults
+    this.faults.length = 0
+    throw fault
+  }
+}
+
+module.exports = { Region }

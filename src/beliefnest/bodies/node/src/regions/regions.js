@@ -1,0 +1,138 @@
+'use strict'
+/** All regions of the world: making, changing, looking at, and giving up one. */
+const { Allotment } = require('./allotment')
+const { Bodies } = require('./bodies')
+const { Box } = require('./box')
+const { buildColumns, dropColumns, readStates } = require('./columns')
+const { agentStates, containerStates, itemStates } = require('./facts')
+const { Recorder } = require('./recorder')
+const { Region } = require('./region')
+const { BadRequest } = require('../channel/errors')
+
+const TICK_MS = 50
+
+class Regions {
+  /**
+   * @param {object} serv
+   * @param {import('../time/clock').Clock} clock
+   * @param {(frame: object) => void} send hears every frame
+   */
+  constructor (serv, clock, send) {
+    this.serv = serv
+    this.clock = clock
+    this.send = send
+    this.allotment = new Allotment()
+    this.bodies = new Bodies(serv, clock)
+    this.byName = new Map()
+    serv.blocks.on('change', ({ position, after }) => serv.region.recorder.blockChanged(position, after))
+    serv.facts.on('event', event => serv.region.recorder.serverEvent(event))
+  }
+
+  /** @throws {BadRequest} if there is no such region */
+  get (name) {
+    const region = this.byName.get(name)
+    if (region === undefined) {
+      throw new BadRequest(`there is no region ${name}; there are: ${[...this.byName.keys()].join(', ') || 'none'}`)
+    }
+    return region
+  }
+
+  /** Runs `action` in a region: its clock, its random numbers, its part of the server. */
+  async inside (region, action) {
+    this.serv.region = region
+    try {
+      const result = await this.clock.within(region.context, action)
+      region.raiseFaults()
+      return result
+    } finally {
+      this.serv.region = null
+    }
+  }
+
+  /** @returns {Promise<object>} SNAPSHOT of the new region, once every bot stands in it */
+  async create ({ region: name, seed, box: corners, tick, blocks, containers, agents, items }) {
+    if (this.byName.has(name)) throw new BadRequest(`there already is a region ${name}`)
+    const box = new Box(...corners)
+    const states = statesOf(blocks, box)
+    const region = new Region({ name, seed, box, origin: this.allotment.take(box), tick })
+    region.recorder = new Recorder(this.serv, region)
+    this.byName.set(name, region)
+    try {
+      await this.inside(region, async () => {
+        buildColumns(this.serv, region, states)
+        for (const [x, y, z, content] of containers) {
+          this.serv.containers.set(region.toServer([x, y, z]), content)
+        }
+        for (const item of Object.values(items)) this.dropItem(region, item)
+        await this.bodies.add(region, agents)
+        region.recorder.settle()
+      })
+    } catch (error) {
+      await this.destroy(name)
+      throw error
+    }
+    return this.snapshot(region)
+  }
+
+  dropItem (region, { name, count, position }) {
+    const data = this.serv.registry.itemsByName[name]
+    this.serv.dropItem(region.toServer(position), new this.serv.Item(data.id, count), { delay: 0 })
+  }
+
+  async destroy (name) {
+    const region = this.get(name)
+    await this.inside(region, () => {
+      for (const agent of [...region.bodies.keys()]) this.bodies.remove(region, agent)
+      this.serv.forgetCountdowns?.(position => region.contains(position))
+    })
+    region.context.timers.clear()
+    dropColumns(this.serv, region)
+    this.allotment.giveBack(region.origin)
+    this.byName.delete(name)
+  }
+
+  /** One tick of the active region; its frame is sent if anything changed. */
+  async tick (region) {
+    await this.clock.advance(TICK_MS)
+    region.tick += 1
+    this.serv.tickCount = region.tick
+    this.serv.tickRegion(position => region.contains(position))
+    this.serv.emit('tick', TICK_MS / 1000, region.tick, region)
+    await this.clock.advance(0)
+    const frame = region.recorder.frame()
+    if (frame !== null) this.send(frame)
+    region.raiseFaults()
+  }
+
+  async step (name, ticks) {
+    const region = this.get(name)
+    await this.inside(region, async () => {
+      for (let count = 0; count < ticks; count++) await this.tick(region)
+    })
+    return { tick: region.tick }
+  }
+
+  /** @returns {Promise<object>} SNAPSHOT */
+  async snapshot (region) {
+    return this.inside(region, () => {
+      const states = readStates(this.serv, region)
+      return {
+        tick: region.tick,
+        blocks: new Uint8Array(states.buffer, states.byteOffset, states.byteLength),
+        containers: containerStates(this.serv, region),
+        agents: agentStates(this.serv, region),
+        items: itemStates(this.serv, region)
+      }
+    })
+  }
+}
+
+function statesOf (bytes, box) {
+  const needed = box.size * Int32Array.BYTES_PER_ELEMENT
+  if (bytes.byteLength !== needed) {
+    throw new BadRequest(`the box has ${box.size} blocks, so "blocks" must have ${needed} bytes; it has ${bytes.byteLength}`)
+  }
+  return new Int32Array(new Uint8Array(bytes).buffer)
+}
+
+module.exports = { Regions, TICK_MS }

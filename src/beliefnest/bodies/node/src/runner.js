@@ -1,0 +1,78 @@
+'use strict'
+/** Runs the programs of agents in one region, together, tick by tick. */
+const { stopBot } = require('./bots/bot')
+
+class Runner {
+  /**
+   * @param {import('./regions/regions').Regions} regions
+   * @param {(request: {code: string, bot: object, scope: object, signal: AbortSignal}) =>
+   *   Promise<{ok: boolean, error: object | null}>} runProgram never rejects; ends soon after
+   *   `signal` is aborted
+   * @param {(bot: object) => object} scopeOf what a program of this bot finds in scope
+   */
+  constructor (regions, runProgram, scopeOf) {
+    this.regions = regions
+    this.runProgram = runProgram
+    this.scopeOf = scopeOf
+  }
+
+  /**
+   * @param {string} name of the region
+   * @param {object} programs code by agent
+   * @param {number} timeoutTicks after which programs that still run are ended
+   * @returns {Promise<{tick: number, results: object}>} RESULT by agent
+   */
+  async run (name, programs, timeoutTicks) {
+    const region = this.regions.get(name)
+    const bodies = Object.keys(programs).map(agent => region.body(agent))
+    let runs
+    await this.regions.inside(region, async () => {
+      const first = region.tick
+      runs = Object.values(programs).map((code, index) => this.start(region, bodies[index], code))
+      do {
+        await this.regions.tick(region)
+      } while (runs.some(run => run.result === null) && region.tick - first < timeoutTicks)
+      await this.endAll(runs, timeoutTicks)
+      for (const run of runs) run.result.ticks = run.endTick - first
+    })
+    const results = Object.keys(programs).map((agent, index) => [agent, runs[index].result])
+    return { tick: region.tick, results: Object.fromEntries(results) }
+  }
+
+  start (region, { bot }, code) {
+    const abort = new AbortController()
+    const run = { bot, abort, result: null, endTick: 0 }
+    const request = { code, bot, scope: this.scopeOf(bot), signal: abort.signal }
+    this.runProgram(request).then(({ ok, error }) => {
+      if (run.result !== null) return
+      run.result = { ok, error }
+      // A program ends within the tick that is still going on.
+      run.endTick = region.tick + 1
+      stopBot(bot)
+    }).catch(fault => region.faults.push(fault))
+    return run
+  }
+
+  async endAll (runs, timeoutTicks) {
+    for (const run of runs) {
+      if (run.result !== null) continue
+      run.result = { ok: false, error: timeoutError(timeoutTicks) }
+      run.endTick = this.regions.serv.region.tick
+      run.abort.abort()
+      stopBot(run.bot)
+    }
+    await this.regions.clock.advance(0)
+  }
+}
+
+function timeoutError (ticks) {
+  return {
+    kind: 'timeout',
+    message: `the program did not end within ${ticks} ticks`,
+    line: null,
+    column: null,
+    skill: null
+  }
+}
+
+module.exports = { Runner }

@@ -1,0 +1,29 @@
+'use strict'
+/**
+ * The base of the server: flying-squid's own plugins that can be used as they are, and ours in
+ * place of those that read disks, print, or assume one place for everybody.
+ */
+module.exports = [
+  require('./communication'),
+  require('./world'),
+  named('behavior', require('flying-squid/src/lib/plugins/behavior')),
+  named('players', require('flying-squid/src/lib/plugins/players')),
+  named('spawn', require('flying-squid/src/lib/plugins/spawn')),
+  require('./movement'),
+  named('health', require('flying-squid/src/lib/plugins/health')),
+  named('animations', require('flying-squid/src/lib/plugins/animations')),
+  named('sound', require('flying-squid/src/lib/plugins/sound')),
+  named('particle', require('flying-squid/src/lib/plugins/particle')),
+  named('physics', require('flying-squid/src/lib/plugins/physics')),
+  named('blocks', require('flying-squid/src/lib/plugins/blocks')),
+  named('inventory', require('flying-squid/src/lib/plugins/inventory')),
+  named('digging', require('flying-squid/src/lib/plugins/digging')),
+  named('placeBlock', require('flying-squid/src/lib/plugins/placeBlock')),
+  require('./metadata'),
+  require('./chat'),
+  require('./login')
+]
+
+function named (name, plugin) {
+  return { name, ...plugin }
+}

@@ -1,0 +1,27 @@
+'use strict'
+/** Who is told what: everything reaches exactly the players of one's own region. */
+
+module.exports.name = 'communication'
+
+module.exports.server = serv => {
+  serv._writeArray = (name, packet, players) => {
+    for (const player of players) player._client.write(name, packet)
+  }
+  serv._writeAll = (name, packet) => serv._writeArray(name, packet, serv.players)
+  serv.getNearby = ({ position, radius = Infinity }) => serv.players
+    .filter(player => player.position.distanceTo(position) <= radius)
+  serv.getNearbyEntities = ({ position, radius = Infinity }) => Object.values(serv.entities)
+    .filter(entity => entity.position.distanceTo(position) <= radius)
+  serv._writeNearby = (name, packet, place) => serv._writeArray(name, packet, serv.getNearby(place))
+}
+
+module.exports.entity = (entity, serv) => {
+  const others = () => serv.players.filter(player => player !== entity)
+  entity.getOtherPlayers = others
+  entity.nearbyPlayers = others
+  entity.getNearbyPlayers = others
+  entity.getNearby = () => Object.values(serv.entities).filter(other => other !== entity)
+  entity._writeOthers = (name, packet) => serv._writeArray(name, packet, others())
+  entity._writeOthersNearby = entity._writeOthers
+  entity._writeNearby = (name, packet) => serv._writeAll(name, packet)
+}

@@ -1,0 +1,97 @@
+'use strict'
+/**
+ * How a player enters and leaves a region: at an exact place, known to those who are there
+ * and knowing them, without spawn search, announcements, disk or waiting.
+ */
+const NOON = 6000
+
+module.exports.name = 'login'
+
+module.exports.server = serv => {
+  /**
+   * Lets a player into the active region.
+   * @param {import('events').EventEmitter} end the server's end of its connection
+   * @param {object} start `{position: Vec3 (server), yaw, pitch, onGround, health, food}`
+   * @returns {object} the player
+   */
+  serv.join = (end, start) => {
+    const type = serv.registry.entitiesByName.player.id
+    const player = serv.initEntity('player', type, serv.overworld, start.position.clone())
+    Object.assign(player, {
+      _client: end,
+      region: serv.region,
+      agent: end.username,
+      username: end.username,
+      uuid: end.uuid,
+      gameMode: 0,
+      health: start.health,
+      food: start.food,
+      foodSaturation: 5,
+      profileProperties: []
+    })
+    for (const plugin of serv.pluginList) plugin.player?.(player, serv, serv.options)
+    player.pose = { yaw: start.yaw, pitch: start.pitch }
+    player.onGround = start.onGround
+    end.on('end', () => leave(player, serv))
+    introduce(player, serv)
+    return player
+  }
+}
+
+module.exports.player = (player, serv) => {
+  /** Everything a client needs in order to be in the world. */
+  player.sendWorld = columns => {
+    sendLogin(player, serv)
+    for (const [x, z] of columns) player.sendColumn(x, z)
+    player._client.write('spawn_position', { location: player.position.floored(), angle: 0 })
+    player._client.write('update_time', { age: [0, 0], time: [0, NOON] })
+    player._client.write('held_item_slot', { slot: player.heldItemSlot })
+    player.sendSelfPosition()
+  }
+  player.kick = reason => player._client.end(reason)
+}
+
+function sendLogin (player, serv) {
+  const { dimensionCodec, ...packet } = serv.registry.loginPacket
+  player._client.write('login', {
+    ...packet,
+    entityId: player.id,
+    gameMode: player.gameMode,
+    previousGameMode: -1,
+    worldNames: Object.values(serv.dimensionNames),
+    worldName: serv.dimensionNames[0],
+    hashedSeed: serv.hashedSeed,
+    maxPlayers: 255,
+    viewDistance: 32,
+    isFlat: true
+  })
+}
+
+// The tab list first: clients ignore the body of a player they have not been told of.
+function introduce (player, serv) {
+  const entry = someone => ({
+    uuid: someone.uuid,
+    player: { name: someone.username, properties: someone.profileProperties },
+    gamemode: someone.gameMode,
+    listed: true,
+    latency: 0
+  })
+  const action = { add_player: true, update_game_mode: true, update_listed: true, update_latency: true }
+  const others = [...serv.players]
+  serv.players.push(player)
+  serv.uuidToPlayer[player.uuid] = player
+  serv._writeArray('player_info', { action, data: [entry(player)] }, others)
+  player.meet = () => {
+    player._client.write('player_info', { action, data: serv.players.map(entry) })
+    player.updateAndSpawn()
+  }
+}
+
+function leave (player, serv) {
+  serv.players.splice(serv.players.indexOf(player), 1)
+  delete serv.uuidToPlayer[player.uuid]
+  delete serv.entities[player.id]
+  serv._writeAll('player_remove', { players: [player.uuid] })
+  serv._writeAll('entity_destroy', { entityIds: [player.id] })
+  player.emit('disconnected')
+}

@@ -1,0 +1,38 @@
+'use strict'
+/** The one world: nothing but the columns regions put into it, never unloaded, never saved. */
+const nbt = require('prismarine-nbt')
+
+const HEIGHTMAP_LONGS = 36
+
+module.exports.name = 'world'
+
+module.exports.server = serv => {
+  const World = require('prismarine-world')(serv.registry)
+  const Chunk = require('prismarine-chunk')(serv.registry)
+  serv.overworld = new World(() => new Chunk({ minY: serv.minY, worldHeight: serv.worldHeight }))
+  serv.overworld.blockEntityData = {}
+  serv.dimensionNames = { 0: 'minecraft:overworld' }
+  serv.hashedSeed = [0, 0]
+  // flying-squid tells neighbours of changed blocks in order to run redstone, which is not ours.
+  serv.updateBlock = () => {}
+  serv.notifyNeighborsOfStateChange = () => {}
+}
+
+module.exports.player = (player, serv) => {
+  player.loadedChunks = {}
+
+  player.sendColumn = (chunkX, chunkZ) => {
+    const column = serv.overworld.sync.getColumn(chunkX, chunkZ)
+    player.loadedChunks[`${chunkX},${chunkZ}`] = 1
+    player._client.write('map_chunk', {
+      x: chunkX,
+      z: chunkZ,
+      heightmaps: nbt.comp({
+        MOTION_BLOCKING: nbt.longArray(new Array(HEIGHTMAP_LONGS).fill([0, 0]))
+      }),
+      chunkData: column.dump(),
+      blockEntities: [],
+      ...column.dumpLight()
+    })
+  }
+}

@@ -1,0 +1,70 @@
+'use strict'
+/** Answers the requests of the channel (design/channel.md), one at a time. */
+const { Random } = require('./time/random')
+const { cacheBlocks } = require('./memoise')
+const { createServer } = require('./server')
+const { Regions } = require('./regions/regions')
+const { Runner } = require('./runner')
+const { evaluate } = require('./evaluate')
+const { scopeOf } = require('./scope')
+const { BadRequest } = require('./channel/errors')
+const versions = require('./versions')
+
+const PROTOCOL = 1
+
+class Session {
+  /**
+   * @param {import('./time/clock').Clock} clock
+   * @param {(message: object) => void} send
+   */
+  constructor (clock, send) {
+    this.clock = clock
+    this.send = send
+    this.regions = null
+    this.runner = null
+  }
+
+  /** @returns {Promise<object>} the answer to a request, whatever happens */
+  async answer (request) {
+    try {
+      return { id: request.id, ok: true, result: await this.perform(request) }
+    } catch (error) {
+      const { message, kind = 'internal' } = error
+      return { id: request.id, ok: false, error: { kind, message, stack: error.stack } }
+    }
+  }
+
+  async perform (request) {
+    if (request.op === 'hello') return this.hello(request)
+    if (this.regions === null) throw new BadRequest('the first request must be hello')
+    switch (request.op) {
+      case 'create_region': return this.regions.create(request)
+      case 'destroy_region': return this.regions.destroy(request.region).then(() => null)
+      case 'step': return this.regions.step(request.region, request.ticks)
+      case 'run': return this.runner.run(request.region, request.programs, request.timeout_ticks)
+      case 'apply': return this.regions.apply(request)
+      case 'snapshot': return this.regions.snapshot(this.regions.get(request.region))
+      case 'shutdown': return null
+      default: throw new BadRequest(`there is no operation ${request.op}`)
+    }
+  }
+
+  async hello ({ protocol, seed, minecraft }) {
+    if (protocol !== PROTOCOL) {
+      throw new BadRequest(`protocol ${protocol} was asked for; this side speaks ${PROTOCOL}`)
+    }
+    if (minecraft !== versions.minecraft) {
+      throw new BadRequest(`Minecraft ${minecraft} was asked for; this build has ${versions.minecraft}`)
+    }
+    this.clock.root.random = new Random(String(seed))
+    const registry = require('prismarine-registry')(minecraft)
+    registry.loadDimensionCodec(registry.loginPacket.dimensionCodec)
+    cacheBlocks(registry)
+    const serv = createServer(registry)
+    this.regions = new Regions(serv, this.clock, frame => this.send({ frame }))
+    this.runner = new Runner(this.regions, evaluate, scopeOf)
+    return { protocol: PROTOCOL, node: process.version, ...versions }
+  }
+}
+
+module.exports = { Session }

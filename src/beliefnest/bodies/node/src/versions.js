@@ -1,0 +1,7 @@
+'use strict'
+/** What this build was made of. */
+module.exports = {
+  minecraft: '1.20.4',
+  mineflayer: require('mineflayer/package.json').version,
+  flying_squid: require('flying-squid/package.json').version
+}

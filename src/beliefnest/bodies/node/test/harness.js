@@ -1,0 +1,84 @@
+'use strict'
+/** Drives main.js over its real channel, as Python does. */
+const { spawn } = require('node:child_process')
+const path = require('node:path')
+const { Channel } = require('../src/channel/channel')
+
+const MAIN = path.join(__dirname, '..', 'src', 'main.js')
+
+class Node {
+  constructor (main = MAIN) {
+    this.child = spawn(process.execPath, [main], { stdio: ['ignore', 'pipe', 'pipe', 'pipe', 'pipe'] })
+    this.errors = ''
+    this.child.stderr.on('data', chunk => { this.errors += chunk })
+    this.child.stdout.on('data', chunk => { this.errors += chunk })
+    this.exited = new Promise(resolve => this.child.on('exit', (code, signal) => resolve({ code, signal })))
+    this.frames = []
+    this.waiting = null
+    this.lastId = 0
+    this.channel = new Channel(this.child.stdio[3], message => this.receive(message))
+    this.exited.then(() => this.waiting?.reject(new Error(`Node ended: ${this.errors}`)))
+    for (const descriptor of [3, 4]) this.child.stdio[descriptor].on('error', () => {})
+  }
+
+  receive (message) {
+    if (message.frame) this.frames.push(message.frame)
+    else if (message.ok) this.waiting.resolve(message.result)
+    else this.waiting.reject(Object.assign(new Error(message.error.message), message.error))
+  }
+
+  /** @returns {Promise<any>} the result; rejects with the error of the answer */
+  request (op, args = {}) {
+    return new Promise((resolve, reject) => {
+      this.waiting = { resolve, reject }
+      this.channel.send({ id: ++this.lastId, op, ...args })
+    })
+  }
+
+  hello (seed = 0) {
+    return this.request('hello', { protocol: 1, seed, minecraft: '1.20.4' })
+  }
+
+  /** Ends the process as Python's end would. */
+  async close () {
+    this.child.stdio[4].destroy()
+    this.child.stdio[3].destroy()
+    return this.exited
+  }
+}
+
+const STONE = 1
+const BOX = [[-11, -52, -11], [11, -49, 11]]
+
+/** @returns {Buffer} a stone floor and whatever `extra` puts above it, as [x, y, z, state] */
+function floor (extra = [], box = BOX) {
+  const shape = [0, 1, 2].map(axis => box[1][axis] - box[0][axis] + 1)
+  const states = new Int32Array(shape[0] * shape[1] * shape[2])
+  const set = (x, y, z, state) => {
+    states[((x - box[0][0]) * shape[1] + y - box[0][1]) * shape[2] + z - box[0][2]] = state
+  }
+  for (let x = box[0][0]; x <= box[1][0]; x++) {
+    for (let z = box[0][2]; z <= box[1][2]; z++) set(x, box[0][1], z, STONE)
+  }
+  for (const [x, y, z, state] of extra) set(x, y, z, state)
+  return Buffer.from(states.buffer)
+}
+
+function agent (position, more = {}) {
+  return {
+    position, yaw: 0, pitch: 0, on_ground: true, equipment: {}, inventory: {}, health: 20, food: 20, ...more
+  }
+}
+
+const THREE = () => ({
+  sally: agent([0.5, -51, 0.5]), anne: agent([-4.5, -51, 3.5]), observer: agent([0.5, -51, 8.5])
+})
+
+/** @returns {object} arguments of create_region */
+function region (name, more = {}) {
+  return {
+    region: name, seed: name, box: BOX, tick: 0, blocks: floor(), containers: [], agents: THREE(), items: {}, ...more
+  }
+}
+
+module.exports = { agent, BOX, floor, MAIN, Node, region, STONE, THREE }
