@@ -1,0 +1,218 @@
+"""Timelines: the append-only logs of facts of control-mode simulators (semantics, section 6).
+
+A timeline is one branch of one simulator. Its entries are frames and edits; it begins
+where its base lies on another timeline, or at the world's first snapshot. Only this is
+stored: every follow-mode belief is computed from it.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Protocol
+
+from beliefnest.errors import BranchError
+from beliefnest.world.frames import Frame
+from beliefnest.world.values import Items, Position
+
+__all__ = [
+    "FOLLOW",
+    "Edit",
+    "Entry",
+    "ForkPoint",
+    "Journal",
+    "MemoryJournal",
+    "TimelineInfo",
+    "TimelineKey",
+]
+
+FOLLOW = "follow"
+"""Reserved name of the timeline a follow-mode simulator is on."""
+
+
+@dataclass(frozen=True, slots=True)
+class Edit:
+    """A change made by hand to one simulator's state, between two ticks.
+
+    Attributes:
+        tick: The tick after which it was made.
+        path: Belief path of the edited simulator, normalised.
+        blocks: New block state ids; -1 makes a block unknown.
+        containers: New contents, complete.
+    """
+
+    tick: int
+    path: tuple[str, ...]
+    blocks: Mapping[Position, int] = field(default_factory=dict)
+    containers: Mapping[Position, Items] = field(default_factory=dict)
+
+
+Entry = Frame | Edit
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class TimelineKey:
+    """One branch of one simulator; path is normalised, the real world's is empty."""
+
+    path: tuple[str, ...]
+    branch: str
+
+
+@dataclass(frozen=True, slots=True)
+class ForkPoint:
+    """Where a timeline begins: after the first `entries` entries of another one, at `tick`."""
+
+    timeline: TimelineKey
+    entries: int
+    tick: int
+
+
+@dataclass(frozen=True, slots=True)
+class TimelineInfo:
+    """What is known of a timeline besides its entries.
+
+    Attributes:
+        key: Simulator and branch.
+        base: Where it begins; None: at the world's first snapshot.
+        start: Its first tick.
+        head: Its latest tick; quiet ticks have no entry.
+        entries: Number of its entries.
+        description: A user's words about it.
+    """
+
+    key: TimelineKey
+    base: ForkPoint | None
+    start: int
+    head: int
+    entries: int = 0
+    description: str = ""
+
+
+class Journal(Protocol):
+    """Where timelines are kept. One writer; what a call did is kept once it returns."""
+
+    def timelines(self) -> Sequence[TimelineInfo]:
+        """All timelines, in order of creation."""
+
+    def info(self, key: TimelineKey) -> TimelineInfo:
+        """One timeline.
+
+        Raises:
+            BranchError: There is none of that key.
+        """
+
+    def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
+        """Begin an empty timeline; costs the same however long its base is.
+
+        Raises:
+            BranchError: There is one of that key already.
+        """
+
+    def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:
+        """Add entries, all or none, and move the head to tick `head`."""
+
+    def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
+        """Entries number start (included) to stop (excluded), oldest first."""
+
+    def entries_until(self, key: TimelineKey, tick: int) -> int:
+        """How many entries lie at `tick` or before."""
+
+    def rename(self, key: TimelineKey, name: str) -> None:
+        """Give a timeline's branch another name; timelines based on it follow."""
+
+    def delete(self, key: TimelineKey) -> None:
+        """Remove a timeline that no other is based on.
+
+        Raises:
+            BranchError: Another timeline is based on it.
+        """
+
+    def describe(self, key: TimelineKey, description: str) -> None:
+        """Set a timeline's description."""
+
+    def close(self) -> None:
+        """Give up what the journal holds open."""
+
+
+class MemoryJournal:
+    """A journal that ends with the process."""
+
+    def __init__(self) -> None:
+        self._infos: dict[TimelineKey, TimelineInfo] = {}
+        self._entries: dict[TimelineKey, list[Entry]] = {}
+
+    def timelines(self) -> Sequence[TimelineInfo]:
+        """All timelines, in order of creation."""
+        return tuple(self._infos.values())
+
+    def info(self, key: TimelineKey) -> TimelineInfo:
+        """One timeline; BranchError if there is none of that key."""
+        if key not in self._infos:
+            there = sorted(k.branch for k in self._infos if k.path == key.path)
+            raise BranchError(
+                f"/{'/'.join(key.path)} has no branch {key.branch!r}; it has {there or 'none'}"
+            )
+        return self._infos[key]
+
+    def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
+        """Begin an empty timeline; BranchError if there is one of that key already."""
+        if key in self._infos:
+            raise BranchError(f"/{'/'.join(key.path)} already has a branch {key.branch!r}")
+        self._infos[key] = TimelineInfo(key, base, start, start)
+        self._entries[key] = []
+
+    def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:
+        """Add entries and move the head."""
+        info = self.info(key)
+        self._entries[key].extend(entries)
+        self._infos[key] = replace(info, head=head, entries=info.entries + len(entries))
+
+    def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
+        """Entries number start to stop - 1, oldest first."""
+        return iter(self._entries[self.info(key).key][start:stop])
+
+    def entries_until(self, key: TimelineKey, tick: int) -> int:
+        """How many entries lie at `tick` or before."""
+        entries = self._entries[self.info(key).key]
+        low, high = 0, len(entries)
+        while low < high:
+            middle = (low + high) // 2
+            if entries[middle].tick <= tick:
+                low = middle + 1
+            else:
+                high = middle
+        return low
+
+    def rename(self, key: TimelineKey, name: str) -> None:
+        """Give a timeline's branch another name; timelines based on it follow."""
+        old = self.info(key)
+        new_key = TimelineKey(key.path, name)
+        if new_key in self._infos:
+            raise BranchError(f"/{'/'.join(key.path)} already has a branch {name!r}")
+        infos = {}
+        for info in self._infos.values():
+            changed = replace(old, key=new_key) if info is old else info
+            if changed.base is not None and changed.base.timeline == key:
+                changed = replace(changed, base=replace(changed.base, timeline=new_key))
+            infos[changed.key] = changed
+        self._infos = infos
+        self._entries[new_key] = self._entries.pop(key)
+
+    def delete(self, key: TimelineKey) -> None:
+        """Remove a timeline; BranchError if another is based on it."""
+        self.info(key)
+        based = [
+            i.key for i in self._infos.values() if i.base is not None and i.base.timeline == key
+        ]
+        if based:
+            names = ", ".join(f"/{'/'.join(k.path)} {k.branch!r}" for k in based)
+            raise BranchError(
+                f"branch {key.branch!r} of /{'/'.join(key.path)} carries others ({names}); "
+                "delete those first, or delete with recursive=True"
+            )
+        del self._infos[key], self._entries[key]
+
+    def describe(self, key: TimelineKey, description: str) -> None:
+        """Set a timeline's description."""
+        self._infos[key] = replace(self.info(key), description=description)
+
+    def close(self) -> None:
+        """Nothing is held open."""
