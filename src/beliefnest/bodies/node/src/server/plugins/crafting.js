@@ -1,0 +1,53 @@
+'use strict'
+
+const { indexRecipes, match, consume } = require('./lib/grid')
+const { cell, containerMenu } = require('./lib/menus')
+
+const TABLE_WINDOW = 12
+const TABLE_WIDTH = 3
+
+/** Crafting in the 2x2 grid of the inventory and at a table; recipes are minecraft-data's. */
+module.exports.server = (serv) => {
+  const recipes = indexRecipes(serv.registry)
+  const makeItem = (name) => new serv.Item(serv.registry.itemsByName[name].id, 1)
+
+  /** Slot 0 of `slots` shows what slots 1.. make; returns `{refresh, takeResult}`. */
+  serv.craftingGrid = (slots, width) => {
+    function refresh () {
+      const result = match(recipes, slots.slice(1, width * width + 1), width)
+      slots[0] = result ? new serv.Item(result.id, result.count ?? 1) : null
+    }
+    function takeResult () {
+      const result = slots[0]
+      consume(slots, width, makeItem)
+      refresh()
+      return result
+    }
+    return { refresh, takeResult }
+  }
+
+  function openTable ({ player }) {
+    const slots = new Array(TABLE_WIDTH ** 2 + 1).fill(null)
+    const grid = serv.craftingGrid(slots, TABLE_WIDTH)
+    const menu = containerMenu(slots.map((_, i) => cell(slots, i)), player, {
+      result: 0,
+      takeResult: grid.takeResult,
+      mayPlace: (i) => i !== 0,
+      into: () => slots.map((_, i) => i).slice(1),
+    })
+    player.openWindow({
+      type: TABLE_WINDOW,
+      title: 'Crafting',
+      menu,
+      around: (run) => { run(); grid.refresh(); },
+      leave: (giveBack) => {
+        slots.slice(1).forEach((item, i) => {
+          slots[i + 1] = null
+          if (item) giveBack(item)
+        })
+      },
+    })
+    return true
+  }
+  serv.onInteraction('crafting_table', openTable)
+}

@@ -1,0 +1,45 @@
+'use strict'
+
+const { equal } = require('./lib/items')
+const { HOTBAR_START, OFF_HAND } = require('./lib/menus')
+
+/** Slot of the protocol to slot of the inventory; null: the slot that is held. */
+const PARTS = [[0, null], [1, OFF_HAND], [2, 8], [3, 7], [4, 6], [5, 5]]
+const HOTBAR_SIZE = 9
+
+/** What a player wears and holds is shown to those who are near, whenever it changes. */
+module.exports.player = (player, serv) => {
+  const { Item } = serv
+  const shown = new Array(PARTS.length).fill(null)
+
+  const worn = () => PARTS.map(([, slot]) =>
+    player.inventory.slots[slot ?? HOTBAR_START + player.heldItemSlot] ?? null)
+  const entry = (item, part) => ({ slot: PARTS[part][0], item: Item.toNotch(item) })
+
+  function send (others, equipments) {
+    if (!equipments.length) return
+    for (const other of others) {
+      other._client.write('entity_equipment', { entityId: player.id, equipments })
+    }
+  }
+
+  /** Tells those near what changed since the last time. */
+  player.refreshEquipment = () => {
+    const now = worn()
+    const changes = now.flatMap((item, part) => (equal(item, shown[part]) ? [] : [entry(item, part)]))
+    now.forEach((item, part) => { shown[part] = item; })
+    send(serv.players.filter((other) => other !== player), changes)
+  }
+
+  /** Tells one player all of it, as this one appears to it. */
+  player.showEquipment = (other) => {
+    const all = worn().flatMap((item, part) => (item ? [entry(item, part)] : []))
+    send([other], all)
+  }
+
+  player._client.on('held_item_slot', ({ slotId }) => {
+    if (!(slotId >= 0 && slotId < HOTBAR_SIZE)) return
+    player.heldItemSlot = slotId
+    player.refreshEquipment()
+  })
+}

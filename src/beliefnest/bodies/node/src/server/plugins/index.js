@@ -1,0 +1,28 @@
+'use strict'
+/**
+ * What flying-squid lacks, one concern per file, in the order in which they are set up. One
+ * whose name is that of a plugin of flying-squid takes its place.
+ *
+ * Whoever owns time calls `serv.tickRegion(within)` once per tick (see ticking.js).
+ */
+module.exports = [
+  named('ticking', require('./ticking')),
+  named('facts', require('./facts')),
+  named('changes', require('./blocks')),
+  named('spawning', require('./spawning')),
+  named('placeBlock', require('./interact')),
+  named('inventory', require('./inventories')),
+  named('windows', require('./windows')),
+  named('equipment', require('./equipment')),
+  named('itemEntities', require('./itemEntities')),
+  named('containers', require('./containers')),
+  named('chests', require('./chests')),
+  named('crafting', require('./crafting')),
+  named('levers', require('./levers')),
+  named('doors', require('./doors')),
+  named('placement', require('./placement')),
+]
+
+function named (name, plugin) {
+  return { name, ...plugin }
+}

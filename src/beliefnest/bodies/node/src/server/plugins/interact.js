@@ -1,0 +1,62 @@
+'use strict'
+
+const { FACES } = require('./lib/directions')
+const { centreOf, vecOf } = require('./lib/positions')
+const { HOTBAR_START, OFF_HAND } = require('./lib/menus')
+
+const REACH = 6
+const STANDING_EYES = 1.62
+const SNEAKING_EYES = 1.27
+
+/**
+ * Use on a block: first what the block does (`serv.onInteraction(name, handler)`, the handler
+ * is given `{player, position, block, face, cursor}` and returns whether it did something), then what
+ * the item in hand does (`serv.useItemOn`).
+ */
+module.exports.server = (serv) => {
+  const handlers = new Map()
+
+  serv.onInteraction = (name, handler) => { handlers.set(name, handler); }
+  serv.interact = (use) => handlers.get(use.block.name)?.(use) ?? false
+}
+
+module.exports.player = (player, serv) => {
+  const client = player._client
+  client.on('entity_action', ({ actionId }) => {
+    if (actionId === 'start_sneaking' || actionId === 0) player.crouching = true
+    if (actionId === 'stop_sneaking' || actionId === 1) player.crouching = false
+  })
+
+  player.eyes = () => player.position.offset(0, player.crouching ? SNEAKING_EYES : STANDING_EYES, 0)
+  player.canReach = (position) => player.eyes().distanceTo(centreOf(position)) <= REACH
+  player.slotOfHand = (hand) => (hand === 1 ? OFF_HAND : HOTBAR_START + player.heldItemSlot)
+  player.itemInHand = (hand = 0) => player.inventory.slots[player.slotOfHand(hand)] ?? null
+
+  /** A client predicts what its act does, and drops the prediction at this. */
+  player.acknowledge = (sequence, positions) => {
+    client.write('acknowledge_player_digging', { sequenceId: sequence ?? 0 })
+    positions.forEach((position) => serv.blocks.send(player, position))
+  }
+
+  function use (packet, position) {
+    const block = serv.blocks.at(position)
+    const bareHands = !player.itemInHand(0) && !player.itemInHand(1)
+    const given = {
+      player,
+      position,
+      block,
+      face: packet.direction,
+      cursor: { x: packet.cursorX, y: packet.cursorY, z: packet.cursorZ },
+      hand: packet.hand ?? 0,
+    }
+    if ((!player.crouching || bareHands) && serv.interact(given)) return
+    serv.useItemOn(given)
+  }
+
+  client.on('block_place', (packet) => {
+    if (!(packet.direction >= 0 && packet.direction < FACES.length)) return
+    const position = vecOf(packet.location)
+    if (player.health > 0 && player.canReach(position)) use(packet, position)
+    player.acknowledge(packet.sequence, [position, position.plus(FACES[packet.direction])])
+  })
+}

@@ -1,0 +1,35 @@
+'use strict'
+
+const { listOf } = require('./lib/positions')
+
+const STONE_BUTTON_TICKS = 20
+const WOODEN_BUTTON_TICKS = 30
+
+/** Levers stay as they are switched; buttons come out again after their ticks. */
+module.exports.server = (serv) => {
+  function switchLever ({ player, position, block }) {
+    const powered = !block.properties.powered
+    serv.blocks.set(position, serv.blocks.stateWith(block, { powered }), player)
+    player.emitEvent({ kind: 'use_lever', detail: { position: listOf(position), powered } })
+    return true
+  }
+  serv.onInteraction('lever', switchLever)
+
+  function release (position, name) {
+    const block = serv.blocks.at(position)
+    if (block.name !== name) return
+    serv.blocks.set(position, serv.blocks.stateWith(block, { powered: false }))
+  }
+
+  function push ({ player, position, block }) {
+    if (block.properties.powered) return true
+    const stone = /^(stone|polished_blackstone)_button$/.test(block.name)
+    serv.blocks.set(position, serv.blocks.stateWith(block, { powered: true }), player)
+    serv.after(stone ? STONE_BUTTON_TICKS : WOODEN_BUTTON_TICKS, position,
+      () => release(position, block.name))
+    return true
+  }
+  for (const { name } of serv.registry.blocksArray) {
+    if (name.endsWith('_button')) serv.onInteraction(name, push)
+  }
+}

@@ -1,0 +1,58 @@
+'use strict'
+/** Item stacks (prismarine-item) as values: nothing here changes a stack in place. */
+
+/** Whether two stacks may be put together. */
+function alike (a, b) {
+  return Boolean(a && b) && a.type === b.type &&
+    JSON.stringify(a.nbt ?? null) === JSON.stringify(b.nbt ?? null)
+}
+
+/** Whether two slots hold the same (both may be empty). */
+function equal (a, b) {
+  if (!a || !b) return !a && !b
+  return a.count === b.count && alike(a, b)
+}
+
+/** The same kind of item with another count; null for none. */
+function withCount (item, count) {
+  if (count <= 0) return null
+  const copy = new item.constructor(item.type, count, item.metadata, item.nbt)
+  return copy
+}
+
+/** Slots to name -> count, in order of first appearance. */
+function countByName (slots) {
+  const counts = {}
+  for (const item of slots) {
+    if (item) counts[item.name] = (counts[item.name] ?? 0) + item.count
+  }
+  return counts
+}
+
+/** after - before, without zeros. */
+function difference (before, after) {
+  const result = {}
+  for (const name of new Set([...Object.keys(before), ...Object.keys(after)])) {
+    const change = (after[name] ?? 0) - (before[name] ?? 0)
+    if (change !== 0) result[name] = change
+  }
+  return result
+}
+
+/** Stacks of at most a stack's size that make up name -> count. */
+function stacksOf (Item, registry, counts) {
+  const stacks = []
+  for (const [name, count] of Object.entries(counts)) {
+    const data = registry.itemsByName[name]
+    if (!data) throw new RangeError(`there is no item called ${name}`)
+    if (!Number.isInteger(count) || count < 0) {
+      throw new RangeError(`the count of ${name} is ${count}; it must be a whole number, not negative`)
+    }
+    for (let left = count; left > 0; left -= data.stackSize) {
+      stacks.push(new Item(data.id, Math.min(left, data.stackSize)))
+    }
+  }
+  return stacks
+}
+
+module.exports = { alike, equal, withCount, countByName, difference, stacksOf }

@@ -1,0 +1,11 @@
+'use strict'
+
+const { Vec3 } = require('vec3')
+
+/** Block positions as keys of maps and as plain lists of facts. */
+const keyOf = ({ x, y, z }) => `${x},${y},${z}`
+const listOf = ({ x, y, z }) => [x, y, z]
+const vecOf = ({ x, y, z }) => new Vec3(x, y, z)
+const centreOf = ({ x, y, z }) => new Vec3(x + 0.5, y + 0.5, z + 0.5)
+
+module.exports = { keyOf, listOf, vecOf, centreOf }

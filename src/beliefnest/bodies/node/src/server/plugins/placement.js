@@ -1,0 +1,4 @@
+'use strict'
+module.exports.server = (serv) => {
+  serv.useItemOn = () => {}
+}

@@ -1,0 +1,82 @@
+'use strict'
+/** Real bots on the real server, in memory under virtual time, in this very process. */
+const { Clock } = require('../../src/time/clock')
+const { installTime } = require('../../src/time/install')
+
+const clock = new Clock('')
+installTime(clock)
+require('../../src/prepare').prepare()
+const { Vec3 } = require('vec3')
+const { Session } = require('../../src/session')
+const { agent, floor, BOX } = require('../harness')
+
+const FLOOR = BOX[0][1] + 1
+const LIMIT = 2000
+
+/**
+ * Runs `body(world)` in a region with a stone floor.
+ * @param {object} setting `agents` (AGENT by name), `blocks` ([x, y, z, name, properties]),
+ *   `containers` ([x, y, z, ITEMS])
+ */
+async function inWorld ({ agents = { sally: agent([0.5, FLOOR, 0.5]) }, blocks = [], containers = [] }, body) {
+  const frames = []
+  const session = new Session(clock, ({ frame }) => frames.push(frame))
+  await session.perform({ op: 'hello', protocol: 1, seed: 0, minecraft: '1.20.4' })
+  const { regions } = session
+  const { serv } = regions
+  const states = blocks.map(([x, y, z, name, properties]) => [x, y, z, serv.blocks.state(name, properties)])
+  await regions.create({
+    region: 'test', seed: 'test', box: BOX, tick: 0, blocks: floor(states), containers, agents, items: {}
+  })
+  await regions.inside(regions.get('test'), () => body(worldOf(regions, frames)))
+}
+
+function worldOf (regions, frames) {
+  const region = regions.get('test')
+  const { serv } = regions
+  const at = (x, y, z) => region.toServer([x, y, z])
+
+  async function until (condition) {
+    for (let count = 0; !condition(); count++) {
+      if (count === LIMIT) throw new Error(`not within ${LIMIT} ticks: ${condition}`)
+      await regions.tick(region)
+    }
+  }
+  /** Lets time pass until a promise is settled; gives its outcome. */
+  async function during (promise) {
+    let settled = false
+    const done = () => { settled = true }
+    promise.then(done, done)
+    await until(() => settled)
+    return promise
+  }
+  async function ticks (number) {
+    for (let count = 0; count < number; count++) await regions.tick(region)
+  }
+  const bots = Object.fromEntries([...region.bodies].map(([name, { bot }]) => [name, bot]))
+  const players = Object.fromEntries([...region.bodies].map(([name, { player }]) => [name, player]))
+  const events = (...kinds) => frames.flatMap(frame => frame.events)
+    .filter(({ kind }) => kind !== 'block_update' && (kinds.length === 0 || kinds.includes(kind)))
+  return {
+    serv, region, bots, players, frames, events, until, during, ticks, at,
+    container: (x, y, z) => serv.containers.get(at(x, y, z)),
+    block: (x, y, z) => serv.blocks.at(at(x, y, z)),
+    has: name => players[name].possessions().inventory,
+    everything: () => everything(serv)
+  }
+}
+
+/** Name to count of all there is: in containers, inventories, on cursors and on the ground. */
+function everything (serv) {
+  const total = {}
+  const add = counts => Object.entries(counts).forEach(([name, count]) => {
+    total[name] = (total[name] ?? 0) + count
+  })
+  const everywhere = () => true
+  serv.containers.positions(everywhere).forEach(position => add(serv.containers.get(position)))
+  serv.players.forEach(player => add(player.possessions().inventory))
+  serv.itemEntities(everywhere).forEach(({ item }) => add({ [item.name]: item.count }))
+  return total
+}
+
+module.exports = { agent, inWorld, FLOOR, Vec3 }
