@@ -11,6 +11,8 @@ const { installTime } = require('./time/install')
 
 const CHANNEL = 3
 const LIFELINE = 4
+// build.js puts all programs side by side.
+const LIFELINE_FILE = typeof BUNDLED === 'undefined' ? ['channel', 'lifeline.js'] : ['lifeline.js']
 
 function main () {
   const clock = new Clock('')
@@ -19,7 +21,7 @@ function main () {
   const { Channel } = require('./channel/channel')
   const { Session } = require('./session')
 
-  new Worker(path.join(__dirname, 'channel', 'lifeline.js'), { workerData: { descriptor: LIFELINE } })
+  new Worker(path.join(__dirname, ...LIFELINE_FILE), { workerData: { descriptor: LIFELINE } })
     .on('error', fail)
   const stream = new net.Socket({ fd: CHANNEL, readable: true, writable: true })
   const session = new Session(clock, message => channel.send(message))

@@ -25,3 +25,10 @@ module.exports.entity = (entity, serv) => {
   entity._writeOthersNearby = entity._writeOthers
   entity._writeNearby = (name, packet) => serv._writeAll(name, packet)
 }
+
+module.exports.player = player => {
+  player.despawnEntities = entities => {
+    if (entities.length === 0) return
+    player._client.write('entity_destroy', { entityIds: entities.map(entity => entity.id) })
+  }
+}

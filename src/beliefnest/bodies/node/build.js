@@ -1,0 +1,60 @@
+'use strict'
+/**
+ * Makes the bundle Python starts: `node build.js [OUTDIR]`. It runs without node_modules and
+ * holds one Minecraft version.
+ */
+const fs = require('node:fs')
+const path = require('node:path')
+const esbuild = require('esbuild')
+const { encode } = require('@msgpack/msgpack')
+const { MINECRAFT_VERSION, buildRegistry } = require('./registry')
+const { replacements } = require('./bundling/replacements')
+
+const SOURCE = path.join(__dirname, 'src')
+const DEFAULT_OUTDIR = path.join(__dirname, '..', '..', '_bundle')
+
+async function build (outdir) {
+  fs.rmSync(outdir, { recursive: true, force: true })
+  fs.mkdirSync(outdir, { recursive: true })
+  const result = await esbuild.build({
+    entryPoints: [path.join(SOURCE, 'main.js'), path.join(SOURCE, 'channel', 'lifeline.js')],
+    entryNames: '[name]',
+    outdir,
+    bundle: true,
+    platform: 'node',
+    target: 'node24',
+    minifySyntax: true,
+    minifyWhitespace: true,
+    keepNames: true,
+    legalComments: 'linked',
+    metafile: true,
+    logLevel: 'warning',
+    define: { BUNDLED: 'true' },
+    plugins: [replacements(MINECRAFT_VERSION, outdir)]
+  })
+  fs.writeFileSync(
+    path.join(outdir, `registry-${MINECRAFT_VERSION}.msgpack`), encode(buildRegistry(MINECRAFT_VERSION)))
+  fs.writeFileSync(path.join(outdir, 'packages.json'), `${JSON.stringify(packagesIn(result.metafile), null, 1)}\n`)
+}
+
+/** @returns {object} version and licence, by name, of every package a bundle has code of */
+function packagesIn (metafile) {
+  const folders = new Set()
+  for (const input of Object.keys(metafile.inputs)) {
+    const parts = input.split('/')
+    const last = parts.lastIndexOf('node_modules')
+    if (last === -1) continue
+    const names = parts[last + 1].startsWith('@') ? 2 : 1
+    folders.add(parts.slice(0, last + 1 + names).join('/'))
+  }
+  const entries = [...folders].map(folder => {
+    const { name, version, license } = JSON.parse(fs.readFileSync(path.join(folder, 'package.json')))
+    return [name, { version, license }]
+  })
+  return Object.fromEntries(entries.sort(([a], [b]) => (a < b ? -1 : 1)))
+}
+
+build(path.resolve(process.argv[2] ?? DEFAULT_OUTDIR)).catch(error => {
+  process.stderr.write(`${error.message}\n`)
+  process.exit(1)
+})

@@ -1,0 +1,88 @@
+'use strict'
+/**
+ * What the bundle has instead of some modules: only the Minecraft version we serve, one
+ * registry per version, and none of what would open sockets, log in with an account, or look for
+ * files at run time.
+ */
+const fs = require('node:fs')
+const path = require('node:path')
+const { MEMOISED } = require('../src/memoise')
+
+const ROOT = path.join(__dirname, '..')
+const DATA = path.join(ROOT, 'node_modules', 'minecraft-data', 'minecraft-data', 'data')
+// Larger ones are kept as files of their own and read when first needed.
+const INLINE_BYTES = 20000
+
+const empty = 'module.exports = {}'
+
+/** Whole modules by the end of their path, with what stands for each. */
+const STAND_INS = [
+  [/minecraft-protocol\/src\/index\.js$/, `module.exports = {
+    createClient () { throw new Error('this build joins bots in memory only') }
+  }`],
+  [/flying-squid\/index\.js$/, `module.exports = {
+    UserError: require('./src/lib/user_error'), experience: require('./src/lib/experience')
+  }`],
+  [/flying-squid\/src\/lib\/plugins\/index\.js$/, 'module.exports = { builtinPlugins: null }'],
+  [/node\/src\/prepare\.js$/, 'module.exports = { prepare () {} }'],
+  [/minecraft-data\/minecraft-data\/schemas\/.*\.json$/, empty],
+  [/minecraft-data\/minecraft-data\/data\/bedrock\/common\/(legacy|features)\.json$/, empty],
+  [/prismarine-registry\/lib\/bedrock\/index\.js$/, empty],
+  [/prismarine-chunk\/src\/bedrock\/.*\.js$/, empty]
+]
+
+/** @returns {string} minecraft-data's index of versions, with only `version` in it */
+function versionIndex (version) {
+  const paths = JSON.parse(fs.readFileSync(path.join(DATA, 'dataPaths.json'))).pc[version]
+  const getters = Object.entries(paths)
+    .filter(([name, folder]) => fs.existsSync(path.join(DATA, folder, `${name}.json`)))
+    .map(([name, folder]) => {
+      const file = JSON.stringify(`./minecraft-data/data/${folder}/${name}.json`)
+      return `get ${name} () { return require(${file}) }`
+    })
+  return `module.exports = { pc: { ${JSON.stringify(version)}: {\n${getters.join(',\n')}\n} }, bedrock: {} }`
+}
+
+/** An esbuild plugin. `version` is Minecraft's, `outdir` where data files go. */
+function replacements (version, outdir) {
+  return {
+    name: 'replacements',
+    setup (build) {
+      for (const [filter, contents] of STAND_INS) {
+        build.onLoad({ filter }, ({ path: file }) => ({ contents, loader: 'js', resolveDir: path.dirname(file) }))
+      }
+      build.onLoad({ filter: /minecraft-data\/data\.js$/ }, ({ path: file }) => ({
+        contents: versionIndex(version), loader: 'js', resolveDir: path.dirname(file)
+      }))
+      build.onLoad({ filter: /minecraft-data\/minecraft-data\/data\/pc\/.*\.json$/ }, ({ path: file }) => ({
+        contents: dataModule(file, outdir), loader: 'js'
+      }))
+      memoise(build)
+    }
+  }
+}
+
+// A text parsed when needed is faster than the same data as program text.
+function dataModule (file, outdir) {
+  const text = JSON.stringify(JSON.parse(fs.readFileSync(file)))
+  if (text.length <= INLINE_BYTES) return `module.exports = ${text}`
+  const name = `data-${path.basename(path.dirname(file))}-${path.basename(file)}`
+  fs.writeFileSync(path.join(outdir, name), text)
+  return `module.exports = JSON.parse(require('node:fs').readFileSync(require('node:path').join(__dirname, ${JSON.stringify(name)}), 'utf8'))`
+}
+
+// Each package's main module makes a thing per version; in the bundle it makes it once.
+function memoise (build) {
+  const memoiser = JSON.stringify(path.join(ROOT, 'src', 'memoise.js'))
+  for (const name of MEMOISED) {
+    const file = require.resolve(name)
+    const filter = new RegExp(`${file.replace(/[.*+?^${}()|[\]\\]/g, '\\$&')}$`)
+    build.onLoad({ filter }, () => ({
+      contents: `${fs.readFileSync(file, 'utf8')}\nmodule.exports = require(${memoiser}).memoised(module.exports)`,
+      loader: 'js',
+      resolveDir: path.dirname(file)
+    }))
+  }
+}
+
+module.exports = { replacements }
