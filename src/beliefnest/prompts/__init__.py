@@ -1,0 +1,19 @@
+"""Prompts: Jinja2 templates over a read-only view of a belief."""
+
+from beliefnest.prompts.builtin import BUILT_IN
+from beliefnest.prompts.filterset import FilterSet, PromptFilter, filter
+from beliefnest.prompts.rendering import render
+from beliefnest.prompts.templates import Template, built_in_template, load_template
+from beliefnest.prompts.view import BranchView
+
+__all__ = [
+    "BUILT_IN",
+    "BranchView",
+    "FilterSet",
+    "PromptFilter",
+    "Template",
+    "built_in_template",
+    "filter",
+    "load_template",
+    "render",
+]

@@ -1,0 +1,310 @@
+"""The built-in prompt filters, in the formats of the paper's appendix.
+
+Each takes the simulator before the bar. Only what the belief does not hold prints as a
+word such as `No data`; a fault is raised.
+"""
+
+from collections.abc import Iterable, Mapping
+
+from beliefnest.belief.entries import AgentBelief, PerceivedEvent
+from beliefnest.nest.state import State
+from beliefnest.prompts import actions, text
+from beliefnest.prompts.filterset import FilterSet, filter
+from beliefnest.prompts.view import BranchView, belief_of, believed_agent, owner_of
+from beliefnest.world.values import EQUIPMENT_SLOTS, Position
+
+__all__ = ["BUILT_IN"]
+
+_AIRS = frozenset({"air", "cave_air", "void_air"})
+_CHESTS = frozenset({"chest", "trapped_chest", "barrel"})
+_EVENT_HEADER = "time;action;agent_name;description"
+_CHAT_HEADER = "time;agent_name;message"
+
+
+@filter("position")
+def position(branch: BranchView, agent: str | None = None) -> str:
+    """Where an agent stands, as `[x, y, z]`; without a name, the owner of the belief.
+
+    Another agent that is not seen at this tick prints `Cannot be seen`. The owner's last
+    known place prints even when the outer believer does not see the owner; `No data`
+    when it was never known.
+    """
+    state = branch.state
+    believed = believed_agent(state, agent)
+    if agent in (None, state.owner):
+        return text.NO_DATA if believed.position is None else text.point(believed.position)
+    if believed.position is None or not believed.current:
+        return text.CANNOT_BE_SEEN
+    return text.point(believed.position)
+
+
+@filter("thought")
+def thought(branch: BranchView) -> str:
+    """What the owner of the belief thought last; `No thought` before the first.
+
+    In the real world, one `name: thought` a line for every agent that thought.
+    """
+    state = branch.state
+    if not state.thoughts:
+        return text.NO_THOUGHT
+    last = {thinker: text.one_line(words) for _, thinker, words in state.thoughts}
+    if state.owner is None:
+        return "\n".join(f"{thinker}: {last[thinker]}" for thinker in sorted(last))
+    return last.get(state.owner, text.NO_THOUGHT)
+
+
+@filter("chat_log")
+def chat_log(branch: BranchView) -> str:
+    """What was heard, one `time;agent_name;message` a line; `No chats` if nothing was."""
+    chat = branch.state.chat
+    if not chat:
+        return text.NO_CHATS
+    rows = (f"{tick};{speaker};{text.one_line(words)}" for tick, speaker, words in chat)
+    return "\n".join([_CHAT_HEADER, *rows])
+
+
+@filter("inventory")
+def inventory(branch: BranchView, agent: str | None = None) -> str:
+    """Items an agent is known to have, as `{'diamond': 1}`, what is worn or held included.
+
+    `Empty` when it is known to have nothing, `No data` when nothing is known.
+    """
+    return _inventory(believed_agent(branch.state, agent))
+
+
+def _inventory(believed: AgentBelief) -> str:
+    if believed.inventory:
+        return text.mapping(believed.inventory)
+    return text.EMPTY if believed.inventory_complete else text.NO_DATA
+
+
+@filter("equipment")
+def equipment(branch: BranchView, agent: str | None = None) -> str:
+    """What an agent was last seen to wear and hold, as `{'head': 'iron_helmet'}`.
+
+    `Empty` when it had nothing on, `No data` when it was never seen.
+    """
+    worn = believed_agent(branch.state, agent).equipment
+    if worn is None:
+        return text.NO_DATA
+    if not worn:
+        return text.EMPTY
+    return repr({slot: worn[slot] for slot in EQUIPMENT_SLOTS if slot in worn})
+
+
+@filter("helditem")
+def helditem(branch: BranchView, agent: str | None = None) -> str:
+    """The item in an agent's main hand as last seen.
+
+    `Empty` for an empty hand, `No data` when the agent was never seen.
+    """
+    return _helditem(believed_agent(branch.state, agent))
+
+
+def _helditem(believed: AgentBelief) -> str:
+    if believed.equipment is None:
+        return text.NO_DATA
+    return believed.equipment.get("main_hand", text.EMPTY)
+
+
+@filter("chests")
+def chests(branch: BranchView) -> str:
+    """Known chests, trapped chests and barrels: one `(x, y, z): {'diamond': 1}` a line.
+
+    A chest that is empty, or that nothing is known of, prints `{}`; `Not observed` when no
+    chest is known.
+    """
+    state = branch.state
+    lines = [
+        f"{text.position(at)}: {text.mapping(state.containers[at].items)}"
+        for at in sorted(state.containers)
+        if _is_chest(state, at)
+    ]
+    return "\n".join(lines) or text.NOT_OBSERVED
+
+
+def _is_chest(state: State, at: Position) -> bool:
+    block = state.blocks[at]
+    return block is None or text.block_name(block) in _CHESTS
+
+
+@filter("other_players")
+def other_players(branch: BranchView) -> str:
+    """Every agent but the owner as JSON: `position`, `helditem` and `inventory` of each.
+
+    The values are what the filters of these names print.
+    """
+    state = branch.state
+    return text.as_json(
+        {
+            name: {
+                "position": position(branch, name),
+                "helditem": _helditem(state.agents[name]),
+                "inventory": _inventory(state.agents[name]),
+            }
+            for name in sorted(state.agents)
+            if name != state.owner
+        }
+    )
+
+
+@filter("blocks")
+def blocks(branch: BranchView, names: Iterable[str] | None = None) -> str:
+    """Known blocks: one `chest: (x, y, z), (x, y, z)` a line for each name.
+
+    Without names, all that are known except air. `Not observed` for a name of which no
+    block is known.
+    """
+    lines = [
+        f"{name}: {', '.join(map(text.position, found)) or text.NOT_OBSERVED}"
+        for name, found in _known_blocks(branch.state, names).items()
+    ]
+    return "\n".join(lines) or text.NOT_OBSERVED
+
+
+@filter("blocks_and_visibilities")
+def blocks_and_visibilities(
+    branch: BranchView, names: Iterable[str] | None = None, others: Iterable[str] = ()
+) -> str:
+    """Known blocks and who has seen them before, and sees them at this tick.
+
+    Names as in `blocks`. `Me` is the owner of the belief; `others` are agents whose sight
+    is told as well, as the owner believes it to be.
+    """
+    state = branch.state
+    viewers = {} if state.owner is None else {"Me": state}
+    viewers |= {name: belief_of(branch, name) for name in _strings(others)}
+    parts = []
+    for name, found in _known_blocks(state, names).items():
+        seen = {text.position(at): _visibility(viewers, at) for at in found}
+        parts.append(
+            f"{name} visibilities:{text.as_json(seen)}"
+            if seen
+            else f"{name} visibilities: {text.NOT_OBSERVED}"
+        )
+    return "\n".join(parts) or text.NOT_OBSERVED
+
+
+def _visibility(viewers: Mapping[str, State], at: Position) -> dict[str, dict[str, bool]]:
+    return {
+        viewer: {
+            "seen_before": state.blocks[at] is not None,
+            "visible_now": state.blocks.current(at),
+        }
+        for viewer, state in viewers.items()
+    }
+
+
+@filter("block_property")
+def block_property(branch: BranchView, name: str) -> str:
+    """Known blocks of one name with their properties: one `(x, y, z): {...}` a line.
+
+    `Not observed` when no such block is known.
+    """
+    found = branch.state.blocks.named(frozenset({name}))
+    lines = [
+        f"{text.position(at)}: {text.mapping(text.block_properties(block))}"
+        for at, block in sorted(found.items())
+    ]
+    return "\n".join(lines) or text.NOT_OBSERVED
+
+
+@filter("events")
+def events(branch: BranchView) -> str:
+    """Perceived actions other than speech, one `time;action;agent_name;description` a line.
+
+    Actions have the names of the skills that do them. `Not observed` before the first.
+    """
+    perceived = branch.state.events
+    if not perceived:
+        return text.NOT_OBSERVED
+    return "\n".join([_EVENT_HEADER, *map(actions.row, perceived)])
+
+
+@filter("events_and_visibilities")
+def events_and_visibilities(branch: BranchView, me: str | None = None) -> str:
+    """Perceived actions, who else perceived each, and when each agent was last seen.
+
+    `me` is an agent whose perspective is taken instead of the owner's, as the owner
+    believes it to be. `perceived_by` names the others that `me` credits with it.
+    """
+    mine = branch if me is None else branch.child(_known(branch, me))
+    state = mine.state
+    owner = owner_of(state)
+    others = {name: belief_of(mine, name) for name in sorted(state.agents) if name != owner}
+    rows = [
+        (event.tick, f"{actions.row(event)};{_witnesses(event, others)}") for event in state.events
+    ]
+    rows += [
+        (row_tick, f"{row_tick};{'visible' if now else 'lastSeen'};{name};position:{where};")
+        for name, row_tick, now, where in _sightings(state, list(others))
+    ]
+    if not rows:
+        return text.NOT_OBSERVED
+    ordered = sorted(rows, key=lambda row: row[0])
+    return "\n".join([f"{_EVENT_HEADER};perceived_by", *(line for _, line in ordered)])
+
+
+def _known(branch: BranchView, agent: str) -> str:
+    believed_agent(branch.state, agent)
+    return agent
+
+
+def _witnesses(event: PerceivedEvent, others: Mapping[str, State]) -> str:
+    key = (event.tick, event.kind, event.actor)
+    return ", ".join(
+        name
+        for name, state in others.items()
+        if any((seen.tick, seen.kind, seen.actor) == key for seen in state.events)
+    )
+
+
+def _sightings(state: State, names: Iterable[str]) -> list[tuple[str, int, bool, str]]:
+    return [
+        (name, believed.basis.observed_at, believed.current, text.point(believed.position))
+        for name, believed in ((name, state.agents[name]) for name in names)
+        if believed.basis is not None and believed.position is not None
+    ]
+
+
+def _known_blocks(state: State, names: Iterable[str] | None) -> dict[str, list[Position]]:
+    """Name to positions of known blocks, in order of position; a name without any stays."""
+    if names is None:
+        grouped: dict[str, list[Position]] = {}
+        for at in state.blocks:
+            block = state.blocks[at]
+            if block is not None and text.block_name(block) not in _AIRS:
+                grouped.setdefault(text.block_name(block), []).append(at)
+        return {name: sorted(grouped[name]) for name in sorted(grouped)}
+    wanted = _strings(names)
+    grouped = {name: [] for name in wanted}
+    for at, block in sorted(state.blocks.named(frozenset(wanted)).items()):
+        grouped[text.block_name(block)].append(at)
+    return grouped
+
+
+def _strings(values: Iterable[str]) -> list[str]:
+    """Names a template gave; one name may stand without its list."""
+    if isinstance(values, str):
+        return [values]
+    return list(values)
+
+
+BUILT_IN = FilterSet.of(
+    [
+        position,
+        thought,
+        chat_log,
+        inventory,
+        equipment,
+        helditem,
+        chests,
+        other_players,
+        blocks,
+        blocks_and_visibilities,
+        block_property,
+        events,
+        events_and_visibilities,
+    ]
+)
+"""The filters of interface.md."""

@@ -1,0 +1,153 @@
+"""A small belief made by hand: for the filter reference, and to try one's own filters on."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from beliefnest.belief.entries import (
+    AgentBelief,
+    Basis,
+    ContainerBelief,
+    PerceivedEvent,
+    Source,
+)
+from beliefnest.errors import PathError, PositionError
+from beliefnest.nest.state import State
+from beliefnest.world.values import Box, EventKind, Position
+
+__all__ = ["ExampleBlocks", "ExampleBranch", "example_branch"]
+
+_BOX = Box((-11, -52, -11), (11, -49, 11))
+_LEFT: Position = (-2, -51, -4)
+_RIGHT: Position = (2, -51, -4)
+_LEVER: Position = (0, -51, -4)
+
+
+@dataclass(frozen=True)
+class ExampleBlocks:
+    """Believed blocks written down one by one; the rest of the box is unknown.
+
+    Attributes:
+        box: The part of space.
+        known: Position to canonical block state text.
+        visible: Positions that are seen at this tick.
+    """
+
+    box: Box
+    known: Mapping[Position, str]
+    visible: frozenset[Position] = frozenset()
+
+    def __getitem__(self, position: Position) -> str | None:
+        """Block state text, or None where unknown.
+
+        Raises:
+            PositionError: The position is outside the box.
+        """
+        if position not in self.box:
+            raise PositionError(f"{position} is outside the box {self.box.low} to {self.box.high}")
+        return self.known.get(position)
+
+    def __iter__(self) -> Iterator[Position]:
+        """All positions of the box."""
+        return self.box.positions()
+
+    def __len__(self) -> int:
+        """Number of positions in the box."""
+        width, height, depth = self.box.shape
+        return width * height * depth
+
+    def named(self, names: frozenset[str]) -> dict[Position, str]:
+        """Known blocks whose name is one of `names`, in order of position."""
+        return {
+            at: block
+            for at, block in sorted(self.known.items())
+            if block.partition("[")[0] in names
+        }
+
+    def current(self, position: Position) -> bool:
+        """Whether the block is seen at this tick."""
+        return position in self.visible
+
+    def basis(self, position: Position) -> Basis | None:
+        """Seen at tick 0, if known."""
+        return Basis(0, Source.SEEN) if position in self.known else None
+
+
+@dataclass(frozen=True)
+class ExampleBranch:
+    """A simulator that is nothing but its state and those of the beliefs in it."""
+
+    state: State
+    children: Mapping[str, "ExampleBranch"] = field(default_factory=dict)
+
+    def child(self, agent: str) -> "ExampleBranch":
+        """The belief of an agent in it; the owner's is this one.
+
+        Raises:
+            PathError: No belief of that agent was written down.
+        """
+        if agent == self.state.owner:
+            return self
+        if agent not in self.children:
+            raise PathError(f"the example has no belief of {agent!r}")
+        return self.children[agent]
+
+
+def example_branch() -> ExampleBranch:
+    """What Sally believes at tick 240, and what she believes that Anne believes."""
+    deposit = PerceivedEvent(
+        69,
+        EventKind.DEPOSIT_ITEM_INTO_CHEST,
+        "sally",
+        {"position": _LEFT, "items": {"diamond": 1}},
+    )
+    lever = PerceivedEvent(131, EventKind.USE_LEVER, "anne", {"position": _LEVER, "powered": True})
+    outer = ExampleBranch(_state(("sally", "anne", "sally"), (deposit,), frozenset()))
+    anne = ExampleBranch(
+        _state(("sally", "anne"), (deposit, lever), frozenset({_RIGHT})), {"sally": outer}
+    )
+    return ExampleBranch(
+        _state(("sally",), (deposit, lever), frozenset({_LEFT, _LEVER})), {"anne": anne}
+    )
+
+
+def _state(
+    path: tuple[str, ...], events: tuple[PerceivedEvent, ...], visible: frozenset[Position]
+) -> State:
+    seen, opened = Basis(240, Source.SEEN), Basis(69, Source.WITNESSED)
+    return State(
+        path=path,
+        tick=240,
+        box=_BOX,
+        blocks=ExampleBlocks(
+            _BOX,
+            {
+                _LEFT: "chest[facing=south,type=single,waterlogged=false]",
+                _RIGHT: "chest[facing=south,type=single,waterlogged=false]",
+                _LEVER: "lever[face=floor,facing=north,powered=true]",
+            },
+            visible,
+        ),
+        containers={
+            _LEFT: ContainerBelief({"diamond": 1}, True, opened, True),
+            _RIGHT: ContainerBelief({}, False, seen, False),
+        },
+        agents={
+            "sally": AgentBelief(
+                position=(-4.551, -51.0, -5.871),
+                equipment={},
+                inventory_complete=True,
+                basis=seen,
+                current=True,
+            ),
+            "anne": AgentBelief(
+                position=(2.5, -51.0, -5.5),
+                equipment={"head": "iron_helmet", "main_hand": "iron_chestplate"},
+                inventory={"iron_chestplate": 1, "iron_helmet": 1},
+                basis=Basis(131, Source.SEEN),
+            ),
+        },
+        items={},
+        events=events,
+        chat=((80, "anne", "Where are you going?"), (95, "sally", "Out. Back soon!")),
+        thoughts=((100, "sally", "The diamond is safe."),),
+    )

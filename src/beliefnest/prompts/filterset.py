@@ -1,0 +1,115 @@
+"""Prompt filters by name: the built-in ones, installed ones and the user's own."""
+
+import functools
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from importlib.metadata import EntryPoint, entry_points
+from types import MappingProxyType
+from typing import Any, Generic, ParamSpec
+
+from beliefnest.errors import InputError
+
+__all__ = ["FILTER_GROUP", "FilterSet", "PromptFilter", "filter", "installed_filters"]
+
+FILTER_GROUP = "beliefnest.filters"
+"""Entry points of this group, each a `PromptFilter`, are found when a prompt is rendered."""
+
+
+P = ParamSpec("P")
+
+
+@dataclass(frozen=True)
+class PromptFilter(Generic[P]):
+    """A function that templates can call, under a name.
+
+    Attributes:
+        name: Name in templates.
+        function: Called with what stands before the bar and the arguments in brackets;
+            returns the text to print.
+        override: Whether it may take the place of a filter of the same name.
+    """
+
+    name: str
+    function: Callable[P, str]
+    override: bool = False
+
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> str:
+        """Call the function."""
+        return self.function(*args, **kwargs)
+
+
+def filter(name: str, *, override: bool = False) -> Callable[[Callable[P, str]], PromptFilter[P]]:
+    """Make a function a prompt filter.
+
+    Args:
+        name: Name in templates: letters, digits and `_`.
+        override: Whether it may take the place of a filter of the same name.
+
+    Raises:
+        InputError: The name cannot be written in a template.
+    """
+    if not name.isidentifier():
+        raise InputError(f"{name!r} cannot be a filter's name; use letters, digits and _")
+    return lambda function: PromptFilter(name, function, override)
+
+
+@dataclass(frozen=True)
+class FilterSet:
+    """Filters by name; a value, so that two nests can have different ones.
+
+    Attributes:
+        filters: Name to filter, in order of name.
+    """
+
+    filters: Mapping[str, PromptFilter[Any]]
+
+    @staticmethod
+    def of(filters: Iterable[PromptFilter[Any]]) -> "FilterSet":
+        """A set of these filters alone.
+
+        Raises:
+            InputError: Two have one name.
+        """
+        return FilterSet(MappingProxyType({})).extended(filters)
+
+    def extended(self, filters: Iterable[PromptFilter[Any]]) -> "FilterSet":
+        """This set with further filters.
+
+        Raises:
+            InputError: A name is taken and the new filter has not `override=True`, or
+                something is not a filter.
+        """
+        merged = dict(self.filters)
+        for added in filters:
+            if not isinstance(added, PromptFilter):
+                raise InputError(
+                    f"{added!r} is not a prompt filter; decorate the function with @filter(NAME)"
+                )
+            if added.name in merged and not added.override:
+                raise InputError(
+                    f"there is a filter {added.name!r} already; choose another name, or write "
+                    f'@filter("{added.name}", override=True) to replace it'
+                )
+            merged[added.name] = added
+        return FilterSet(MappingProxyType(dict(sorted(merged.items()))))
+
+
+def installed_filters(built_in: FilterSet) -> FilterSet:
+    """The built-in filters and those that installed packages offer.
+
+    Raises:
+        InputError: An installed package's filter cannot be loaded or its name is taken.
+    """
+    found = sorted(entry_points(group=FILTER_GROUP), key=lambda entry: (entry.name, entry.value))
+    return functools.reduce(_with_entry, found, built_in)
+
+
+def _with_entry(filters: FilterSet, entry: EntryPoint) -> FilterSet:
+    package = entry.dist.name if entry.dist is not None else entry.module
+    try:
+        return filters.extended([entry.load()])
+    except Exception as error:
+        raise InputError(
+            f"filter {entry.name!r} of the installed package {package} ({entry.value}) "
+            f"cannot be used: {error}"
+        ) from error

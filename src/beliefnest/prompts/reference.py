@@ -1,0 +1,100 @@
+"""The filter reference of the documentation, written from the filters themselves.
+
+`python -m beliefnest.prompts.reference` prints docs/filters.md.
+"""
+
+import inspect
+import sys
+from collections.abc import Mapping
+from typing import Any
+
+from beliefnest.prompts.builtin import BUILT_IN
+from beliefnest.prompts.example import ExampleBranch, example_branch
+from beliefnest.prompts.filterset import PromptFilter
+from beliefnest.prompts.rendering import render
+
+__all__ = ["EXAMPLES", "filter_reference"]
+
+EXAMPLES: Mapping[str, tuple[str, ...]] = {
+    "block_property": ('{{ branch | block_property("lever") }}',),
+    "blocks": ('{{ branch | blocks(["chest", "furnace"]) }}',),
+    "blocks_and_visibilities": (
+        '{{ branch | blocks_and_visibilities(["chest", "furnace"]) }}',
+        '{{ branch | blocks_and_visibilities(["lever"], others=["anne"]) }}',
+    ),
+    "chat_log": ("{{ branch | chat_log }}",),
+    "chests": ("{{ branch | chests }}",),
+    "equipment": ("{{ branch | equipment }}", '{{ branch | equipment("anne") }}'),
+    "events": ("{{ branch | events }}",),
+    "events_and_visibilities": (
+        "{{ branch | events_and_visibilities }}",
+        '{{ branch | events_and_visibilities(me="anne") }}',
+    ),
+    "helditem": ("{{ branch | helditem }}", '{{ branch | helditem("anne") }}'),
+    "inventory": ("{{ branch | inventory }}", '{{ branch | inventory("anne") }}'),
+    "other_players": ("{{ branch | other_players }}",),
+    "position": ("{{ branch | position }}", '{{ branch | position("anne") }}'),
+    "thought": ("{{ branch | thought }}",),
+}
+"""Filter to the templates that show it."""
+
+_HEAD = """\
+# Prompt filters
+
+<!-- Written by `python -m beliefnest.prompts.reference`; change the docstrings, not this. -->
+
+A prompt template is a Jinja2 text. `branch` is the simulator that is rendered; a filter
+turns it into text. All examples are run against one belief, Sally's at tick 240
+(`beliefnest.prompts.example`). Only what is truly unknown prints as `No data`,
+`Cannot be seen`, `Not observed`, `No chats`, `No thought` or `Empty`; an unknown filter,
+variable or agent is an error that names the line. Numbers have at most three decimals.
+Templates read: they cannot call a simulator's methods.
+
+`$$LAST_CODE$$` and `$$LAST_ERROR$$` stand for the variables `last_code` and `last_error`,
+the program of the round before and how it failed; without them they print
+`No code was executed` and `No error`.
+
+## Your own filters
+
+```python
+from beliefnest.prompts import BUILT_IN, filter, render
+
+@filter("greeting")
+def greeting(branch, word="Hello"):
+    return f"{word}, {branch.state.owner}!"
+
+render('{{ branch | greeting("Hi") }}', simulator, {}, BUILT_IN.extended([greeting]))
+```
+
+To replace a built-in filter, write `@filter("chests", override=True)`. A package offers
+its filters to every template by entry points of the group `beliefnest.filters`:
+
+```toml
+[project.entry-points."beliefnest.filters"]
+greeting = "my_package.filters:greeting"
+```
+
+## The built-in filters
+"""
+
+
+def filter_reference() -> str:
+    """The text of docs/filters.md."""
+    branch = example_branch()
+    sections = [_section(each, branch) for each in BUILT_IN.filters.values()]
+    return "\n".join([_HEAD, *sections])
+
+
+def _section(described: PromptFilter[Any], branch: ExampleBranch) -> str:
+    parameters = list(inspect.signature(described.function).parameters.values())[1:]
+    arguments = ", ".join(str(each.replace(annotation=each.empty)) for each in parameters)
+    title = f"{described.name}({arguments})" if arguments else described.name
+    examples = "\n".join(
+        f"```jinja\n{template}\n```\n\n```text\n{render(template, branch, {}, BUILT_IN)}\n```\n"
+        for template in EXAMPLES[described.name]
+    )
+    return f"### `{title}`\n\n{inspect.getdoc(described.function)}\n\n{examples}"
+
+
+if __name__ == "__main__":
+    sys.stdout.write(filter_reference())

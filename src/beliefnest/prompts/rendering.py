@@ -1,0 +1,181 @@
+"""From a template and a simulator to the text of a prompt."""
+
+import functools
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Any, NoReturn
+
+import jinja2
+from jinja2 import meta, nodes
+from jinja2.runtime import Macro
+from jinja2.sandbox import ImmutableSandboxedEnvironment
+
+from beliefnest.errors import BeliefNestError, TemplateError
+from beliefnest.prompts.builtin import BUILT_IN
+from beliefnest.prompts.filterset import FilterSet, installed_filters
+from beliefnest.prompts.templates import (
+    BUILT_IN_TEMPLATES,
+    Template,
+    built_in_template,
+    load_template,
+)
+from beliefnest.prompts.text import nearest
+from beliefnest.prompts.view import BranchView
+
+__all__ = ["NO_CODE", "NO_ERROR", "render"]
+
+NO_CODE = "No code was executed"
+NO_ERROR = "No error"
+
+_MARKERS = {"$$LAST_CODE$$": "{{ last_code }}", "$$LAST_ERROR$$": "{{ last_error }}"}
+_PLAIN_TYPES = (str, bytes, int, float, list, tuple, dict, set, frozenset)
+
+
+def render(
+    template: Template | Path | str,
+    branch: BranchView,
+    variables: Mapping[str, Any],
+    filters: FilterSet | None = None,
+) -> str:
+    """The text of a prompt.
+
+    Args:
+        template: A template, the path of a file that holds one, or Jinja2 source.
+        branch: The simulator that the template's `branch` stands for.
+        variables: The template's other variables. `last_code` and `last_error` are what
+            `$$LAST_CODE$$` and `$$LAST_ERROR$$` stand for; absent or None they print
+            as `No code was executed` and `No error`.
+        filters: Filters by name; None: the built-in and the installed ones.
+
+    Raises:
+        TemplateError: The template cannot be read or parsed, names a filter or a variable
+            that does not exist, or a filter failed; the message names the line.
+        InputError: An installed filter cannot be used.
+    """
+    source = _as_template(template)
+    environment = _environment(_default_filters() if filters is None else filters)
+    values = {
+        **variables,
+        "branch": branch,
+        "last_code": _or_word(variables.get("last_code"), NO_CODE),
+        "last_error": _or_word(variables.get("last_error"), NO_ERROR),
+    }
+    text = _with_markers(source.text)
+    tree = _parse(environment, source.name, text)
+    filename = f"<template {source.name}>"
+    try:
+        code = environment.compile(text, name=source.name, filename=filename)
+        compiled = jinja2.Template.from_code(environment, code, environment.globals)
+        return compiled.render(values)
+    except Exception as error:
+        line = _line_of(error, filename)
+        hint = _unknown_variables(tree, line, {*values, *environment.globals})
+        raise TemplateError(f"{source.name}, line {line}: {_words(error)}{hint}") from error
+
+
+@functools.cache
+def _default_filters() -> FilterSet:
+    return installed_filters(BUILT_IN)
+
+
+def _as_template(template: Template | Path | str) -> Template:
+    match template:
+        case Template():
+            return template
+        case Path():
+            return load_template(template)
+        case _:
+            return Template("template", template)
+
+
+def _or_word(value: object, word: str) -> object:
+    return word if value is None else value
+
+
+def _with_markers(text: str) -> str:
+    """The paper's two markers as variables, so that what they stand for is never parsed."""
+    for marker, expression in _MARKERS.items():
+        text = text.replace(marker, expression)
+    return text
+
+
+class _ReadingEnvironment(ImmutableSandboxedEnvironment):
+    """A sandbox in which a template reads simulators and cannot act through them."""
+
+    def is_safe_callable(self, obj: object) -> bool:
+        """Only macros, Jinja's own globals, and methods of plain values may be called."""
+        if not super().is_safe_callable(obj):
+            return False
+        bound_to = getattr(obj, "__self__", None)
+        return (
+            isinstance(obj, Macro)
+            or any(obj is known for known in self.globals.values())
+            or (bound_to is not None and isinstance(bound_to, _PLAIN_TYPES))
+        )
+
+
+def _environment(filters: FilterSet) -> jinja2.Environment:
+    environment = _ReadingEnvironment(
+        undefined=jinja2.StrictUndefined,
+        autoescape=False,  # a prompt is plain text, not HTML
+        keep_trailing_newline=True,
+        loader=jinja2.FunctionLoader(_built_in_source),
+    )
+    environment.filters.update({name: each.function for name, each in filters.filters.items()})
+    return environment
+
+
+def _built_in_source(name: str) -> str | None:
+    """Source for `{% include "instructions" %}`."""
+    if name not in BUILT_IN_TEMPLATES:
+        return None
+    return _with_markers(built_in_template(name).text)
+
+
+def _parse(environment: jinja2.Environment, name: str, text: str) -> nodes.Template:
+    try:
+        tree = environment.parse(text)
+    except jinja2.TemplateSyntaxError as error:
+        raise TemplateError(f"{name}, line {error.lineno}: {error.message}") from None
+    for used in tree.find_all(nodes.Filter):
+        if used.name not in environment.filters:
+            _refuse(name, used.lineno, "filter", used.name, environment.filters)
+    for test in tree.find_all(nodes.Test):
+        if test.name not in environment.tests:
+            _refuse(name, test.lineno, "test", test.name, environment.tests)
+    return tree
+
+
+def _refuse(template: str, line: int, kind: str, name: str, known: Iterable[str]) -> NoReturn:
+    raise TemplateError(
+        f"{template}, line {line}: there is no {kind} {name!r}{nearest(name, known)}"
+    )
+
+
+def _line_of(error: BaseException, filename: str) -> int:
+    """Line of the template that was being rendered when an error was raised."""
+    line = 1
+    trace: TracebackType | None = error.__traceback__
+    while trace is not None:
+        if trace.tb_frame.f_code.co_filename == filename:
+            line = trace.tb_lineno
+        trace = trace.tb_next
+    return line
+
+
+def _unknown_variables(tree: nodes.Template, line: int, known: set[str]) -> str:
+    """What comes near the unknown variables of a line, for the end of a message."""
+    missing = meta.find_undeclared_variables(tree) - known
+    here = {name.name for name in tree.find_all(nodes.Name) if name.lineno == line} & missing
+    variables = sorted(known - set(jinja2.defaults.DEFAULT_NAMESPACE))
+    return "".join(nearest(name, variables) for name in sorted(here))
+
+
+def _words(error: Exception) -> str:
+    """The message of an error, with its kind unless the message was written to be read."""
+    if isinstance(error, jinja2.TemplateError):
+        return error.message or type(error).__name__
+    if isinstance(error, BeliefNestError):
+        return str(error)
+    return f"a filter or expression failed: {type(error).__name__}: {error}"
