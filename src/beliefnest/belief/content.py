@@ -87,9 +87,7 @@ def _forget_and_find(
             contents[place] = ContainerBelief({}, complete=False, basis=basis, current=False)
 
 
-def _looked_into(
-    percept: Percept, around: BeliefState, options: Perception
-) -> frozenset[Position]:
+def _looked_into(percept: Percept, around: BeliefState, options: Perception) -> frozenset[Position]:
     """Containers whose whole content, as far as `around` holds it, the agent learns."""
     own = {
         event.detail["position"]

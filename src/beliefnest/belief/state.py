@@ -104,5 +104,3 @@ class BeliefState:
     def events(self) -> tuple[PerceivedEvent, ...]:
         """All perceived events, oldest first."""
         return tuple(reversed(tuple(self.log or ())))
-
-

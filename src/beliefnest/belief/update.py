@@ -15,7 +15,6 @@ from beliefnest.belief.possessions import after_own_acts
 from beliefnest.belief.state import BeliefState, Grounds, ItemBelief, Log
 from beliefnest.perception.observe import ITEM_HEIGHT, Percept, Scene, eye_of, observe
 from beliefnest.perception.options import Perception
-from beliefnest.perception.terrain import Terrain
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Event
 
@@ -165,5 +164,3 @@ def _updated_items(
                 del items[number]
     items.update({number: around.items[number] for number in percept.items})
     return items
-
-

@@ -1,0 +1,98 @@
+"""What a world and the bodies in it can do, whichever world it is."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.values import Event
+
+__all__ = ["Body", "Fault", "ProgramResult", "Sink", "World"]
+
+Sink = Callable[[Frame], None]
+"""Takes the frames of a body as they come, in order of tick."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """Why a program failed, for its writer.
+
+    Attributes:
+        message: What went wrong and what to do.
+        kind: Kind of failure, as `program`, `syntax`, `timeout`, `budget`.
+        line: Line in the program's own text, from 1; None where there is none.
+        column: Column in that line, from 1.
+        skill: The skill that failed, if one did.
+    """
+
+    message: str
+    kind: str = "program"
+    line: int | None = None
+    column: int | None = None
+    skill: str | None = None
+
+    def __str__(self) -> str:
+        place = "" if self.line is None else f"line {self.line}: "
+        return f"{place}{self.message}"
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramResult:
+    """What became of a program.
+
+    Attributes:
+        ok: Whether it ended without an error.
+        error: Why it failed; None if it did not.
+        ticks: How many ticks it ran.
+        events: What happened in the simulator meanwhile, in order.
+    """
+
+    ok: bool
+    error: Fault | None
+    ticks: int
+    events: tuple[Event, ...] = ()
+
+
+class Body(Protocol):
+    """One simulator's part of a world; its clock stands still between the calls."""
+
+    @property
+    def tick(self) -> int:
+        """The body's latest tick."""
+
+    def snapshot(self) -> Snapshot:
+        """All there is in it now."""
+
+    def run(self, programs: Mapping[str, str], timeout_ticks: int) -> Mapping[str, ProgramResult]:
+        """Run programs by agent, together, until the last has ended.
+
+        Raises:
+            WorldError: An agent is not in this body, or the world runs no programs.
+            BodyError: The Minecraft side died.
+        """
+
+    def step(self, ticks: int) -> None:
+        """Let ticks pass without programs."""
+
+    def become(self, snapshot: Snapshot) -> None:
+        """Be as the snapshot says, by changing only what differs; no frames are sent."""
+
+    def close(self) -> None:
+        """Give the body up."""
+
+
+class World(Protocol):
+    """Where bodies live."""
+
+    def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> Body:
+        """Make a body and fill it.
+
+        Args:
+            name: Name of the body in this world, unique.
+            seed: Seed of all its random numbers.
+            snapshot: What it is filled with.
+            sink: Takes its frames.
+        """
+
+    def close(self) -> None:
+        """End the world and all its bodies."""

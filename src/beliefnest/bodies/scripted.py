@@ -1,0 +1,66 @@
+"""Bodies without Minecraft: a `ScriptedWorld` of its own for every simulator."""
+
+from collections.abc import Mapping
+
+from beliefnest.bodies.protocol import ProgramResult, Sink
+from beliefnest.errors import WorldError
+from beliefnest.world.frames import Snapshot
+from beliefnest.world.scripted import ScriptedWorld
+
+__all__ = ["ScriptedBodies", "ScriptedBody"]
+
+
+class ScriptedBody:
+    """A simulator's part of the scripted world; it is acted in through `world`.
+
+    Attributes:
+        world: The world to tell what happens.
+    """
+
+    def __init__(self, world: ScriptedWorld, sink: Sink) -> None:
+        self.world = world
+        self._sink = sink
+        world.listen(sink)
+
+    @property
+    def tick(self) -> int:
+        """The body's latest tick."""
+        return self.world.now
+
+    def snapshot(self) -> Snapshot:
+        """All there is in it now."""
+        return self.world.snapshot()
+
+    def run(self, programs: Mapping[str, str], timeout_ticks: int) -> Mapping[str, ProgramResult]:
+        """Raise WorldError: this world has no bots that could run programs."""
+        raise WorldError(
+            f"the scripted world runs no programs (asked for {', '.join(sorted(programs))}); "
+            "act through the simulator's `scripted` world, or open the nest with world='embedded'"
+        )
+
+    def step(self, ticks: int) -> None:
+        """Let ticks pass."""
+        self.world.step(ticks)
+
+    def become(self, snapshot: Snapshot) -> None:
+        """Be as the snapshot says; no frames are sent."""
+        self.world.become(snapshot)
+
+    def close(self) -> None:
+        """Stop recording."""
+        self.world.unlisten(self._sink)
+
+
+class ScriptedBodies:
+    """The world of scripted bodies; `first` becomes the first body, the real world's."""
+
+    def __init__(self, first: ScriptedWorld | None = None) -> None:
+        self._first = first
+
+    def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> ScriptedBody:
+        """Make a body; its name and seed play no part, nothing here is random."""
+        world, self._first = self._first, None
+        return ScriptedBody(world or ScriptedWorld.from_snapshot(snapshot), sink)
+
+    def close(self) -> None:
+        """Nothing is held open."""

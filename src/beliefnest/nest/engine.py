@@ -1,0 +1,238 @@
+"""The effects behind a nest: which timeline each simulator is on, and its body.
+
+A simulator is in control mode iff a timeline is selected for it; it then has a body in
+the world and its frames are recorded there (semantics, sections 6 and 7).
+"""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Self
+
+from beliefnest.belief import control
+from beliefnest.belief.state import BeliefState
+from beliefnest.bodies.protocol import Body, ProgramResult, World
+from beliefnest.errors import BranchError, TickError
+from beliefnest.nest.fold import History
+from beliefnest.nest.paths import path_text
+from beliefnest.nest.rules import Rules
+from beliefnest.timeline.journal import (
+    FOLLOW,
+    Edit,
+    ForkPoint,
+    Journal,
+    TimelineInfo,
+    TimelineKey,
+)
+from beliefnest.world.frames import Frame
+from beliefnest.world.values import Items, Position
+
+__all__ = ["MAIN", "Engine"]
+
+Path = tuple[str, ...]
+
+MAIN = "main"
+"""Name of the real world's first branch."""
+
+_BATCH = 256
+
+
+class _Recorder:
+    """Takes a body's frames and appends them to the timeline it is on.
+
+    Each frame is written at once, but while a call is under way, when `batched` is set.
+    """
+
+    def __init__(self, journal: Journal, key: TimelineKey) -> None:
+        self.key = key
+        self.batched = False
+        self._journal = journal
+        self._frames: list[Frame] = []
+        self._tick: int | None = None
+
+    def __call__(self, frame: Frame) -> None:
+        self._tick = frame.tick
+        if not frame.is_empty:
+            self._frames.append(frame)
+        if not self.batched or len(self._frames) >= _BATCH:
+            self.flush()
+
+    def flush(self, tick: int | None = None) -> None:
+        """Write what was taken; `tick` is the body's tick by now."""
+        head = self._tick if tick is None else tick
+        if head is not None:
+            frames, self._frames, self._tick = self._frames, [], None
+            self._journal.append(self.key, frames, head)
+
+
+class Engine:
+    """Timelines, bodies and states of one nest. `Nest` and `Simulator` are its face."""
+
+    def __init__(self, rules: Rules, journal: Journal, world: World, seed: int) -> None:
+        self.rules = rules
+        self.journal = journal
+        self.world = world
+        self.seed = seed
+        self.history = History(journal, rules)
+        self.selected: dict[Path, TimelineKey] = {}
+        self._bodies: dict[Path, Body] = {}
+        self._recorders: dict[Path, _Recorder] = {}
+
+    def begin(self) -> Self:
+        """Start the real world's timeline and give it its body."""
+        key = TimelineKey((), MAIN)
+        self.journal.create(key, None, self.rules.setting.snapshot.tick)
+        self._open_body(key, self.rules.reality(), self.rules.setting.snapshot.tick)
+        self.selected[()] = key
+        return self
+
+    def controller(self, path: Path) -> TimelineKey:
+        """The timeline of the nearest simulator in control mode, the node itself included."""
+        for depth in range(len(path), -1, -1):
+            if path[:depth] in self.selected:
+                return self.selected[path[:depth]]
+        raise BranchError("the nest was not opened; use Nest.open or Nest(world)")
+
+    def info(self, path: Path) -> TimelineInfo:
+        """The timeline that a node's state comes from."""
+        return self.journal.info(self.controller(path))
+
+    def state(self, path: Path) -> BeliefState:
+        """A node's state now."""
+        return self.history.state(self.controller(path), path)
+
+    def state_at(self, path: Path, tick: int) -> BeliefState:
+        """A node's state at a past tick of the timeline it is on.
+
+        Raises:
+            TickError: The tick is in the future, or before the start of everything.
+        """
+        info = self.info(path)
+        if tick > info.head:
+            raise TickError(f"tick {tick} is in the future; {path_text(path)} is at {info.head}")
+        key, position = self.place_of(info.key, tick)
+        return self.history.state(key, path, position)
+
+    def place_of(self, key: TimelineKey, tick: int) -> tuple[TimelineKey, int]:
+        """Timeline and number of entries that hold a tick, back through the bases.
+
+        Raises:
+            TickError: The tick lies before the first one.
+        """
+        info = self.journal.info(key)
+        while tick < info.start:
+            if info.base is None:
+                raise TickError(f"tick {tick} is before the start, which is tick {info.start}")
+            key = info.base.timeline
+            info = self.journal.info(key)
+        return key, self.journal.entries_until(key, tick)
+
+    def fork(self, path: Path, name: str, tick: int | None) -> None:
+        """Begin a branch at the current tick, or at a past one, and select it."""
+        source = self.info(path)
+        if tick is None:
+            base = ForkPoint(source.key, source.entries, source.head)
+        else:
+            if tick > source.head:
+                raise TickError(f"tick {tick} is in the future; the fork can be at {source.head}")
+            place, entries = self.place_of(source.key, tick)
+            base = ForkPoint(place, entries, tick)
+        key = TimelineKey(path, name)
+        state = self.history.state(base.timeline, path, base.entries)
+        self._embody(key, control.forked(state), base.tick)
+        self.journal.create(key, base, base.tick)
+        self.selected[path] = key
+
+    def select(self, key: TimelineKey) -> None:
+        """Put a simulator on a timeline it has, in the world too."""
+        if self.selected.get(key.path) == key:
+            return
+        info = self.journal.info(key)
+        self._embody(key, self.history.state(key, key.path), info.head)
+        self.selected[key.path] = key
+
+    def follow(self, path: Path) -> None:
+        """Put a simulator into follow mode; its body is given up."""
+        if path == ():
+            raise BranchError(f"the real world follows nothing; {FOLLOW!r} is for beliefs")
+        self.selected.pop(path, None)
+        self._recorders.pop(path, None)
+        body = self._bodies.pop(path, None)
+        if body is not None:
+            body.close()
+
+    def body(self, path: Path) -> Body:
+        """The body of a simulator in control mode.
+
+        Raises:
+            BranchError: The simulator is in follow mode.
+        """
+        if path not in self._bodies:
+            raise BranchError(
+                f"{path_text(path)} is in follow mode and has no body to act in; "
+                "switch it to a branch first: simulator.switch('my-branch')"
+            )
+        return self._bodies[path]
+
+    def run(
+        self, path: Path, programs: Mapping[str, str], timeout_ticks: int
+    ) -> Mapping[str, ProgramResult]:
+        """Run programs in a body and record what happens."""
+        with self._recording(path) as body:
+            return body.run(programs, timeout_ticks)
+
+    def step(self, path: Path, ticks: int) -> None:
+        """Let ticks pass in a body."""
+        with self._recording(path) as body:
+            body.step(ticks)
+
+    def edit(
+        self,
+        path: Path,
+        blocks: Mapping[Position, int],
+        containers: Mapping[Position, Items],
+    ) -> None:
+        """Record a change by hand, in the body too where there is one."""
+        info = self.info(path)
+        edit = Edit(info.head, path, blocks, containers)
+        if path in self._bodies:
+            state = self.rules.after(self.state(path), edit, path)
+            self._bodies[path].become(control.snapshot_of(state))
+        self.journal.append(info.key, [edit], info.head)
+
+    def close(self) -> None:
+        """Give up all bodies, the world and the journal."""
+        self._bodies.clear()
+        try:
+            self.world.close()
+        finally:
+            self.journal.close()
+
+    def _embody(self, key: TimelineKey, state: BeliefState, tick: int) -> None:
+        """Give the simulator's body a state, making the body if there is none."""
+        body = self._bodies.get(key.path)
+        if body is None:
+            self._open_body(key, state, tick)
+            return
+        body.become(replace(control.snapshot_of(state), tick=tick))
+        self._recorders[key.path].key = key
+
+    def _open_body(self, key: TimelineKey, state: BeliefState, tick: int) -> None:
+        recorder = _Recorder(self.journal, key)
+        name = path_text(key.path)
+        snapshot = replace(control.snapshot_of(state), tick=tick)
+        self._bodies[key.path] = self.world.open_body(
+            name, f"{self.seed} {name}", snapshot, recorder
+        )
+        self._recorders[key.path] = recorder
+
+    @contextmanager
+    def _recording(self, path: Path) -> Iterator[Body]:
+        """A call on a body; its frames are written in batches, all of them by the end."""
+        body, recorder = self.body(path), self._recorders[path]
+        recorder.batched = True
+        try:
+            yield body
+        finally:
+            recorder.batched = False
+            recorder.flush(body.tick)

@@ -1,0 +1,38 @@
+"""Belief paths: `/` is the real world, `/a/b` is what a believes that b believes."""
+
+from collections.abc import Collection, Iterable
+
+from beliefnest.errors import PathError
+
+__all__ = ["normalised", "parse_path", "path_text"]
+
+
+def parse_path(text: str, agents: Collection[str]) -> tuple[str, ...]:
+    """Agent names of a path, normalised.
+
+    Raises:
+        PathError: The text is no path, or names an agent that there is not.
+    """
+    if not isinstance(text, str) or not text.startswith("/"):
+        raise PathError(f"{text!r} is no belief path; write '/' or '/agent/agent'")
+    names = text.strip("/").split("/") if text.strip("/") else []
+    if text not in (path_text(names), path_text(names) + "/"):
+        raise PathError(f"{text!r} is no belief path: a name between slashes is empty")
+    for name in names:
+        if name not in agents:
+            raise PathError(f"{text!r} names {name!r}; the agents are {', '.join(sorted(agents))}")
+    return normalised(names)
+
+
+def normalised(names: Iterable[str]) -> tuple[str, ...]:
+    """The path with equal neighbours collapsed: an agent knows its own beliefs."""
+    path: list[str] = []
+    for name in names:
+        if not path or path[-1] != name:
+            path.append(name)
+    return tuple(path)
+
+
+def path_text(path: Iterable[str]) -> str:
+    """The text of a path."""
+    return "/" + "/".join(path)

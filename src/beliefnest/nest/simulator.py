@@ -1,0 +1,234 @@
+"""One simulator of the nest, as its users hold it."""
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.state import BeliefState
+from beliefnest.bodies.protocol import ProgramResult
+from beliefnest.bodies.scripted import ScriptedBody
+from beliefnest.errors import BranchError, InputError, PathError, PositionError, WorldError
+from beliefnest.nest.engine import Engine
+from beliefnest.nest.paths import normalised, path_text
+from beliefnest.nest.state import State
+from beliefnest.nest.views import view
+from beliefnest.perception.observe import Pose, eye_of
+from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
+from beliefnest.world.scripted import ScriptedWorld
+from beliefnest.world.values import Items, Position
+
+__all__ = ["PastSimulator", "Simulator"]
+
+Mode = Literal["control", "follow"]
+
+
+class _Seen:
+    """What a simulator shows of itself at one tick, now or in the past."""
+
+    def __init__(self, engine: Engine, path: tuple[str, ...]) -> None:
+        self._engine = engine
+        self._path = path
+
+    @property
+    def path(self) -> str:
+        """The normalised belief path, as text."""
+        return path_text(self._path)
+
+    @property
+    def owner(self) -> str | None:
+        """The agent whose belief this is; None in the real world."""
+        return self._path[-1] if self._path else None
+
+    @property
+    def tick(self) -> int:
+        """The tick it shows."""
+        raise NotImplementedError
+
+    def _belief(self) -> BeliefState:
+        raise NotImplementedError
+
+    @property
+    def state(self) -> State:
+        """What the simulator holds, read-only."""
+        return view(self._path, self._belief(), self.tick, self._engine.rules.registry)
+
+    def visible_blocks(self, agent: str) -> npt.NDArray[np.bool_]:
+        """Which blocks an agent sees from its pose in this simulator.
+
+        Returns:
+            bool, shape of the box; all false where the agent's pose is unknown.
+
+        Raises:
+            PathError: There is no such agent.
+        """
+        belief = self._belief()
+        if agent not in belief.agents:
+            raise PathError(f"no agent {agent!r}; there are {', '.join(belief.agents)}")
+        there = belief.agents[agent]
+        if there.position is None:
+            return np.zeros(belief.terrain.box.shape, dtype=np.bool_)
+        eye = eye_of(Pose(there.position, there.yaw, there.pitch))
+        return belief.terrain.visible(eye, there.yaw, there.pitch)
+
+    def _child_path(self, agent: str) -> tuple[str, ...]:
+        agents = self._engine.rules.agents
+        if agent not in agents:
+            raise PathError(f"no agent {agent!r}; there are {', '.join(agents)}")
+        return normalised((*self._path, agent))
+
+
+class PastSimulator(_Seen):
+    """A simulator as it was at a past tick; read-only."""
+
+    def __init__(self, engine: Engine, path: tuple[str, ...], tick: int) -> None:
+        super().__init__(engine, path)
+        self._tick = tick
+
+    @property
+    def tick(self) -> int:
+        """The past tick."""
+        return self._tick
+
+    def child(self, agent: str) -> "PastSimulator":
+        """The simulator of what `agent` believed in this one."""
+        return PastSimulator(self._engine, self._child_path(agent), self._tick)
+
+    def _belief(self) -> BeliefState:
+        return self._engine.state_at(self._path, self._tick)
+
+
+class Simulator(_Seen):
+    """The real world or a belief, live; `Nest[path]` gives one."""
+
+    @property
+    def mode(self) -> Mode:
+        """`control` with a timeline of its own, else `follow`."""
+        return "control" if self._path in self._engine.selected else "follow"
+
+    @property
+    def branch(self) -> str:
+        """Name of the selected branch; `follow` in follow mode."""
+        key = self._engine.selected.get(self._path)
+        return FOLLOW if key is None else key.branch
+
+    @property
+    def tick(self) -> int:
+        """The latest tick of the timeline it is on."""
+        return self._engine.info(self._path).head
+
+    @property
+    def scripted(self) -> ScriptedWorld:
+        """The scripted world to act in, of a control-mode simulator without Minecraft.
+
+        Raises:
+            WorldError: The simulator's body is a Minecraft one.
+            BranchError: The simulator is in follow mode.
+        """
+        body = self._engine.body(self._path)
+        if not isinstance(body, ScriptedBody):
+            raise WorldError(f"{self.path} lives in Minecraft; act in it with run()")
+        return body.world
+
+    def child(self, agent: str) -> "Simulator":
+        """The simulator of what `agent` believes in this one."""
+        return Simulator(self._engine, self._child_path(agent))
+
+    def switch(self, name: str, at: int | None = None) -> None:
+        """Select a branch: a new name forks here, a known one restores its latest state.
+
+        Args:
+            name: The branch; `follow` goes back to following the parent's belief.
+            at: Past tick to fork a new branch from; None: now.
+
+        Raises:
+            BranchError: The name is not allowed, or `at` is given for a known branch.
+            TickError: `at` is in the future or before the start.
+        """
+        _check_branch_name(name)
+        if name == FOLLOW:
+            self._engine.follow(self._path)
+            return
+        key = TimelineKey(self._path, name)
+        if all(info.key != key for info in self._engine.journal.timelines()):
+            self._engine.fork(self._path, name, at)
+        elif at is not None:
+            raise BranchError(f"branch {name!r} exists; fork tick {at} under another name")
+        else:
+            self._engine.select(key)
+
+    def branches(self) -> tuple[TimelineInfo, ...]:
+        """The simulator's own timelines, in order of creation, each with its fork point."""
+        timelines = self._engine.journal.timelines()
+        return tuple(info for info in timelines if info.key.path == self._path)
+
+    def run(self, agent: str, code: str, timeout_ticks: int = 1200) -> ProgramResult:
+        """Run a program as an agent of this simulator, which must be in control mode.
+
+        Args:
+            agent: Whose bot runs it.
+            code: JavaScript: the body of an async function, or one whole async function.
+            timeout_ticks: Ticks after which the program is stopped.
+
+        Raises:
+            BranchError: The simulator is in follow mode.
+            WorldError: The agent is not there, or the world runs no programs.
+            BodyError: The Minecraft side died.
+        """
+        return self.run_all({agent: code}, timeout_ticks)[agent]
+
+    def run_all(
+        self, programs: Mapping[str, str], timeout_ticks: int = 1200
+    ) -> Mapping[str, ProgramResult]:
+        """Run programs of several agents at the same time, tick by tick together."""
+        for agent in programs:
+            self._child_path(agent)
+        if timeout_ticks <= 0:
+            raise InputError(f"timeout_ticks is {timeout_ticks}; give at least 1")
+        return self._engine.run(self._path, programs, timeout_ticks)
+
+    def step(self, ticks: int = 1) -> None:
+        """Let ticks pass in a control-mode simulator."""
+        self._engine.step(self._path, ticks)
+
+    def edit(
+        self,
+        blocks: Mapping[Position, str | None] | None = None,
+        containers: Mapping[Position, Items] | None = None,
+    ) -> None:
+        """Change blocks or contents by hand; it is recorded as an edit.
+
+        Args:
+            blocks: New block state texts; None makes a block unknown.
+            containers: New contents, which are then complete.
+
+        Raises:
+            PositionError: A position is outside the box.
+            UnknownNameError: There is no such block or item.
+        """
+        registry = self._engine.rules.registry
+        box = self._engine.rules.setting.snapshot.box
+        for position in (*(blocks or {}), *(containers or {})):
+            if position not in box:
+                raise PositionError(f"position {position} is outside the box {box.low}..{box.high}")
+        states = {
+            position: -1 if text is None else registry.state_id(text)
+            for position, text in (blocks or {}).items()
+        }
+        for items in (containers or {}).values():
+            for name, count in items.items():
+                registry.item_stack(name)
+                if count <= 0:
+                    raise InputError(f"{count} {name} cannot be held; give a count above 0")
+        self._engine.edit(self._path, states, {p: dict(i) for p, i in (containers or {}).items()})
+
+    def _belief(self) -> BeliefState:
+        return self._engine.state(self._path)
+
+
+def _check_branch_name(name: Any) -> None:
+    if not isinstance(name, str) or not name or not name.isprintable() or set(name) & set("/[]"):
+        raise BranchError(
+            f"{name!r} is no branch name; use printable text without '/', '[' and ']'"
+        )

@@ -1,0 +1,411 @@
+"""The world without Minecraft: no physics, exactly the moves it is told.
+
+It serves tests, imported traces and studies that need only beliefs. Every act takes one
+tick, unless several are put into one with `tick()`. An impossible act raises WorldError
+and changes nothing.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from beliefnest.errors import BeliefNestError, WorldError
+from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import (
+    AgentState,
+    Box,
+    DroppedItem,
+    Event,
+    EventKind,
+    Items,
+    Point,
+    Position,
+)
+
+__all__ = ["Listener", "ScriptedWorld"]
+
+Listener = Callable[[Frame], None]
+"""Takes a frame for every tick, empty ones included."""
+
+
+@dataclass
+class _Facts:
+    """What is the case; copied before a tick so that a failed one leaves no trace."""
+
+    blocks: "np.ndarray[tuple[int, int, int], np.dtype[np.int32]]"
+    containers: dict[Position, dict[str, int]]
+    agents: dict[str, AgentState]
+    items: dict[int, DroppedItem]
+
+
+class _Pending:
+    """What the tick being made changes."""
+
+    def __init__(self, facts: _Facts) -> None:
+        self.saved = _Facts(
+            facts.blocks, dict(facts.containers), dict(facts.agents), dict(facts.items)
+        )
+        self.old_blocks: dict[Position, int] = {}
+        self.blocks: dict[Position, int] = {}
+        self.containers: set[Position] = set()
+        self.agents: set[str] = set()
+        self.events: list[Event] = []
+
+
+class ScriptedWorld:
+    """A world that is told what happens.
+
+    Args:
+        box: Two inclusive corners of block positions.
+        blocks: Block state texts by position; the rest is air.
+        agents: Feet positions by agent name.
+        inventories: Items by agent name.
+        containers: Contents by position; where `blocks` has none, a chest is put there.
+        equipment: By agent name, slot (`EQUIPMENT_SLOTS`) to item name.
+        tick: The first tick.
+
+    Raises:
+        WorldError: Something lies outside the box, or is no block, item or agent name.
+    """
+
+    def __init__(
+        self,
+        box: tuple[Position, Position],
+        blocks: Mapping[Position, str] | None = None,
+        agents: Mapping[str, Point] | None = None,
+        inventories: Mapping[str, Items] | None = None,
+        containers: Mapping[Position, Items] | None = None,
+        equipment: Mapping[str, Mapping[str, str]] | None = None,
+        tick: int = 0,
+    ) -> None:
+        self._registry = Registry.load()
+        self._box = _checked_box(box)
+        self._tick = tick
+        self._listeners: list[Listener] = []
+        self._pending: _Pending | None = None
+        self._facts = _Facts(np.zeros(self._box.shape, dtype=np.int32), {}, {}, {})
+        for position, text in (blocks or {}).items():
+            self._put(self._inside(position), text)
+        for position, items in (containers or {}).items():
+            place = self._inside(position)
+            if place not in self._facts.containers:
+                if place in {self._whole(p) for p in blocks or {}}:
+                    raise WorldError(f"the block at {place} is no container; it cannot hold items")
+                self._put(place, "chest")
+            self._facts.containers[place] = self._items(items)
+        for name, feet in (agents or {}).items():
+            self._facts.agents[_agent_name(name)] = AgentState(self._feet(feet))
+        for name, items in (inventories or {}).items():
+            self._set_agent(name, inventory=self._items(items))
+        for name, worn in (equipment or {}).items():
+            self._set_agent(name, equipment=dict(worn))
+
+    @classmethod
+    def from_snapshot(cls, snapshot: Snapshot) -> "ScriptedWorld":
+        """A world that is as a snapshot says."""
+        world = cls((snapshot.box.low, snapshot.box.high), tick=snapshot.tick)
+        world.become(snapshot)
+        return world
+
+    @property
+    def box(self) -> Box:
+        """The part of space there is."""
+        return self._box
+
+    @property
+    def now(self) -> int:
+        """The latest tick."""
+        return self._tick
+
+    def listen(self, listener: Listener) -> None:
+        """Hand every further frame to `listener`."""
+        self._listeners.append(listener)
+
+    def unlisten(self, listener: Listener) -> None:
+        """Stop handing frames to `listener`."""
+        self._listeners.remove(listener)
+
+    def snapshot(self) -> Snapshot:
+        """All there is now."""
+        facts = self._facts
+        return Snapshot(
+            self._tick,
+            self._box,
+            facts.blocks.copy(),
+            {place: dict(items) for place, items in facts.containers.items()},
+            dict(facts.agents),
+            dict(facts.items),
+        )
+
+    def become(self, snapshot: Snapshot) -> None:
+        """Be as the snapshot says; no frame is sent."""
+        if snapshot.box != self._box:
+            raise WorldError(f"a snapshot of {snapshot.box} does not fit into {self._box}")
+        self._tick = snapshot.tick
+        self._facts = _Facts(
+            snapshot.blocks.copy(),
+            {place: dict(items) for place, items in snapshot.containers.items()},
+            dict(snapshot.agents),
+            dict(snapshot.items),
+        )
+
+    @contextmanager
+    def tick(self) -> Iterator[None]:
+        """Put the acts of a `with` block into one tick; all of them happen, or none."""
+        if self._pending is not None:
+            raise WorldError(f"tick {self._tick + 1} is being made already; do not nest tick()")
+        pending = self._pending = _Pending(self._facts)
+        try:
+            yield
+        except BaseException:
+            self._undo(pending)
+            raise
+        finally:
+            self._pending = None
+        self._finish(pending)
+
+    def step(self, ticks: int = 1) -> None:
+        """Let ticks pass in which nothing happens."""
+        if self._pending is not None:
+            raise WorldError("step() is a tick of its own; it cannot stand inside tick()")
+        if ticks < 0:
+            raise WorldError(f"{ticks} ticks cannot pass; give 0 or more")
+        for _ in range(ticks):
+            with self.tick():
+                pass
+
+    def place_agent(
+        self, name: str, position: Point, yaw: float | None = None, pitch: float | None = None
+    ) -> None:
+        """Put an agent somewhere; feet position in blocks, angles in Mineflayer's radians."""
+        with self._act() as pending:
+            agent = self._agent(name)
+            angles = [agent.yaw if yaw is None else yaw, agent.pitch if pitch is None else pitch]
+            if not all(math.isfinite(angle) for angle in angles):
+                raise WorldError(f"{name} cannot look along yaw {yaw}, pitch {pitch}")
+            self._facts.agents[name] = replace(
+                agent,
+                position=self._feet(position),
+                yaw=float(angles[0]),
+                pitch=float(angles[1]),
+            )
+            pending.agents.add(name)
+
+    def set_block(self, position: Position, block: str, actor: str | None = None) -> None:
+        """Replace a block; a container that goes takes its content with it."""
+        with self._act() as pending:
+            place = self._inside(position)
+            if actor is not None:
+                self._agent(actor)
+            index = self._box.index(place)
+            before = int(self._facts.blocks[index])
+            state = self._state(block)
+            if state == before:
+                return
+            if not pending.old_blocks:
+                self._facts.blocks = self._facts.blocks.copy()
+            pending.old_blocks.setdefault(place, before)
+            held = self._facts.containers.get(place)
+            self._put(place, block)
+            if self._facts.containers.get(place) is not held:
+                pending.containers.add(place)
+            pending.blocks[place] = state
+            detail = {"position": place, "block": self._registry.text(state)}
+            pending.events.append(Event(EventKind.BLOCK_UPDATE, actor, detail))
+
+    def deposit(self, name: str, position: Position, items: Items) -> None:
+        """An agent puts items of its inventory into a container."""
+        self._transfer(name, position, items, EventKind.DEPOSIT_ITEM_INTO_CHEST)
+
+    def withdraw(self, name: str, position: Position, items: Items) -> None:
+        """An agent takes items out of a container."""
+        self._transfer(name, position, items, EventKind.GET_ITEM_FROM_CHEST)
+
+    def open(self, name: str, position: Position) -> None:
+        """An agent looks into a container; others see that it does."""
+        with self._act() as pending:
+            self._agent(name)
+            place = self._container(position)
+            pending.events.append(Event(EventKind.OPEN_CONTAINER, name, {"position": place}))
+
+    def say(self, name: str, text: str) -> None:
+        """An agent speaks."""
+        self._utter(EventKind.CHAT, name, text)
+
+    def think(self, name: str, text: str) -> None:
+        """An agent thinks; only it perceives that."""
+        self._utter(EventKind.THINK, name, text)
+
+    def give(self, giver: str, receiver: str, items: Items) -> None:
+        """An agent hands items over to another."""
+        with self._act() as pending:
+            if giver == receiver:
+                raise WorldError(f"{giver} cannot give items to itself")
+            other = self._agent(receiver)
+            moved = self._items(items)
+            held = _less(self._agent(giver).inventory, moved, f"{giver} cannot give {moved}: it")
+            self._set_agent(giver, inventory=held)
+            self._set_agent(receiver, inventory=_more(other.inventory, moved))
+            pending.agents |= {giver, receiver}
+            for kind, name, partner in (
+                (EventKind.GIVE_ITEM_TO_OTHER, giver, receiver),
+                (EventKind.RECEIVE_ITEM_FROM_OTHER, receiver, giver),
+            ):
+                pending.events.append(Event(kind, name, {"other": partner, "items": moved}))
+
+    def _transfer(self, name: str, position: Position, items: Items, kind: EventKind) -> None:
+        with self._act() as pending:
+            agent = self._agent(name)
+            place = self._container(position)
+            moved = self._items(items)
+            held, inside = agent.inventory, self._facts.containers[place]
+            if kind is EventKind.DEPOSIT_ITEM_INTO_CHEST:
+                held = _less(held, moved, f"{name} cannot put {moved} into {place}: it")
+                inside = _more(inside, moved)
+            else:
+                inside = _less(inside, moved, f"{name} cannot take {moved}: the one at {place}")
+                held = _more(held, moved)
+            self._set_agent(name, inventory=held)
+            self._facts.containers[place] = inside
+            pending.agents.add(name)
+            pending.containers.add(place)
+            pending.events.append(Event(kind, name, {"position": place, "items": moved}))
+
+    def _utter(self, kind: EventKind, name: str, text: str) -> None:
+        with self._act() as pending:
+            self._agent(name)
+            pending.events.append(Event(kind, name, {"text": str(text)}))
+
+    @contextmanager
+    def _act(self) -> Iterator[_Pending]:
+        """One act: a tick of its own, or a part of the one being made."""
+        if self._pending is not None:
+            yield self._pending
+            return
+        with self.tick():
+            assert self._pending is not None
+            yield self._pending
+
+    def _undo(self, pending: _Pending) -> None:
+        self._facts = pending.saved
+
+    def _finish(self, pending: _Pending) -> None:
+        self._tick += 1
+        facts = self._facts
+        frame = Frame(
+            self._tick,
+            {name: facts.agents[name] for name in sorted(pending.agents)},
+            dict(sorted(pending.blocks.items())),
+            {
+                place: dict(facts.containers[place]) if place in facts.containers else None
+                for place in sorted(pending.containers)
+            },
+            {},
+            tuple(pending.events),
+        )
+        for listener in tuple(self._listeners):
+            listener(frame)
+
+    def _put(self, place: Position, block: str) -> None:
+        state = self._state(block)
+        before = self._registry.name(int(self._facts.blocks[self._box.index(place)]))
+        name = self._registry.name(state)
+        self._facts.blocks[self._box.index(place)] = state
+        if self._registry.is_container(name):
+            if before != name or place not in self._facts.containers:
+                self._facts.containers[place] = {}
+        else:
+            self._facts.containers.pop(place, None)
+
+    def _set_agent(
+        self,
+        name: str,
+        *,
+        inventory: dict[str, int] | None = None,
+        equipment: dict[str, str] | None = None,
+    ) -> None:
+        agent = self._agent(name)
+        self._facts.agents[name] = replace(
+            agent,
+            inventory=agent.inventory if inventory is None else inventory,
+            equipment=agent.equipment if equipment is None else equipment,
+        )
+
+    def _agent(self, name: str) -> AgentState:
+        if name not in self._facts.agents:
+            raise WorldError(f"no agent {name!r}; there are {sorted(self._facts.agents)}")
+        return self._facts.agents[name]
+
+    def _container(self, position: Position) -> Position:
+        place = self._inside(position)
+        if place not in self._facts.containers:
+            there = self._registry.text(int(self._facts.blocks[self._box.index(place)]))
+            raise WorldError(f"there is no container at {place}, but {there}")
+        return place
+
+    def _inside(self, position: Position) -> Position:
+        place = self._whole(position)
+        if place not in self._box:
+            raise WorldError(
+                f"position {place} lies outside the box {self._box.low}..{self._box.high}"
+            )
+        return place
+
+    def _whole(self, position: Position) -> Position:
+        if len(position) != 3 or any(p != math.floor(p) for p in position):
+            raise WorldError(f"{position!r} is no block position; give three whole numbers")
+        x, y, z = (int(p) for p in position)
+        return (x, y, z)
+
+    def _feet(self, position: Point) -> Point:
+        if len(position) != 3 or not all(math.isfinite(p) for p in position):
+            raise WorldError(f"{position!r} is no point; give three finite numbers")
+        x, y, z = (float(p) for p in position)
+        self._inside((math.floor(x), math.floor(y), math.floor(z)))
+        return (x, y, z)
+
+    def _state(self, block: str) -> int:
+        try:
+            return self._registry.state_id(block)
+        except BeliefNestError as error:
+            raise WorldError(str(error)) from None
+
+    def _items(self, items: Items) -> dict[str, int]:
+        for name, count in items.items():
+            if not self._registry.has_item(name):
+                raise WorldError(f"there is no item {name!r}")
+            if not isinstance(count, int) or isinstance(count, bool) or count <= 0:
+                raise WorldError(f"{count!r} {name} cannot be; give a whole number above 0")
+        return dict(items)
+
+
+def _checked_box(box: tuple[Position, Position]) -> Box:
+    low, high = (tuple(int(value) for value in corner) for corner in box)
+    if len(low) != 3 or len(high) != 3 or any(a > b for a, b in zip(low, high, strict=True)):
+        raise WorldError(f"the box {box} is none; give its lower and its upper corner")
+    return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+
+
+def _agent_name(name: str) -> str:
+    if not (1 <= len(name) <= 16 and name.replace("_", "a").isalnum() and name.isascii()):
+        raise WorldError(f"{name!r} is no agent name; use 1 to 16 letters, digits or _")
+    return name
+
+
+def _more(items: Items, change: Items) -> dict[str, int]:
+    return {
+        name: items.get(name, 0) + change.get(name, 0)
+        for name in [*items, *(change.keys() - items.keys())]
+    }
+
+
+def _less(items: Items, change: Items, who: str) -> dict[str, int]:
+    for name, count in change.items():
+        if items.get(name, 0) < count:
+            raise WorldError(f"{who} has {items.get(name, 0)} {name}, not {count}")
+    rest = {name: count - change.get(name, 0) for name, count in items.items()}
+    return {name: count for name, count in rest.items() if count}
