@@ -1,0 +1,1 @@
+"""Scenario files, what they mean, and how they are run and judged."""

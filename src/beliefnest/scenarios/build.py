@@ -1,0 +1,246 @@
+"""What a document of the right form means: the setting, the probes, the expectations."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from beliefnest.belief.entries import InitialBelief
+from beliefnest.nest.paths import parse_path
+from beliefnest.nest.setting import Setting, Step
+from beliefnest.perception.options import Perception
+from beliefnest.scenarios.document import Document, KeyPath
+from beliefnest.scenarios.format import (
+    ExpectationEntry,
+    InitialBeliefEntry,
+    PerceptionEntry,
+    ProbeEntry,
+    RadiusEntry,
+    ScenarioFile,
+    StepEntry,
+)
+from beliefnest.scenarios.people import build_agents
+from beliefnest.scenarios.scenario import (
+    Arrives,
+    Expectation,
+    Holds,
+    Opens,
+    Probe,
+    Scenario,
+    Stands,
+)
+from beliefnest.scenarios.space import (
+    UNKNOWN,
+    build_box,
+    build_containers,
+    build_grid,
+    check_items,
+    entry_mask,
+)
+from beliefnest.world.frames import Snapshot
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Position
+
+__all__ = ["build_scenario"]
+
+
+def build_scenario(
+    document: Document,
+    file: ScenarioFile,
+    condition: int | None,
+    conditions: Mapping[int, Mapping[str, Any]],
+) -> Scenario:
+    """The scenario that a document describes, its condition merged in already.
+
+    Raises:
+        ScenarioError: Something in it makes no sense; the message names file, line and key.
+    """
+    builder = _Builder(document, file, Registry.load())
+    descriptions = {
+        number: str(conditions[number].get("description", "")) for number in sorted(conditions)
+    }
+    return Scenario(
+        setting=builder.setting(),
+        description=file.description,
+        condition=condition,
+        condition_description=descriptions.get(condition, "") if condition is not None else "",
+        conditions=descriptions,
+        probes=tuple(builder.probe(n, entry) for n, entry in enumerate(file.probes)),
+        expectations=tuple(
+            builder.expectation(n, entry) for n, entry in enumerate(file.expectations)
+        ),
+        labels={entry.at: entry.label for entry in file.containers if entry.label},
+        source=document.source,
+    )
+
+
+class _Builder:
+    """The snapshot of the first tick, and what refers to the things in it."""
+
+    def __init__(self, document: Document, file: ScenarioFile, registry: Registry) -> None:
+        self._document = document
+        self._file = file
+        self._registry = registry
+        box = build_box(document, file)
+        grid = build_grid(document, file, box, registry)
+        containers = build_containers(document, file.containers, grid, box, registry)
+        agents = build_agents(document, file, grid, box, registry)
+        grid.flags.writeable = False
+        self._snapshot = Snapshot(0, box, grid, containers, agents)
+
+    def setting(self) -> Setting:
+        """What a nest starts from."""
+        file = self._file
+        for number, name in enumerate(file.static_blocks):
+            self._check_block_name(("static_blocks", number), name)
+        return Setting(
+            name=file.name,
+            snapshot=self._snapshot,
+            perception=self._perception(file.perception),
+            static_blocks=frozenset(file.static_blocks),
+            initial_beliefs=tuple(
+                self._initial_belief(n, entry) for n, entry in enumerate(file.initial_beliefs)
+            ),
+            script=tuple(self._step(n, entry) for n, entry in enumerate(file.script)),
+        )
+
+    def probe(self, number: int, entry: ProbeEntry) -> Probe:
+        """One probe, its template read."""
+        path = ("probes", number)
+        self._check_belief_path((*path, "path"), entry.path)
+        self._check_belief_path((*path, "acts_in"), entry.acts_in)
+        self._check_agent((*path, "agent"), entry.agent)
+        expect: Opens | Arrives | None = None
+        if entry.expect is not None:
+            opens, arrives = entry.expect.opens, entry.expect.arrives
+            if (opens is None) == (arrives is None):
+                raise self._document.fault(
+                    (*path, "expect"), "give exactly one of 'opens' and 'arrives'"
+                )
+            if opens is not None:
+                self._check_container((*path, "expect", "opens"), opens)
+                expect = Opens(opens)
+            elif arrives is not None:
+                expect = Arrives(arrives, entry.expect.within)
+        return Probe(
+            path=entry.path,
+            acts_in=entry.acts_in,
+            agent=entry.agent,
+            task=entry.task,
+            expect=expect,
+            template=self._template((*path, "template"), entry.template),
+            label=entry.label,
+            timeout_ticks=entry.timeout_ticks,
+        )
+
+    def expectation(self, number: int, entry: ExpectationEntry) -> Expectation:
+        """One expectation."""
+        path = ("expectations", number)
+        self._check_belief_path((*path, "path"), entry.path)
+        content: Holds | Stands
+        if entry.container is not None and entry.agent is None and entry.items is not None:
+            self._check_container((*path, "container"), entry.container)
+            check_items(self._document, (*path, "items"), entry.items, self._registry)
+            content = Holds(entry.container, dict(entry.items))
+        elif entry.agent is not None and entry.container is None and entry.items is None:
+            self._check_agent((*path, "agent"), entry.agent)
+            content = Stands(entry.agent, entry.position, entry.within)
+        else:
+            raise self._document.fault(
+                path, "give either 'container' and 'items', or 'agent' and 'position'"
+            )
+        return Expectation(entry.path, content, entry.label)
+
+    def _step(self, number: int, entry: StepEntry) -> Step:
+        path = ("script", number)
+        programs = dict(entry.programs)
+        if (entry.agent is None) != (entry.program is None):
+            missing = "agent" if entry.agent is None else "program"
+            raise self._document.fault(path, f"the key {missing!r} is missing")
+        if entry.agent is not None and entry.program is not None:
+            if entry.agent in programs:
+                raise self._document.fault(path, f"has two programs for {entry.agent}")
+            self._check_agent((*path, "agent"), entry.agent)
+            programs[entry.agent] = entry.program
+        if not programs:
+            raise self._document.fault(path, "has no program; give 'agent' and 'program'")
+        for agent in entry.programs:
+            self._check_agent((*path, "programs", agent), agent)
+        return Step(
+            programs=programs,
+            label=entry.label or f"step {number + 1}",
+            where=self._document.where(path),
+            timeout_ticks=entry.timeout_ticks,
+        )
+
+    def _perception(self, entry: PerceptionEntry) -> Perception:
+        for number, name in enumerate(entry.transparent_blocks):
+            self._check_block_name(("perception", "transparent_blocks", number), name)
+        hearing = entry.hearing
+        with self._document.naming(("perception",)):
+            return Perception(
+                max_visible_distance=entry.max_visible_distance,
+                field_of_view=entry.field_of_view,
+                hearing={"radius": hearing.radius} if isinstance(hearing, RadiusEntry) else hearing,
+                containers=entry.containers,
+                transparent_blocks=entry.transparent_blocks,
+                negative_evidence=entry.negative_evidence,
+            )
+
+    def _initial_belief(self, number: int, entry: InitialBeliefEntry) -> InitialBelief:
+        path = ("initial_beliefs", number)
+        names = self._check_belief_path((*path, "path"), entry.path)
+        if not names:
+            raise self._document.fault((*path, "path"), "'/' is the real world, not a belief")
+        box = self._snapshot.box
+        blocks: dict[Position, int] = {}
+        for index, block in enumerate(entry.blocks):
+            place = (*path, "blocks", index)
+            state = UNKNOWN
+            if block.block is not None:
+                with self._document.naming((*place, "block")):
+                    state = self._registry.state_id(block.block)
+            for i, j, k in np.argwhere(entry_mask(self._document, place, block, box)).tolist():
+                blocks[(box.low[0] + i, box.low[1] + j, box.low[2] + k)] = state
+        for index, container in enumerate(entry.containers):
+            place = (*path, "containers", index)
+            self._check_container((*place, "at"), container.at)
+            check_items(self._document, (*place, "items"), container.items, self._registry)
+        for agent in entry.agents:
+            self._check_agent((*path, "agents", agent), agent)
+        return InitialBelief(
+            path=names,
+            containers={c.at: (dict(c.items), c.complete) for c in entry.containers},
+            blocks=blocks,
+            agents=dict(entry.agents),
+        )
+
+    def _template(self, path: KeyPath, name: str | None) -> str | None:
+        if name is None:
+            return None
+        file = self._document.folder / name
+        try:
+            return file.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise self._document.fault(path, f"{file} cannot be read: {error}") from None
+
+    def _check_belief_path(self, path: KeyPath, text: str) -> tuple[str, ...]:
+        with self._document.naming(path):
+            return parse_path(text, self._snapshot.agents)
+        raise AssertionError("unreachable")
+
+    def _check_agent(self, path: KeyPath, name: str) -> None:
+        if name not in self._snapshot.agents:
+            known = ", ".join(self._snapshot.agents)
+            raise self._document.fault(path, f"there is no agent {name!r}; agents are {known}")
+
+    def _check_container(self, path: KeyPath, position: Position) -> None:
+        if position not in self._snapshot.containers:
+            known = ", ".join(str(list(place)) for place in self._snapshot.containers)
+            raise self._document.fault(
+                path, f"no container stands at {list(position)}; there are {known or 'none'}"
+            )
+
+    def _check_block_name(self, path: KeyPath, name: str) -> None:
+        with self._document.naming(path):
+            self._registry.state_ids(name)

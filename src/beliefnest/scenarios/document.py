@@ -1,0 +1,165 @@
+"""Scenario documents: what is written in a file, and on which line.
+
+A `Node` is a value together with its line, so that a fault in merged and checked content
+can still be reported where it was written.
+"""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from beliefnest.errors import BeliefNestError, ScenarioError
+from beliefnest.scenarios.format import LABELLED
+
+__all__ = ["Document", "KeyPath", "Node", "merged", "plain", "wrapped"]
+
+KeyPath = tuple[str | int, ...]
+"""Keys and list indices from the top of a document to a value."""
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A value of a document.
+
+    Attributes:
+        value: A scalar, a list of nodes, or a dict from key to node.
+        line: Line on which it, or its key, is written; 0: not in a file.
+    """
+
+    value: Any
+    line: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """A scenario as written.
+
+    Attributes:
+        source: File name, or another name for messages.
+        root: Its content.
+        folder: Where files that it names are looked for.
+    """
+
+    source: str
+    root: Node
+    folder: Path
+
+    def fault(self, path: KeyPath, message: str) -> ScenarioError:
+        """The error that names file, line and key of what is wrong."""
+        return ScenarioError(f"{self.where(path)}: {_key_text(path)}{message}")
+
+    def where(self, path: KeyPath) -> str:
+        """File and line of a value, or of the nearest thing around it that is written."""
+        node, line = self.root, self.root.line
+        for key in path:
+            child = _child(node, key)
+            if child is None:
+                break
+            node, line = child, child.line or line
+        return f"{self.source}:{line}" if line else self.source
+
+    @contextmanager
+    def naming(self, path: KeyPath) -> Iterator[None]:
+        """Name file, line and key in every error of the package raised inside."""
+        try:
+            yield
+        except ScenarioError:
+            raise
+        except BeliefNestError as error:
+            raise self.fault(path, str(error)) from error
+
+
+def _key_text(path: KeyPath) -> str:
+    text = ""
+    for key in path:
+        text += f"[{key}]" if isinstance(key, int) else f".{key}"
+    return f"{text.removeprefix('.')}: " if text else ""
+
+
+def _child(node: Node, key: str | int) -> Node | None:
+    if isinstance(node.value, dict):
+        child = node.value.get(key)
+        return child if isinstance(child, Node) else None
+    if isinstance(node.value, list) and isinstance(key, int) and key < len(node.value):
+        return node.value[key]  # type: ignore[no-any-return]  # lists hold nodes
+    return None
+
+
+def plain(node: Node) -> object:
+    """The value of a node without lines."""
+    if isinstance(node.value, dict):
+        return {key: plain(child) for key, child in node.value.items()}
+    if isinstance(node.value, list):
+        return [plain(child) for child in node.value]
+    return node.value
+
+
+def wrapped(value: object) -> Node:
+    """A document built in code, which has no lines."""
+    if isinstance(value, Mapping):
+        return Node({key: wrapped(child) for key, child in value.items()})
+    if isinstance(value, list | tuple):
+        return Node([wrapped(child) for child in value])
+    return Node(value)
+
+
+def merged(document: Document, condition: int) -> Document:
+    """The document with the overrides of a condition merged in.
+
+    Mappings are merged key by key, anything else replaces. Where the base has a list of
+    labelled entries and the override a mapping, the entries with these labels are merged.
+
+    Raises:
+        ScenarioError: There is no such condition, or no entry of a label.
+    """
+    base = dict(document.root.value)
+    conditions = base.pop("conditions", Node({})).value
+    if condition not in conditions:
+        known = ", ".join(str(number) for number in conditions)
+        raise ScenarioError(
+            f"{document.source}: there is no condition {condition}; "
+            + (f"conditions are {known}" if known else "it has no conditions")
+        )
+    override = conditions[condition]
+    for key in LABELLED:
+        change = override.value.get(key)
+        if change is not None and isinstance(change.value, dict) and key in base:
+            _check_labels(document, ("conditions", condition, key), base[key], change)
+    root = _merge(Node(base, document.root.line), override)
+    return replace(document, root=root)
+
+
+def _check_labels(document: Document, path: KeyPath, entries: Node, change: Node) -> None:
+    labels = [_label(entry) for entry in entries.value]
+    for label in change.value:
+        if labels.count(label) != 1:
+            found = "several entries are" if label in labels else "no entry is"
+            written = ", ".join(repr(known) for known in labels if known)
+            raise document.fault(
+                (*path, label), f"{found} labelled so; labels are {written or 'not given'}"
+            )
+
+
+def _label(entry: Node) -> object:
+    label = entry.value.get("label") if isinstance(entry.value, dict) else None
+    return label.value if isinstance(label, Node) else None
+
+
+def _merge(base: Node, over: Node) -> Node:
+    if isinstance(base.value, dict) and isinstance(over.value, dict):
+        value = dict(base.value)
+        for key, child in over.value.items():
+            value[key] = _merge(value[key], child) if key in value else child
+        return Node(value, over.line)
+    if isinstance(base.value, list) and isinstance(over.value, dict):
+        changes = over.value
+        return Node(
+            [
+                _merge(entry, changes[_label(entry)]) if _label(entry) in changes else entry
+                for entry in base.value
+            ],
+            over.line,
+        )
+    return over

@@ -1,0 +1,97 @@
+"""The check of a document's form: every key known, every value of its kind."""
+
+import difflib
+import re
+
+import msgspec
+
+from beliefnest.errors import ScenarioError
+from beliefnest.scenarios.document import Document, KeyPath, Node, plain
+from beliefnest.scenarios.format import ScenarioFile, allowed_keys
+
+__all__ = ["check_form"]
+
+_FAULT = re.compile(r"(?P<what>.*?)(?: - at (?P<key>`key` in )?`(?P<path>\$.*)`)?", re.DOTALL)
+_FAULT_STEP = re.compile(r"\.(?P<name>\w+)|\[(?P<index>\d+)\]|(?P<any>\[\.\.\.\])")
+_UNKNOWN_FIELD = re.compile(r"Object contains unknown field `(?P<name>.*)`", re.DOTALL)
+_MISSING_FIELD = re.compile(r"Object missing required field `(?P<name>.*)`")
+
+
+def check_form(document: Document) -> ScenarioFile:
+    """The content of a document as typed values.
+
+    Raises:
+        ScenarioError: A key is unknown or missing, or a value is of the wrong kind.
+    """
+    error = _error_of(document.root)
+    if error:
+        raise _fault(document, error)
+    return msgspec.convert(plain(document.root), ScenarioFile)
+
+
+def _error_of(root: Node) -> str:
+    try:
+        msgspec.convert(plain(root), ScenarioFile)
+    except msgspec.ValidationError as error:
+        return str(error)
+    return ""
+
+
+def _fault(document: Document, error: str) -> ScenarioError:
+    match = _FAULT.fullmatch(error)
+    if match is None:
+        return document.fault((), error)
+    what = match["what"]
+    steps = [step.groupdict() for step in _FAULT_STEP.finditer(match["path"] or "$")]
+    path = _locate(document.root, steps, error)
+    if unknown := _UNKNOWN_FIELD.fullmatch(what):
+        name = unknown["name"]
+        return document.fault((*path, name), f"unknown key{_hint(name, path)}")
+    if missing := _MISSING_FIELD.fullmatch(what):
+        return document.fault(path, f"the key {missing['name']!r} is missing")
+    what = what[:1].lower() + what[1:].replace("`", "'")
+    return document.fault(path, f"a key in it: {what}" if match["key"] else what)
+
+
+def _hint(name: str, path: KeyPath) -> str:
+    allowed = allowed_keys(path)
+    close = difflib.get_close_matches(name, allowed, n=1)
+    return f"; did you mean {close[0]!r}?" if close else f"; keys are {', '.join(allowed)}"
+
+
+def _locate(root: Node, steps: list[dict[str, str | None]], error: str) -> KeyPath:
+    """The place of a fault that msgspec names with `[...]` for the keys of mappings.
+
+    For each `[...]` the mapping is cut down to one entry at a time; the entry that still
+    shows the fault is the one meant.
+    """
+    path: list[str | int] = []
+    for step in steps:
+        if step["name"] is not None:
+            path.append(step["name"])
+        elif step["index"] is not None:
+            path.append(int(step["index"]))
+        else:
+            cuts = {key: _with_only(root, path, key) for key in _node_at(root, path).value}
+            key = next((key for key, cut in cuts.items() if _error_of(cut) == error), None)
+            if key is None:
+                break
+            root = cuts[key]
+            path.append(key)
+    return tuple(path)
+
+
+def _node_at(root: Node, path: list[str | int]) -> Node:
+    for key in path:
+        root = root.value[key]
+    return root
+
+
+def _with_only(node: Node, path: list[str | int], key: str | int) -> Node:
+    """The document with the mapping at a path cut down to one key."""
+    if not path:
+        return Node({key: node.value[key]}, node.line)
+    head, *rest = path
+    value = node.value.copy()
+    value[head] = _with_only(value[head], rest, key)
+    return Node(value, node.line)

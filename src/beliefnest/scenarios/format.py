@@ -1,0 +1,265 @@
+"""The form of a scenario file: what may be written where.
+
+These types are the single source of the published JSON schema (`docs/scenario.schema.json`)
+and of the check of a file's form. Whether the content makes sense is checked in `build`.
+"""
+
+from collections.abc import Iterable
+from typing import Annotated, Any, Literal
+
+import msgspec
+
+from beliefnest.world.values import Point, Position
+
+__all__ = [
+    "LABELLED",
+    "AgentEntry",
+    "BlockEntry",
+    "ContainerEntry",
+    "ExpectEntry",
+    "ExpectationEntry",
+    "InitialBeliefEntry",
+    "PerceptionEntry",
+    "ProbeEntry",
+    "RadiusEntry",
+    "ScenarioFile",
+    "StepEntry",
+    "allowed_keys",
+    "schema",
+]
+
+
+def _note(text: str) -> msgspec.Meta:
+    return msgspec.Meta(description=text)
+
+
+_ItemsField = Annotated[dict[str, int], _note("Item name to count.")]
+
+
+class _Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Base of all parts of a scenario file: a key that is not listed is an error."""
+
+
+class BlockEntry(_Entry, frozen=True):
+    """Blocks of one kind; exactly one of `at`, `fill` and `walls`. Later entries win."""
+
+    block: Annotated[str | None, _note("A block state: name or name[property=value,...].")]
+    at: Annotated[Position | None, _note("One position.")] = None
+    fill: Annotated[
+        tuple[Position, Position] | None, _note("Two inclusive corners; all between them.")
+    ] = None
+    walls: Annotated[
+        tuple[Position, Position] | None,
+        _note("Two inclusive corners; the four upright sides of what lies between them."),
+    ] = None
+
+
+class ContainerEntry(_Entry, frozen=True):
+    """A container, its block included."""
+
+    at: Annotated[Position, _note("Where its block is.")]
+    block: Annotated[str, _note("A block state of a container.")] = "chest"
+    items: _ItemsField = {}
+    label: Annotated[str, _note("What people call it, in tables and pictures.")] = ""
+
+
+class AgentEntry(_Entry, frozen=True):
+    """An agent, which is a Mineflayer bot in a Minecraft world."""
+
+    position: Annotated[Point, _note("Middle of the feet, in blocks.")]
+    facing: Annotated[
+        Literal["north", "east", "south", "west"] | Point | None,
+        _note("A direction, or a point to look at; in place of yaw and pitch."),
+    ] = None
+    yaw: Annotated[float | None, _note("Radians; 0 looks north (-z), pi/2 west (-x).")] = None
+    pitch: Annotated[float | None, _note("Radians, positive upwards.")] = None
+    inventory: Annotated[
+        dict[str, int],
+        _note("Item name to count; what is worn or held counts in and need not be listed."),
+    ] = {}
+    equipment: Annotated[
+        dict[Literal["head", "chest", "legs", "feet", "main_hand", "off_hand"], str],
+        _note("Slot to the item worn or held there."),
+    ] = {}
+    health: Annotated[float, msgspec.Meta(gt=0, le=20, description="Half hearts.")] = 20.0
+    food: Annotated[float, msgspec.Meta(ge=0, le=20, description="Half drumsticks.")] = 20.0
+
+
+class RadiusEntry(_Entry, frozen=True):
+    """Hearing up to a distance."""
+
+    radius: Annotated[float, msgspec.Meta(gt=0, description="In blocks.")]
+
+
+class PerceptionEntry(_Entry, frozen=True):
+    """What agents can perceive; the same for all of them, at every depth."""
+
+    max_visible_distance: Annotated[float | None, _note("In blocks; null: no limit.")] = 20.0
+    field_of_view: Annotated[float, _note("Full angle of sight in degrees, up to 360.")] = 360.0
+    hearing: Annotated[Literal["global", "sight"] | RadiusEntry, _note("Whom an agent hears.")] = (
+        "global"
+    )
+    containers: Annotated[
+        Literal["opaque", "transparent"], _note("Whether contents show from outside.")
+    ] = "opaque"
+    transparent_blocks: Annotated[list[str], _note("Further blocks to see through.")] = []
+    negative_evidence: Annotated[
+        bool, _note("Whether a place seen empty makes a pose believed there unknown.")
+    ] = False
+
+
+class _BelievedContainerEntry(_Entry, frozen=True):
+    """What a container is believed to hold."""
+
+    at: Position
+    items: _ItemsField = {}
+    complete: Annotated[bool, _note("Whether these are believed to be all.")] = True
+
+
+class InitialBeliefEntry(_Entry, frozen=True):
+    """What a belief holds before anything happens."""
+
+    path: Annotated[str, _note("A belief path such as /observer/sally.")]
+    containers: list[_BelievedContainerEntry] = []
+    blocks: Annotated[list[BlockEntry], _note("Believed blocks; block null: unknown.")] = []
+    agents: Annotated[dict[str, Point], _note("Believed positions of the feet.")] = {}
+
+
+class StepEntry(_Entry, frozen=True):
+    """Programs that run together in the real world; `agent` and `program`, or `programs`."""
+
+    label: Annotated[str, _note("What happens, for progress, messages and overrides.")] = ""
+    agent: Annotated[str | None, _note("The agent of a single program.")] = None
+    program: Annotated[str | None, _note("JavaScript, the body of an async function.")] = None
+    programs: Annotated[dict[str, str], _note("Agent to program.")] = {}
+    timeout_ticks: Annotated[
+        int, msgspec.Meta(gt=0, description="Ticks of 50 ms after which the step has failed.")
+    ] = 1200
+
+
+class ExpectEntry(_Entry, frozen=True):
+    """What a probe's program should do; exactly one of `opens` and `arrives`."""
+
+    opens: Annotated[Position | None, _note("The container that is opened first.")] = None
+    arrives: Annotated[Point | None, _note("Where the agent stands in the end.")] = None
+    within: Annotated[
+        float, msgspec.Meta(gt=0, description="Greatest distance from there, in blocks.")
+    ] = 2.0
+
+
+class ProbeEntry(_Entry, frozen=True):
+    """A model is asked from one belief; its program runs in a simulator and is judged there."""
+
+    path: Annotated[str, _note("The belief that the prompt is rendered from.")]
+    acts_in: Annotated[str, _note("The simulator that the program runs in.")]
+    agent: Annotated[str, _note("The agent that runs it.")]
+    task: Annotated[str, _note("What the model is asked to make the agent do.")]
+    label: Annotated[str, _note("A name for tables and overrides.")] = ""
+    template: Annotated[
+        str | None, _note("A prompt template file beside the scenario; null: the paper's.")
+    ] = None
+    expect: Annotated[ExpectEntry | None, _note("How the outcome is judged.")] = None
+    timeout_ticks: Annotated[
+        int, msgspec.Meta(gt=0, description="Ticks of 50 ms after which the program has failed.")
+    ] = 1200
+
+
+class ExpectationEntry(_Entry, frozen=True):
+    """What a belief should hold in the end; exactly one of `container` and `agent`."""
+
+    path: Annotated[str, _note("The belief; / is the real world.")]
+    label: Annotated[str, _note("A name for tables and overrides.")] = ""
+    container: Annotated[Position | None, _note("A container that holds `items`.")] = None
+    items: Annotated[dict[str, int] | None, _note("Exactly the items known to be in it.")] = None
+    agent: Annotated[str | None, _note("An agent that stands at `position`.")] = None
+    position: Annotated[Point | None, _note("Middle of the feet.")] = None
+    within: Annotated[
+        float, msgspec.Meta(gt=0, description="Greatest distance from `position`, in blocks.")
+    ] = 2.0
+
+
+class ScenarioFile(_Entry, frozen=True):
+    """A scenario: a world, agents, what they do, and what they should come to believe."""
+
+    name: Annotated[str, _note("Short name, for tables and folders.")]
+    box: Annotated[
+        tuple[Position, Position], _note("Two inclusive corners of the part of space it plays in.")
+    ]
+    agents: Annotated[dict[str, AgentEntry], msgspec.Meta(min_length=1)]
+    description: Annotated[str, _note("What it is about.")] = ""
+    blocks: Annotated[list[BlockEntry], _note("The rest of the box is air.")] = []
+    containers: list[ContainerEntry] = []
+    perception: PerceptionEntry = PerceptionEntry()
+    static_blocks: Annotated[list[str], _note("Blocks that everybody knows from the start.")] = []
+    initial_beliefs: list[InitialBeliefEntry] = []
+    script: Annotated[list[StepEntry], _note("What happens in the real world, in order.")] = []
+    probes: list[ProbeEntry] = []
+    expectations: list[ExpectationEntry] = []
+    conditions: Annotated[
+        dict[int, dict[str, Any]],
+        _note(
+            "Number to what differs: a mapping is merged key by key, anything else replaces. "
+            "For a list of labelled entries, a mapping changes the entries with these labels."
+        ),
+    ] = {}
+
+
+LABELLED = ("script", "probes", "expectations")
+"""Lists whose entries a condition may change one by one, by label."""
+
+
+def schema() -> dict[str, Any]:
+    """The JSON schema of a scenario file, descriptions included."""
+    published: dict[str, Any] = msgspec.json.schema(ScenarioFile)
+    definitions = published["$defs"]
+    overriding = {
+        key: dict(value)
+        for key, value in definitions["ScenarioFile"]["properties"].items()
+        if key != "conditions"
+    }
+    overriding["agents"] = _mapping_of(_override_of("AgentEntry", definitions))
+    overriding["perception"] = _override_of("PerceptionEntry", definitions)
+    for key in LABELLED:
+        entry = overriding[key]["items"]["$ref"].rpartition("/")[2]
+        by_label = _mapping_of(_override_of(entry, definitions))
+        overriding[key] = {"anyOf": [overriding[key], by_label]}
+    condition = _override_of("ScenarioFile", definitions)
+    definitions["ScenarioFileOverride"]["properties"] = overriding
+    definitions["ScenarioFile"]["properties"]["conditions"]["additionalProperties"] = condition
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **published}
+
+
+def _override_of(name: str, definitions: dict[str, Any]) -> dict[str, str]:
+    """Define the same object with nothing required, and refer to it."""
+    override = f"{name}Override"
+    definitions[override] = {**definitions[name], "title": override, "required": []}
+    return {"$ref": f"#/$defs/{override}"}
+
+
+def _mapping_of(values: dict[str, str]) -> dict[str, Any]:
+    return {"type": "object", "additionalProperties": values}
+
+
+def allowed_keys(path: Iterable[str | int]) -> list[str]:
+    """The keys that the object at a place of a scenario file may have; none if it is no object."""
+    published = schema()
+    definitions = published["$defs"]
+    found = [definitions["ScenarioFile"]]
+    for key in path:
+        inner = [_inside(definition, key) for definition in found]
+        found = [leaf for choice in inner for leaf in _choices(choice, definitions)]
+    return sorted({key for definition in found for key in definition.get("properties", {})})
+
+
+def _inside(definition: dict[str, Any], key: str | int) -> dict[str, Any]:
+    if isinstance(key, str) and key in definition.get("properties", {}):
+        return dict(definition["properties"][key])
+    inner = definition.get("items" if "items" in definition else "additionalProperties")
+    return inner if isinstance(inner, dict) else {}
+
+
+def _choices(definition: dict[str, Any], definitions: dict[str, Any]) -> list[dict[str, Any]]:
+    if "$ref" in definition:
+        return [definitions[definition["$ref"].rpartition("/")[2]]]
+    choices = definition.get("anyOf", [])
+    return [leaf for choice in choices for leaf in _choices(choice, definitions)] or [definition]

@@ -1,0 +1,125 @@
+"""Agents of a scenario: entries of a file to states, and the check that they have room."""
+
+import math
+import re
+from itertools import combinations
+
+from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.format import AgentEntry, ScenarioFile
+from beliefnest.scenarios.space import check_items
+from beliefnest.world.frames import BlockGrid
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import EYE_HEIGHT, AgentState, Box, Point
+
+__all__ = ["build_agents"]
+
+_NAME = re.compile(r"[A-Za-z0-9_]{1,16}", re.ASCII)
+_WIDTH = 0.6
+_HEIGHT = 1.8
+_SLACK = 1e-6
+_YAWS = {
+    "north": 0.0,
+    "west": math.pi / 2,
+    "south": math.pi,
+    "east": -math.pi / 2,
+}
+_Bounds = tuple[Point, Point]
+
+
+def build_agents(
+    document: Document, file: ScenarioFile, grid: BlockGrid, box: Box, registry: Registry
+) -> dict[str, AgentState]:
+    """The agents by name, each on its own free place inside the box."""
+    agents: dict[str, AgentState] = {}
+    for name, entry in file.agents.items():
+        path = ("agents", name)
+        if not _NAME.fullmatch(name):
+            raise document.fault(
+                path, f"{name!r} is no agent name; use 1 to 16 letters, digits and _"
+            )
+        agents[name] = _agent(document, name, entry, registry)
+        _check_place(document, name, agents[name].position, grid, box, registry)
+    for first, second in combinations(agents, 2):
+        if _overlap(_body(agents[first].position), _body(agents[second].position)):
+            raise document.fault(
+                ("agents", second, "position"),
+                f"{list(agents[second].position)} is where {first} stands already",
+            )
+    return agents
+
+
+def _agent(document: Document, name: str, entry: AgentEntry, registry: Registry) -> AgentState:
+    path = ("agents", name)
+    if not all(math.isfinite(value) for value in entry.position):
+        raise document.fault((*path, "position"), "must be three finite numbers")
+    check_items(document, (*path, "inventory"), entry.inventory, registry)
+    for slot, item in entry.equipment.items():
+        check_items(document, (*path, "equipment", slot), {item: 1}, registry)
+    worn = list(entry.equipment.values())
+    inventory = dict(entry.inventory)
+    for item in worn:
+        inventory[item] = max(inventory.get(item, 0), worn.count(item))
+    yaw, pitch = _gaze(document, name, entry)
+    return AgentState(
+        position=entry.position,
+        yaw=yaw,
+        pitch=pitch,
+        equipment={str(slot): item for slot, item in entry.equipment.items()},
+        inventory=inventory,
+        health=entry.health,
+        food=entry.food,
+    )
+
+
+def _gaze(document: Document, name: str, entry: AgentEntry) -> tuple[float, float]:
+    """Yaw and pitch in radians."""
+    if entry.facing is None:
+        return entry.yaw or 0.0, entry.pitch or 0.0
+    if entry.yaw is not None or entry.pitch is not None:
+        raise document.fault(("agents", name), "give either 'facing', or 'yaw' and 'pitch'")
+    if isinstance(entry.facing, str):
+        return _YAWS[entry.facing], 0.0
+    x, y, z = (to - at for to, at in zip(entry.facing, entry.position, strict=True))
+    return math.atan2(-x, -z), math.atan2(y - EYE_HEIGHT, math.hypot(x, z))
+
+
+def _body(feet: Point) -> _Bounds:
+    x, y, z = feet
+    half = _WIDTH / 2
+    return (x - half, y, z - half), (x + half, y + _HEIGHT, z + half)
+
+
+def _overlap(first: _Bounds, second: _Bounds) -> bool:
+    return all(
+        low < other_high - _SLACK and other_low < high - _SLACK
+        for low, high, other_low, other_high in zip(*first, *second, strict=True)
+    )
+
+
+def _check_place(
+    document: Document, name: str, feet: Point, grid: BlockGrid, box: Box, registry: Registry
+) -> None:
+    path = ("agents", name, "position")
+    body = _body(feet)
+    low, high = (tuple(math.floor(value) for value in corner) for corner in body)
+    x, y, z = (math.floor(value) for value in feet)
+    if (x, y, z) not in box:
+        raise document.fault(
+            path, f"{list(feet)} lies outside the box {list(box.low)} to {list(box.high)}"
+        )
+    # A shape may reach into the block above it, as a fence does.
+    around = Box((low[0], low[1] - 1, low[2]), (high[0], high[1], high[2]))
+    for position in around.positions():
+        if position not in box:
+            continue
+        state = int(grid[box.index(position)])
+        for x0, y0, z0, x1, y1, z1 in registry.boxes(state):
+            shape = (
+                (position[0] + x0, position[1] + y0, position[2] + z0),
+                (position[0] + x1, position[1] + y1, position[2] + z1),
+            )
+            if _overlap(body, shape):
+                raise document.fault(
+                    path,
+                    f"{list(feet)} is inside the {registry.name(state)} at {list(position)}",
+                )

@@ -1,0 +1,166 @@
+"""A scenario: what happens in the real world, and what is asked and expected of beliefs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from beliefnest.nest.setting import Setting
+from beliefnest.world.values import Items, Point, Position
+
+__all__ = ["Arrives", "Expectation", "Holds", "Opens", "Probe", "Scenario", "Stands"]
+
+
+@dataclass(frozen=True, slots=True)
+class Opens:
+    """A program is to open this container before any other."""
+
+    container: Position
+
+
+@dataclass(frozen=True, slots=True)
+class Arrives:
+    """A program is to bring its agent to a place.
+
+    Attributes:
+        place: Middle of the feet, in blocks.
+        within: Greatest distance from there, in blocks.
+    """
+
+    place: Point
+    within: float = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Probe:
+    """A model is asked from one belief; its program runs in a simulator and is judged there.
+
+    Attributes:
+        path: The belief that the prompt is rendered from.
+        acts_in: The simulator that the program runs in.
+        agent: The agent that runs it.
+        task: What the model is asked to make the agent do.
+        expect: How the outcome is judged; None: it is only recorded.
+        template: Text of the prompt template; None: the paper's.
+        label: A name for tables.
+        timeout_ticks: Ticks of 50 ms after which the program has failed.
+    """
+
+    path: str
+    acts_in: str
+    agent: str
+    task: str
+    expect: Opens | Arrives | None = None
+    template: str | None = None
+    label: str = ""
+    timeout_ticks: int = 1200
+
+
+@dataclass(frozen=True, slots=True)
+class Holds:
+    """A container is to hold exactly these known items."""
+
+    container: Position
+    items: Items
+
+
+@dataclass(frozen=True, slots=True)
+class Stands:
+    """An agent is to stand at a place.
+
+    Attributes:
+        agent: Its name.
+        place: Middle of the feet, in blocks; None: its place is to be unknown.
+        within: Greatest distance from there, in blocks.
+    """
+
+    agent: str
+    place: Point | None
+    within: float = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """What a simulator is to hold after the script.
+
+    Attributes:
+        path: The simulator.
+        content: What it is to hold.
+        label: A name for tables.
+    """
+
+    path: str
+    content: Holds | Stands
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """One scenario, under one of its conditions if it has any.
+
+    Attributes:
+        setting: What a nest starts from, the script included.
+        description: What it is about.
+        condition: Number of the condition it is under; None: as written, no overrides.
+        condition_description: What is special about the condition.
+        conditions: All conditions it could be loaded under: number to description.
+        probes: What models are asked, in order.
+        expectations: What simulators are to hold after the script.
+        labels: What people call the containers.
+        source: Where it comes from, for messages.
+    """
+
+    setting: Setting
+    description: str = ""
+    condition: int | None = None
+    condition_description: str = ""
+    conditions: Mapping[int, str] = field(default_factory=dict)
+    probes: tuple[Probe, ...] = ()
+    expectations: tuple[Expectation, ...] = ()
+    labels: Mapping[Position, str] = field(default_factory=dict)
+    source: str = "scenario"
+
+    @property
+    def name(self) -> str:
+        """Its short name."""
+        return self.setting.name
+
+    @staticmethod
+    def load(name_or_path: str, condition: int | None = None) -> "Scenario":
+        """A built-in scenario, or one in a file.
+
+        Args:
+            name_or_path: Name of a built-in scenario, or path of a YAML file.
+            condition: Number of a condition; None: the scenario as written, no overrides.
+
+        Raises:
+            UnknownNameError: There is no built-in scenario of that name, and no such file.
+            ScenarioError: The file is wrong, or has no such condition.
+        """
+        from beliefnest.scenarios.loading import load_scenario
+
+        return load_scenario(name_or_path, condition)
+
+    @staticmethod
+    def load_all(name_or_path: str) -> "tuple[Scenario, ...]":
+        """The scenario under each of its conditions; as written if it has none.
+
+        Raises:
+            UnknownNameError: There is no built-in scenario of that name, and no such file.
+            ScenarioError: The file is wrong.
+        """
+        from beliefnest.scenarios.loading import load_conditions
+
+        return load_conditions(name_or_path)
+
+    @staticmethod
+    def from_mapping(
+        content: Mapping[str, Any], condition: int | None = None, source: str = "scenario"
+    ) -> "Scenario":
+        """A scenario built in code: what a file holds, as dicts, lists and scalars.
+
+        Raises:
+            ScenarioError: The content is wrong.
+        """
+        from beliefnest.scenarios.loading import scenario_from
+
+        return scenario_from(content, condition, source)

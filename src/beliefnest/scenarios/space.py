@@ -1,0 +1,131 @@
+"""Blocks and containers of a scenario: entries of a file to a grid of block states."""
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.scenarios.document import Document, KeyPath
+from beliefnest.scenarios.format import BlockEntry, ContainerEntry, ScenarioFile
+from beliefnest.world.frames import BlockGrid
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Box, Items, Position
+
+__all__ = ["UNKNOWN", "build_box", "build_containers", "build_grid", "check_items", "entry_mask"]
+
+UNKNOWN = -1
+"""Block state id of what is not known."""
+
+_MAX_BLOCKS = 8_000_000
+_SLOTS = {"furnace": 3, "blast_furnace": 3, "smoker": 3}
+_CHEST_SLOTS = 27
+
+
+def build_box(document: Document, file: ScenarioFile) -> Box:
+    """The box between the two corners, whichever they are."""
+    first, second = file.box
+    low = tuple(min(pair) for pair in zip(first, second, strict=True))
+    high = tuple(max(pair) for pair in zip(first, second, strict=True))
+    box = Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+    volume = box.shape[0] * box.shape[1] * box.shape[2]
+    if volume > _MAX_BLOCKS:
+        raise document.fault(
+            ("box",), f"holds {volume} blocks; at most {_MAX_BLOCKS} are possible: make it smaller"
+        )
+    return box
+
+
+def build_grid(document: Document, file: ScenarioFile, box: Box, registry: Registry) -> BlockGrid:
+    """Block states of the box: air, then the entries in order, then the containers' blocks."""
+    grid: BlockGrid = np.full(box.shape, registry.air, dtype=np.int32)
+    for number, entry in enumerate(file.blocks):
+        path = ("blocks", number)
+        if entry.block is None:
+            raise document.fault((*path, "block"), "is null; in the real world no block is unknown")
+        with document.naming((*path, "block")):
+            state = registry.state_id(entry.block)
+        grid[entry_mask(document, path, entry, box)] = state
+    for number, container in enumerate(file.containers):
+        path = ("containers", number)
+        with document.naming((*path, "block")):
+            state = registry.state_id(container.block)
+        if not registry.is_container(registry.name(state)):
+            raise document.fault((*path, "block"), f"{container.block!r} is no container")
+        _check_inside(document, (*path, "at"), container.at, box)
+        grid[box.index(container.at)] = state
+    return grid
+
+
+def build_containers(
+    document: Document,
+    entries: Iterable[ContainerEntry],
+    grid: BlockGrid,
+    box: Box,
+    registry: Registry,
+) -> dict[Position, Items]:
+    """What every container block of the grid holds; those nobody describes are empty."""
+    found: dict[Position, Items] = {}
+    for number, entry in enumerate(entries):
+        path = ("containers", number)
+        if entry.at in found:
+            raise document.fault((*path, "at"), f"{list(entry.at)} has a container already")
+        check_items(document, (*path, "items"), entry.items, registry)
+        name = registry.name(registry.state_id(entry.block))
+        _check_room(document, (*path, "items"), entry.items, name, registry)
+        found[entry.at] = dict(entry.items)
+    for state in np.unique(grid).tolist():
+        if registry.is_container(registry.name(state)):
+            for index in np.argwhere(grid == state).tolist():
+                x, y, z = (i + low for i, low in zip(index, box.low, strict=True))
+                found.setdefault((x, y, z), {})
+    return dict(sorted(found.items()))
+
+
+def check_items(
+    document: Document, path: KeyPath, items: Mapping[str, int], registry: Registry
+) -> None:
+    """Refuse unknown items and counts below 1."""
+    for name, count in items.items():
+        with document.naming((*path, name)):
+            registry.item_stack(name)
+        if count < 1:
+            raise document.fault((*path, name), f"the count is {count}; it must be at least 1")
+
+
+def _check_room(
+    document: Document, path: KeyPath, items: Items, name: str, registry: Registry
+) -> None:
+    needed = sum(-(-count // registry.item_stack(item)) for item, count in items.items())
+    slots = _SLOTS.get(name, _CHEST_SLOTS)
+    if needed > slots:
+        raise document.fault(path, f"fill {needed} slots; a {name} has {slots}")
+
+
+def _check_inside(document: Document, path: KeyPath, position: Position, box: Box) -> None:
+    if position not in box:
+        raise document.fault(
+            path, f"{list(position)} lies outside the box {list(box.low)} to {list(box.high)}"
+        )
+
+
+def entry_mask(
+    document: Document, path: KeyPath, entry: BlockEntry, box: Box
+) -> npt.NDArray[np.bool_]:
+    """Which positions of the box an entry is about: bool of shape `box.shape`."""
+    given = [key for key in ("at", "fill", "walls") if getattr(entry, key) is not None]
+    if len(given) != 1:
+        found = " and ".join(given) or "none of them"
+        raise document.fault(path, f"give exactly one of 'at', 'fill' and 'walls'; found {found}")
+    key = given[0]
+    corners = (entry.at, entry.at) if entry.at is not None else (entry.fill or entry.walls)
+    assert corners is not None  # one of the three is given
+    for corner in corners:
+        _check_inside(document, (*path, key), corner, box)
+    low = np.minimum(*corners) - box.low
+    high = np.maximum(*corners) - box.low
+    i, j, k = (slice(a, b + 1) for a, b in zip(low.tolist(), high.tolist(), strict=True))
+    mask = np.zeros(box.shape, dtype=np.bool_)
+    mask[i, j, k] = True
+    if key == "walls":
+        mask[low[0] + 1 : high[0], j, low[2] + 1 : high[2]] = False
+    return mask
