@@ -71,14 +71,16 @@ module.exports.server = (serv) => {
       positions: parts,
       menu: containerMenu(cells, player),
       around: (run) => ledger.record(run).forEach(serv.containers.touch),
-      settled: () => ledger.settle().forEach((fact) => player.emitEvent(fact)),
       closed: () => parts.forEach(showLid),
     })
+    player.ledgers.push({ ledger, isOpen: () => player.windows.open?.positions === parts })
     parts.forEach(showLid)
     player.emitEvent({ kind: 'open_container', detail: { position: listOf(position) } })
     return true
   }
   Object.keys(TITLES).forEach((name) => serv.onInteraction(name, open))
+
+  serv.onTick(() => serv.players.forEach((player) => player.reportTransfers()))
 
   serv.blocks.on('change', ({ position, before, after }) => {
     const old = serv.blocks.describe(before)
@@ -88,6 +90,18 @@ module.exports.server = (serv) => {
     if (half.name !== old.name) return
     serv.blocks.set(other, serv.blocks.stateWith(half, { type: 'single' }))
   })
+}
+
+module.exports.player = (player) => {
+  player.ledgers = []
+
+  /** Reports what was moved on balance, once nothing is between chest and inventory any more. */
+  player.reportTransfers = () => {
+    if (player.windows.cursor) return
+    for (const { ledger } of player.ledgers) ledger.settle().forEach((fact) => player.emitEvent(fact))
+    player.ledgers = player.ledgers.filter(({ isOpen }) => isOpen())
+  }
+  player.on('disconnected', () => player.reportTransfers())
 }
 
 module.exports.partnerOf = partnerOf

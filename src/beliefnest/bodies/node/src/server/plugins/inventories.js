@@ -62,7 +62,7 @@ function setPossessions (player, serv, { inventory, equipment }) {
   const heldSlot = HOTBAR_START + player.heldItemSlot
   const order = [heldSlot, ...STORE_ORDER.filter((slot) => slot !== heldSlot)]
   if (equipment.main_hand) slots[heldSlot] = take(equipment.main_hand)
-  const free = equipment.main_hand ? order : order.slice(1)
+  const free = equipment.main_hand ? order : [...order.slice(1), heldSlot]
   for (const stack of stacksOf(Item, serv.registry, rest)) {
     if (store(storage(player), stack, free)) {
       throw new RangeError(`the inventory given to ${player.username} does not fit in 36 slots: ${stack.name} is left over`)

@@ -85,8 +85,8 @@ module.exports.player = (player, serv) => {
   player.inventory.on('updateSlot', () => player.inventoryChanged())
 
   /**
-   * Opens `{type, title, menu, opened, around(run), settled(), closed()}` for the player.
-   * `around` runs each click, `settled` is called whenever the cursor is empty after one.
+   * Opens `{type, title, menu, opened, around(run), leave(giveBack), closed()}` for the player.
+   * `around` runs each click; `leave` gives back what lies in the window itself when it closes.
    */
   player.openWindow = (open) => {
     player.closeWindow()
@@ -133,7 +133,6 @@ module.exports.player = (player, serv) => {
       emptyOwnGrid()
     }
     returnCursor()
-    open?.settled?.()
     open?.closed?.()
     player.inventoryChanged()
   }
@@ -178,8 +177,6 @@ module.exports.player = (player, serv) => {
     }
     windows.cursor = outcome.cursor
     outcome.dropped.forEach((item) => serv.tossItem(player, item))
-    window.clicked?.()
-    if (!windows.cursor) window.settled?.()
     answer(window, packet, stale)
   }
 

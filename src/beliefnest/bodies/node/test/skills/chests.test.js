@@ -1,0 +1,98 @@
+'use strict'
+const test = require('node:test')
+const assert = require('node:assert/strict')
+const { agent, failure, withSkills, FLOOR, Vec3 } = require('./harness')
+
+const PLACE = [6, FLOOR, 3]
+const CHEST = new Vec3(...PLACE)
+const setting = (inventory = {}, more = []) => ({
+  agents: { sally: agent([0.5, FLOOR, 0.5], { inventory }) },
+  blocks: [[...PLACE, 'chest'], ...more],
+  containers: [[...PLACE, { diamond: 2, dirt: 70 }]]
+})
+
+test('getItemFromChest goes there, takes the items, and leaves the rest', async () => {
+  await withSkills(setting(), async world => {
+    const { bots: { sally }, skills } = world
+    const before = world.everything()
+    await world.during(skills.sally.getItemFromChest(sally, CHEST, { diamond: 1, dirt: 65 }))
+    await world.ticks(1)
+    assert.deepEqual(world.has('sally'), { diamond: 1, dirt: 65 })
+    assert.deepEqual(world.container(...PLACE), { diamond: 1, dirt: 5 })
+    assert.deepEqual(world.everything(), before)
+    assert.deepEqual(world.events().map(({ kind, detail }) => [kind, detail.items]), [
+      ['open_container', undefined], ['get_item_from_chest', { diamond: 1, dirt: 65 }]
+    ])
+  })
+})
+
+test('getItemFromChest takes what is there and names what is missing', async () => {
+  await withSkills(setting(), async world => {
+    const { bots: { sally }, skills } = world
+    const before = world.everything()
+    const error = await failure(world, skills.sally.getItemFromChest(sally, CHEST, { diamond: 3, apple: 1 }))
+    assert.equal(error.skill, 'getItemFromChest')
+    assert.match(error.message, /3 diamond asked for from the chest at \(6, -51, 3\), it holds 2; 2 taken; 1 apple .* it holds 0; 0 taken/)
+    await world.ticks(1)
+    assert.deepEqual(world.has('sally'), { diamond: 2 })
+    assert.equal(sally.currentWindow, null)
+    assert.deepEqual(world.everything(), before)
+  })
+})
+
+test('getItemFromChest stops at a full inventory', async () => {
+  await withSkills(setting({ stone: 36 * 64 - 1 }), async world => {
+    const { bots: { sally }, skills } = world
+    const before = world.everything()
+    const error = await failure(world, skills.sally.getItemFromChest(sally, CHEST, { diamond: 1 }))
+    assert.match(error.message, /room for 0 in the inventory/)
+    await world.ticks(1)
+    assert.deepEqual(world.everything(), before)
+  })
+})
+
+test('depositItemIntoChest puts the items in', async () => {
+  await withSkills(setting({ apple: 5 }), async world => {
+    const { bots: { sally }, skills } = world
+    const before = world.everything()
+    await world.during(skills.sally.depositItemIntoChest(sally, CHEST, { apple: 4 }))
+    await world.ticks(1)
+    assert.deepEqual(world.has('sally'), { apple: 1 })
+    assert.deepEqual(world.container(...PLACE), { diamond: 2, dirt: 70, apple: 4 })
+    assert.deepEqual(world.everything(), before)
+    assert.deepEqual(world.events('deposit_item_into_chest').map(({ actor, detail }) => [actor, detail]), [
+      ['sally', { position: PLACE, items: { apple: 4 } }]
+    ])
+  })
+})
+
+test('depositItemIntoChest says how many there were', async () => {
+  await withSkills(setting({ apple: 5 }), async world => {
+    const { bots: { sally }, skills } = world
+    const error = await failure(world, skills.sally.depositItemIntoChest(sally, CHEST, { apple: 6 }))
+    assert.equal(error.skill, 'depositItemIntoChest')
+    assert.match(error.message, /6 apple .* the inventory holds 5; 5 put in/)
+  })
+})
+
+test('a place without a chest, and a chest under a stone, are named', async () => {
+  await withSkills(setting({}, [[6, FLOOR + 1, 3, 'stone']]), async world => {
+    const { bots: { sally }, skills } = world
+    const nothing = await failure(world, skills.sally.getItemFromChest(sally, new Vec3(1, FLOOR, 1), { dirt: 1 }))
+    assert.match(nothing.message, /no chest at \(1, -51, 1\), but air/)
+    const covered = await failure(world, skills.sally.getItemFromChest(sally, CHEST, { dirt: 1 }))
+    assert.match(covered.message, /stone lies on its lid/)
+  })
+})
+
+test('arguments that make no sense are named', async () => {
+  await withSkills(setting(), async world => {
+    const { bots: { sally }, skills: { sally: own } } = world
+    const message = async promise => (await failure(world, promise)).message
+    assert.match(await message(own.getItemFromChest(sally, { x: NaN, y: 0, z: 0 }, { dirt: 1 })), /finite/)
+    assert.match(await message(own.getItemFromChest(sally, CHEST, { diamnd: 1 })), /name of an item/)
+    assert.match(await message(own.getItemFromChest(sally, CHEST, { dirt: 0.5 })), /whole number/)
+    assert.match(await message(own.getItemFromChest(sally, CHEST)), /how many of which items/)
+    assert.match(await message(own.getItemFromChest(CHEST, { dirt: 1 })), /must be bot/)
+  })
+})

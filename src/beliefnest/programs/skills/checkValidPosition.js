@@ -1,0 +1,20 @@
+'use strict'
+const { blockPosition } = require('./lib/arguments')
+
+const passable = block => block !== null && block.boundingBox === 'empty' && block.name !== 'lava'
+
+module.exports = {
+  name: 'checkValidPosition',
+  signature: 'checkValidPosition(position, bot)',
+  description: 'Whether somebody can stand at the position: two free blocks above a solid one. Gives true or false.',
+  parameters: [
+    { name: 'position', type: 'Vec3', description: 'where the feet would be' },
+    { name: 'bot', type: 'Bot', description: 'your own bot' }
+  ],
+  example: 'const free = await checkValidPosition(new Vec3(3, -51, 3), bot)',
+  async run (context, position) {
+    const feet = blockPosition(context, 'position', position)
+    const at = height => context.bot.blockAt(feet.offset(0, height, 0))
+    return passable(at(0)) && passable(at(1)) && at(-1)?.boundingBox === 'block'
+  }
+}

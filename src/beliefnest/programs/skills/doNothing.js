@@ -1,0 +1,11 @@
+'use strict'
+const { ticks } = require('./lib/waiting')
+
+module.exports = {
+  name: 'doNothing',
+  signature: 'doNothing(bot)',
+  description: 'Do nothing for one tick.',
+  parameters: [{ name: 'bot', type: 'Bot', description: 'your own bot' }],
+  example: 'await doNothing(bot)',
+  run: () => ticks(1)
+}

@@ -1,0 +1,22 @@
+'use strict'
+const { text, show } = require('./lib/arguments')
+
+module.exports = {
+  name: 'emote',
+  signature: 'emote(name, type)',
+  description: 'Make a gesture that those who see you perceive, such as "wave" or "nod".',
+  parameters: [
+    { name: 'name', type: 'string', description: 'your own name, or the name of the agent the gesture is meant for' },
+    { name: 'type', type: 'string', description: 'which gesture' }
+  ],
+  example: 'await emote("sally", "wave")',
+  async run (context, name, type) {
+    const { bot, fail, emit } = context
+    if (!(name in bot.players)) {
+      fail(`name must be the name of an agent; it is ${show(name)}, here are: ${Object.keys(bot.players).join(', ')}`)
+    }
+    const detail = { name: text(context, 'type', type) }
+    bot.swingArm('right')
+    emit({ kind: 'emote', detail: name === bot.username ? detail : { ...detail, other: name } })
+  }
+}

@@ -1,0 +1,51 @@
+'use strict'
+/**
+ * The skills: what a program can do besides Mineflayer's own calls. Each file is one manifest
+ * `{name, signature, description, parameters, example, run(context, ...args)}`; `args` are the
+ * arguments of the signature without `bot`, which is `context.bot`.
+ */
+const { SkillError } = require('./lib/errors')
+
+const SKILLS = [
+  require('./goToPosition'),
+  require('./getItemFromChest'),
+  require('./depositItemIntoChest'),
+  require('./turnOnLever'),
+  require('./turnOffLever'),
+  require('./think'),
+  require('./doNothing'),
+  require('./emote'),
+  require('./checkValidPosition')
+]
+
+/**
+ * The skills of one bot, as functions of the arguments in their signatures.
+ * @param {object} body
+ * @param {object} body.bot a Mineflayer bot with pathfinder
+ * @param {(event: {kind: string, detail: object}) => void} body.emit hears what only the skill
+ *   knows; positions in `detail` are as the bot speaks them
+ * @param {Function} body.Vec3
+ * @param {object} body.goals of mineflayer-pathfinder
+ * @returns {Object<string, Function>} by name; each rejects with an Error that has `skill`
+ */
+function bindSkills ({ bot, emit, Vec3, goals }) {
+  return Object.fromEntries(SKILLS.map(skill => [skill.name, bind(skill, { bot, emit, Vec3, goals })]))
+}
+
+function bind (skill, body) {
+  const fail = (message, cause) => { throw new SkillError(skill.name, `${skill.name}: ${message}`, cause) }
+  const context = { ...body, fail }
+  const place = skill.parameters.findIndex(({ name }) => name === 'bot')
+  return async (...args) => {
+    if (place !== -1 && args[place] !== body.bot) fail(`argument ${place + 1} of ${skill.signature} must be bot, your own bot`)
+    const own = args.filter((_, index) => index !== place)
+    try {
+      return await skill.run(context, ...own)
+    } catch (error) {
+      if (error instanceof SkillError) throw error
+      throw new SkillError(skill.name, `${skill.name}: ${error instanceof Error ? error.message : String(error)}`, error)
+    }
+  }
+}
+
+module.exports = { SKILLS, SkillError, bindSkills }

@@ -1,0 +1,83 @@
+'use strict'
+/** Checks of what a program handed to a skill; every `fail(message)` throws. */
+
+function show (value) {
+  if (typeof value === 'string') return `"${value}"`
+  if (value !== null && typeof value === 'object' && Number.isFinite(value.x)) return `(${value.x}, ${value.y}, ${value.z})`
+  return typeof value === 'object' && value !== null ? JSON.stringify(value) : String(value)
+}
+
+/** @returns {Vec3} a finite position */
+function position ({ Vec3, fail }, name, value) {
+  const parts = [value?.x, value?.y, value?.z]
+  if (!parts.every(Number.isFinite)) {
+    fail(`${name} must be a Vec3 of three finite numbers, like new Vec3(0, -51, 3); it is ${show(value)}`)
+  }
+  return new Vec3(...parts)
+}
+
+/** @returns {Vec3} the position of the block a position lies in */
+function blockPosition (context, name, value) {
+  return position(context, name, value).floored()
+}
+
+function count ({ fail }, name, value) {
+  if (!Number.isInteger(value) || value < 1) fail(`${name} must be a whole number of at least 1; it is ${show(value)}`)
+  return value
+}
+
+function distance ({ fail }, name, value) {
+  if (!Number.isFinite(value) || value < 0) fail(`${name} must be a number of at least 0; it is ${show(value)}`)
+  return value
+}
+
+function text ({ fail }, name, value) {
+  if (typeof value !== 'string' || value.trim() === '') fail(`${name} must be a text that is not empty; it is ${show(value)}`)
+  return value
+}
+
+/** Names that contain what was asked for or the other way round, for a hint. */
+function similar (name, names) {
+  const close = names.filter(other => other.includes(name) || name.includes(other)).slice(0, 4)
+  return close.length ? `; similar names: ${close.join(', ')}` : ''
+}
+
+/** @returns {object} minecraft-data's entry of an item */
+function item ({ bot, fail }, name, value) {
+  const found = typeof value === 'string' ? bot.registry.itemsByName[value] : undefined
+  if (!found) {
+    const hint = typeof value === 'string' ? similar(value, Object.keys(bot.registry.itemsByName)) : ''
+    fail(`${name} must be the name of an item, like "diamond"; it is ${show(value)}${hint}`)
+  }
+  return found
+}
+
+/** @returns {object} minecraft-data's entry of a block */
+function block ({ bot, fail }, name, value) {
+  const found = typeof value === 'string' ? bot.registry.blocksByName[value] : undefined
+  if (!found) {
+    const hint = typeof value === 'string' ? similar(value, Object.keys(bot.registry.blocksByName)) : ''
+    fail(`${name} must be the name of a block, like "stone"; it is ${show(value)}${hint}`)
+  }
+  return found
+}
+
+/** @returns {[object, number][]} entries of items and how many of each */
+function items (context, name, value) {
+  const entries = value !== null && typeof value === 'object' && !Array.isArray(value) ? Object.entries(value) : []
+  if (entries.length === 0) {
+    context.fail(`${name} must say how many of which items, like {diamond: 1}; it is ${show(value)}`)
+  }
+  return entries.map(([key, number]) => [item(context, `each name in ${name}`, key), count(context, `${name}.${key}`, number)])
+}
+
+/** @returns {string} the name of another agent that is here */
+function otherAgent ({ bot, fail }, name, value) {
+  const others = Object.keys(bot.players).filter(other => other !== bot.username)
+  if (!others.includes(value)) {
+    fail(`${name} must be the name of another agent; it is ${show(value)}, here are: ${others.join(', ') || 'none'}`)
+  }
+  return value
+}
+
+module.exports = { show, position, blockPosition, count, distance, text, item, block, items, otherAgent }

@@ -1,0 +1,17 @@
+'use strict'
+/** Errors for the writer of a program: what was asked, what was found, what to do. */
+
+class SkillError extends Error {
+  /**
+   * @param {string} skill name of the skill that failed
+   * @param {string} message
+   * @param {Error} [cause]
+   */
+  constructor (skill, message, cause) {
+    super(message, cause && { cause })
+    this.name = 'SkillError'
+    this.skill = skill
+  }
+}
+
+module.exports = { SkillError }

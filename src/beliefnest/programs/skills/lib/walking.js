@@ -1,0 +1,79 @@
+'use strict'
+/** Walking: every walk ends where it was to go, or in an error that says how near it came. */
+const { until } = require('./waiting')
+const { show } = require('./arguments')
+
+const REACH = 4
+const EYES = 1.62
+const STILL = 0.01
+const SETTLE_TICKS = 10
+
+const REASONS = {
+  NoPath: 'there is no way to it on foot',
+  Timeout: 'no way to it was found in time',
+  GoalChanged: 'the walk was given up for another goal',
+  PathStopped: 'the walk was stopped'
+}
+
+const rounded = ({ x, y, z }) => show({ x: Math.round(x * 10) / 10, y: Math.round(y * 10) / 10, z: Math.round(z * 10) / 10 })
+const centreOf = block => block.offset(0.5, 0.5, 0.5)
+
+/** Stands still: what is left of the last step would carry on. */
+async function settle (bot) {
+  bot.clearControlStates()
+  const { velocity } = bot.entity
+  await until(() => Math.abs(velocity.x) < STILL && Math.abs(velocity.z) < STILL && bot.entity.onGround, SETTLE_TICKS)
+}
+
+/**
+ * @param {object} context of the skill
+ * @param {object} goal of the pathfinder
+ * @param {() => boolean} arrived judged by where the bot really stands
+ * @param {Vec3} target for the message
+ * @param {string} what for the message, e.g. "the chest"
+ */
+async function walk ({ bot, fail }, goal, arrived, target, what) {
+  if (arrived()) return
+  let reason = REASONS.NoPath
+  let fault
+  try {
+    await bot.pathfinder.goto(goal)
+  } catch (error) {
+    if (!(error.name in REASONS)) throw error
+    reason = REASONS[error.name]
+    fault = error
+  }
+  await settle(bot)
+  if (arrived()) return
+  const near = bot.entity.position.distanceTo(target)
+  fail(`could not reach ${what} at ${show(target)}: ${reason}; now at ${rounded(bot.entity.position)}, ` +
+    `${near.toFixed(1)} blocks away. Go somewhere else, or clear the way first.`, fault)
+}
+
+/** Walks to within `dist` blocks of a position. */
+async function walkNear (context, target, dist, what = 'the position') {
+  const { bot, goals } = context
+  const block = target.floored()
+  const arrived = () => bot.entity.position.floored().distanceTo(block) <= dist
+  await walk(context, new goals.GoalNear(block.x, block.y, block.z, dist), arrived, target, what)
+}
+
+/** Whether a block can be used from an eye: near enough, with nothing in between. */
+function canUse (bot, eye, block) {
+  const way = centreOf(block).minus(eye)
+  const distance = way.norm()
+  if (distance > REACH) return false
+  const hit = bot.world.raycast(eye, way.scaled(1 / distance), distance)
+  return !hit || hit.position.equals(block)
+}
+
+/** Walks to where a block can be used. */
+async function walkToUse (context, block, what) {
+  const { bot, goals } = context
+  const goal = new goals.GoalNear(block.x, block.y, block.z, REACH)
+  goal.isEnd = node => canUse(bot, node.offset(0.5, EYES, 0.5), block)
+  const arrived = () => canUse(bot, bot.entity.position.offset(0, EYES, 0), block)
+  await walk(context, goal, arrived, block, what)
+}
+
+module.exports = { walk, walkNear, walkToUse, canUse, settle, centreOf, rounded }

@@ -1,0 +1,14 @@
+'use strict'
+const { switchLever } = require('./lib/levers')
+
+module.exports = {
+  name: 'turnOnLever',
+  signature: 'turnOnLever(bot, position)',
+  description: 'Go to the lever and switch it on; does nothing if it is on already.',
+  parameters: [
+    { name: 'bot', type: 'Bot', description: 'your own bot' },
+    { name: 'position', type: 'Vec3', description: 'position of the lever' }
+  ],
+  example: 'await turnOnLever(bot, new Vec3(3, -50, 0))',
+  run: (context, position) => switchLever(context, position, true)
+}
