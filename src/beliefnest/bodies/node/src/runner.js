@@ -8,7 +8,8 @@ class Runner {
    * @param {(request: {code: string, bot: object, scope: object, signal: AbortSignal}) =>
    *   Promise<{ok: boolean, error: object | null}>} runProgram never rejects; ends soon after
    *   `signal` is aborted
-   * @param {(bot: object) => object} scopeOf what a program of this bot finds in scope
+   * @param {(bot: object, emit: (event: object) => void) => object} scopeOf what a program of
+   *   this bot finds in scope; `emit` hears what its skills report
    */
   constructor (regions, runProgram, scopeOf) {
     this.regions = regions
@@ -42,7 +43,8 @@ class Runner {
   start (region, { bot }, code) {
     const abort = new AbortController()
     const run = { bot, abort, result: null, endTick: 0 }
-    const request = { code, bot, scope: this.scopeOf(bot), signal: abort.signal }
+    const emit = event => region.emit({ ...event, actor: bot.username })
+    const request = { code, bot, scope: this.scopeOf(bot, emit), signal: abort.signal }
     this.runProgram(request).then(({ ok, error }) => {
       if (run.result !== null) return
       run.result = { ok, error }

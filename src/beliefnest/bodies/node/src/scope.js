@@ -2,10 +2,15 @@
 /** What agent programs find in scope besides `bot`. */
 const { Vec3 } = require('vec3')
 const { goals } = require('mineflayer-pathfinder')
+const { bindSkills } = require('../../../programs/skills')
 
-/** @returns {object} by name */
-function scopeOf (bot) {
-  return { Vec3, goals, mcData: bot.registry }
+/**
+ * @param {object} bot
+ * @param {(event: {kind: string, detail: object}) => void} emit hears what the skills report
+ * @returns {object} by name
+ */
+function scopeOf (bot, emit) {
+  return { ...bindSkills({ bot, emit, Vec3, goals }), Vec3, goals, mcData: bot.registry }
 }
 
 module.exports = { scopeOf }
