@@ -1,7 +1,7 @@
 'use strict'
 /**
  * The Minecraft side of BeliefNest: one process with the server and all bots, driven over
- * descriptor 3, ended by the end of descriptor 3 or 4.
+ * one descriptor, ended by the end of that one or of the lifeline.
  */
 const net = require('node:net')
 const path = require('node:path')
@@ -9,8 +9,8 @@ const { Worker } = require('node:worker_threads')
 const { Clock } = require('./time/clock')
 const { installTime } = require('./time/install')
 
-const CHANNEL = 3
-const LIFELINE = 4
+// Numbers of the descriptors are the program's two arguments.
+const [CHANNEL, LIFELINE] = process.argv.slice(2).map(Number)
 // build.js puts all programs side by side.
 const LIFELINE_FILE = typeof BUNDLED === 'undefined' ? ['channel', 'lifeline.js'] : ['lifeline.js']
 

@@ -7,8 +7,8 @@ const { Channel } = require('../src/channel/channel')
 const MAIN = path.join(__dirname, '..', 'src', 'main.js')
 
 class Node {
-  constructor (main = MAIN) {
-    this.child = spawn(process.execPath, [main], { stdio: ['ignore', 'pipe', 'pipe', 'pipe', 'pipe'] })
+  constructor (main = MAIN, options = []) {
+    this.child = spawn(process.execPath, [...options, main, '3', '4'], { stdio: ['ignore', 'pipe', 'pipe', 'pipe', 'pipe'] })
     this.errors = ''
     this.child.stderr.on('data', chunk => { this.errors += chunk })
     this.child.stdout.on('data', chunk => { this.errors += chunk })

@@ -1,0 +1,1 @@
+"""Belief states and how they are updated."""

@@ -1,0 +1,1 @@
+"""Where simulators are acted out: worlds, bodies, and the channel to Minecraft."""

@@ -1,0 +1,162 @@
+"""The embedded Minecraft world: one Node process with the server and all bots."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, Self
+
+import numpy as np
+
+from beliefnest.bodies import messages
+from beliefnest.bodies.channel import PROTOCOL, Channel
+from beliefnest.bodies.node_files import node_command
+from beliefnest.bodies.protocol import ProgramResult, Sink
+from beliefnest.errors import WorldError
+from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.values import Box, Event
+
+__all__ = ["MINECRAFT", "EmbeddedBody", "EmbeddedWorld"]
+
+MINECRAFT = "1.20.4"
+"""The Minecraft version of the embedded world."""
+
+
+class EmbeddedBody:
+    """A region of the embedded world."""
+
+    def __init__(
+        self,
+        channel: Channel,
+        region: str,
+        snapshot: Snapshot,
+        sink: Sink,
+        on_close: Callable[[], None],
+    ) -> None:
+        self._channel = channel
+        self._region = region
+        self._box: Box = snapshot.box
+        self._tick = snapshot.tick
+        self._agents = frozenset(snapshot.agents)
+        self._sink = sink
+        self._events: list[Event] = []
+        self._on_close = on_close
+
+    @property
+    def tick(self) -> int:
+        """The body's latest tick."""
+        return self._tick
+
+    def snapshot(self) -> Snapshot:
+        """All there is in it now."""
+        return messages.snapshot_of(
+            self._channel.request("snapshot", region=self._region), self._box
+        )
+
+    def run(self, programs: Mapping[str, str], timeout_ticks: int) -> Mapping[str, ProgramResult]:
+        """Run programs by agent, together, until the last has ended."""
+        for agent in programs:
+            if agent not in self._agents:
+                raise WorldError(
+                    f"{agent} has no bot in {self._region}: its pose is not known there; "
+                    f"there are {', '.join(sorted(self._agents)) or 'no bots'}"
+                )
+        self._events = []
+        answer = self._channel.request(
+            "run",
+            self._take,
+            region=self._region,
+            programs=dict(programs),
+            timeout_ticks=timeout_ticks,
+        )
+        self._tick = answer["tick"]
+        return messages.results_of(answer["results"], tuple(self._events))
+
+    def step(self, ticks: int) -> None:
+        """Let ticks pass without programs."""
+        answer = self._channel.request("step", self._take, region=self._region, ticks=ticks)
+        self._tick = answer["tick"]
+
+    def become(self, snapshot: Snapshot) -> None:
+        """Be as the snapshot says, by changing only what differs; no frames are sent."""
+        before = self.snapshot()
+        self._channel.request(
+            "apply", region=self._region, tick=snapshot.tick, **_difference(before, snapshot)
+        )
+        self._tick = snapshot.tick
+        self._agents = frozenset(snapshot.agents)
+
+    def close(self) -> None:
+        """Give the region up."""
+        self._channel.request("destroy_region", region=self._region)
+        self._on_close()
+
+    def _take(self, message: dict[str, Any]) -> None:
+        frame: Frame
+        _, frame = messages.frame_of(message)
+        self._tick = frame.tick
+        self._events.extend(frame.events)
+        self._sink(frame)
+
+
+class EmbeddedWorld:
+    """A running Node process; make one with `EmbeddedWorld.start`."""
+
+    def __init__(self, channel: Channel, versions: Mapping[str, str]) -> None:
+        self._channel = channel
+        self._names: set[str] = set()
+        self.versions = versions
+
+    @classmethod
+    def start(cls, seed: int) -> Self:
+        """Start Node with an empty world.
+
+        Raises:
+            BodyError: Node or the bundle is missing, or the start failed.
+        """
+        channel = Channel.start(node_command())
+        try:
+            versions = channel.request("hello", protocol=PROTOCOL, seed=seed, minecraft=MINECRAFT)
+        except BaseException:
+            channel.close()
+            raise
+        return cls(channel, versions)
+
+    @property
+    def pid(self) -> int:
+        """Process id of Node."""
+        return self._channel.pid
+
+    def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> EmbeddedBody:
+        """Make a region, fill it, and let the bots of its agents log in."""
+        if name in self._names:
+            raise WorldError(f"there is a body {name!r} already")
+        self._channel.request(
+            "create_region", region=name, seed=seed, **messages.snapshot_message(snapshot)
+        )
+        self._names.add(name)
+        return EmbeddedBody(self._channel, name, snapshot, sink, lambda: self._names.discard(name))
+
+    def close(self) -> None:
+        """End the process."""
+        self._channel.close()
+
+
+def _difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
+    """What has to change for one snapshot to become another, as arguments of `apply`."""
+    low = after.box.low
+    places = np.argwhere(before.blocks != after.blocks).tolist()
+    gone = before.containers.keys() - after.containers.keys()
+    contents = {p: i for p, i in after.containers.items() if before.containers.get(p) != i}
+    agents: dict[str, Any] = dict.fromkeys(before.agents.keys() - after.agents.keys())
+    for name, agent in after.agents.items():
+        if before.agents.get(name) != agent:
+            agents[name] = messages.agent_message(agent)
+    return {
+        "blocks": [
+            [low[0] + i, low[1] + j, low[2] + k, int(after.blocks[i, j, k])] for i, j, k in places
+        ],
+        "containers": [
+            *messages.contents_message(contents),
+            *([*place, None] for place in sorted(gone)),
+        ],
+        "agents": agents,
+        "items": messages.items_message(after.items),
+    }

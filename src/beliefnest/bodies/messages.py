@@ -1,0 +1,210 @@
+"""The channel's messages as Python values, and back (design/channel.md)."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from beliefnest.bodies.protocol import Fault, ProgramResult
+from beliefnest.errors import BodyError
+from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.values import (
+    AgentState,
+    Box,
+    DroppedItem,
+    Event,
+    EventKind,
+    Items,
+    Point,
+    Position,
+)
+
+__all__ = [
+    "agent_message",
+    "contents_message",
+    "frame_of",
+    "items_message",
+    "results_of",
+    "snapshot_message",
+    "snapshot_of",
+]
+
+
+class _Agent(msgspec.Struct, frozen=True):
+    position: Point
+    yaw: float
+    pitch: float
+    on_ground: bool
+    equipment: dict[str, str]
+    inventory: dict[str, int]
+    health: float
+    food: float
+
+    def value(self) -> AgentState:
+        return AgentState(
+            self.position,
+            self.yaw,
+            self.pitch,
+            self.on_ground,
+            self.equipment,
+            self.inventory,
+            self.health,
+            self.food,
+        )
+
+
+class _Item(msgspec.Struct, frozen=True):
+    name: str
+    count: int
+    position: Point
+
+    def value(self) -> DroppedItem:
+        return DroppedItem(self.name, self.count, self.position)
+
+
+class _Event(msgspec.Struct, frozen=True):
+    kind: EventKind
+    actor: str | None
+    detail: dict[str, Any] = {}
+
+    def value(self) -> Event:
+        detail = {
+            key: tuple(value) if isinstance(value, list) else value
+            for key, value in self.detail.items()
+        }
+        return Event(self.kind, self.actor, detail)
+
+
+class _Frame(msgspec.Struct, frozen=True):
+    region: str
+    tick: int
+    agents: dict[str, _Agent | None] = {}
+    blocks: list[tuple[int, int, int, int]] = []
+    containers: list[tuple[int, int, int, dict[str, int] | None]] = []
+    items: dict[int, _Item | None] = {}
+    events: list[_Event] = []
+
+
+class _Snapshot(msgspec.Struct, frozen=True):
+    tick: int
+    blocks: bytes
+    containers: list[tuple[int, int, int, dict[str, int]]]
+    agents: dict[str, _Agent]
+    items: dict[int, _Item] = {}
+
+
+class _Fault(msgspec.Struct, frozen=True):
+    message: str
+    line: int | None = None
+    column: int | None = None
+    skill: str | None = None
+    kind: str = "program"
+
+    def value(self) -> Fault:
+        return Fault(self.message, self.kind, self.line, self.column, self.skill)
+
+
+class _Result(msgspec.Struct, frozen=True):
+    ok: bool
+    ticks: int
+    error: _Fault | None = None
+
+
+def frame_of(message: Mapping[str, Any]) -> tuple[str, Frame]:
+    """Region and frame of a frame message.
+
+    Raises:
+        BodyError: The message is not of the agreed form.
+    """
+    got = _converted(message, _Frame)
+    return got.region, Frame(
+        got.tick,
+        {name: None if a is None else a.value() for name, a in sorted(got.agents.items())},
+        {(x, y, z): state for x, y, z, state in sorted(got.blocks)},
+        dict(sorted(((x, y, z), items) for x, y, z, items in got.containers)),
+        {n: None if i is None else i.value() for n, i in sorted(got.items.items())},
+        tuple(event.value() for event in got.events),
+    )
+
+
+def snapshot_of(message: Mapping[str, Any], box: Box) -> Snapshot:
+    """A snapshot message of a box as a value.
+
+    Raises:
+        BodyError: The message is not of the agreed form.
+    """
+    got = _converted(message, _Snapshot)
+    if len(got.blocks) != 4 * box.shape[0] * box.shape[1] * box.shape[2]:
+        raise BodyError(f"Node sent {len(got.blocks)} bytes of blocks for a box of {box.shape}")
+    return Snapshot(
+        got.tick,
+        box,
+        np.frombuffer(got.blocks, dtype="<i4").reshape(box.shape).astype(np.int32),
+        {(x, y, z): items for x, y, z, items in sorted(got.containers, key=lambda c: c[:3])},
+        {name: agent.value() for name, agent in sorted(got.agents.items())},
+        {number: item.value() for number, item in sorted(got.items.items())},
+    )
+
+
+def snapshot_message(snapshot: Snapshot) -> dict[str, Any]:
+    """A snapshot as the arguments of `create_region`."""
+    return {
+        "tick": snapshot.tick,
+        "box": [snapshot.box.low, snapshot.box.high],
+        "blocks": snapshot.blocks.astype("<i4").tobytes(),
+        "containers": contents_message(snapshot.containers),
+        "agents": {name: agent_message(agent) for name, agent in snapshot.agents.items()},
+        "items": items_message(snapshot.items),
+    }
+
+
+def items_message(items: Mapping[int, DroppedItem]) -> dict[str, Any]:
+    """Dropped items by number as a message."""
+    return {
+        str(number): {"name": item.name, "count": item.count, "position": item.position}
+        for number, item in sorted(items.items())
+    }
+
+
+def contents_message(containers: Mapping[Position, Items]) -> list[list[Any]]:
+    """Container contents as rows of x, y, z, items."""
+    return [[*place, dict(items)] for place, items in sorted(containers.items())]
+
+
+def agent_message(agent: AgentState) -> dict[str, Any]:
+    """An agent's state as a message."""
+    return {
+        "position": agent.position,
+        "yaw": agent.yaw,
+        "pitch": agent.pitch,
+        "on_ground": agent.on_ground,
+        "equipment": dict(agent.equipment),
+        "inventory": dict(agent.inventory),
+        "health": agent.health,
+        "food": agent.food,
+    }
+
+
+def results_of(
+    message: Mapping[str, Any], events: tuple[Event, ...]
+) -> Mapping[str, ProgramResult]:
+    """Results of programs by agent; the events of the run belong to all of them.
+
+    Raises:
+        BodyError: The message is not of the agreed form.
+    """
+    got = _converted(message, dict[str, _Result])
+    return {
+        agent: ProgramResult(
+            result.ok, None if result.error is None else result.error.value(), result.ticks, events
+        )
+        for agent, result in got.items()
+    }
+
+
+def _converted(message: Any, kind: type[Any]) -> Any:
+    try:
+        return msgspec.convert(message, kind, strict=False)
+    except msgspec.ValidationError as error:
+        raise BodyError(f"Node sent a message that is not of the agreed form: {error}") from error

@@ -1,0 +1,1 @@
+"""Simulators, paths, modes, and beliefs folded from timelines."""

@@ -1,0 +1,1 @@
+"""Pure functions from a scene to what one agent perceives of it."""

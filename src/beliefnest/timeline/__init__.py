@@ -1,0 +1,1 @@
+"""Append-only logs of facts, and the file they are kept in."""

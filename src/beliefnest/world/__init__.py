@@ -1,0 +1,1 @@
+"""Frozen values every room speaks, and the scripted world."""
