@@ -1,0 +1,26 @@
+"""The offline model: answers from the prompt's text alone, without network or key."""
+
+from collections.abc import Sequence
+
+from beliefnest.llm.messages import Answer, Message, Sampling
+from beliefnest.llm.offline.javascript import fenced
+from beliefnest.llm.offline.planning import plan
+from beliefnest.llm.offline.reading import read_prompt
+
+__all__ = ["OfflineModel"]
+
+
+class OfflineModel:
+    """A deterministic stand-in for a language model.
+
+    It reads the same messages as a language model would and nothing else, understands the
+    sections of the paper's prompt and a few kinds of task (see `planning`), and answers in
+    the same form.
+    """
+
+    name = "offline"
+
+    def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
+        """A program for the last task in the messages; the sampling changes nothing."""
+        text = "\n".join(message.text for message in messages if message.role != "assistant")
+        return Answer(fenced(plan(read_prompt(text))))

@@ -1,0 +1,73 @@
+"""Which of several known names a phrase of a task means."""
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+
+from beliefnest.llm.offline.reading import Point, points_in, words
+
+__all__ = ["match_item", "match_name", "place_named_last", "singular"]
+
+_NOT_THERE = frozenset({"from", "leave", "leaves", "leaving", "left", "not"})
+_ARTICLES = frozenset({"a", "an", "the"})
+
+
+def singular(phrase: str) -> tuple[str, ...]:
+    """The words of a phrase without the ending of a plural."""
+    return tuple(
+        word[:-1] if word.endswith("s") and not word.endswith("ss") else word
+        for word in words(phrase)
+    )
+
+
+def match_item(phrase: str, names: Iterable[str]) -> str | None:
+    """The item a phrase means: the same words, or else the last of an item's words.
+
+    "iron ingots" means `iron_ingot`; "pickaxe" means `iron_pickaxe` if nothing else ends so.
+    """
+    known = sorted(set(names))
+    wanted = singular(phrase)
+    exact = [name for name in known if singular(name) == wanted]
+    if exact:
+        return exact[0]
+    ending = [name for name in known if wanted and singular(name)[-len(wanted) :] == wanted]
+    return ending[0] if len(ending) == 1 else None
+
+
+def match_name(phrase: str, names: Iterable[str]) -> str | None:
+    """The name a phrase means: the same words, or else the only one that shares them.
+
+    "ice cream seller" means `ice_cream_seller`, `IceCreamSeller` or `seller`.
+    """
+    known = sorted(set(names))
+    wanted = [word for word in words(phrase) if word not in _ARTICLES] or list(words(phrase))
+    for name in known:
+        if "".join(words(name)) == "".join(wanted):
+            return name
+    shared = [name for name in known if words(name) and _within(set(words(name)), set(wanted))]
+    return shared[0] if len(shared) == 1 else None
+
+
+def _within(one: set[str], other: set[str]) -> bool:
+    return one <= other or (bool(other) and other <= one)
+
+
+def place_named_last(text: str, places: Mapping[str, Point]) -> Point | None:
+    """Where a sentence says that someone will be: the place or position it names last.
+
+    A place behind "from", "leave" or "not" is not where someone will be.
+    """
+    found: list[tuple[int, Point]] = []
+    for name, point in places.items():
+        # "A" as a name is not "a" as an article.
+        flags = re.IGNORECASE if len(name) > 2 else re.NOFLAG
+        for match in re.finditer(rf"\b{re.escape(name)}\b", text, flags):
+            if not _speaks_of_leaving(words(text[: match.start()])):
+                found.append((match.start(), point))
+    found += [(len(text), point) for point in points_in(text)]
+    return max(found, key=lambda each: each[0])[1] if found else None
+
+
+def _speaks_of_leaving(before: Sequence[str]) -> bool:
+    """Whether the words before a place, articles and "to" aside, end in leaving it."""
+    rest = [word for word in before if word not in _ARTICLES | {"to", "at", "in", "go", "going"}]
+    return bool(rest) and rest[-1] in _NOT_THERE

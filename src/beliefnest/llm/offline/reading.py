@@ -1,0 +1,167 @@
+"""What a prompt in the paper's form says, read from its text alone."""
+
+import ast
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+__all__ = ["Point", "Reading", "Utterance", "points_in", "read_prompt", "words"]
+
+Point = tuple[float, float, float]
+
+_HEADING = re.compile(r"([A-Z][A-Za-z ]*):")
+_TASK = re.compile(r"Task:\s*(.*)")
+_DIVIDER = re.compile(r"<[^<>]+>|\[[^\[\]]*\]")
+_NUMBER = r"(-?\d+(?:\.\d+)?)"
+_POINT = re.compile(rf"[(\[]\s*{_NUMBER}\s*,\s*{_NUMBER}\s*,\s*{_NUMBER}\s*[)\]]")
+_CHEST = re.compile(rf"({_POINT.pattern}):\s*(\{{.*\}})")
+_CHAT = re.compile(r"\d+;([A-Za-z0-9_]+);(.*)")
+_PLACE = re.compile(rf"(?:-\s*)?([A-Za-z][\w' ]*?)(?: is at|:)\s*({_POINT.pattern})\.?")
+_PLACE_IN_SENTENCE = re.compile(rf"\b([A-Z]\w*(?: [A-Z]\w*)*) is at ({_POINT.pattern})")
+
+
+@dataclass(frozen=True, slots=True)
+class Utterance:
+    """Something heard: who said what."""
+
+    speaker: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a prompt says.
+
+    Attributes:
+        task: The sentence after `Task:`; empty if there is none.
+        position: Where the one who is asked stands; None if not told.
+        chests: Position of a chest to the items that are known to be in it, in the
+            order of the prompt.
+        players: Name of another player to its position; None: cannot be seen.
+        chat: What was heard, in the order of the prompt.
+        places: Name of a place to its position.
+    """
+
+    task: str
+    position: Point | None
+    chests: Mapping[Point, Mapping[str, int]]
+    players: Mapping[str, Point | None]
+    chat: Sequence[Utterance]
+    places: Mapping[str, Point]
+
+
+def words(text: str) -> tuple[str, ...]:
+    """The words of a name or sentence in lower case; `_` and `-` part words."""
+    return tuple(re.findall(r"[a-z0-9']+", re.sub(r"[_-]", " ", text.lower())))
+
+
+def points_in(text: str) -> list[Point]:
+    """Every `(x, y, z)` or `[x, y, z]` in a text."""
+    return [(float(x), float(y), float(z)) for x, y, z in _POINT.findall(text)]
+
+
+def read_prompt(text: str) -> Reading:
+    """Read a prompt; sections that are missing or not understood read as unknown."""
+    sections = _sections(text)
+    here = points_in("\n".join(sections.get("Position", [])))
+    return Reading(
+        task=_task(text),
+        position=here[0] if here else None,
+        chests=_chests(sections.get("Chest", [])),
+        players=_players("\n".join(sections.get("Other players", []))),
+        chat=_chat(sections.get("Chat log", [])),
+        places=_places(sections.get("Places", []), text),
+    )
+
+
+def _sections(text: str) -> dict[str, list[str]]:
+    """Heading to the lines below it; the last section of a name counts."""
+    sections: dict[str, list[str]] = {}
+    lines: list[str] = []
+    for line in text.splitlines():
+        heading = _HEADING.fullmatch(line.strip())
+        if heading is not None:
+            lines = sections[heading[1]] = []
+        elif _ends_section(line):
+            lines = []
+        else:
+            lines.append(line)
+    return sections
+
+
+def _ends_section(line: str) -> bool:
+    """Whether a line is `<...>`, `[...]` (not a position) or the task."""
+    stripped = line.strip()
+    divides = _DIVIDER.fullmatch(stripped) is not None and _POINT.fullmatch(stripped) is None
+    return divides or _TASK.match(line) is not None
+
+
+def _task(text: str) -> str:
+    """The last task of the text: its line and what follows up to an empty line."""
+    lines = text.splitlines()
+    starts = [index for index, line in enumerate(lines) if _TASK.match(line)]
+    if not starts:
+        return ""
+    found = []
+    for line in lines[starts[-1] :]:
+        if not line.strip():
+            break
+        found.append(line.strip())
+    return " ".join(found).removeprefix("Task:").strip()
+
+
+def _chests(lines: Sequence[str]) -> dict[Point, dict[str, int]]:
+    chests = {}
+    for line in lines:
+        match = _CHEST.match(line.strip())
+        if match is not None:
+            chests[points_in(match[1])[0]] = _items(match[5])
+    return chests
+
+
+def _items(text: str) -> dict[str, int]:
+    """Items written as `{'diamond': 1}`; an entry that is not of that kind is left out."""
+    try:
+        value = ast.literal_eval(text)
+    except (ValueError, SyntaxError):
+        return {}
+    if not isinstance(value, dict):
+        return {}
+    return {
+        name: count
+        for name, count in value.items()
+        if isinstance(name, str) and isinstance(count, int)
+    }
+
+
+def _players(text: str) -> dict[str, Point | None]:
+    try:
+        value = json.loads(text)
+    except json.JSONDecodeError:
+        return {}
+    if not isinstance(value, dict):
+        return {}
+    players: dict[str, Point | None] = {}
+    for name, told in value.items():
+        where = told.get("position") if isinstance(told, dict) else None
+        found = points_in(str(where))
+        players[name] = found[0] if found else None
+    return players
+
+
+def _chat(lines: Sequence[str]) -> list[Utterance]:
+    matches = (_CHAT.fullmatch(line.strip()) for line in lines)
+    return [Utterance(match[1], match[2]) for match in matches if match is not None]
+
+
+def _places(lines: Sequence[str], text: str) -> dict[str, Point]:
+    """Places of the section of that name, then of sentences such as `Home is at (1, 2, 3)`."""
+    places: dict[str, Point] = {}
+    for name, where, *_ in _PLACE_IN_SENTENCE.findall(text):
+        places[name] = points_in(where)[0]
+    for line in lines:
+        match = _PLACE.fullmatch(line.strip())
+        if match is not None:
+            places[match[1].strip()] = points_in(match[2])[0]
+    return places

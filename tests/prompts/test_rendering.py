@@ -1,0 +1,179 @@
+"""Templates: strict, sandboxed, with errors that name the line."""
+
+from importlib.metadata import EntryPoint
+from pathlib import Path
+
+import pytest
+
+from beliefnest.errors import InputError, TemplateError
+from beliefnest.prompts import (
+    BUILT_IN,
+    FilterSet,
+    Template,
+    built_in_template,
+    filter,
+    filterset,
+    load_template,
+    render,
+)
+from beliefnest.prompts.example import example_branch
+from beliefnest.prompts.reference import filter_reference
+
+
+def show(template, filters=BUILT_IN, **variables):
+    return render(template, example_branch(), variables, filters)
+
+
+def test_an_unknown_filter_names_line_and_nearest():
+    with pytest.raises(TemplateError, match=r"^mine, line 3: .*'chest'.*chests"):
+        show(Template("mine", "a\nb\n{% if false %}{{ branch | chest }}{% endif %}"))
+
+
+def test_an_unknown_variable_names_line_and_nearest():
+    with pytest.raises(TemplateError, match=r"^template, line 2: 'tsk' is undefined.*task"):
+        show("a\n{{ tsk }}", task="x")
+    with pytest.raises(TemplateError, match=r"line 2: .*brnach.*branch"):
+        show("a\n{{ brnach | chests }}")
+
+
+def test_an_unknown_variable_may_be_asked_for():
+    assert show("{{ 'yes' if x is defined else 'no' }}") == "no"
+
+
+def test_an_unknown_test_is_refused():
+    with pytest.raises(TemplateError, match=r"no test 'defned'.*defined"):
+        show("{{ x is defned }}")
+
+
+def test_broken_source_names_the_line():
+    with pytest.raises(TemplateError, match=r"line 2: "):
+        show("a\n{{ branch | ")
+
+
+def test_a_missing_file_is_named(tmp_path: Path):
+    with pytest.raises(TemplateError, match=r"gone\.txt cannot be read"):
+        show(tmp_path / "gone.txt")
+    path = tmp_path / "binary.txt"
+    path.write_bytes(b"\xff\xfe\xff")
+    with pytest.raises(TemplateError, match="cannot be read"):
+        load_template(path)
+
+
+def test_a_fault_in_a_filter_is_raised_with_its_cause():
+    @filter("broken")
+    def broken(branch):
+        return {}["nothing"]
+
+    with pytest.raises(TemplateError, match=r"line 2: .*KeyError: 'nothing'") as caught:
+        show("a\n{{ branch | broken }}", BUILT_IN.extended([broken]))
+    assert isinstance(caught.value.__cause__, KeyError)
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        "branch.child('anne')",
+        "branch.state.blocks.named([])",
+        "branch.__class__",
+        "''.__class__.__mro__",
+        "branch.child.__func__.__globals__",
+        "items.append(1)",
+        "'{0.__class__}'.format(branch)",
+    ],
+)
+def test_templates_read_and_do_not_act(expression):
+    with pytest.raises(TemplateError, match="line 1"):
+        show("{{ " + expression + " }}", items=[])
+
+
+def test_templates_may_use_macros_ranges_and_methods_of_plain_values():
+    source = "{% macro m(x) %}<{{ x }}>{% endmacro %}{{ m(1) }}{% for k, v in d.items() %}{{ k }}{% endfor %}{{ 'a'.upper() }}{{ range(2) | list }}"  # noqa: E501
+    assert show(source, d={"k": 1}) == "<1>kA[0, 1]"
+
+
+def test_last_code_and_error_are_texts_not_source():
+    source = "$$LAST_CODE$$\n$$LAST_ERROR$$"
+    assert show(source) == "No code was executed\nNo error"
+    assert show(source, last_code=None, last_error=None) == "No code was executed\nNo error"
+    assert show(source, last_code="f({{ x }})", last_error="") == "f({{ x }})\n"
+
+
+def test_several_simulators_in_one_prompt():
+    anne = example_branch().child("anne")
+    assert show('{{ anne | position("anne") }} {{ branch | position }}', anne=anne) == (
+        "[2.5, -51, -5.5] [-4.551, -51, -5.871]"
+    )
+
+
+def test_own_filters_are_added_and_replace_only_when_they_say_so():
+    @filter("chests")
+    def chests(branch, word="none"):
+        return word
+
+    with pytest.raises(InputError, match="override=True"):
+        BUILT_IN.extended([chests])
+    ours = BUILT_IN.extended([filter("chests", override=True)(chests.function)])
+    assert show('{{ branch | chests("x") }}', ours) == "x"
+    assert show("{{ branch | chests }}") != "none"
+    assert chests(None) == "none"
+
+
+def test_what_is_no_filter_is_refused():
+    with pytest.raises(InputError, match="@filter"):
+        FilterSet.of([len])
+    with pytest.raises(InputError, match="letters"):
+        filter("two words")
+
+
+@filter("installed_greeting")
+def installed_greeting(branch):
+    return "Hi"
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [("no_such_module:f", "no_such_module"), ("json:dumps", "@filter")],
+)
+def test_an_installed_filter_that_cannot_be_used_is_named(monkeypatch, value, message):
+    entry = EntryPoint("bad", value, filterset.FILTER_GROUP)
+    monkeypatch.setattr(filterset, "entry_points", lambda group: [entry])
+    with pytest.raises(InputError, match=rf"'bad'.*{message}"):
+        filterset.installed_filters(BUILT_IN)
+
+
+def test_installed_filters_are_found(tmp_path: Path, monkeypatch):
+    (tmp_path / "bn_greeting.py").write_text(
+        "from beliefnest.prompts import filter\n\n"
+        "@filter('greeting')\ndef greeting(branch):\n    return 'Hi ' + branch.state.owner\n"
+    )
+    info = tmp_path / "bn_greeting-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: bn-greeting\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text(
+        "[beliefnest.filters]\ngreeting = bn_greeting:greeting\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    assert show("{{ branch | greeting }}", filterset.installed_filters(BUILT_IN)) == "Hi sally"
+
+
+def test_the_default_template_renders_with_and_without_extras():
+    template = built_in_template("default")
+    plain = show(template, task="Get a diamond.")
+    assert plain.endswith("Task: Get a diamond.\n")
+    assert "Places:" not in plain
+    skill = {"signature": "think(bot, msg)", "description": "Think."}
+    full = show(template, task="Go.", skills=[skill], places={"Home": (1, 2, 3)})
+    assert "Places:\nHome is at (1, 2, 3)\n\nPosition:" in full
+    assert "think(bot, msg)\n    Think.\n" in full
+    with pytest.raises(TemplateError, match="'task' is undefined"):
+        show(template)
+
+
+def test_an_unknown_built_in_template_names_the_nearest():
+    with pytest.raises(TemplateError, match="'papr'; did you mean paper"):
+        built_in_template("papr")
+
+
+def test_the_reference_in_the_docs_is_what_the_filters_do():
+    page = Path(__file__).parents[2] / "docs" / "filters.md"
+    assert page.read_text(encoding="utf-8") == filter_reference()
