@@ -7,7 +7,7 @@ import msgspec
 
 from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.document import Document, KeyPath, Node, plain
-from beliefnest.scenarios.format import ScenarioFile, allowed_keys
+from beliefnest.scenarios.format import ScenarioFile, allowed_keys, allowed_values
 
 __all__ = ["check_form"]
 
@@ -50,6 +50,8 @@ def _fault(document: Document, error: str) -> ScenarioError:
     if missing := _MISSING_FIELD.fullmatch(what):
         return document.fault(path, f"the key {missing['name']!r} is missing")
     what = what[:1].lower() + what[1:].replace("`", "'")
+    if values := allowed_values(path, of_keys=match["key"] is not None):
+        what += f"; allowed are {', '.join(values)}"
     return document.fault(path, f"a key in it: {what}" if match["key"] else what)
 
 

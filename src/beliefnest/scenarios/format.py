@@ -25,6 +25,7 @@ __all__ = [
     "ScenarioFile",
     "StepEntry",
     "allowed_keys",
+    "allowed_values",
     "schema",
 ]
 
@@ -242,13 +243,23 @@ def _mapping_of(values: dict[str, str]) -> dict[str, Any]:
 
 def allowed_keys(path: Iterable[str | int]) -> list[str]:
     """The keys that the object at a place of a scenario file may have; none if it is no object."""
-    published = schema()
-    definitions = published["$defs"]
+    return sorted({key for place in _places(path) for key in place.get("properties", {})})
+
+
+def allowed_values(path: Iterable[str | int], *, of_keys: bool = False) -> list[str]:
+    """The words that may stand, or be keys, at a place of a scenario file, if they are listed."""
+    places = [place.get("propertyNames", {}) if of_keys else place for place in _places(path)]
+    return sorted({str(value) for place in places for value in place.get("enum", [])})
+
+
+def _places(path: Iterable[str | int]) -> list[dict[str, Any]]:
+    """What the schema says of a place of a scenario file, one entry for each form it may have."""
+    definitions = schema()["$defs"]
     found = [definitions["ScenarioFile"]]
     for key in path:
         inner = [_inside(definition, key) for definition in found]
         found = [leaf for choice in inner for leaf in _choices(choice, definitions)]
-    return sorted({key for definition in found for key in definition.get("properties", {})})
+    return found
 
 
 def _inside(definition: dict[str, Any], key: str | int) -> dict[str, Any]:
