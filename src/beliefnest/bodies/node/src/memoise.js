@@ -28,26 +28,6 @@ function memoised (make) {
   return Object.assign(remembered, make)
 }
 
-/** Block objects by state, copied by reference: `new Block` works out all its properties anew. */
-function cacheBlocks (registry) {
-  const Block = require('prismarine-block')(registry)
-  const Chunk = require('prismarine-chunk')(registry)
-  const prototypes = new Map()
-  const fromStateId = Block.fromStateId
-  Chunk.prototype.getBlock = function getBlock (position) {
-    const stateId = this.getBlockStateId(position)
-    let known = prototypes.get(stateId)
-    if (known === undefined) {
-      known = fromStateId(stateId, 0)
-      prototypes.set(stateId, known)
-    }
-    const block = Object.assign(Object.create(Block.prototype), known)
-    block.computedStates = {}
-    block.entity = this.getBlockEntity(position)
-    return block
-  }
-}
-
 /** For running from source; the bundle does the same when it is built (see build.js). */
 function memoiseInstalled () {
   for (const name of MEMOISED) {
@@ -57,4 +37,4 @@ function memoiseInstalled () {
   }
 }
 
-module.exports = { MEMOISED, memoised, memoiseInstalled, cacheBlocks }
+module.exports = { MEMOISED, memoised, memoiseInstalled }

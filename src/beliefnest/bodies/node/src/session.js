@@ -1,7 +1,7 @@
 'use strict'
 /** Answers the requests of the channel (design/channel.md), one at a time. */
 const { Random } = require('./time/random')
-const { cacheBlocks } = require('./memoise')
+const { rememberBlocks } = require('./blocks')
 const { createServer } = require('./server')
 const { Regions } = require('./regions/regions')
 const { Runner } = require('./runner')
@@ -59,7 +59,7 @@ class Session {
     this.clock.root.random = new Random(String(seed))
     const registry = require('prismarine-registry')(minecraft)
     registry.loadDimensionCodec(registry.loginPacket.dimensionCodec)
-    cacheBlocks(registry)
+    rememberBlocks(registry)
     const serv = createServer(registry)
     this.regions = new Regions(serv, this.clock, frame => this.send({ frame }))
     this.runner = new Runner(this.regions, evaluate, scopeOf)

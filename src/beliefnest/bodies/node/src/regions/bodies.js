@@ -1,7 +1,11 @@
 'use strict'
 /** Puts agents into a region: a server-side player and the Mineflayer bot that is its mind. */
 const { connect } = require('../net/transport')
+const { orBadRequest } = require('./changes')
 const { agentUuid, INJECTION_MS, startBot } = require('../bots/bot')
+
+// What gravity leaves of the vertical speed of one who stands: (0 - 0.08) * 0.98 a tick.
+const STANDING_VELOCITY = -0.0784
 
 class Bodies {
   /**
@@ -26,9 +30,7 @@ class Bodies {
     for (const { player, state } of joining) this.letIn(region, player, state)
     await this.clock.advance(0)
     for (const { agent, bot, player, state } of joining) {
-      // A client answers being placed with "not on the ground".
-      bot.entity.onGround = state.on_ground
-      player.onGround = state.on_ground
+      ground(bot, player, state)
       bot.physicsEnabled = true
       region.bodies.set(agent, { bot, player })
     }
@@ -61,8 +63,31 @@ class Bodies {
     player.sendWorld(region.columns)
     player.meet()
     player.emit('connected')
-    player.setPossessions({ inventory: state.inventory, equipment: state.equipment })
-    player.updateHealth(state.health)
+    give(player, state)
+  }
+
+  /**
+   * Makes agents of the active region as asked; null: not there.
+   * @param {import('./region').Region} region
+   * @param {object} agents AGENT or null by name
+   */
+  async apply (region, agents) {
+    const joining = {}
+    const staying = []
+    for (const [agent, state] of Object.entries(agents)) {
+      const body = region.bodies.get(agent)
+      if (state === null && body !== undefined) this.remove(region, agent)
+      else if (state !== null && body === undefined) joining[agent] = state
+      else if (state !== null) staying.push({ ...body, state })
+    }
+    for (const { player, state } of staying) {
+      player.place(region.toServer(state.position), state.yaw, state.pitch)
+      player.food = state.food
+      give(player, state)
+    }
+    if (Object.keys(joining).length > 0) await this.add(region, joining)
+    await this.clock.advance(0)
+    for (const { bot, player, state } of staying) ground(bot, player, state)
   }
 
   /** Takes an agent out of the active region. */
@@ -73,6 +98,18 @@ class Bodies {
     bot.removeAllListeners()
     this.serv.forgetPlayer?.(player.uuid)
   }
+}
+
+function give (player, { inventory, equipment, health }) {
+  orBadRequest(() => player.setPossessions({ inventory, equipment }))
+  player.updateHealth(health)
+}
+
+// A client answers being placed with "not on the ground".
+function ground (bot, player, { on_ground: onGround }) {
+  bot.entity.onGround = onGround
+  if (onGround) bot.entity.velocity.y = STANDING_VELOCITY
+  player.onGround = onGround
 }
 
 module.exports = { Bodies }

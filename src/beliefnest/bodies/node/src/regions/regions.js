@@ -4,6 +4,7 @@ const { Allotment } = require('./allotment')
 const { Bodies } = require('./bodies')
 const { Box } = require('./box')
 const { buildColumns, dropColumns, readStates } = require('./columns')
+const { applyBlocks, applyContainers, applyItems } = require('./changes')
 const { agentStates, containerStates, itemStates } = require('./facts')
 const { Recorder } = require('./recorder')
 const { Region } = require('./region')
@@ -60,10 +61,8 @@ class Regions {
     try {
       await this.inside(region, async () => {
         buildColumns(this.serv, region, states)
-        for (const [x, y, z, content] of containers) {
-          this.serv.containers.set(region.toServer([x, y, z]), content)
-        }
-        for (const item of Object.values(items)) this.dropItem(region, item)
+        applyContainers(this.serv, region, containers)
+        applyItems(this.serv, region, items)
         await this.bodies.add(region, agents)
         region.recorder.settle()
       })
@@ -74,16 +73,25 @@ class Regions {
     return this.snapshot(region)
   }
 
-  dropItem (region, { name, count, position }) {
-    const data = this.serv.registry.itemsByName[name]
-    this.serv.dropItem(region.toServer(position), new this.serv.Item(data.id, count), { delay: 0 })
+  /** @returns {Promise<object>} SNAPSHOT of the region once it is as asked */
+  async apply ({ region: name, blocks, containers, agents, items, tick }) {
+    const region = this.get(name)
+    await this.inside(region, async () => {
+      applyBlocks(this.serv, region, blocks)
+      applyContainers(this.serv, region, containers)
+      applyItems(this.serv, region, items)
+      await this.bodies.apply(region, agents)
+      region.tick = tick
+      region.recorder.settle()
+    })
+    return this.snapshot(region)
   }
 
   async destroy (name) {
     const region = this.get(name)
     await this.inside(region, () => {
       for (const agent of [...region.bodies.keys()]) this.bodies.remove(region, agent)
-      this.serv.forgetCountdowns?.(position => region.contains(position))
+      this.serv.forgetRegion(position => region.contains(position))
     })
     region.context.timers.clear()
     dropColumns(this.serv, region)

@@ -14,11 +14,7 @@ module.exports = [
   named('animations', require('flying-squid/src/lib/plugins/animations')),
   named('sound', require('flying-squid/src/lib/plugins/sound')),
   named('particle', require('flying-squid/src/lib/plugins/particle')),
-  named('physics', require('flying-squid/src/lib/plugins/physics')),
-  named('blocks', require('flying-squid/src/lib/plugins/blocks')),
-  named('inventory', require('flying-squid/src/lib/plugins/inventory')),
-  named('digging', require('flying-squid/src/lib/plugins/digging')),
-  named('placeBlock', require('flying-squid/src/lib/plugins/placeBlock')),
+  require('./digging'),
   require('./metadata'),
   require('./chat'),
   require('./login')

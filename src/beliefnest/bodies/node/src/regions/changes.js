@@ -1,0 +1,51 @@
+'use strict'
+/** Makes parts of the active region as asked, changing only what differs. */
+const { BadRequest } = require('../channel/errors')
+const { itemStates } = require('./facts')
+
+/** @param {Array} blocks [x, y, z, state] */
+function applyBlocks (serv, region, blocks) {
+  for (const [x, y, z, state] of blocks) {
+    if (!region.box.contains(x, y, z)) {
+      throw new BadRequest(`block (${x}, ${y}, ${z}) lies outside the box of region ${region.name}`)
+    }
+    serv.blocks.set(region.toServer([x, y, z]), state)
+  }
+}
+
+/** @param {Array} containers [x, y, z, items or null]; null says that none is left there */
+function applyContainers (serv, region, containers) {
+  for (const [x, y, z, items] of containers) {
+    const position = region.toServer([x, y, z])
+    if (items !== null) {
+      orBadRequest(() => serv.containers.set(position, items))
+    } else if (serv.containers.get(position) !== null) {
+      throw new BadRequest(`a container stands at (${x}, ${y}, ${z}), which was to have none; change its block`)
+    }
+  }
+}
+
+/** @param {object} items by any key; all that lie in the region */
+function applyItems (serv, region, items) {
+  const text = list => JSON.stringify(list.map(({ name, count, position }) => [name, count, position]).sort())
+  const wanted = Object.values(items)
+  if (text(wanted) === text(Object.values(itemStates(serv, region)))) return
+  serv.removeItemEntities(place => region.contains(place))
+  for (const { name, count, position } of wanted) {
+    const data = serv.registry.itemsByName[name]
+    if (data === undefined) throw new BadRequest(`there is no item called ${name}`)
+    serv.dropItem(region.toServer(position), new serv.Item(data.id, count), { delay: 0 })
+  }
+}
+
+/** Runs what may refuse its arguments with a RangeError. */
+function orBadRequest (action) {
+  try {
+    return action()
+  } catch (error) {
+    if (error instanceof RangeError) throw new BadRequest(error.message)
+    throw error
+  }
+}
+
+module.exports = { applyBlocks, applyContainers, applyItems, orBadRequest }
