@@ -50,7 +50,7 @@ def _fault(document: Document, error: str) -> ScenarioError:
     if missing := _MISSING_FIELD.fullmatch(what):
         return document.fault(path, f"the key {missing['name']!r} is missing")
     what = what[:1].lower() + what[1:].replace("`", "'")
-    if values := allowed_values(path, of_keys=match["key"] is not None):
+    if values := allowed_values(path):
         what += f"; allowed are {', '.join(values)}"
     return document.fault(path, f"a key in it: {what}" if match["key"] else what)
 

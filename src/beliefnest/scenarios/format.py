@@ -16,6 +16,7 @@ __all__ = [
     "AgentEntry",
     "BlockEntry",
     "ContainerEntry",
+    "EquipmentEntry",
     "ExpectEntry",
     "ExpectationEntry",
     "InitialBeliefEntry",
@@ -64,6 +65,17 @@ class ContainerEntry(_Entry, frozen=True):
     label: Annotated[str, _note("What people call it, in tables and pictures.")] = ""
 
 
+class EquipmentEntry(_Entry, frozen=True):
+    """What an agent wears or holds: slot to item."""
+
+    head: str | None = None
+    chest: str | None = None
+    legs: str | None = None
+    feet: str | None = None
+    main_hand: str | None = None
+    off_hand: str | None = None
+
+
 class AgentEntry(_Entry, frozen=True):
     """An agent, which is a Mineflayer bot in a Minecraft world."""
 
@@ -78,10 +90,7 @@ class AgentEntry(_Entry, frozen=True):
         dict[str, int],
         _note("Item name to count; what is worn or held counts in and need not be listed."),
     ] = {}
-    equipment: Annotated[
-        dict[Literal["head", "chest", "legs", "feet", "main_hand", "off_hand"], str],
-        _note("Slot to the item worn or held there."),
-    ] = {}
+    equipment: EquipmentEntry = EquipmentEntry()
     health: Annotated[float, msgspec.Meta(gt=0, le=20, description="Half hearts.")] = 20.0
     food: Annotated[float, msgspec.Meta(ge=0, le=20, description="Half drumsticks.")] = 20.0
 
@@ -246,10 +255,9 @@ def allowed_keys(path: Iterable[str | int]) -> list[str]:
     return sorted({key for place in _places(path) for key in place.get("properties", {})})
 
 
-def allowed_values(path: Iterable[str | int], *, of_keys: bool = False) -> list[str]:
-    """The words that may stand, or be keys, at a place of a scenario file, if they are listed."""
-    places = [place.get("propertyNames", {}) if of_keys else place for place in _places(path)]
-    return sorted({str(value) for place in places for value in place.get("enum", [])})
+def allowed_values(path: Iterable[str | int]) -> list[str]:
+    """The words that may stand at a place of a scenario file, if they are listed."""
+    return sorted({str(value) for place in _places(path) for value in place.get("enum", [])})
 
 
 def _places(path: Iterable[str | int]) -> list[dict[str, Any]]:

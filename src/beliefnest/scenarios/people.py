@@ -9,7 +9,7 @@ from beliefnest.scenarios.format import AgentEntry, ScenarioFile
 from beliefnest.scenarios.space import check_items
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import EYE_HEIGHT, AgentState, Box, Point
+from beliefnest.world.values import EQUIPMENT_SLOTS, EYE_HEIGHT, AgentState, Box, Point
 
 __all__ = ["build_agents"]
 
@@ -53,9 +53,11 @@ def _agent(document: Document, name: str, entry: AgentEntry, registry: Registry)
     if not all(math.isfinite(value) for value in entry.position):
         raise document.fault((*path, "position"), "must be three finite numbers")
     check_items(document, (*path, "inventory"), entry.inventory, registry)
-    for slot, item in entry.equipment.items():
+    slots = ((slot, getattr(entry.equipment, slot)) for slot in EQUIPMENT_SLOTS)
+    equipment: dict[str, str] = {slot: item for slot, item in slots if item is not None}
+    for slot, item in equipment.items():
         check_items(document, (*path, "equipment", slot), {item: 1}, registry)
-    worn = list(entry.equipment.values())
+    worn = list(equipment.values())
     inventory = dict(entry.inventory)
     for item in worn:
         inventory[item] = max(inventory.get(item, 0), worn.count(item))
@@ -64,7 +66,7 @@ def _agent(document: Document, name: str, entry: AgentEntry, registry: Registry)
         position=entry.position,
         yaw=yaw,
         pitch=pitch,
-        equipment={str(slot): item for slot, item in entry.equipment.items()},
+        equipment=equipment,
         inventory=inventory,
         health=entry.health,
         food=entry.food,
