@@ -1,0 +1,80 @@
+'use strict'
+const assert = require('node:assert/strict')
+const { describe, it } = require('node:test')
+const { Allotment } = require('../src/regions/allotment')
+const { Box } = require('../src/regions/box')
+const { angleStep, fromDegrees, samePose, toDegrees, wrap } = require('../src/server/angles')
+const { makeRegional, regionalState } = require('../src/server/regional')
+
+describe('a box', () => {
+  const box = new Box([-1, 5, 2], [1, 6, 4])
+
+  it('counts its blocks, x slowest and z fastest', () => {
+    assert.equal(box.size, 18)
+    const visited = []
+    box.forEach((x, y, z, index) => {
+      assert.equal(box.index(x, y, z), index)
+      visited.push([x, y, z])
+    })
+    assert.equal(visited.length, 18)
+    assert.deepEqual(visited.slice(0, 4), [[-1, 5, 2], [-1, 5, 3], [-1, 5, 4], [-1, 6, 2]])
+  })
+
+  it('knows what is in it', () => {
+    assert.ok(box.contains(1, 6, 4))
+    assert.ok(!box.contains(2, 6, 4) && !box.contains(1, 7, 4) && !box.contains(1, 6, 5) && !box.contains(1, 4, 4))
+    assert.deepEqual(box.grown().low, [-2, 4, 1])
+  })
+})
+
+describe('the allotment', () => {
+  it('gives whole chunks far apart, and strips that were given back again', () => {
+    const allotment = new Allotment()
+    const box = new Box([-11, -52, -11], [11, -49, 11])
+    const places = [1, 2, 3].map(() => allotment.take(box))
+    assert.ok(places.every(({ x, z }) => x % 16 === 0 && z % 16 === 0))
+    assert.ok(places[1].x - places[0].x > 1000)
+    allotment.giveBack(places[1])
+    assert.equal(allotment.take(box).x, places[1].x)
+    const huge = allotment.take(new Box([0, 0, 0], [5000, 1, 1]))
+    assert.ok(huge.x > places[2].x)
+  })
+})
+
+describe('angles', () => {
+  it('go to degrees and back', () => {
+    for (const yaw of [-3, -1.5, 0, 0.3, Math.PI]) {
+      const pose = { yaw, pitch: yaw / 3 }
+      const { yaw: a, pitch: b } = toDegrees(pose)
+      assert.ok(samePose(fromDegrees(a, b), pose), `${yaw}`)
+    }
+    assert.deepEqual(toDegrees({ yaw: Math.PI, pitch: 0 }), { yaw: 0, pitch: -0 })
+  })
+
+  it('are the same after a whole turn', () => {
+    assert.ok(Math.abs(wrap(7) - (7 - 2 * Math.PI)) < 1e-12)
+    assert.equal(wrap(-Math.PI), Math.PI)
+    assert.ok(!samePose({ yaw: 0, pitch: 0 }, { yaw: 0.001, pitch: 0 }))
+  })
+
+  it('become signed bytes', () => {
+    assert.deepEqual([0, 90, 180, 270, -90].map(angleStep), [0, 64, -128, -64, -64])
+  })
+})
+
+describe('regional state', () => {
+  it('is that of the active region', () => {
+    const serv = {}
+    makeRegional(serv)
+    serv.players.push('nobody')
+    const [one, two] = [{ state: regionalState() }, { state: regionalState() }]
+    serv.region = one
+    assert.deepEqual(serv.players, [])
+    serv.players.push('sally')
+    serv.entityMaxId += 5
+    serv.region = two
+    assert.deepEqual([serv.players, serv.entityMaxId], [[], 0])
+    serv.region = one
+    assert.deepEqual([serv.players, serv.entityMaxId], [['sally'], 5])
+  })
+})
