@@ -1,0 +1,163 @@
+'use strict'
+/**
+ * What a program finds besides the language: time, random numbers, timers, console, mcData,
+ * the classes behind handles, the skills.
+ * Runs inside QuickJS: the function is handed over as text and must not refer to anything outside it.
+ */
+module.exports = function defineGlobals (env) {
+  const { config, request, call, encode, handle } = env
+  const timers = new Map()
+  let nextTimer = 1
+
+  function show (value, depth = 0) {
+    if (typeof value === 'string') return depth ? JSON.stringify(value) : value
+    if (typeof value === 'function') return `[function ${value.name}]`
+    if (value instanceof Error) return `${value.name}: ${value.message}`
+    if (env.isVector(value) || value === null || typeof value !== 'object') return String(value)
+    if (env.isHandle(value)) return `[${env.kindOf(value)}]`
+    if (depth > 3) return Array.isArray(value) ? '[...]' : '{...}'
+    if (Array.isArray(value)) return `[${value.map((item) => show(item, depth + 1)).join(', ')}]`
+    return `{${Object.keys(value).map((key) => `${key}: ${show(value[key], depth + 1)}`).join(', ')}}`
+  }
+
+  function deepFreeze (value) {
+    if (value !== null && typeof value === 'object') Object.values(Object.freeze(value)).forEach(deepFreeze)
+    return value
+  }
+
+  function startTimer (callback, delay, args, repeat) {
+    if (typeof callback !== 'function') throw new TypeError('the first argument of a timer must be a function')
+    const id = nextTimer++
+    request(['timer', id, Math.max(Number(delay) || 0, repeat ? 1 : 0), repeat])
+    timers.set(id, { callback, args, repeat })
+    return id
+  }
+
+  function stopTimer (id) {
+    if (timers.delete(id)) request(['untimer', id])
+  }
+
+  function fire (id) {
+    const { callback, args, repeat } = timers.get(id)
+    if (!repeat) timers.delete(id)
+    callback(...args)
+  }
+
+  // Local time would depend on the machine.
+  function defineDate () {
+    const RealDate = Date
+    class VirtualDate extends RealDate {
+      constructor (...args) {
+        if (args.length === 0) super(env.now())
+        else if (args.length === 1) super(args[0])
+        else super(RealDate.UTC(...args))
+      }
+
+      static now () { return env.now() }
+      getTimezoneOffset () { return 0 }
+      toString () { return this.toUTCString() }
+    }
+    for (const part of ['FullYear', 'Month', 'Date', 'Day', 'Hours', 'Minutes', 'Seconds', 'Milliseconds']) {
+      for (const verb of ['get', 'set']) {
+        const utc = RealDate.prototype[`${verb}UTC${part}`]
+        if (utc) RealDate.prototype[verb + part] = utc
+      }
+    }
+    RealDate.prototype.constructor = VirtualDate
+    Object.defineProperty(VirtualDate, 'name', { value: 'Date' })
+    globalThis.Date = VirtualDate
+  }
+
+  function readOnly (what) {
+    return () => { throw new TypeError(`${what} is read-only`) }
+  }
+
+  function lazyTable (name) {
+    const known = new Map()
+    let keys
+    const get = (key) => {
+      if (!known.has(key)) known.set(key, deepFreeze(request(['data', name, key])))
+      return known.get(key)
+    }
+    const allKeys = () => (keys ??= request(['keys', name]))
+    const refuse = readOnly(`mcData.${name}`)
+    return new Proxy({}, {
+      get: (_, key) => typeof key === 'string' ? get(key) : undefined,
+      has: (_, key) => typeof key === 'string' && get(key) !== undefined,
+      ownKeys: () => allKeys(),
+      getOwnPropertyDescriptor: (_, key) => get(key) === undefined
+        ? undefined
+        : { value: get(key), enumerable: true, configurable: true, writable: false },
+      set: refuse,
+      defineProperty: refuse,
+      deleteProperty: refuse
+    })
+  }
+
+  function defineData () {
+    const data = {}
+    for (const [name, form] of Object.entries(config.tables)) {
+      let value
+      const get = () => (value ??= form === 'table' ? lazyTable(name) : deepFreeze(request(['data', name, null])))
+      Object.defineProperty(data, name, { get, enumerable: true })
+    }
+    return Object.freeze(data)
+  }
+
+  function defineKind (name, { gets, sets, calls }) {
+    const prototype = env.kinds[name]
+    for (const property of gets) {
+      const set = sets.includes(property)
+        ? function (value) { request(['set', handle(this), property, encode(value)]) }
+        : readOnly(`${name}.${property}`)
+      const get = function () { return request(['get', handle(this), property]) }
+      Object.defineProperty(prototype, property, { get, set, configurable: true })
+    }
+    for (const method of calls) {
+      prototype[method] = function (...args) {
+        return call(['call', handle(this), method, args.map((arg) => encode(arg))])
+      }
+    }
+  }
+
+  function defineKinds () {
+    for (const [name, kind] of Object.entries(config.kinds)) defineKind(name, kind)
+    const bot = env.kinds.bot
+    for (const alias of ['off', 'removeListener']) bot[alias] = removeListener
+    bot.on = bot.addListener = function (event, listener) { return addListener(this, event, listener, false) }
+    bot.once = function (event, listener) { return addListener(this, event, listener, true) }
+    if (env.data) Object.defineProperty(bot, 'registry', { value: env.data })
+  }
+
+  function addListener (bot, event, listener, once) {
+    if (typeof listener !== 'function') throw new TypeError('the second argument of bot.on must be a function')
+    request(['on', String(event), encode(listener), once])
+    return bot
+  }
+
+  function removeListener (event, listener) {
+    if (typeof listener === 'function') request(['off', String(event), encode(listener)])
+    return this
+  }
+
+  function defineConsole () {
+    const logger = (level) => (...values) => { request(['log', level, values.map((value) => show(value)).join(' ')]) }
+    globalThis.console = Object.fromEntries(['log', 'info', 'debug', 'warn', 'error'].map((level) => [level, logger(level)]))
+  }
+
+  Object.assign(env, { show, deepFreeze, fire })
+  env.kindOf = (value) => Object.keys(env.kinds).find((kind) => Object.getPrototypeOf(value) === env.kinds[kind])
+  env.kinds = Object.fromEntries(Object.keys(config.kinds).map((name) => [name, {}]))
+  env.data = config.tables ? defineData() : undefined
+  defineKinds()
+  defineDate()
+  defineConsole()
+  Math.random = () => env.random()
+  globalThis.setTimeout = (callback, delay, ...args) => startTimer(callback, delay, args, false)
+  globalThis.setInterval = (callback, delay, ...args) => startTimer(callback, delay, args, true)
+  globalThis.setImmediate = (callback, ...args) => startTimer(callback, 0, args, false)
+  globalThis.clearTimeout = globalThis.clearInterval = globalThis.clearImmediate = stopTimer
+  globalThis.queueMicrotask = (callback) => { Promise.resolve().then(callback) }
+  env.skills = Object.fromEntries(config.skills.map((name) =>
+    [name, (...args) => call(['skill', name, args.map((arg) => encode(arg))])]))
+}

@@ -1,0 +1,17 @@
+'use strict'
+/** The text that prepares a fresh QuickJS context for a program. */
+
+const parts = [require('./vec3'), require('./values'), require('./border'), require('./globals'), require('./main')]
+
+/**
+ * An expression: a function of (host, now, random, marks, configText) that prepares the
+ * global object and returns `{start(program), dispatch(text)}`.
+ */
+const guestSource = `(function (host, now, random, marks, configText) {
+  'use strict'
+  const env = { host, now, random, marks, config: JSON.parse(configText) };
+  ${parts.slice(0, -1).map((part) => `(${part})(env);`).join('\n')}
+  return (${parts.at(-1)})(env)
+})`
+
+module.exports = { guestSource }

@@ -1,0 +1,84 @@
+'use strict'
+/** Runs untrusted programs: SECURITY.md says against what, and against what not. */
+
+const { Engine } = require('./engine')
+const { Session } = require('./session')
+const { prepareProgram, ProgramSyntaxError } = require('./program')
+const { describeOutcome } = require('./outcome')
+
+const DEFAULTS = { fuel: 250_000_000, memory: 64 * 2 ** 20 }
+const MAX_FUEL = 2_000_000_000
+const GUEST_NAMES = ['Vec3', 'goals', 'Movements']
+
+/**
+ * Compiles the interpreter, once for any number of runs.
+ * @param {{fuel?: number, memory?: number}} [options] limits of a run: fuel in loop turns and calls
+ *   of the interpreter (about one per bytecode instruction), memory in bytes
+ * @returns {{run: function(object): Promise<object>}} see `run`
+ */
+function createSandbox (options = {}) {
+  const engine = new Engine()
+  const defaults = { ...DEFAULTS, ...options }
+  return { run: (request) => run(engine, { ...defaults, ...request }) }
+}
+
+/**
+ * Runs one program.
+ * @param {Engine} engine
+ * @param {object} request
+ * @param {string} request.code the body of an async function, or one whole function of `bot`
+ * @param {object} request.bot a Mineflayer bot; the program reaches of it what policy/ names
+ * @param {Object<string, *>} request.scope skills by name (functions of the host), and `mcData`;
+ *   other values are not handed over. Vec3, goals and Movements are the guest's own.
+ * @param {AbortSignal} [request.signal] ends the program when aborted
+ * @returns {Promise<{ok: boolean, error: ?{message: string, line: ?number, column: ?number, skill: ?string,
+ *   kind: string}, lines: number[], log: {level: string, text: string}[], unfinished: string[], fuel: number}>}
+ *   never rejects for a fault of the program. `kind` is syntax, error, skill (a skill or a call of the bot
+ *   failed), refused (an argument that cannot be used), fuel, memory, stack, aborted or internal;
+ *   `lines` ran; `unfinished` names calls that were under way at the end; `fuel` was used.
+ *   Time, timers and random numbers are those of the process at the time of the call.
+ */
+async function run (engine, { code, bot, scope = {}, fuel, memory, signal }) {
+  if (!(fuel > 0 && fuel <= MAX_FUEL)) throw new RangeError(`the fuel must be between 1 and ${MAX_FUEL}, found ${fuel}`)
+  const { skills, data } = splitScope(scope)
+  const parameters = ['bot', ...GUEST_NAMES, ...(data ? ['mcData'] : []), ...Object.keys(skills)]
+  let program
+  try {
+    program = prepareProgram(code, parameters)
+  } catch (error) {
+    if (!(error instanceof ProgramSyntaxError)) throw error
+    const { message, line, column } = error
+    return { ok: false, error: { message, line, column, skill: null, kind: 'syntax' }, lines: [], log: [], unfinished: [], fuel: 0 }
+  }
+  const guest = await engine.open({ fuel, memory })
+  const session = new Session(guest, { bot, skills, data, random: () => Math.random() })
+  return observe(session, guest, program, parameters, { fuel, memory, signal })
+}
+
+async function observe (session, guest, program, parameters, { fuel, memory, signal }) {
+  const abort = () => session.finish({ ok: false, error: { message: 'the program was ended', kind: null } })
+  signal?.addEventListener('abort', abort, { once: true })
+  if (signal?.aborted) abort()
+  else session.begin(program, parameters)
+  const outcome = await session.finished
+  signal?.removeEventListener('abort', abort)
+  const { ran, last } = guest.statements()
+  return {
+    ok: outcome.ok,
+    error: describeOutcome(outcome, program, { fuel, memory }, last),
+    lines: program.linesOf(ran),
+    log: session.log,
+    unfinished: session.unfinished,
+    fuel: guest.fuelAtEnd
+  }
+}
+
+function splitScope (scope) {
+  const skills = {}
+  for (const [name, value] of Object.entries(scope)) {
+    if (typeof value === 'function' && !GUEST_NAMES.includes(name)) skills[name] = value
+  }
+  return { skills, data: scope.mcData ?? null }
+}
+
+module.exports = { createSandbox }

@@ -1,0 +1,24 @@
+'use strict'
+/** Which kind of the policy a host object is. */
+
+/**
+ * @param {object} value
+ * @param {object} bot the program's own bot; other bots are of no kind
+ * @returns {?string} `block` and `item` cross as copies, the others as handles; null: plain data or foreign
+ */
+function kindOf (value, bot) {
+  if (value === bot) return 'bot'
+  if (value === bot.pathfinder) return 'pathfinder'
+  if (value === bot.entity || isEntity(value, bot)) return 'entity'
+  if (typeof value.getProperties === 'function' && typeof value.stateId === 'number') return 'block'
+  if (typeof value.emptySlotCount === 'function' && Array.isArray(value.slots)) return 'window'
+  if (typeof value.stackSize === 'number' && typeof value.count === 'number' && typeof value.type === 'number') return 'item'
+  if (Array.isArray(value.delta) && typeof value.requiresTable === 'boolean') return 'recipe'
+  return null
+}
+
+function isEntity (value, bot) {
+  return typeof value.id === 'number' && bot.entities !== undefined && bot.entities[value.id] === value
+}
+
+module.exports = { kindOf }

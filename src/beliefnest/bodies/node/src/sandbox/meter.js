@@ -1,0 +1,219 @@
+'use strict'
+/**
+ * Rewrites a WebAssembly module so that what it computes is counted and its recursion bounded.
+ *
+ * An interpreter polls for interrupts in its own loops only; library loops inside it (a search
+ * in a sparse array of 2^53 elements, the multiplication of large integers) run for ever without
+ * a poll. After the rewriting every loop turn and every call of the module costs one unit of
+ * the exported global `fuel`, copied memory costs one unit per 64 bytes, and every active call
+ * adds an estimate of its frame size to the exported global `depth`. The module traps
+ * (`unreachable`) when `fuel` falls below zero or `depth` rises above `stackBytes`. Both counts
+ * depend on the program alone, so a limit is reached at the same place on every machine.
+ */
+
+const { Reader, writeVector, unsigned, section } = require('./wasm-binary')
+const { skipImmediates } = require('./wasm-opcodes')
+
+const SECTION = { type: 1, import: 2, function: 3, global: 6, export: 7, code: 10 }
+const KIND = { function: 0, table: 1, memory: 2, global: 3 }
+const OP = {
+  unreachable: 0x00, block: 0x02, loop: 0x03, if: 0x04, end: 0x0b, br: 0x0c, return: 0x0f,
+  call: 0x10, callIndirect: 0x11, prefix: 0xfc, localGet: 0x20, globalGet: 0x23, globalSet: 0x24,
+  i32Const: 0x41, ltSigned: 0x48, gtSigned: 0x4a, add: 0x6a, subtract: 0x6b, shiftRight: 0x76
+}
+const BULK = { copy: 10, fill: 11 }
+const I32 = 0x7f
+const EMPTY = 0x40
+const FRAME_BYTES = 96
+const LOCAL_BYTES = 8
+const BYTES_PER_FUEL_BITS = 6
+const MAX_I32 = 0x7fffffff
+
+/**
+ * @param {Uint8Array} bytes a module of the WebAssembly MVP with bulk memory and at most one
+ *   result per function
+ * @param {{stackBytes: number}} limits the largest value `depth` may take, in estimated bytes
+ * @returns {Uint8Array} the rewritten module, with two more exports: `fuel` and `depth`, mutable i32
+ * @throws {Error} if the module has something this rewriting does not know
+ */
+function meter (bytes, { stackBytes }) {
+  const sections = readSections(bytes)
+  const plan = survey(sections, stackBytes)
+  const bodies = readBodies(sections.get(SECTION.code)).map((body, i) => rewriteBody(body, plan.signatures[i], plan))
+  bodies.push(bulkBody(plan, BULK.copy), bulkBody(plan, BULK.fill))
+  const replaced = new Map([
+    [SECTION.type, appended(sections.get(SECTION.type), [bulkType()])],
+    [SECTION.function, appended(sections.get(SECTION.function), [plan.bulkType, plan.bulkType].map(unsigned))],
+    [SECTION.global, appended(sections.get(SECTION.global), [counter(MAX_I32), counter(0)])],
+    [SECTION.export, appended(sections.get(SECTION.export),
+      [globalExport('fuel', plan.fuel), globalExport('depth', plan.depth)])],
+    [SECTION.code, writeVector(bodies.map((body) => [...unsigned(body.length), ...body]))]
+  ])
+  return assemble(bytes, replaced)
+}
+
+function readSections (bytes) {
+  const sections = new Map()
+  for (const { id, content } of new Reader(bytes, 8).sections()) if (id !== 0) sections.set(id, content)
+  for (const [name, id] of Object.entries(SECTION)) {
+    if (!sections.has(id)) throw new Error(`the module has no ${name} section`)
+  }
+  return sections
+}
+
+function assemble (bytes, replaced) {
+  const parts = [bytes.subarray(0, 8)]
+  for (const { id, content, whole } of new Reader(bytes, 8).sections()) {
+    parts.push(replaced.has(id) ? section(id, replaced.get(id)) : whole)
+  }
+  return new Uint8Array(Buffer.concat(parts))
+}
+
+function survey (sections, stackBytes) {
+  const types = readTypes(new Reader(sections.get(SECTION.type)))
+  const imports = countImports(new Reader(sections.get(SECTION.import)))
+  const signatures = new Reader(sections.get(SECTION.function)).vector((r) => types[r.unsigned()])
+  const globals = imports.globals + new Reader(sections.get(SECTION.global)).unsigned()
+  const functions = imports.functions + signatures.length
+  return { stackBytes, signatures, fuel: globals, depth: globals + 1, copy: functions, fill: functions + 1, bulkType: types.length }
+}
+
+function readTypes (reader) {
+  return reader.vector((r) => {
+    if (r.byte() !== 0x60) throw new Error('a type of the module is not a function type')
+    const params = r.vector((p) => p.byte())
+    const results = r.vector((p) => p.byte())
+    if (results.length > 1) throw new Error('a function of the module has several results')
+    return { params: params.length, block: results[0] ?? EMPTY }
+  })
+}
+
+function countImports (reader) {
+  let functions = 0
+  let globals = 0
+  reader.vector((r) => {
+    r.bytes(r.unsigned())
+    r.bytes(r.unsigned())
+    const kind = r.byte()
+    if (kind === KIND.function) { functions++; r.unsigned() } else if (kind === KIND.global) { globals++; r.bytes(2) } else if (kind === KIND.memory) r.limits()
+    else if (kind === KIND.table) { r.byte(); r.limits() } else throw new Error(`an import of the module has the unknown kind ${kind}`)
+  })
+  return { functions, globals }
+}
+
+function readBodies (content) {
+  return new Reader(content).vector((r) => r.bytes(r.unsigned()))
+}
+
+function rewriteBody (body, signature, plan) {
+  const reader = new Reader(body)
+  const locals = reader.vector((r) => { const count = r.unsigned(); r.byte(); return count })
+  const start = reader.position
+  const { loops, calls } = scan(body, start)
+  if (!loops && !calls) return body
+  const header = body.subarray(0, start)
+  const weight = FRAME_BYTES + LOCAL_BYTES * (signature.params + locals.reduce((sum, count) => sum + count, 0))
+  const frame = calls ? weight : 0
+  const inner = rewriteCode(body, start, plan)
+  return Buffer.concat([header, Uint8Array.from(charge(plan)), Uint8Array.from(enter(plan, frame)),
+    Uint8Array.from([OP.block, signature.block]), inner, Uint8Array.from([...leave(plan, frame), OP.end])])
+}
+
+function scan (body, start) {
+  const reader = new Reader(body, start)
+  let loops = false
+  let calls = false
+  while (!reader.done) {
+    const op = reader.byte()
+    if (op === OP.loop) loops = true
+    if (op === OP.call || op === OP.callIndirect || op === OP.prefix) calls = true
+    skipImmediates(reader, op)
+  }
+  return { loops, calls }
+}
+
+// Inside the wrapping block a jump to the function's own label leaves the block, so only
+// `return` has to be rewritten.
+function rewriteCode (body, start, plan) {
+  const reader = new Reader(body, start)
+  const parts = []
+  let nesting = 0
+  let copied = start
+  const replace = (from, code) => {
+    parts.push(body.subarray(copied, from), Uint8Array.from(code))
+    copied = reader.position
+  }
+  while (!reader.done) {
+    const from = reader.position
+    const op = reader.byte()
+    const immediate = skipImmediates(reader, op)
+    if (op === OP.return) replace(from, [OP.br, ...unsigned(nesting)])
+    else if (op === OP.loop) replace(reader.position, charge(plan))
+    else if (op === OP.prefix && immediate === BULK.copy) replace(from, [OP.call, ...unsigned(plan.copy)])
+    else if (op === OP.prefix && immediate === BULK.fill) replace(from, [OP.call, ...unsigned(plan.fill)])
+    if (op === OP.block || op === OP.loop || op === OP.if) nesting++
+    else if (op === OP.end) nesting--
+  }
+  parts.push(body.subarray(copied))
+  return Buffer.concat(parts)
+}
+
+function charge ({ fuel }) {
+  return [...take(fuel, [OP.i32Const, 1]), OP.globalGet, ...unsigned(fuel), OP.i32Const, 0, OP.ltSigned, ...trapIf()]
+}
+
+function enter ({ depth, stackBytes }, frame) {
+  if (frame === 0) return []
+  return [OP.globalGet, ...unsigned(depth), OP.i32Const, ...signed(frame), OP.add, OP.globalSet, ...unsigned(depth),
+    OP.globalGet, ...unsigned(depth), OP.i32Const, ...signed(stackBytes), OP.gtSigned, ...trapIf()]
+}
+
+function leave ({ depth }, frame) {
+  return frame === 0 ? [] : take(depth, [OP.i32Const, ...signed(frame)])
+}
+
+function take (global, amount) {
+  return [OP.globalGet, ...unsigned(global), ...amount, OP.subtract, OP.globalSet, ...unsigned(global)]
+}
+
+function trapIf () {
+  return [OP.if, EMPTY, OP.unreachable, OP.end]
+}
+
+function bulkType () {
+  return [0x60, 3, I32, I32, I32, 0]
+}
+
+function bulkBody (plan, operation) {
+  const length = [OP.localGet, 2, OP.i32Const, BYTES_PER_FUEL_BITS, OP.shiftRight]
+  const act = [OP.prefix, operation, 0, ...(operation === BULK.copy ? [0] : [])]
+  return Uint8Array.from([0, ...take(plan.fuel, length), ...charge(plan),
+    OP.localGet, 0, OP.localGet, 1, OP.localGet, 2, ...act, OP.end])
+}
+
+function counter (initial) {
+  return [I32, 1, OP.i32Const, ...signed(initial), OP.end]
+}
+
+function globalExport (name, index) {
+  return [name.length, ...Buffer.from(name), KIND.global, ...unsigned(index)]
+}
+
+function appended (content, entries) {
+  const reader = new Reader(content)
+  const count = reader.unsigned()
+  return Buffer.concat([Uint8Array.from(unsigned(count + entries.length)), content.subarray(reader.position),
+    ...entries.map((entry) => Uint8Array.from(entry))])
+}
+
+function signed (value) {
+  const bytes = []
+  for (;;) {
+    const low = value & 0x7f
+    value >>= 7
+    if (value === 0 && (low & 0x40) === 0) return [...bytes, low]
+    bytes.push(low | 0x80)
+  }
+}
+
+module.exports = { meter }

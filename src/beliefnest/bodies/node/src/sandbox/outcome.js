@@ -1,0 +1,69 @@
+'use strict'
+/** What a run is reported as: for the program's writer, in places of the program's own text. */
+
+const MAX_MESSAGE = 4000
+const PLACE = /\(?program\.js:(\d+):(\d+)\)?/
+
+/**
+ * @param {{ok: boolean, error?: object, ended?: import('./engine').GuestEnded}} outcome of the session
+ * @param {{locate: function, statement: function}} program
+ * @param {{fuel: number, memory: number}} limits
+ * @param {number} last number of the statement that ran last, 0 for none
+ * @returns {?{message: string, line: ?number, column: ?number, skill: ?string, kind: string}}
+ */
+function describeOutcome ({ ok, error, ended }, program, limits, last) {
+  if (ok) return null
+  const { message, skill, kind, stack } = ended ? ofEnd(ended, limits) : ofError(error, limits)
+  const place = placeIn(stack, program) ?? program.statement(last) ?? { line: null, column: null }
+  return { message: message.slice(0, MAX_MESSAGE), line: place.line, column: place.column, skill, kind }
+}
+
+function ofEnd ({ kind, message, guestStack }, limits) {
+  return { message: limitMessage(kind, limits) ?? message, skill: null, kind, stack: guestStack }
+}
+
+function ofError (error, limits) {
+  const { message, name, skill, stack, kind } = plainError(error)
+  const limit = limitOf(name, message)
+  if (limit) return { message: limitMessage(limit, limits), skill: null, kind: limit, stack }
+  const prefix = name === 'Error' || kind !== null || message.startsWith(`${name}:`) ? '' : `${name}: `
+  return { message: prefix + message, skill, kind: kind ?? 'error', stack }
+}
+
+// The record comes from the guest: any field may be anything.
+function plainError (record) {
+  const field = (key, otherwise) => typeof record?.[key] === 'string' ? record[key] : otherwise
+  const thrown = record?.thrown === true
+  return {
+    message: thrown ? `the program threw ${field('message', 'something')}` : field('message', 'the program failed'),
+    name: thrown ? 'Error' : field('name', 'Error').slice(0, 100),
+    skill: field('skill', null),
+    kind: ['skill', 'refused'].includes(record?.kind) ? record.kind : null,
+    stack: field('stack', '')
+  }
+}
+
+function limitOf (name, message) {
+  if (name !== 'InternalError') return null
+  return { 'out of memory': 'memory', 'stack overflow': 'stack', interrupted: 'fuel' }[message] ?? null
+}
+
+function limitMessage (kind, { fuel, memory }) {
+  switch (kind) {
+    case 'fuel': return `fuel exhausted: the program computed more than its limit of ${fuel} units; is there an endless loop?`
+    case 'memory': return `memory exhausted: the limit is ${Math.round(memory / 2 ** 20)} MiB`
+    case 'stack': return 'stack overflow: the program calls itself too deeply; the limit is about 1000 calls'
+    default: return null
+  }
+}
+
+function placeIn (stack, program) {
+  for (const line of stack.split('\n')) {
+    const match = PLACE.exec(line)
+    const place = match && program.locate(Number(match[1]), Number(match[2]))
+    if (place) return place
+  }
+  return null
+}
+
+module.exports = { describeOutcome }

@@ -1,0 +1,151 @@
+'use strict'
+/**
+ * What a program can see and do: the allow-list. What is not named here does not exist for
+ * it. `get` and `set` are properties, `call` methods with the types of arguments and result.
+ */
+
+const t = require('./types')
+
+const entity = t.live('entity')
+const window = t.live('window')
+const destination = t.choice('hand', 'head', 'torso', 'legs', 'feet', 'off-hand')
+const itemOrType = t.either(t.item, t.count)
+const control = t.choice('forward', 'back', 'left', 'right', 'jump', 'sprint', 'sneak')
+const time = t.record({ time: t.number, timeOfDay: t.number, day: t.number, isDay: t.boolean, moonPhase: t.number, age: t.number, doDaylightCycle: t.boolean })
+const game = t.record({ gameMode: t.text, dimension: t.text, difficulty: t.text, minY: t.number, height: t.number })
+const player = t.record({ username: t.text, entity: t.maybe(entity), ping: t.number, gamemode: t.number })
+const recipe = t.live('recipe')
+const transferred = [t.count, t.maybe(t.count), t.maybe(t.count)]
+
+const bot = {
+  get: {
+    username: t.text, version: t.text, entity, entities: t.dictionary(entity), players: t.dictionary(player),
+    player: t.maybe(player), inventory: window, currentWindow: t.maybe(window), heldItem: t.maybe(t.item),
+    quickBarSlot: t.number, health: t.number, food: t.number, foodSaturation: t.number, oxygenLevel: t.number,
+    experience: t.record({ level: t.number, points: t.number, progress: t.number }), game, time,
+    isSleeping: t.boolean, isRaining: t.boolean, usingHeldItem: t.boolean, targetDigBlock: t.maybe(t.block),
+    spawnPoint: t.vector, controlState: t.dictionary(t.boolean), pathfinder: t.live('pathfinder')
+  },
+  call: {
+    chat: [[t.chatText], t.nothing],
+    whisper: [[t.playerName, t.chatText], t.nothing],
+    blockAt: [[t.vector], t.maybe(t.block)],
+    findBlock: [[t.search], t.maybe(t.block)],
+    findBlocks: [[t.search], t.list(t.vector)],
+    blockAtCursor: [[t.maybe(t.within(0, 256))], t.maybe(t.block)],
+    canSeeBlock: [[t.block], t.boolean],
+    canDigBlock: [[t.block], t.boolean],
+    digTime: [[t.block], t.number],
+    entityAtCursor: [[t.maybe(t.within(0, 256))], t.maybe(entity)],
+    dig: [[t.block, t.maybe(t.either(t.boolean, t.choice('ignore'))), t.maybe(t.either(t.choice('auto', 'raycast'), t.vector))], t.later(t.nothing)],
+    stopDigging: [[], t.nothing],
+    placeBlock: [[t.block, t.vector], t.later(t.nothing)],
+    activateBlock: [[t.block, t.maybe(t.vector), t.maybe(t.vector)], t.later(t.nothing)],
+    activateEntity: [[entity], t.later(t.nothing)],
+    activateItem: [[t.maybe(t.boolean)], t.nothing],
+    deactivateItem: [[], t.nothing],
+    useOn: [[entity], t.nothing],
+    attack: [[entity], t.nothing],
+    swingArm: [[t.maybe(t.choice('left', 'right'))], t.nothing],
+    lookAt: [[t.vector, t.maybe(t.boolean)], t.later(t.nothing)],
+    look: [[t.within(-1000, 1000), t.within(-1000, 1000), t.maybe(t.boolean)], t.later(t.nothing)],
+    setControlState: [[control, t.boolean], t.nothing],
+    getControlState: [[control], t.boolean],
+    clearControlStates: [[], t.nothing],
+    waitForTicks: [[t.ticks], t.later(t.nothing)],
+    waitForChunksToLoad: [[], t.later(t.nothing)],
+    equip: [[itemOrType, destination], t.later(t.nothing)],
+    unequip: [[destination], t.later(t.nothing)],
+    setQuickBarSlot: [[t.within(0, 8)], t.nothing],
+    toss: [transferred, t.later(t.nothing)],
+    tossStack: [[t.item], t.later(t.nothing)],
+    consume: [[], t.later(t.nothing)],
+    sleep: [[t.block], t.later(t.nothing)],
+    wake: [[], t.later(t.nothing)],
+    isABed: [[t.block], t.boolean],
+    openContainer: [[t.either(t.block, entity)], t.later(window)],
+    openChest: [[t.either(t.block, entity)], t.later(window)],
+    openDispenser: [[t.block], t.later(window)],
+    openFurnace: [[t.block], t.later(window)],
+    openBlock: [[t.block], t.later(window)],
+    closeWindow: [[window], t.nothing],
+    craft: [[recipe, t.maybe(t.within(1, 1000)), t.maybe(t.block)], t.later(t.nothing)],
+    recipesFor: [[t.count, t.maybe(t.count), t.maybe(t.count), t.maybe(t.either(t.block, t.boolean))], t.list(recipe)],
+    recipesAll: [[t.count, t.maybe(t.count), t.maybe(t.either(t.block, t.boolean))], t.list(recipe)],
+    nearestEntity: [[t.maybe(t.entityFilter)], t.maybe(entity)],
+    getEquipmentDestSlot: [[destination], t.number]
+  }
+}
+
+const kinds = {
+  bot,
+  entity: {
+    get: {
+      id: t.number, type: t.text, name: t.maybe(t.text), username: t.maybe(t.text), displayName: t.maybe(t.text), kind: t.maybe(t.text),
+      position: t.vector, velocity: t.vector, yaw: t.number, pitch: t.number, height: t.number, width: t.number, eyeHeight: t.maybe(t.number),
+      onGround: t.boolean, isValid: t.boolean, health: t.maybe(t.number), equipment: t.list(t.maybe(t.item)), heldItem: t.maybe(t.item), count: t.maybe(t.number)
+    },
+    call: { getDroppedItem: [[], t.maybe(t.item)] }
+  },
+  window: {
+    get: {
+      id: t.number, type: t.text, title: t.plain, slots: t.list(t.maybe(t.item)), selectedItem: t.maybe(t.item),
+      inventoryStart: t.number, inventoryEnd: t.number, hotbarStart: t.number, fuel: t.maybe(t.number),
+      fuelSeconds: t.maybe(t.number), progress: t.maybe(t.number), progressSeconds: t.maybe(t.number)
+    },
+    call: {
+      items: [[], t.list(t.item)],
+      containerItems: [[], t.list(t.item)],
+      count: [[t.either(t.count, t.text), t.maybe(t.count)], t.number],
+      findInventoryItem: [[t.either(t.count, t.text), t.maybe(t.count), t.maybe(t.boolean)], t.maybe(t.item)],
+      findContainerItem: [[t.either(t.count, t.text), t.maybe(t.count), t.maybe(t.boolean)], t.maybe(t.item)],
+      emptySlotCount: [[], t.number],
+      firstEmptyInventorySlot: [[t.maybe(t.boolean)], t.maybe(t.number)],
+      firstEmptyContainerSlot: [[], t.maybe(t.number)],
+      deposit: [transferred, t.later(t.nothing)],
+      withdraw: [transferred, t.later(t.nothing)],
+      close: [[], t.nothing],
+      inputItem: [[], t.maybe(t.item)],
+      fuelItem: [[], t.maybe(t.item)],
+      outputItem: [[], t.maybe(t.item)],
+      putInput: [transferred, t.later(t.nothing)],
+      putFuel: [transferred, t.later(t.nothing)],
+      takeInput: [[], t.later(t.maybe(t.item))],
+      takeFuel: [[], t.later(t.maybe(t.item))],
+      takeOutput: [[], t.later(t.maybe(t.item))]
+    }
+  },
+  recipe: {
+    get: { result: t.plain, ingredients: t.plain, inShape: t.plain, delta: t.plain, requiresTable: t.boolean },
+    call: {}
+  },
+  pathfinder: {
+    get: { thinkTimeout: t.number, tickTimeout: t.number, searchRadius: t.number, goal: t.nothing },
+    set: { thinkTimeout: t.within(0, 60_000), tickTimeout: t.within(1, 50), searchRadius: t.within(-1, 1000) },
+    call: {
+      goto: [[t.goal], t.later(t.nothing)],
+      setGoal: [[t.maybe(t.goal), t.maybe(t.boolean)], t.nothing],
+      setMovements: [[t.movements], t.nothing],
+      stop: [[], t.nothing],
+      isMoving: [[], t.boolean],
+      isMining: [[], t.boolean],
+      isBuilding: [[], t.boolean],
+      bestHarvestTool: [[t.block], t.maybe(t.item)],
+      getPathTo: [[t.movements, t.goal, t.maybe(t.within(0, 60_000))], t.record({ status: t.text, cost: t.number, time: t.number, visitedNodes: t.number, path: t.list(t.vector) })]
+    }
+  }
+}
+
+/** Names only, for the guest, which makes its classes from them. */
+const kindNames = Object.fromEntries(Object.entries(kinds).map(([name, { get, set, call }]) =>
+  [name, { gets: Object.keys(get), sets: Object.keys(set ?? {}), calls: Object.keys(call) }]))
+
+/** Tables of minecraft-data a program can read: `table` entry by entry, `value` whole. */
+const tables = {
+  blocks: 'table', blocksByName: 'table', blocksArray: 'value', blocksByStateId: 'table', items: 'table', itemsByName: 'table',
+  itemsArray: 'value', foods: 'table', foodsByName: 'table', foodsArray: 'value', biomes: 'table', biomesByName: 'table',
+  entities: 'table', entitiesByName: 'table', recipes: 'table', enchantments: 'table', enchantmentsByName: 'table',
+  effects: 'table', effectsByName: 'table', materials: 'table', version: 'value'
+}
+
+module.exports = { kinds, kindNames, tables }

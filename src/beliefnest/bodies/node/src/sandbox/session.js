@@ -1,0 +1,329 @@
+'use strict'
+/**
+ * One run of one program: answers what the guest asks, wakes it when something it waits for
+ * has happened, and lets go of everything when the run ends.
+ */
+
+const { Exchange, RefusedError } = require('./exchange')
+const { kinds, kindNames, tables } = require('./policy/kinds')
+const { events } = require('./policy/events')
+const { GOAL_NAMES } = require('./constructions')
+const { GuestEnded } = require('./engine')
+const { stateOf } = require('./policy/types')
+const { kindOf } = require('./kind-of')
+
+const LIMITS = { message: 1_000_000, calls: 100, timers: 1000, listeners: 100, logLines: 1000, logLength: 2000, error: 4000 }
+const COST = { request: 1500, perCharacter: 1 }
+
+class Session {
+  /**
+   * @param {import('./engine').Guest} guest
+   * @param {{bot: object, skills: Object<string, function>, data: ?object, random: function(): number}} world
+   *   `data` the tables of minecraft-data
+   */
+  constructor (guest, { bot, skills, data, random }) {
+    this.guest = guest
+    this.bot = bot
+    this.skills = skills
+    this.data = data
+    this.random = random
+    this.exchange = new Exchange({ bot, functionFor: (id) => this.functionFor(id), kindOf: (value) => kindOf(value, bot) })
+    this.calls = new Map()
+    this.timers = new Map()
+    this.listeners = []
+    this.tickets = new Map()
+    this.places = new WeakMap()
+    this.nextId = 1
+    this.log = []
+    this.outcome = null
+    this.unfinished = []
+    this.finished = new Promise((resolve) => { this.resolve = resolve })
+  }
+
+  /**
+   * Starts the program.
+   * @param {{text: string, marks: number}} program
+   * @param {string[]} parameters the names in scope, in order
+   */
+  begin (program, parameters) {
+    const config = {
+      kinds: kindNames, goals: GOAL_NAMES, skills: Object.keys(this.skills), parameters,
+      tables: this.data ? tables : null, bot: this.exchange.handle(this.bot, 'bot').id
+    }
+    const functions = { host: (text) => this.answer(text), now: () => Date.now(), random: this.random }
+    try {
+      this.guarded(() => {
+        this.guest.prepare(functions, config, program.marks)
+        this.guest.start(program.text, 'program.js')
+      })
+    } catch (error) {
+      if (!(error instanceof GuestEnded)) throw error
+    }
+  }
+
+  /** Ends the run; what comes first counts. */
+  finish (outcome) {
+    if (this.outcome !== null) return
+    this.outcome = outcome
+    this.unfinished = [...this.calls.values()]
+    for (const timer of this.timers.values()) timer.stop()
+    for (const { event, listener } of this.listeners) this.bot.removeListener(event, listener)
+    this.guest.end('ended', 'the program has ended')
+    this.resolve(outcome)
+  }
+
+  guarded (act) {
+    try {
+      return act()
+    } catch (error) {
+      if (!(error instanceof GuestEnded)) throw error
+      this.finish({ ok: false, ended: error })
+      throw error
+    }
+  }
+
+  // What the host starts in the guest by itself has nobody to throw to.
+  wake (message) {
+    if (this.outcome !== null) return
+    try {
+      const { ok, value } = this.guarded(() => this.guest.send(message))
+      if (!ok) this.finish({ ok: false, error: value })
+    } catch (error) {
+      if (!(error instanceof GuestEnded)) throw error
+    }
+  }
+
+  answer (text) {
+    try {
+      this.guest.charge(COST.request + COST.perCharacter * text.length)
+      if (text.length > LIMITS.message) {
+        throw new RefusedError(`${text.length} characters leave the program at once, the limit is ${LIMITS.message}`)
+      }
+      const [action, ...args] = JSON.parse(text)
+      if (!Object.hasOwn(HANDLERS, action)) throw new RefusedError('the request is of an unknown form')
+      return JSON.stringify({ ok: true, value: HANDLERS[action](this, ...args) })
+    } catch (error) {
+      const [cause, label] = error instanceof CallError ? [error.cause, error.label] : [error, null]
+      return JSON.stringify({ ok: false, value: this.errorToGuest(cause, label) })
+    }
+  }
+
+  errorToGuest (error, skill) {
+    const isError = error !== null && typeof error === 'object' && typeof error.message === 'string'
+    const message = (isError ? error.message : String(error)).slice(0, LIMITS.error)
+    const name = isError && typeof error.name === 'string' && error.name !== 'RefusedError' ? error.name.slice(0, 100) : 'Error'
+    const place = isError ? this.places.get(error) : undefined
+    return { $: 'e', message, name, skill, kind: error instanceof RefusedError ? 'refused' : 'skill', stack: place }
+  }
+
+  /** A promise of the host, under a number that the guest waits for. */
+  promiseToGuest (promise, label, toGuest) {
+    if (this.calls.size >= LIMITS.calls) throw new RefusedError(`${LIMITS.calls} calls are under way, which is the limit`)
+    const id = this.nextId++
+    this.calls.set(id, label)
+    const settle = (ok, convert) => {
+      this.calls.delete(id)
+      if (this.outcome === null) this.wake(['settle', id, ...this.converted(ok, convert, label)])
+    }
+    promise.then((value) => settle(true, () => toGuest(value)), (error) => settle(false, () => this.errorToGuest(error, label)))
+    return { $: 'p', id }
+  }
+
+  converted (ok, convert, label) {
+    try {
+      return [ok, convert()]
+    } catch (error) {
+      return [false, this.errorToGuest(error, label)]
+    }
+  }
+
+  /** A function of the program, for the host: its errors are the host's, its promises too. */
+  functionFor (id) {
+    return (...args) => {
+      if (this.outcome !== null) throw new GuestEnded('ended', 'the program has ended')
+      const ticket = this.nextId++
+      const wires = args.map((arg, i) => this.exchange.toGuest(arg, `argument ${i + 1} of the callback`))
+      const { ok, value } = this.guarded(() => this.guest.send(['invoke', id, wires, ticket]))
+      if (!ok) throw this.errorOfGuest(value)
+      if (!value.later) return this.exchange.toHost(value.now, 'the result of the callback')
+      return new Promise((resolve, reject) => this.tickets.set(ticket, { resolve, reject }))
+    }
+  }
+
+  errorOfGuest ({ message, name, stack }) {
+    const error = new Error(String(message).slice(0, LIMITS.error))
+    error.name = String(name).slice(0, 100)
+    this.places.set(error, String(stack ?? '').slice(0, LIMITS.error))
+    return error
+  }
+
+  settled (ticket, ok, wire) {
+    const waiting = this.tickets.get(ticket)
+    if (waiting === undefined) throw new RefusedError('nobody waits for that callback')
+    this.tickets.delete(ticket)
+    if (ok) waiting.resolve(this.exchange.toHost(wire, 'the result of the callback'))
+    else waiting.reject(this.errorOfGuest(wire))
+    return null
+  }
+
+  member (handle, table, name) {
+    const { object, kind } = this.exchange.resolve(handle)
+    const members = kinds[kind][table] ?? {}
+    if (typeof name !== 'string' || !Object.hasOwn(members, name)) throw new RefusedError(`${kind} has no ${table} ${String(name).slice(0, 40)}`)
+    return { object, where: `${kind}.${name}`, entry: members[name] }
+  }
+
+  get (handle, name) {
+    const { object, where, entry } = this.member(handle, 'get', name)
+    const value = object[name]
+    return value === undefined || value === null ? this.exchange.toGuest(value, where) : entry.toGuest(this.exchange, value, where)
+  }
+
+  set (handle, name, wire) {
+    const { object, where, entry } = this.member(handle, 'set', name)
+    object[name] = entry.toHost(this.exchange, wire, where)
+    return null
+  }
+
+  call (handle, name, wires) {
+    const { object, where, entry: [types, result] } = this.member(handle, 'call', name)
+    if (typeof object[name] !== 'function') throw new RefusedError(`${where} is not there`)
+    return this.outcomeOf(where, () => {
+      const args = types.map((type, i) => type.toHost(this.exchange, missing(i, wires), `argument ${i + 1} of ${where}`))
+      return object[name](...trimmed(args))
+    }, result)
+  }
+
+  callSkill (name, wires) {
+    if (typeof name !== 'string' || !Object.hasOwn(this.skills, name)) throw new RefusedError('there is no such skill')
+    const type = { toGuest: (exchange, value) => exchange.toGuest(value, `the result of ${name}`) }
+    return this.outcomeOf(name, () => {
+      const args = wires.map((wire, i) => this.exchange.toHost(wire, `argument ${i + 1} of ${name}`))
+      return this.skills[name](...args)
+    }, type)
+  }
+
+  outcomeOf (label, act, type) {
+    let value
+    try {
+      value = act()
+    } catch (error) {
+      throw new CallError(label, error)
+    }
+    const toGuest = (result) => result === undefined || result === null
+      ? this.exchange.toGuest(result, label)
+      : type.toGuest(this.exchange, result, label)
+    return isThenable(value) ? this.promiseToGuest(Promise.resolve(value), label, toGuest) : toGuest(value)
+  }
+
+  listen (event, wire, once) {
+    if (!Object.hasOwn(events, event)) throw new RefusedError(`a program cannot listen to the event ${String(event).slice(0, 40)}; it can to ${Object.keys(events).join(', ')}`)
+    if (this.listeners.length >= LIMITS.listeners) throw new RefusedError(`the program has ${LIMITS.listeners} listeners, which is the limit`)
+    const id = this.exchange.functionOf(wire, 'the listener') && wire.id
+    const listener = (...values) => {
+      if (once) this.unlisten(event, wire)
+      this.wake(['invoke', id, events[event].map((type, i) => this.eventValue(type, values[i], event)), 0])
+    }
+    this.listeners.push({ event, id, listener })
+    this.bot.on(event, listener)
+    return null
+  }
+
+  eventValue (type, value, event) {
+    return value === undefined || value === null ? this.exchange.toGuest(value, event) : type.toGuest(this.exchange, value, event)
+  }
+
+  unlisten (event, wire) {
+    const index = this.listeners.findIndex((entry) => entry.event === event && entry.id === wire?.id)
+    if (index < 0) return null
+    const [{ listener }] = this.listeners.splice(index, 1)
+    this.bot.removeListener(event, listener)
+    return null
+  }
+
+  startTimer (id, wire, repeat) {
+    if (this.timers.size >= LIMITS.timers) throw new RefusedError(`the program has ${LIMITS.timers} timers, which is the limit`)
+    const delay = Math.min(Math.max(this.exchange.number(wire, 'the delay of a timer'), 0), 2 ** 31 - 1)
+    const fire = () => {
+      if (!repeat) this.timers.delete(id)
+      this.wake(['fire', id])
+    }
+    const timer = repeat ? setInterval(fire, delay) : setTimeout(fire, delay)
+    this.timers.set(id, { stop: () => repeat ? clearInterval(timer) : clearTimeout(timer) })
+    return null
+  }
+
+  stopTimer (id) {
+    this.timers.get(id)?.stop()
+    this.timers.delete(id)
+    return null
+  }
+
+  write (level, text) {
+    if (this.log.length < LIMITS.logLines) this.log.push({ level: String(level).slice(0, 10), text: String(text).slice(0, LIMITS.logLength) })
+    return null
+  }
+
+  table (name) {
+    if (this.data === null || !Object.hasOwn(tables, name)) throw new RefusedError('mcData has no such table')
+    return this.data[name] ?? {}
+  }
+
+  entry (name, key) {
+    const table = this.table(name)
+    const value = key === null ? table : Object.hasOwn(table, key) ? table[key] : undefined
+    return plainToGuest(value)
+  }
+
+  blockState (id) {
+    return plainToGuest(stateOf(this.exchange.blockOfState(id)))
+  }
+}
+
+const HANDLERS = {
+  get: (session, handle, name) => session.get(handle, name),
+  set: (session, handle, name, wire) => session.set(handle, name, wire),
+  call: (session, handle, name, wires) => session.call(handle, name, wires),
+  skill: (session, name, wires) => session.callSkill(name, wires),
+  on: (session, event, wire, once) => session.listen(event, wire, once),
+  off: (session, event, wire) => session.unlisten(event, wire),
+  timer: (session, id, delay, repeat) => session.startTimer(id, delay, repeat === true),
+  untimer: (session, id) => session.stopTimer(id),
+  log: (session, level, text) => session.write(level, text),
+  data: (session, name, key) => session.entry(name, key),
+  keys: (session, name) => Object.keys(session.table(name)),
+  state: (session, id) => session.blockState(id),
+  settled: (session, ticket, ok, wire) => session.settled(ticket, ok, wire),
+  done: (session, ok, error) => { session.finish({ ok: ok === true, error }); return null }
+}
+
+// mcData holds only data; what JSON cannot say is left out.
+function plainToGuest (value) {
+  if (value === undefined) return { $: 'u' }
+  if (value === null || typeof value !== 'object') return typeof value === 'function' ? { $: 'u' } : value
+  if (Array.isArray(value)) return value.map(plainToGuest)
+  return { $: 'o', o: Object.entries(value).filter(([, item]) => typeof item !== 'function').map(([key, item]) => [key, plainToGuest(item)]) }
+}
+
+function missing (index, wires) {
+  return index in wires ? wires[index] : { $: 'u' }
+}
+
+function trimmed (args) {
+  const last = args.findLastIndex((arg) => arg !== undefined)
+  return args.slice(0, last + 1)
+}
+
+function isThenable (value) {
+  return value !== null && typeof value === 'object' && typeof value.then === 'function'
+}
+
+/** An error of a call, with the name of the skill or method that was called. */
+class CallError extends Error {
+  constructor (label, cause) {
+    super(`${label} failed`, { cause })
+    this.label = label
+  }
+}
+
+module.exports = { Session }
