@@ -50,17 +50,17 @@ def updated_containers(
     contents = {place: replace(old, current=False) for place, old in belief.containers.items()}
     _forget_and_find(contents, belief.terrain, terrain, around, registry)
     looked_into = _looked_into(percept, around, options)
-    for event in percept.events:
-        place = event.detail.get("position")
-        if event.kind in _TOUCHES and place not in looked_into:
-            _witness(contents, around.tick, place, event)
+    touches = [event for event in percept.events if event.kind in _TOUCHES]
+    for event in touches:
+        if event.detail["position"] not in looked_into:
+            _witness(contents, around.tick, event)
     for place in looked_into:
         contents[place] = around.containers[place]
-    for event in percept.events:
-        place = event.detail.get("position")
-        if event.actor == percept.agent and event.kind in _TOUCHES and place in around.containers:
+    for event in touches:
+        place = event.detail["position"]
+        if event.actor == percept.agent and place in looked_into:
             basis = Basis(around.tick, Source.WITNESSED, event.kind)
-            contents[place] = replace(around.containers[place], basis=basis)
+            contents[place] = replace(contents[place], basis=basis)
     return contents
 
 
@@ -101,12 +101,11 @@ def _looked_into(percept: Percept, around: BeliefState, options: Perception) -> 
     return frozenset(own & around.containers.keys())
 
 
-def _witness(
-    contents: dict[Position, ContainerBelief], tick: int, place: Position, event: Event
-) -> None:
+def _witness(contents: dict[Position, ContainerBelief], tick: int, event: Event) -> None:
     """Follow items that another agent was seen to move; opening shows nothing to others."""
     if event.kind not in _MOVES:
         return
+    place: Position = event.detail["position"]
     basis = Basis(tick, Source.WITNESSED, event.kind)
     old = contents.get(place)
     items = changed_items(

@@ -4,6 +4,7 @@ In control mode everything known is current (semantics, section 6); what a fork 
 know, unknown blocks and incomplete contents, stays so until something is done to it.
 """
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
@@ -106,16 +107,16 @@ def applied(state: BeliefState, frame: Frame) -> BeliefState:
     containers = {
         place: replace(old, basis=basis, current=True) for place, old in state.containers.items()
     }
-    for place, items in frame.containers.items():
+    for place, content in frame.containers.items():
         old = containers.pop(place, None)
-        if items is not None:
+        if content is not None:
             complete = old is None or old.complete
-            containers[place] = ContainerBelief(dict(items), complete, basis, current=True)
+            containers[place] = ContainerBelief(dict(content), complete, basis, current=True)
     agents = {name: _standing(old, basis) for name, old in state.agents.items()}
     for name, fact in frame.agents.items():
         complete = state.agents[name].inventory_complete or state.agents[name].position is None
         agents[name] = AgentBelief() if fact is None else _known_agent(fact, basis, complete)
-    items = {n: replace(old, basis=basis, current=True) for n, old in state.items.items()}
+    items = {n: replace(known, basis=basis, current=True) for n, known in state.items.items()}
     for number, item in frame.items.items():
         items.pop(number, None)
         if item is not None:
@@ -179,7 +180,11 @@ def edited(
 
 
 def snapshot_of(state: BeliefState) -> Snapshot:
-    """What a body of the state is filled with: unknown blocks are air, unknown agents absent."""
+    """What a body of the state is filled with.
+
+    Unknown blocks are air, agents of unknown pose are absent, and who was seen to wear or
+    hold something has it.
+    """
     agents = {
         name: AgentState(
             position=agent.position,
@@ -187,7 +192,7 @@ def snapshot_of(state: BeliefState) -> Snapshot:
             pitch=agent.pitch,
             on_ground=agent.on_ground,
             equipment=dict(agent.equipment or {}),
-            inventory=dict(agent.inventory),
+            inventory=_with_equipment(agent),
             health=20.0 if agent.health is None else agent.health,
             food=20.0 if agent.food is None else agent.food,
         )
@@ -202,6 +207,12 @@ def snapshot_of(state: BeliefState) -> Snapshot:
         agents=agents,
         items={number: belief.item for number, belief in state.items.items()},
     )
+
+
+def _with_equipment(agent: AgentBelief) -> dict[str, int]:
+    worn = Counter((agent.equipment or {}).values())
+    names = [*agent.inventory, *(worn.keys() - agent.inventory.keys())]
+    return {name: max(agent.inventory.get(name, 0), worn[name]) for name in names}
 
 
 def _known_agent(fact: AgentState, basis: Basis, complete: bool) -> AgentBelief:
@@ -236,9 +247,9 @@ def _current_grounds(terrain: Terrain, tick: int) -> Grounds:
 def _edited_grounds(
     grounds: Grounds, terrain: Terrain, tick: int, blocks: Mapping[Position, int], *, control: bool
 ) -> Grounds:
-    observed_at, sources, current = (
-        array.copy() for array in (grounds.observed_at, grounds.sources, grounds.current)
-    )
+    observed_at = grounds.observed_at.copy()
+    sources = grounds.sources.copy()
+    current = grounds.current.copy()
     for place, state in blocks.items():
         index = terrain.box.index(place)
         observed_at[index] = tick if state >= 0 else -1
@@ -259,11 +270,8 @@ def _static(
 
 def _container_places(terrain: Terrain, registry: Registry) -> list[Position]:
     box: Box = terrain.box
-    states = {
-        int(s)
-        for s in np.unique(terrain.blocks)
-        if s >= 0 and registry.is_container(registry.name(int(s)))
-    }
+    there = np.unique(terrain.blocks).tolist()
+    states = {s for s in there if s >= 0 and registry.is_container(registry.name(s))}
     low = box.low
     indices = np.argwhere(np.isin(terrain.blocks, sorted(states))).tolist() if states else []
     return [(low[0] + i, low[1] + j, low[2] + k) for i, j, k in indices]

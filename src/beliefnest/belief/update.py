@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
 from beliefnest.belief.content import updated_containers
 from beliefnest.belief.entries import AgentBelief, PerceivedEvent
@@ -60,7 +61,7 @@ def update(
     return BeliefState(
         tick=tick,
         terrain=terrain,
-        grounds=_seen_grounds(belief.grounds, around, percept),
+        grounds=_seen_grounds(belief.grounds, around, percept.visible),
         containers=updated_containers(belief, around, percept, terrain, options, registry),
         agents=_updated_agents(belief, around, scene, percept, options),
         items=_updated_items(belief, around, scene, percept),
@@ -82,9 +83,9 @@ def _stale(grounds: Grounds) -> Grounds:
     return replace(grounds, current=np.zeros_like(grounds.current))
 
 
-def _seen_grounds(grounds: Grounds, around: BeliefState, percept: Percept) -> Grounds:
+def _seen_grounds(grounds: Grounds, around: BeliefState, visible: npt.NDArray[np.bool_]) -> Grounds:
     """Grounds handed on for what is seen: a stale block keeps its old tick (5.4)."""
-    seen = percept.visible & (around.terrain.blocks >= 0)
+    seen = visible & (around.terrain.blocks >= 0)
     return Grounds(
         observed_at=np.where(seen, around.grounds.observed_at, grounds.observed_at),
         sources=np.where(seen, around.grounds.sources, grounds.sources),

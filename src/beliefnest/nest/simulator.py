@@ -1,20 +1,22 @@
 """One simulator of the nest, as its users hold it."""
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.state import BeliefState
+from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.bodies.scripted import ScriptedBody
 from beliefnest.errors import BranchError, InputError, PathError, PositionError, WorldError
 from beliefnest.nest.engine import Engine
 from beliefnest.nest.paths import normalised, path_text
-from beliefnest.nest.state import State
 from beliefnest.nest.views import view
 from beliefnest.perception.observe import Pose, eye_of
+from beliefnest.prompts import Template, render
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
 from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.values import Items, Position
@@ -53,6 +55,22 @@ class _Seen:
     def state(self) -> State:
         """What the simulator holds, read-only."""
         return view(self._path, self._belief(), self.tick, self._engine.rules.registry)
+
+    def render(self, template: Template | Path | str, **variables: object) -> str:
+        """The text of a prompt template, filled from this simulator.
+
+        Args:
+            template: A Jinja2 template: its text, or the path of its file.
+            variables: Further variables of the template, as `task`.
+
+        Raises:
+            TemplateError: The template is wrong; the message names its line.
+        """
+        return render(template, self, variables)
+
+    def child(self, agent: str) -> "_Seen":
+        """The simulator of what `agent` believes in this one."""
+        raise NotImplementedError
 
     def visible_blocks(self, agent: str) -> npt.NDArray[np.bool_]:
         """Which blocks an agent sees from its pose in this simulator.
@@ -227,7 +245,7 @@ class Simulator(_Seen):
         return self._engine.state(self._path)
 
 
-def _check_branch_name(name: Any) -> None:
+def _check_branch_name(name: object) -> None:
     if not isinstance(name, str) or not name or not name.isprintable() or set(name) & set("/[]"):
         raise BranchError(
             f"{name!r} is no branch name; use printable text without '/', '[' and ']'"

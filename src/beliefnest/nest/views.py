@@ -6,8 +6,8 @@ import numpy as np
 
 from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.belief.state import BeliefState
+from beliefnest.belief.view import State
 from beliefnest.errors import PositionError
-from beliefnest.nest.state import State
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import EventKind, Position
 

@@ -28,7 +28,7 @@ Hearing = Literal["global", "sight"] | Radius
 def _hearing(value: object) -> Hearing:
     match value:
         case "global" | "sight" | Radius():
-            return value  # type: ignore[return-value]  # narrowed by the pattern
+            return value
         case {"radius": int() | float() as blocks} if blocks > 0:
             return Radius(float(blocks))
         case _:

@@ -158,15 +158,8 @@ class ScriptedWorld:
         """Put the acts of a `with` block into one tick; all of them happen, or none."""
         if self._pending is not None:
             raise WorldError(f"tick {self._tick + 1} is being made already; do not nest tick()")
-        pending = self._pending = _Pending(self._facts)
-        try:
+        with self._new_tick():
             yield
-        except BaseException:
-            self._undo(pending)
-            raise
-        finally:
-            self._pending = None
-        self._finish(pending)
 
     def step(self, ticks: int = 1) -> None:
         """Let ticks pass in which nothing happens."""
@@ -286,12 +279,20 @@ class ScriptedWorld:
         if self._pending is not None:
             yield self._pending
             return
-        with self.tick():
-            assert self._pending is not None
-            yield self._pending
+        with self._new_tick() as pending:
+            yield pending
 
-    def _undo(self, pending: _Pending) -> None:
-        self._facts = pending.saved
+    @contextmanager
+    def _new_tick(self) -> Iterator[_Pending]:
+        pending = self._pending = _Pending(self._facts)
+        try:
+            yield pending
+        except BaseException:
+            self._facts = pending.saved
+            raise
+        finally:
+            self._pending = None
+        self._finish(pending)
 
     def _finish(self, pending: _Pending) -> None:
         self._tick += 1

@@ -1,0 +1,82 @@
+"""BeliefNest: nested belief simulators for embodied agents with a Theory of Mind.
+
+What is listed in `__all__` is the public surface; each name is loaded on first use, so
+that `import beliefnest` stays fast.
+"""
+
+import importlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from beliefnest.belief.entries import InitialBelief
+    from beliefnest.bodies.protocol import ProgramResult
+    from beliefnest.errors import (
+        BeliefNestError,
+        BodyError,
+        BranchError,
+        InputError,
+        ModelError,
+        PathError,
+        PositionError,
+        ProgramError,
+        ScenarioError,
+        StoreError,
+        TemplateError,
+        TickError,
+        UnknownNameError,
+        WorldError,
+    )
+    from beliefnest.nest.nest import Nest
+    from beliefnest.nest.simulator import Simulator
+    from beliefnest.perception.options import Perception, Radius
+    from beliefnest.scenarios import Scenario
+    from beliefnest.world.scripted import ScriptedWorld
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "BeliefNestError",
+    "BodyError",
+    "BranchError",
+    "InitialBelief",
+    "InputError",
+    "ModelError",
+    "Nest",
+    "PathError",
+    "Perception",
+    "PositionError",
+    "ProgramError",
+    "ProgramResult",
+    "Radius",
+    "Scenario",
+    "ScenarioError",
+    "ScriptedWorld",
+    "Simulator",
+    "StoreError",
+    "TemplateError",
+    "TickError",
+    "UnknownNameError",
+    "WorldError",
+    "__version__",
+]
+
+_HOMES = {
+    "InitialBelief": "beliefnest.belief.entries",
+    "Nest": "beliefnest.nest.nest",
+    "Perception": "beliefnest.perception.options",
+    "ProgramResult": "beliefnest.bodies.protocol",
+    "Radius": "beliefnest.perception.options",
+    "Scenario": "beliefnest.scenarios",
+    "ScriptedWorld": "beliefnest.world.scripted",
+    "Simulator": "beliefnest.nest.simulator",
+}
+
+
+def __getattr__(name: str) -> object:
+    if name not in __all__:
+        raise AttributeError(f"beliefnest has no {name!r}; it has {', '.join(__all__)}")
+    return getattr(importlib.import_module(_HOMES.get(name, "beliefnest.errors")), name)
+
+
+def __dir__() -> list[str]:
+    return __all__
