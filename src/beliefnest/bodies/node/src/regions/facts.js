@@ -58,12 +58,4 @@ function itemStates (serv, region) {
   return items
 }
 
-/** @returns {string} e.g. `lever[face=floor,facing=north,powered=true]` */
-function blockText (serv, stateId) {
-  const { name, properties } = serv.blocks.describe(stateId)
-  const entries = Object.entries(properties).sort(([a], [b]) => (a < b ? -1 : 1))
-  if (entries.length === 0) return name
-  return `${name}[${entries.map(([key, value]) => `${key}=${value}`).join(',')}]`
-}
-
-module.exports = { agentStates, blockText, changedContainers, containerStates, itemStates }
+module.exports = { agentStates, changedContainers, containerStates, itemStates }

@@ -1,6 +1,6 @@
 'use strict'
 /** Collects what changes in a region during a tick, and makes frames of it. */
-const { agentStates, blockText, changedContainers, itemStates } = require('./facts')
+const { agentStates, changedContainers, itemStates } = require('./facts')
 
 // Details of events that say where something is.
 const PLACES = ['position', 'destination']
@@ -40,7 +40,7 @@ class Recorder {
     const place = this.region.toScenario(position)
     this.blocks.set(place.join(), [...place, state])
     this.event({
-      kind: 'block_update', actor: null, detail: { position: place, block: blockText(this.serv, state) }
+      kind: 'block_update', actor: null, detail: { position: place, block: this.serv.blocks.text(state) }
     })
   }
 
