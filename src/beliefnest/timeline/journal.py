@@ -5,11 +5,11 @@ where its base lies on another timeline, or at the world's first snapshot. Only 
 stored: every follow-mode belief is computed from it.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
-from beliefnest.errors import BranchError
+from beliefnest.errors import BranchError, TickError
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import Items, Position
 
@@ -22,6 +22,12 @@ __all__ = [
     "MemoryJournal",
     "TimelineInfo",
     "TimelineKey",
+    "branch_carries",
+    "branch_missing",
+    "branch_taken",
+    "check_append",
+    "check_base",
+    "path_text",
 ]
 
 FOLLOW = "follow"
@@ -86,6 +92,71 @@ class TimelineInfo:
     description: str = ""
 
 
+def path_text(path: tuple[str, ...]) -> str:
+    """A path as users write it."""
+    return "/" + "/".join(path)
+
+
+def branch_missing(key: TimelineKey, names: Iterable[str]) -> BranchError:
+    """The error for a branch that is not there, `names` being those that are."""
+    there = ", ".join(repr(name) for name in sorted(names))
+    return BranchError(
+        f"{path_text(key.path)} has no branch {key.branch!r}; it has {there or 'none'}"
+    )
+
+
+def branch_taken(key: TimelineKey) -> BranchError:
+    """The error for a name that is in use."""
+    return BranchError(
+        f"{path_text(key.path)} already has a branch {key.branch!r}; choose another name"
+    )
+
+
+def branch_carries(key: TimelineKey, others: Iterable[TimelineKey]) -> BranchError:
+    """The error for removing what `others` are based on."""
+    names = ", ".join(f"{path_text(k.path)} {k.branch!r}" for k in others)
+    return BranchError(
+        f"branch {key.branch!r} of {path_text(key.path)} carries others ({names}); "
+        "delete those first, or delete with recursive=True"
+    )
+
+
+def check_base(key: TimelineKey, base: ForkPoint, length: int) -> None:
+    """Check that a timeline of `length` entries can carry a new one.
+
+    Raises:
+        BranchError: The base lies after its end.
+    """
+    if not 0 <= base.entries <= length:
+        raise BranchError(
+            f"branch {key.branch!r} of {path_text(key.path)} cannot begin after entry "
+            f"{base.entries} of {base.timeline.branch!r}, which has {length}"
+        )
+
+
+def check_append(info: TimelineInfo, entries: Sequence[Entry], head: int) -> None:
+    """Check that time does not run backwards.
+
+    Raises:
+        TickError: An entry lies before the one before it or before the timeline's head, or
+            after the new head.
+    """
+    latest = info.head
+    for entry in entries:
+        if not latest <= entry.tick <= head:
+            raise TickError(
+                f"an entry of tick {entry.tick} does not fit between ticks {latest} and {head} "
+                f"of branch {info.key.branch!r} of {path_text(info.key.path)}; "
+                "append in order of ticks"
+            )
+        latest = entry.tick
+    if head < latest:
+        raise TickError(
+            f"branch {info.key.branch!r} of {path_text(info.key.path)} is at tick {latest}; "
+            f"its head cannot go back to {head}"
+        )
+
+
 class Journal(Protocol):
     """Where timelines are kept. One writer; what a call did is kept once it returns."""
 
@@ -103,30 +174,45 @@ class Journal(Protocol):
         """Begin an empty timeline; costs the same however long its base is.
 
         Raises:
-            BranchError: There is one of that key already.
+            BranchError: There is one of that key already, or the base is not there.
         """
 
     def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:
-        """Add entries, all or none, and move the head to tick `head`."""
+        """Add entries, all or none, and move the head to tick `head`.
+
+        Raises:
+            BranchError: There is no timeline of that key.
+            TickError: The ticks do not rise from the old head to the new one.
+        """
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
-        """Entries number start (included) to stop (excluded), oldest first."""
+        """Entries number start (included, not negative) to stop (excluded), oldest first.
+
+        Fewer where the timeline ends before. Entries appended later are not returned.
+
+        Raises:
+            BranchError: There is no timeline of that key.
+        """
 
     def entries_until(self, key: TimelineKey, tick: int) -> int:
-        """How many entries lie at `tick` or before."""
+        """How many entries lie at `tick` or before; BranchError as above."""
 
     def rename(self, key: TimelineKey, name: str) -> None:
-        """Give a timeline's branch another name; timelines based on it follow."""
+        """Give a timeline's branch another name; timelines based on it follow.
+
+        Raises:
+            BranchError: There is no timeline of that key, or one of that name.
+        """
 
     def delete(self, key: TimelineKey) -> None:
         """Remove a timeline that no other is based on.
 
         Raises:
-            BranchError: Another timeline is based on it.
+            BranchError: There is none of that key, or another timeline is based on it.
         """
 
     def describe(self, key: TimelineKey, description: str) -> None:
-        """Set a timeline's description."""
+        """Set a timeline's description; BranchError if there is none of that key."""
 
     def close(self) -> None:
         """Give up what the journal holds open."""
@@ -146,22 +232,22 @@ class MemoryJournal:
     def info(self, key: TimelineKey) -> TimelineInfo:
         """One timeline; BranchError if there is none of that key."""
         if key not in self._infos:
-            there = sorted(k.branch for k in self._infos if k.path == key.path)
-            raise BranchError(
-                f"/{'/'.join(key.path)} has no branch {key.branch!r}; it has {there or 'none'}"
-            )
+            raise branch_missing(key, (k.branch for k in self._infos if k.path == key.path))
         return self._infos[key]
 
     def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
-        """Begin an empty timeline; BranchError if there is one of that key already."""
+        """Begin an empty timeline; BranchError if it is there or its base is not."""
         if key in self._infos:
-            raise BranchError(f"/{'/'.join(key.path)} already has a branch {key.branch!r}")
+            raise branch_taken(key)
+        if base is not None:
+            check_base(key, base, self.info(base.timeline).entries)
         self._infos[key] = TimelineInfo(key, base, start, start)
         self._entries[key] = []
 
     def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:
         """Add entries and move the head."""
         info = self.info(key)
+        check_append(info, entries, head)
         self._entries[key].extend(entries)
         self._infos[key] = replace(info, head=head, entries=info.entries + len(entries))
 
@@ -186,7 +272,7 @@ class MemoryJournal:
         old = self.info(key)
         new_key = TimelineKey(key.path, name)
         if new_key in self._infos:
-            raise BranchError(f"/{'/'.join(key.path)} already has a branch {name!r}")
+            raise branch_taken(new_key)
         infos = {}
         for info in self._infos.values():
             changed = replace(old, key=new_key) if info is old else info
@@ -203,11 +289,7 @@ class MemoryJournal:
             i.key for i in self._infos.values() if i.base is not None and i.base.timeline == key
         ]
         if based:
-            names = ", ".join(f"/{'/'.join(k.path)} {k.branch!r}" for k in based)
-            raise BranchError(
-                f"branch {key.branch!r} of /{'/'.join(key.path)} carries others ({names}); "
-                "delete those first, or delete with recursive=True"
-            )
+            raise branch_carries(key, based)
         del self._infos[key], self._entries[key]
 
     def describe(self, key: TimelineKey, description: str) -> None:

@@ -1,0 +1,196 @@
+"""The one place where world values become bytes and come back.
+
+Bytes are msgpack. Floats keep every bit, block positions are map keys, sequences inside an
+event's detail come back as tuples. Decoding is strict: a value of another type, a missing or
+a misspelt kind raises StoreError and names where in the value it lies.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, TypeVar, cast
+
+import msgspec
+import numpy as np
+
+from beliefnest.errors import StoreError
+from beliefnest.timeline.journal import Edit, Entry
+from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.values import AgentState, Box, DroppedItem, Event, Items, Position
+
+__all__ = [
+    "decode",
+    "decode_entry",
+    "decode_snapshot",
+    "decode_ticks",
+    "encode",
+    "encode_entry",
+    "encode_snapshot",
+    "join",
+    "split",
+]
+
+T = TypeVar("T")
+
+
+class _FrameEntry(msgspec.Struct, tag="frame", array_like=True):
+    value: Frame
+
+
+class _EditEntry(msgspec.Struct, tag="edit", array_like=True):
+    value: Edit
+
+
+class _Tick(msgspec.Struct):
+    tick: int
+
+
+class _FrameTick(msgspec.Struct, tag="frame", array_like=True):
+    value: _Tick
+
+
+class _EditTick(msgspec.Struct, tag="edit", array_like=True):
+    value: _Tick
+
+
+class _SnapshotBody(msgspec.Struct, forbid_unknown_fields=True):
+    tick: int
+    low: Position
+    high: Position
+    blocks: bytes
+    containers: Mapping[Position, Items]
+    agents: Mapping[str, AgentState]
+    items: Mapping[int, DroppedItem]
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"{type(value).__name__} is no value of a world")
+
+
+_ENCODER = msgspec.msgpack.Encoder(enc_hook=_plain)
+_ENTRY = msgspec.msgpack.Decoder(_FrameEntry | _EditEntry)
+_ENTRY_TICK = msgspec.msgpack.Decoder(_FrameTick | _EditTick)
+_PIECES = msgspec.msgpack.Decoder(list[msgspec.Raw])
+
+
+def encode(value: object) -> bytes:
+    """Bytes of a Frame, Edit, AgentState, DroppedItem, Event, or of plain data.
+
+    Raises:
+        StoreError: Something in it is no value of a world.
+    """
+    try:
+        return _ENCODER.encode(value)
+    except (TypeError, OverflowError, ValueError, msgspec.MsgspecError) as fault:
+        raise StoreError(f"{type(value).__name__} cannot be stored: {fault}") from fault
+
+
+def decode(data: bytes, kind: type[T]) -> T:
+    """A value of type `kind` from the bytes `encode` made of it.
+
+    Raises:
+        StoreError: The bytes hold no such value.
+    """
+    try:
+        value = msgspec.msgpack.decode(data, type=kind)
+    except (msgspec.MsgspecError, UnicodeDecodeError) as fault:
+        raise StoreError(f"stored bytes are no {kind.__name__}: {fault}") from fault
+    return cast(T, _with_tuples(value))
+
+
+def encode_entry(entry: Entry) -> bytes:
+    """Bytes of a frame or an edit, which say which of the two they are.
+
+    Raises:
+        StoreError: Something in it is no value of a world.
+    """
+    return encode(_FrameEntry(entry) if isinstance(entry, Frame) else _EditEntry(entry))
+
+
+def decode_entry(data: bytes | msgspec.Raw) -> Entry:
+    """A frame or an edit from the bytes of `encode_entry`; StoreError if they are none."""
+    try:
+        entry = _ENTRY.decode(data).value
+    except (msgspec.MsgspecError, UnicodeDecodeError) as fault:
+        raise StoreError(f"stored bytes are no entry of a timeline: {fault}") from fault
+    return cast(Entry, _with_tuples(entry))
+
+
+def join(entries: Iterable[bytes | msgspec.Raw]) -> bytes:
+    """Encoded entries put together; `split` is its inverse."""
+    return _ENCODER.encode([msgspec.Raw(entry) for entry in entries])
+
+
+def split(data: bytes) -> list[msgspec.Raw]:
+    """The encoded entries that were joined; StoreError if the bytes are none."""
+    try:
+        return _PIECES.decode(data)
+    except msgspec.MsgspecError as fault:
+        raise StoreError(f"stored bytes are no entries of a timeline: {fault}") from fault
+
+
+def decode_ticks(pieces: Sequence[msgspec.Raw]) -> list[int]:
+    """Ticks of encoded entries, without decoding the rest; StoreError if one is none."""
+    try:
+        return [_ENTRY_TICK.decode(piece).value.tick for piece in pieces]
+    except msgspec.MsgspecError as fault:
+        raise StoreError(f"stored bytes are no entries of a timeline: {fault}") from fault
+
+
+def encode_snapshot(snapshot: Snapshot) -> bytes:
+    """Bytes of a snapshot; the grid as 32-bit little-endian integers, x slowest.
+
+    Raises:
+        StoreError: The grid does not have the shape of the box, or something in the
+            snapshot is no value of a world.
+    """
+    if snapshot.blocks.shape != snapshot.box.shape:
+        raise StoreError(
+            f"a grid of shape {snapshot.blocks.shape} does not fill {snapshot.box}, "
+            f"which takes {snapshot.box.shape}"
+        )
+    blocks = np.ascontiguousarray(snapshot.blocks, dtype="<i4").tobytes()
+    return encode(
+        _SnapshotBody(
+            snapshot.tick,
+            snapshot.box.low,
+            snapshot.box.high,
+            blocks,
+            snapshot.containers,
+            snapshot.agents,
+            snapshot.items,
+        )
+    )
+
+
+def decode_snapshot(data: bytes) -> Snapshot:
+    """A snapshot from the bytes of `encode_snapshot`; its grid is read-only.
+
+    Raises:
+        StoreError: The bytes hold none.
+    """
+    body = decode(data, _SnapshotBody)
+    box = Box(body.low, body.high)
+    grid = np.frombuffer(body.blocks, dtype="<i4") if len(body.blocks) % 4 == 0 else None
+    if grid is None or min(box.shape) < 1 or grid.size != np.prod(box.shape):
+        raise StoreError(f"stored grid of {len(body.blocks)} bytes does not fill {box}")
+    blocks = grid.reshape(box.shape).astype(np.int32, copy=False)
+    return Snapshot(body.tick, box, blocks, body.containers, body.agents, body.items)
+
+
+def _with_tuples(value: Any) -> Any:
+    """The value with every sequence inside the details of its events as a tuple."""
+    if isinstance(value, Frame) and value.events:
+        return replace(value, events=tuple(_with_tuples(event) for event in value.events))
+    if isinstance(value, Event):
+        return replace(value, detail=_frozen(value.detail))
+    return value
+
+
+def _frozen(value: Any) -> Any:
+    if isinstance(value, list):
+        return tuple(_frozen(item) for item in value)
+    if isinstance(value, dict):
+        return {name: _frozen(item) for name, item in value.items()}
+    return value

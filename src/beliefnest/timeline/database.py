@@ -1,0 +1,308 @@
+"""One run file as an SQLite database: opening, recognising, transactions, faults.
+
+Whatever SQLite reports becomes a StoreError that names the file. The write-ahead log keeps
+what a transaction did once it is committed, whatever becomes of the process, and lets
+others read meanwhile.
+"""
+
+import sqlite3
+import zlib
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from beliefnest.errors import StoreError
+from beliefnest.timeline.lock import WriterLock
+from beliefnest.timeline.schema import APPLICATION_ID, SCHEMA_VERSION, SMALL_TABLES, STATEMENTS
+
+__all__ = ["Database", "Row", "checked", "seal"]
+
+Row = tuple[Any, ...]
+
+_MAGIC = b"SQLite format 3\0"
+_KNOWN_STARTS = (
+    (b"PK\x03\x04", "a zip archive"),
+    (b"\x1f\x8b", "gzip-compressed data"),
+    (b"\x28\xb5\x2f\xfd", "zstandard-compressed data"),
+    (b"PAR1", "a Parquet file"),
+    (b"{", "JSON text"),
+)
+_DAMAGED = "is damaged; restore it from a copy"
+_FAULTS = {
+    sqlite3.SQLITE_FULL: "could not grow: the disk is full; nothing of this call was kept, "
+    "free some space and repeat it",
+    sqlite3.SQLITE_IOERR: "could not be read or written by the operating system; nothing of "
+    "this call was kept, check the disk and its free space",
+    sqlite3.SQLITE_READONLY: "is read-only; make the file and its folder writable, or open "
+    "it for reading",
+    sqlite3.SQLITE_CANTOPEN: "cannot be opened; check the permissions of the file and its folder",
+    sqlite3.SQLITE_BUSY: "is held by another program; close that and repeat",
+    sqlite3.SQLITE_LOCKED: "is held by another program; close that and repeat",
+    sqlite3.SQLITE_CORRUPT: _DAMAGED,
+    sqlite3.SQLITE_NOTADB: _DAMAGED,
+    sqlite3.SQLITE_ERROR: _DAMAGED,
+}
+_PRIMARY_CODE = 0xFF
+"""The part of an SQLite error code that names the kind of fault."""
+
+
+def seal(*values: object) -> int:
+    """Checksum of a row's values; the last one may be long bytes."""
+    *head, last = values
+    body = last if isinstance(last, bytes) else msgspec.msgpack.encode(last)
+    return zlib.crc32(body, zlib.crc32(msgspec.msgpack.encode(head)))
+
+
+def checked(row: Row, path: Path, what: str) -> Row:
+    """The row without its seal, which is its last value; StoreError if they do not agree."""
+    *values, found = row
+    try:
+        agrees = seal(*values) == found
+    except (TypeError, OverflowError, msgspec.MsgspecError):
+        agrees = False
+    if not agrees:
+        raise StoreError(f"{path} {_DAMAGED} (checksum of {what} does not agree)")
+    return tuple(values)
+
+
+class Database:
+    """An open run file; made by `create`, `open` or `read`."""
+
+    def __init__(self, connection: sqlite3.Connection, path: Path, lock: WriterLock | None) -> None:
+        self._connection = connection
+        self._lock = lock
+        self._open = True
+        self.path = path
+
+    @classmethod
+    def create(cls, path: Path) -> "Database":
+        """Make a new run file.
+
+        Raises:
+            StoreError: There is a file of that name, or it cannot be made or written.
+        """
+        database = cls._locked(path, "rwc")
+        with database.closed_on_fault():
+            if path.stat().st_size > 0:
+                raise StoreError(f"{path} exists; resume it, remove it, or choose another name")
+            if database.row("PRAGMA journal_mode = WAL") != ("wal",):
+                raise StoreError(f"{path} lies where files cannot be shared; use a local disk")
+            database.execute("PRAGMA synchronous = NORMAL")
+            with database.transaction():
+                for statement in STATEMENTS:
+                    database.execute(statement)
+                database.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+                database.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
+        return database
+
+    @classmethod
+    def open(cls, path: Path) -> "Database":
+        """Open a run file to go on with it.
+
+        Raises:
+            StoreError: There is none, it is foreign, newer, damaged, read-only, or has
+                another writer.
+        """
+        _recognise_start(path)
+        database = cls._locked(path, "rw")
+        with database.closed_on_fault():
+            database._recognise()
+            database.execute("PRAGMA synchronous = NORMAL")
+            with database.transaction():
+                database._check_small_tables()
+        return database
+
+    @classmethod
+    def read(cls, path: Path) -> "Database":
+        """Open a run file to look at it, also while another process writes it.
+
+        Raises:
+            StoreError: There is none, or it is foreign, newer or damaged.
+        """
+        _recognise_start(path)
+        database = cls(_connected(path, "ro"), path, None)
+        try:
+            with database.closed_on_fault():
+                database._recognise()
+                database._check_small_tables()
+        except StoreError as fault:
+            if not _is_unshareable(fault) or _wal(path).exists():
+                raise
+            # Where SQLite cannot share the file with a writer, there can be none either.
+            database = cls(_connected(path, "ro&immutable=1"), path, None)
+            with database.closed_on_fault():
+                database._recognise()
+                database._check_small_tables()
+        return database
+
+    @classmethod
+    def _locked(cls, path: Path, mode: str) -> "Database":
+        lock = WriterLock.acquire(path)
+        try:
+            return cls(_connected(path, mode), path, lock)
+        except BaseException:
+            lock.release()
+            raise
+
+    @property
+    def writable(self) -> bool:
+        """Whether it was opened to be written."""
+        return self._lock is not None
+
+    def execute(self, sql: str, values: Iterable[object] = ()) -> sqlite3.Cursor:
+        """Run a statement that returns nothing."""
+        try:
+            return self._connection.execute(sql, tuple(values))
+        except (sqlite3.Error, OverflowError) as fault:
+            raise self._fault(fault) from fault
+
+    def rows(self, sql: str, values: Iterable[object] = ()) -> list[Row]:
+        """All rows a query returns."""
+        try:
+            return self._connection.execute(sql, tuple(values)).fetchall()
+        except (sqlite3.Error, OverflowError) as fault:
+            raise self._fault(fault) from fault
+
+    def row(self, sql: str, values: Iterable[object] = ()) -> Row | None:
+        """The first row a query returns, or None."""
+        rows = self.rows(sql, values)
+        return rows[0] if rows else None
+
+    @contextmanager
+    def transaction(self) -> Iterator[None]:
+        """Do all that follows or, if anything raises, none of it. May be nested."""
+        if not self.writable:
+            raise StoreError(f"{self.path} is open for reading; open it for writing to change it")
+        nested = self._connection.in_transaction
+        self.execute("SAVEPOINT inner" if nested else "BEGIN IMMEDIATE")
+        try:
+            yield
+            self.execute("RELEASE inner" if nested else "COMMIT")
+        except BaseException:
+            self._roll_back(nested)
+            raise
+
+    @contextmanager
+    def unchanging(self) -> Iterator[None]:
+        """See the file in one state throughout, whatever a writer does meanwhile."""
+        nested = self._connection.in_transaction
+        if not nested:
+            self.execute("BEGIN")
+        try:
+            yield
+        finally:
+            if not nested:
+                self._roll_back(nested=False)
+
+    def _roll_back(self, nested: bool) -> None:
+        # A full disk makes SQLite roll back of its own accord.
+        if not self._open or not self._connection.in_transaction:
+            return
+        if nested:
+            self.execute("ROLLBACK TO inner")
+            self.execute("RELEASE inner")
+        else:
+            self.execute("ROLLBACK")
+
+    def close(self) -> None:
+        """Close the file and give up the lock; closing twice is allowed."""
+        if not self._open:
+            return
+        self._open = False
+        try:
+            self._connection.close()
+        except sqlite3.Error as fault:
+            raise self._fault(fault) from fault
+        finally:
+            if self._lock is not None:
+                self._lock.release()
+
+    @contextmanager
+    def closed_on_fault(self) -> Iterator[None]:
+        """Close the file if what follows raises."""
+        try:
+            yield
+        except BaseException:
+            self.close()
+            raise
+
+    def check_structure(self) -> None:
+        """Check every page of the file; takes time in proportion to its size."""
+        self._expect_ok("PRAGMA integrity_check(1)")
+
+    def _check_small_tables(self) -> None:
+        for table in SMALL_TABLES:
+            self._expect_ok(f"PRAGMA quick_check({table})")
+
+    def _expect_ok(self, check: str) -> None:
+        found = self.row(check)
+        if found is None or found[0] != "ok":
+            raise StoreError(f"{self.path} {_DAMAGED} ({found[0] if found else 'check failed'})")
+
+    def _recognise(self) -> None:
+        application = self.row("PRAGMA application_id")
+        version = self.row("PRAGMA user_version")
+        if application != (APPLICATION_ID,):
+            tables = [str(name) for (name,) in self.rows("SELECT name FROM sqlite_master LIMIT 5")]
+            what = f"an SQLite file of another program (with {', '.join(tables)})"
+            if not tables:
+                what = "an SQLite file without content, perhaps of a run stopped while it began"
+            raise StoreError(f"{self.path} is no run: it is {what}; give the file of a run")
+        found = version[0] if version else None
+        if found != SCHEMA_VERSION:
+            older = isinstance(found, int) and found < SCHEMA_VERSION
+            raise StoreError(
+                f"{self.path} has the format {found} and this program reads {SCHEMA_VERSION}; "
+                f"use {'an older' if older else 'a newer'} version of beliefnest"
+            )
+
+    def _fault(self, fault: Exception) -> StoreError:
+        if not self._open:
+            return StoreError(f"{self.path} was closed; open it again")
+        code = getattr(fault, "sqlite_errorcode", None)
+        kind = _FAULTS.get(code & _PRIMARY_CODE, "failed") if isinstance(code, int) else "failed"
+        return StoreError(f"{self.path} {kind} ({fault})")
+
+
+def _wal(path: Path) -> Path:
+    return path.with_name(path.name + "-wal")
+
+
+def _is_unshareable(fault: StoreError) -> bool:
+    code = getattr(fault.__cause__, "sqlite_errorcode", 0) & _PRIMARY_CODE
+    return code in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY)
+
+
+def _connected(path: Path, mode: str) -> sqlite3.Connection:
+    try:
+        # Readers hand a connection from thread to thread; SQLite itself is built serialised.
+        return sqlite3.connect(
+            f"{path.resolve().as_uri()}?mode={mode}",
+            uri=True,
+            isolation_level=None,
+            check_same_thread=False,
+        )
+    except sqlite3.Error as fault:
+        raise StoreError(
+            f"{path} cannot be opened ({fault}); check path and permissions"
+        ) from fault
+
+
+def _recognise_start(path: Path) -> None:
+    try:
+        with path.open("rb") as file:
+            start = file.read(len(_MAGIC))
+    except FileNotFoundError as fault:
+        raise StoreError(f"there is no run file {path}; check the path") from fault
+    except OSError as fault:
+        raise StoreError(
+            f"{path} cannot be read: {fault.strerror}; give the file of a run"
+        ) from fault
+    if start == _MAGIC:
+        return
+    kinds = [kind for magic, kind in _KNOWN_STARTS if start.startswith(magic)]
+    what = kinds[0] if kinds else f"a file that begins with {start!r}" if start else "an empty file"
+    raise StoreError(f"{path} is no run: it is {what}; give the file of a run")

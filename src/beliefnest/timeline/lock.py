@@ -1,0 +1,78 @@
+"""The lock that lets one process at a time write a run file.
+
+It is an advisory lock on a file beside the run file, so that the operating system gives it
+up when the process ends, however it ends, and so that it does not meet SQLite's own locks.
+"""
+
+import fcntl
+import os
+from pathlib import Path
+
+from beliefnest.errors import StoreError
+
+__all__ = ["WriterLock"]
+
+
+class WriterLock:
+    """The right to write one run file, held until `release` or the end of the process."""
+
+    def __init__(self, descriptor: int, path: Path) -> None:
+        self._descriptor = descriptor
+        self._path = path
+
+    @classmethod
+    def acquire(cls, file: Path) -> "WriterLock":
+        """Take the lock of a run file.
+
+        Raises:
+            StoreError: Another writer holds it, or no lock file can be made there.
+        """
+        real = file.resolve()
+        path = real.with_name(real.name + "-lock")
+        while True:
+            descriptor = _opened(path, file)
+            try:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                if _is_at(descriptor, path):
+                    os.ftruncate(descriptor, 0)
+                    os.pwrite(descriptor, str(os.getpid()).encode(), 0)
+                    return cls(descriptor, path)
+            except BlockingIOError as fault:
+                holder = _holder(descriptor)
+                os.close(descriptor)
+                raise StoreError(
+                    f"{file} is being written by {holder}; a run has one writer: "
+                    "wait until it ends, or open the file for reading"
+                ) from fault
+            except OSError as fault:
+                os.close(descriptor)
+                raise StoreError(f"{file} cannot be locked for writing: {fault}") from fault
+            # The holder removed the file between our opening and our locking it.
+            os.close(descriptor)
+
+    def release(self) -> None:
+        """Give the lock up and remove its file."""
+        self._path.unlink(missing_ok=True)
+        os.close(self._descriptor)
+
+
+def _opened(path: Path, file: Path) -> int:
+    try:
+        return os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+    except OSError as fault:
+        raise StoreError(
+            f"{file} cannot be written: no lock file can be made beside it ({fault.strerror}); "
+            "make the folder writable, or open the file for reading"
+        ) from fault
+
+
+def _is_at(descriptor: int, path: Path) -> bool:
+    try:
+        return os.path.samestat(os.fstat(descriptor), path.stat())
+    except FileNotFoundError:
+        return False
+
+
+def _holder(descriptor: int) -> str:
+    text = os.pread(descriptor, 20, 0)
+    return f"process {int(text)}" if text.isdigit() else "another process"

@@ -1,0 +1,226 @@
+"""What a run file keeps besides timelines: what ran, with which results."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TypeVar
+
+import msgspec
+
+from beliefnest.errors import StoreError
+from beliefnest.timeline import codec
+from beliefnest.timeline.database import Database, Row, checked, seal
+
+__all__ = ["ProgramRecord", "PromptRecord", "Records", "RunRecord", "path_from", "path_to"]
+
+
+@dataclass(frozen=True, slots=True)
+class RunRecord:
+    """What a run was started with.
+
+    Attributes:
+        scenario: Name of the scenario.
+        text: The scenario file, whole.
+        condition: Name of the condition; empty if the scenario has none.
+        seed: Seed of every random number.
+        versions: Program to version, of everything that ran.
+        setting: What the nest needs to be made again, in its own format.
+    """
+
+    scenario: str
+    text: str
+    condition: str
+    seed: int
+    versions: Mapping[str, str]
+    setting: bytes = b""
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramRecord:
+    """An agent program and how it ended.
+
+    Attributes:
+        path: Belief path of the simulator it ran in.
+        branch: Branch it ran on.
+        agent: Agent that ran it.
+        code: Its text.
+        tick: Tick it began at.
+        ok: Whether it ended without an error.
+        error: The error's message; None if it ended well.
+        ticks: How many ticks it took.
+        group: Programs that ran at the same time in one call share a number.
+        detail: Further facts of the caller.
+    """
+
+    path: tuple[str, ...]
+    branch: str
+    agent: str
+    code: str
+    tick: int
+    ok: bool
+    error: str | None
+    ticks: int
+    group: int = 0
+    detail: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class PromptRecord:
+    """A prompt and what a model answered.
+
+    Attributes:
+        path: Belief path it was rendered from.
+        branch: Branch of that simulator.
+        tick: Tick it was rendered at.
+        model: Name of the model; empty if none was asked.
+        task: What the agent is to do.
+        prompt: The text the model received.
+        answer: The text it gave; None if none was asked or it gave none.
+        detail: Further facts of the caller: tokens, cost, template.
+    """
+
+    path: tuple[str, ...]
+    branch: str
+    tick: int
+    model: str
+    task: str
+    prompt: str
+    answer: str | None
+    detail: Mapping[str, str] = field(default_factory=dict)
+
+
+Record = TypeVar("Record", ProgramRecord, PromptRecord)
+
+_TABLES: Mapping[type, str] = {ProgramRecord: "program", PromptRecord: "prompt"}
+
+
+def path_to(path: tuple[str, ...]) -> str:
+    """A belief path as a run file holds it: a JSON array."""
+    return msgspec.json.encode(path).decode()
+
+
+def path_from(text: str) -> tuple[str, ...]:
+    """The belief path of a column; StoreError if it holds none."""
+    try:
+        return msgspec.json.decode(text, type=tuple[str, ...])
+    except msgspec.MsgspecError as fault:
+        raise StoreError(f"{text!r} is no stored belief path: {fault}") from fault
+
+
+class Records:
+    """What ran in a run: set once or appended, durable when the call returns.
+
+    Every call may raise StoreError, as those of the journal.
+    """
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def set_run(self, run: RunRecord) -> None:
+        """Set what the run was started with."""
+        self.put_state("run", codec.encode(run))
+
+    def run(self) -> RunRecord:
+        """What the run was started with; StoreError if that was never set."""
+        body = self.state("run")
+        if body is None:
+            raise StoreError(
+                f"{self._database.path} does not say what was run; "
+                "the run was stopped while it began: start it again"
+            )
+        return codec.decode(body, RunRecord)
+
+    def put_state(self, name: str, value: bytes) -> None:
+        """Keep bytes under a name, in place of what was there: counters, random states."""
+        with self._database.transaction():
+            self._database.execute(
+                "INSERT OR REPLACE INTO meta (name, value, seal) VALUES (?, ?, ?)",
+                (name, value, seal(name, value)),
+            )
+
+    def state(self, name: str) -> bytes | None:
+        """The bytes last put under a name; None if there are none."""
+        row = self._database.row("SELECT name, value, seal FROM meta WHERE name = ?", (name,))
+        if row is None:
+            return None
+        value = checked(row, self._database.path, f"state {name!r}")[1]
+        return bytes(value)
+
+    def select(self, path: tuple[str, ...], branch: str) -> None:
+        """Note which branch a simulator is on."""
+        text = path_to(path)
+        with self._database.transaction():
+            self._database.execute(
+                "INSERT OR REPLACE INTO selected (path, branch, seal) VALUES (?, ?, ?)",
+                (text, branch, seal(text, branch)),
+            )
+
+    def selected(self) -> dict[tuple[str, ...], str]:
+        """The branch each simulator is on, of those `select` named, in order of paths."""
+        rows = self._database.rows("SELECT path, branch, seal FROM selected ORDER BY path")
+        sound = [checked(row, self._database.path, "the selected branches") for row in rows]
+        return {path_from(path): branch for path, branch in sound}
+
+    def add_program(self, program: ProgramRecord) -> None:
+        """Append a program that has ended."""
+        self._add(program)
+
+    def programs(self) -> Sequence[ProgramRecord]:
+        """All programs, in order of their end."""
+        return self._all(ProgramRecord)
+
+    def add_prompt(self, prompt: PromptRecord) -> None:
+        """Append a prompt with its answer."""
+        self._add(prompt)
+
+    def prompts(self) -> Sequence[PromptRecord]:
+        """All prompts, in order."""
+        return self._all(PromptRecord)
+
+    def verify(self) -> None:
+        """Read every record; StoreError names the first damaged one."""
+        self.selected()
+        self.programs()
+        self.prompts()
+        for (name,) in self._database.rows("SELECT name FROM meta"):
+            self.state(name)
+
+    def follow_rename(self, path: tuple[str, ...], branch: str, name: str) -> None:
+        """Let all that names a branch name it anew; the caller opens the transaction."""
+        if self.selected().get(path) == branch:
+            self.select(path, name)
+        text = path_to(path)
+        for table in _TABLES.values():
+            for number, row in self._rows(table, "WHERE path = ? AND branch = ?", (text, branch)):
+                self._database.execute(
+                    f"UPDATE {table} SET branch = ?, seal = ? WHERE id = ?",
+                    (name, seal(text, name, row[2]), number),
+                )
+
+    def forget_branch(self, path: tuple[str, ...], branch: str) -> None:
+        """Remove what belongs to a deleted branch; the caller opens the transaction."""
+        where = (path_to(path), branch)
+        for table in ("selected", *_TABLES.values()):
+            self._database.execute(f"DELETE FROM {table} WHERE path = ? AND branch = ?", where)
+
+    def _add(self, record: ProgramRecord | PromptRecord) -> None:
+        values = (path_to(record.path), record.branch, codec.encode(record))
+        with self._database.transaction():
+            self._database.execute(
+                f"INSERT INTO {_TABLES[type(record)]} (path, branch, body, seal) "
+                "VALUES (?, ?, ?, ?)",
+                (*values, seal(*values)),
+            )
+
+    def _all(self, kind: type[Record]) -> tuple[Record, ...]:
+        rows = self._rows(_TABLES[kind], "", ())
+        # The column is right where the branch was renamed after the record was written.
+        return tuple(
+            replace(codec.decode(body, kind), branch=branch) for _, (_, branch, body) in rows
+        )
+
+    def _rows(self, table: str, where: str, values: Row) -> Iterator[tuple[int, Row]]:
+        rows = self._database.rows(
+            f"SELECT id, path, branch, body, seal FROM {table} {where} ORDER BY id", values
+        )
+        for number, *row in rows:
+            yield number, checked(tuple(row), self._database.path, f"{table} {number}")

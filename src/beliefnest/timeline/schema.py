@@ -1,0 +1,82 @@
+"""What a run file consists of.
+
+Every row carries `seal`, a checksum of its other columns, because SQLite itself does not
+notice a flipped bit inside a value.
+"""
+
+__all__ = ["APPLICATION_ID", "SCHEMA_VERSION", "SMALL_TABLES", "STATEMENTS"]
+
+APPLICATION_ID = 0x42656C4E
+"""Marks an SQLite file as a run ("BelN")."""
+
+SCHEMA_VERSION = 1
+
+SMALL_TABLES = ("timeline", "meta", "selected", "program", "prompt")
+"""Tables whose structure is checked whenever a file is opened; the others can be large."""
+
+STATEMENTS = (
+    # A path is a JSON array of agent names. `packed` of the entries lie in compressed pieces.
+    """CREATE TABLE timeline (
+        id INTEGER PRIMARY KEY AUTOINCREMENT,
+        path TEXT NOT NULL,
+        branch TEXT NOT NULL,
+        base INTEGER REFERENCES timeline (id),
+        base_entries INTEGER,
+        base_tick INTEGER,
+        start INTEGER NOT NULL,
+        head INTEGER NOT NULL,
+        entries INTEGER NOT NULL,
+        packed INTEGER NOT NULL,
+        description TEXT NOT NULL,
+        seal INTEGER NOT NULL,
+        UNIQUE (path, branch)
+    )""",
+    "CREATE INDEX timeline_by_base ON timeline (base)",
+    # Entries `first` to `first + count - 1` of a timeline; see codec.join.
+    """CREATE TABLE piece (
+        id INTEGER PRIMARY KEY,
+        timeline INTEGER NOT NULL,
+        first INTEGER NOT NULL,
+        count INTEGER NOT NULL,
+        first_tick INTEGER NOT NULL,
+        last_tick INTEGER NOT NULL,
+        compressed INTEGER NOT NULL,
+        body BLOB NOT NULL,
+        seal INTEGER NOT NULL,
+        UNIQUE (timeline, first)
+    )""",
+    "CREATE INDEX piece_by_tick ON piece (timeline, last_tick, first)",
+    # The state after the first `entries` entries of a timeline; see codec.encode_snapshot.
+    """CREATE TABLE keyframe (
+        id INTEGER PRIMARY KEY,
+        timeline INTEGER NOT NULL,
+        entries INTEGER NOT NULL,
+        body BLOB NOT NULL,
+        seal INTEGER NOT NULL,
+        UNIQUE (timeline, entries)
+    )""",
+    """CREATE TABLE meta (
+        name TEXT PRIMARY KEY,
+        value BLOB NOT NULL,
+        seal INTEGER NOT NULL
+    )""",
+    """CREATE TABLE selected (
+        path TEXT PRIMARY KEY,
+        branch TEXT NOT NULL,
+        seal INTEGER NOT NULL
+    )""",
+    """CREATE TABLE program (
+        id INTEGER PRIMARY KEY AUTOINCREMENT,
+        path TEXT NOT NULL,
+        branch TEXT NOT NULL,
+        body BLOB NOT NULL,
+        seal INTEGER NOT NULL
+    )""",
+    """CREATE TABLE prompt (
+        id INTEGER PRIMARY KEY AUTOINCREMENT,
+        path TEXT NOT NULL,
+        branch TEXT NOT NULL,
+        body BLOB NOT NULL,
+        seal INTEGER NOT NULL
+    )""",
+)

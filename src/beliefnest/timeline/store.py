@@ -1,0 +1,442 @@
+"""A journal in one SQLite file per run.
+
+Entries lie in pieces: one uncompressed piece for each call of `append`, joined into
+compressed pieces of `PIECE_ENTRIES` as soon as there are enough. So every call is durable
+when it returns, and a past entry is reached by unpacking one piece.
+"""
+
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import msgspec
+import zstandard
+
+from beliefnest.errors import InputError, StoreError
+from beliefnest.timeline import codec
+from beliefnest.timeline.database import Database, Row, checked, seal
+from beliefnest.timeline.journal import (
+    Entry,
+    ForkPoint,
+    TimelineInfo,
+    TimelineKey,
+    branch_carries,
+    branch_missing,
+    branch_taken,
+    check_append,
+    check_base,
+    path_text,
+)
+from beliefnest.timeline.records import Records, path_from, path_to
+from beliefnest.world.frames import Snapshot
+
+__all__ = ["PIECE_ENTRIES", "SqliteJournal"]
+
+PIECE_ENTRIES = 128
+"""Entries of one compressed piece: larger ones hardly pack better and are slower to read from."""
+
+_COMPRESSION = 1
+"""Level of zstandard; higher ones save nothing on poses, which are noise in their last digits."""
+
+_COLUMNS = (
+    "id, path, branch, base, base_entries, base_tick, start, head, entries, packed, description"
+)
+_PIECE = "timeline, first, count, first_tick, last_tick, compressed, body"
+
+
+@dataclass(frozen=True, slots=True)
+class _TimelineRow:
+    id: int
+    path: str
+    branch: str
+    base: int | None
+    base_entries: int | None
+    base_tick: int | None
+    start: int
+    head: int
+    entries: int
+    packed: int
+    description: str
+
+    @property
+    def key(self) -> TimelineKey:
+        return TimelineKey(path_from(self.path), self.branch)
+
+    def values(self) -> Row:
+        """Columns in the order of `_COLUMNS`."""
+        return (
+            self.id,
+            self.path,
+            self.branch,
+            self.base,
+            self.base_entries,
+            self.base_tick,
+            self.start,
+            self.head,
+            self.entries,
+            self.packed,
+            self.description,
+        )
+
+
+class SqliteJournal:
+    """A `Journal` whose calls are kept in a file once they return.
+
+    Made by `create_file`, `open` or `read`; to be closed, or used as a context manager. Every call
+    may raise StoreError: the disk is full, the file is damaged, closed, or open for reading.
+    """
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+        self._packer = zstandard.ZstdCompressor(level=_COMPRESSION)
+        self._unpacker = zstandard.ZstdDecompressor()
+        self.records = Records(database)
+
+    @classmethod
+    def create_file(cls, path: Path | str) -> "SqliteJournal":
+        """Begin a run file.
+
+        Raises:
+            StoreError: There is a file of that name, or it cannot be made or written.
+        """
+        return cls(Database.create(Path(path)))
+
+    @classmethod
+    def open(cls, path: Path | str) -> "SqliteJournal":
+        """Go on with a run file.
+
+        Raises:
+            StoreError: There is none, it is foreign, newer, damaged, read-only, or has
+                another writer.
+        """
+        return cls._sound(Database.open(Path(path)))
+
+    @classmethod
+    def read(cls, path: Path | str) -> "SqliteJournal":
+        """Look at a run file, also while another process writes it.
+
+        Raises:
+            StoreError: There is none, or it is foreign, newer or damaged.
+        """
+        return cls._sound(Database.read(Path(path)))
+
+    @classmethod
+    def _sound(cls, database: Database) -> "SqliteJournal":
+        with database.closed_on_fault():
+            journal = cls(database)
+            journal._check_timelines()
+            return journal
+
+    def __enter__(self) -> "SqliteJournal":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def path(self) -> Path:
+        """The file."""
+        return self._database.path
+
+    def together(self) -> AbstractContextManager[None]:
+        """All calls made inside are kept together or, if one raises, not at all."""
+        return self._database.transaction()
+
+    def timelines(self) -> Sequence[TimelineInfo]:
+        """All timelines, in order of creation."""
+        rows = {row.id: row for row in self._timeline_rows("ORDER BY id")}
+        return tuple(
+            _info(row, None if row.base is None else rows[row.base]) for row in rows.values()
+        )
+
+    def info(self, key: TimelineKey) -> TimelineInfo:
+        """One timeline; BranchError if there is none of that key."""
+        row = self._row(key)
+        base = None
+        if row.base is not None:
+            base = next(self._timeline_rows("WHERE id = ?", row.base), None)
+            if base is None:
+                raise StoreError(f"{self.path} is damaged: {key} is based on nothing")
+        return _info(row, base)
+
+    def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
+        """Begin an empty timeline; BranchError if it is there or its base is not."""
+        with self._database.transaction():
+            if self._found(key) is not None:
+                raise branch_taken(key)
+            number = None
+            if base is not None:
+                below = self._row(base.timeline)
+                check_base(key, base, below.entries)
+                number = below.id
+            self._write(
+                _TimelineRow(
+                    id=self._next_id(),
+                    path=path_to(key.path),
+                    branch=key.branch,
+                    base=number,
+                    base_entries=None if base is None else base.entries,
+                    base_tick=None if base is None else base.tick,
+                    start=start,
+                    head=start,
+                    entries=0,
+                    packed=0,
+                    description="",
+                )
+            )
+
+    def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:
+        """Add entries, all or none, and move the head; TickError if ticks do not rise."""
+        encoded = [codec.encode_entry(entry) for entry in entries]
+        with self._database.transaction():
+            row = self._row(key)
+            check_append(_info(row, None), entries, head)
+            packed = row.packed
+            if encoded:
+                packed = self._add_pieces(row, encoded, [entry.tick for entry in entries])
+            self._write(replace(row, head=head, entries=row.entries + len(encoded), packed=packed))
+
+    def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
+        """Entries number start to stop - 1, oldest first."""
+        row = self._row(key)
+        return self._entries_of(row, start, min(stop, row.entries))
+
+    def entries_until(self, key: TimelineKey, tick: int) -> int:
+        """How many entries lie at `tick` or before."""
+        row = self._row(key)
+        found = self._database.row(
+            f"SELECT {_PIECE}, seal FROM piece WHERE timeline = ? AND last_tick > ? "
+            "ORDER BY last_tick, first LIMIT 1",
+            (row.id, tick),
+        )
+        if found is None:
+            return row.entries
+        first, pieces = self._unpacked(found)
+        return first + bisect_right(codec.decode_ticks(pieces), tick)
+
+    def rename(self, key: TimelineKey, name: str) -> None:
+        """Give a timeline's branch another name; what names it follows."""
+        with self._database.transaction():
+            row = self._row(key)
+            if self._found(TimelineKey(key.path, name)) is not None:
+                raise branch_taken(TimelineKey(key.path, name))
+            self._write(replace(row, branch=name))
+            self.records.follow_rename(key.path, key.branch, name)
+
+    def delete(self, key: TimelineKey) -> None:
+        """Remove a timeline with its records; BranchError if another is based on it."""
+        with self._database.transaction():
+            row = self._row(key)
+            based = [other.key for other in self._timeline_rows("WHERE base = ?", row.id)]
+            if based:
+                raise branch_carries(key, based)
+            for table, column in (
+                ("piece", "timeline"),
+                ("keyframe", "timeline"),
+                ("timeline", "id"),
+            ):
+                self._database.execute(f"DELETE FROM {table} WHERE {column} = ?", (row.id,))
+            self.records.forget_branch(key.path, key.branch)
+
+    def describe(self, key: TimelineKey, description: str) -> None:
+        """Set a timeline's description."""
+        with self._database.transaction():
+            self._write(replace(self._row(key), description=description))
+
+    def put_keyframe(self, key: TimelineKey, entries: int, snapshot: Snapshot) -> None:
+        """Keep the state after the first `entries` entries of a timeline.
+
+        Raises:
+            BranchError: There is no timeline of that key.
+            InputError: The timeline does not have that many entries.
+        """
+        body = self._packer.compress(codec.encode_snapshot(snapshot))
+        with self._database.transaction():
+            row = self._row(key)
+            if not 0 <= entries <= row.entries:
+                raise InputError(f"{key} has {row.entries} entries; no keyframe lies at {entries}")
+            values = (row.id, entries, body)
+            self._database.execute(
+                "INSERT OR REPLACE INTO keyframe (timeline, entries, body, seal) "
+                "VALUES (?, ?, ?, ?)",
+                (*values, seal(*values)),
+            )
+
+    def nearest_keyframe(self, key: TimelineKey, entries: int) -> tuple[int, Snapshot] | None:
+        """The last keyframe of a timeline at or before entry `entries`, with its place.
+
+        None if the timeline itself has none there; its base may.
+
+        Raises:
+            BranchError: There is no timeline of that key.
+        """
+        found = self._database.row(
+            "SELECT timeline, entries, body, seal FROM keyframe "
+            "WHERE timeline = ? AND entries <= ? ORDER BY entries DESC LIMIT 1",
+            (self._row(key).id, entries),
+        )
+        if found is None:
+            return None
+        _, place, body = checked(found, self.path, f"a keyframe of {key}")
+        return place, codec.decode_snapshot(self._decompressed(body))
+
+    def verify(self) -> None:
+        """Read the whole file; StoreError names the first damage found.
+
+        Takes time in proportion to its size.
+        """
+        with self._database.unchanging():
+            self._database.check_structure()
+            self.records.verify()
+            self._verify_timelines()
+
+    def _verify_timelines(self) -> None:
+        for row in self._timeline_rows("ORDER BY id"):
+            for _ in self._entries_of(row, 0, row.entries):
+                pass
+            for (place,) in self._database.rows(
+                "SELECT entries FROM keyframe WHERE timeline = ?", (row.id,)
+            ):
+                self.nearest_keyframe(row.key, place)
+
+    def close(self) -> None:
+        """Close the file and let another writer have it; closing twice is allowed."""
+        self._database.close()
+
+    def _timeline_rows(self, where: str, *values: object) -> Iterator[_TimelineRow]:
+        rows = self._database.rows(f"SELECT {_COLUMNS}, seal FROM timeline {where}", values)
+        for row in rows:
+            yield _TimelineRow(*checked(row, self.path, "a timeline"))
+
+    def _found(self, key: TimelineKey) -> _TimelineRow | None:
+        rows = self._timeline_rows("WHERE path = ? AND branch = ?", path_to(key.path), key.branch)
+        return next(rows, None)
+
+    def _row(self, key: TimelineKey) -> _TimelineRow:
+        row = self._found(key)
+        if row is None:
+            raise branch_missing(key, (other.branch for other in self._beside(key)))
+        return row
+
+    def _beside(self, key: TimelineKey) -> Iterator[_TimelineRow]:
+        return self._timeline_rows("WHERE path = ?", path_to(key.path))
+
+    def _next_id(self) -> int:
+        # The sequence outlives deleted rows, so that a reader never takes one timeline for another.
+        row = self._database.row("SELECT seq FROM sqlite_sequence WHERE name = 'timeline'")
+        return 1 if row is None else row[0] + 1
+
+    def _write(self, row: _TimelineRow) -> None:
+        values = row.values()
+        marks = ", ".join("?" * (len(values) + 1))
+        self._database.execute(
+            f"INSERT INTO timeline ({_COLUMNS}, seal) VALUES ({marks}) "
+            "ON CONFLICT (id) DO UPDATE SET branch = excluded.branch, head = excluded.head, "
+            "entries = excluded.entries, packed = excluded.packed, "
+            "description = excluded.description, seal = excluded.seal",
+            (*values, seal(*values)),
+        )
+
+    def _add_pieces(self, row: _TimelineRow, encoded: Sequence[bytes], ticks: Sequence[int]) -> int:
+        """Write encoded entries behind a timeline's; returns how many lie in packed pieces."""
+        loose = row.entries - row.packed
+        if loose + len(encoded) < PIECE_ENTRIES:
+            self._write_piece(row.id, row.entries, encoded, ticks, compressed=False)
+            return row.packed
+        tail = list(self._raw_entries(row, row.packed, row.entries))
+        times = [*codec.decode_ticks(tail), *ticks]
+        pieces = [*tail, *(msgspec.Raw(entry) for entry in encoded)]
+        self._database.execute(
+            "DELETE FROM piece WHERE timeline = ? AND first >= ?", (row.id, row.packed)
+        )
+        for at in range(0, len(pieces), PIECE_ENTRIES):
+            part = slice(at, at + PIECE_ENTRIES)
+            full = len(pieces) - at >= PIECE_ENTRIES
+            self._write_piece(row.id, row.packed + at, pieces[part], times[part], compressed=full)
+        return row.packed + len(pieces) - len(pieces) % PIECE_ENTRIES
+
+    def _write_piece(
+        self,
+        timeline: int,
+        first: int,
+        encoded: Sequence[bytes | msgspec.Raw],
+        ticks: Sequence[int],
+        *,
+        compressed: bool,
+    ) -> None:
+        body = codec.join(encoded)
+        if compressed:
+            body = self._packer.compress(body)
+        values = (timeline, first, len(encoded), ticks[0], ticks[-1], int(compressed), body)
+        self._database.execute(
+            f"INSERT INTO piece ({_PIECE}, seal) VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
+            (*values, seal(*values)),
+        )
+
+    def _entries_of(self, row: _TimelineRow, start: int, stop: int) -> Iterator[Entry]:
+        for piece in self._raw_entries(row, start, stop):
+            yield codec.decode_entry(piece)
+
+    def _raw_entries(self, row: _TimelineRow, start: int, stop: int) -> Iterator[msgspec.Raw]:
+        # One query for each piece: a writer may join pieces while a reader is between two.
+        while start < stop:
+            found = self._database.row(
+                f"SELECT {_PIECE}, seal FROM piece WHERE timeline = ? AND first <= ? "
+                "ORDER BY first DESC LIMIT 1",
+                (row.id, start),
+            )
+            if found is None and not self._database.rows(
+                "SELECT id FROM timeline WHERE id = ?", (row.id,)
+            ):
+                raise branch_missing(row.key, (other.branch for other in self._beside(row.key)))
+            first, pieces = (0, []) if found is None else self._unpacked(found)
+            part = pieces[start - first : stop - first]
+            if not part:
+                raise StoreError(
+                    f"{self.path} is damaged; restore it from a copy "
+                    f"(entry {start} of {row.key} is not there)"
+                )
+            yield from part
+            start += len(part)
+
+    def _unpacked(self, row: Row) -> tuple[int, list[msgspec.Raw]]:
+        """Number of a piece's first entry, and its encoded entries."""
+        _, first, count, _, _, compressed, body = checked(row, self.path, "entries")
+        pieces = codec.split(self._decompressed(body) if compressed else body)
+        if len(pieces) != count:
+            raise StoreError(f"{self.path} is damaged; {len(pieces)} of {count} entries are there")
+        return first, pieces
+
+    def _decompressed(self, body: bytes) -> bytes:
+        try:
+            return self._unpacker.decompress(body)
+        except zstandard.ZstdError as fault:
+            raise StoreError(f"{self.path} is damaged; restore it from a copy ({fault})") from fault
+
+    def _check_timelines(self) -> None:
+        """Check that every timeline has its base and its last entry."""
+        with self._database.unchanging():
+            self._check_ends()
+
+    def _check_ends(self) -> None:
+        rows = {row.id: row for row in self._timeline_rows("ORDER BY id")}
+        for row in rows.values():
+            last = self._database.row(
+                "SELECT first + count FROM piece WHERE timeline = ? ORDER BY first DESC LIMIT 1",
+                (row.id,),
+            )
+            length = 0 if last is None else last[0]
+            if length != row.entries or (row.base is not None and row.base not in rows):
+                raise StoreError(
+                    f"{self.path} is damaged; restore it from a copy "
+                    f"(branch {row.branch!r} of {path_text(row.key.path)} is incomplete)"
+                )
+
+
+def _info(row: _TimelineRow, base: _TimelineRow | None) -> TimelineInfo:
+    fork = None
+    if base is not None and row.base_entries is not None and row.base_tick is not None:
+        fork = ForkPoint(base.key, row.base_entries, row.base_tick)
+    return TimelineInfo(row.key, fork, row.start, row.head, row.entries, row.description)
