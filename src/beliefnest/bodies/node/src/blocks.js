@@ -5,8 +5,15 @@
  * handed out again as long as its place keeps that state.
  */
 
-/** Makes `getBlock` of a version's chunk columns remember what it made. */
+const { Vec3 } = require('vec3')
+
+/** Makes the chunk columns and worlds of a version remember what they were asked for. */
 function rememberBlocks (registry) {
+  const World = require('prismarine-world')(registry)
+  rememberColumns(World)
+  const world = new World(null)
+  quicken(Object.getPrototypeOf(world.sync))
+
   const Block = require('prismarine-block')(registry)
   const Chunk = require('prismarine-chunk')(registry)
   const copy = copier(Block)
@@ -39,6 +46,46 @@ function rememberBlocks (registry) {
 function hasAny (entries) {
   for (const key in entries) return key !== undefined
   return false
+}
+
+/** The column asked for last is asked for again most of the time. */
+function rememberColumns (World) {
+  const { getLoadedColumn, setLoadedColumn, unloadColumn } = World.prototype
+  Object.assign(World.prototype, {
+    getLoadedColumn (x, z) {
+      if (this.lastX !== x || this.lastZ !== z || this.lastColumn === undefined) {
+        this.lastColumn = getLoadedColumn.call(this, x, z)
+        this.lastX = x
+        this.lastZ = z
+      }
+      return this.lastColumn
+    },
+    setLoadedColumn (x, z, ...rest) {
+      this.lastColumn = undefined
+      return setLoadedColumn.call(this, x, z, ...rest)
+    },
+    unloadColumn (x, z) {
+      this.lastColumn = undefined
+      return unloadColumn.call(this, x, z)
+    }
+  })
+}
+
+/** `getBlock` of a world's synchronous side, with fewer objects made on the way. */
+function quicken (prototype) {
+  prototype.getBlock = function getBlock (place) {
+    const x = Math.floor(place.x)
+    const y = Math.floor(place.y)
+    const z = Math.floor(place.z)
+    const column = this.async.getLoadedColumn(x >> 4, z >> 4)
+    if (!column) return null
+    const block = column.getBlock({ x: x & 15, y, z: z & 15 })
+    const { position } = block
+    if (position === null || position.x !== x || position.y !== y || position.z !== z) {
+      block.position = new Vec3(x, y, z)
+    }
+    return block
+  }
 }
 
 /** Copies all blocks the same way, so that they share one layout in memory. */

@@ -24,7 +24,7 @@ function main () {
   new Worker(path.join(__dirname, ...LIFELINE_FILE), { workerData: { descriptor: LIFELINE } })
     .on('error', fail)
   const stream = new net.Socket({ fd: CHANNEL, readable: true, writable: true })
-  const session = new Session(clock, message => channel.send(message))
+  const session = new Session(clock, message => channel.post(message))
   let turn = Promise.resolve()
   const channel = new Channel(stream, request => {
     turn = turn.then(() => answer(request)).catch(fail)
