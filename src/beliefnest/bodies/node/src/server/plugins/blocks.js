@@ -42,6 +42,13 @@ module.exports.server = (serv) => {
   blocks.stateWith = (block, properties) => encode(
     registry, block.name, { ...block.properties, ...properties })
 
+  /** A state as text, e.g. `lever[face=floor,facing=north,powered=true]`. */
+  blocks.text = (stateId) => {
+    const { name, properties } = describe(stateId)
+    const entries = Object.entries(properties).sort(([a], [b]) => (a < b ? -1 : 1))
+    return entries.length ? `${name}[${entries.map((entry) => entry.join('=')).join(',')}]` : name
+  }
+
   /** Tells a player what is there, whether or not it changed. */
   blocks.send = (player, position) => player._client.write('block_change', {
     location: position, type: serv.overworld.sync.getBlockStateId(position),

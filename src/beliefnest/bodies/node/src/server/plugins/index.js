@@ -21,6 +21,10 @@ module.exports = [
   named('levers', require('./levers')),
   named('doors', require('./doors')),
   named('placement', require('./placement')),
+  named('digging', require('./digging')),
+  named('falling', require('./falling')),
+  named('support', require('./support')),
+  named('wellbeing', require('./wellbeing')),
 ]
 
 function named (name, plugin) {

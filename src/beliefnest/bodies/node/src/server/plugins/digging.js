@@ -1,0 +1,98 @@
+'use strict'
+
+const { dropsOf } = require('./lib/drops')
+const { listOf, vecOf } = require('./lib/positions')
+const { withCount } = require('./lib/items')
+
+const TICK_MS = 50
+/** How much of the time a block takes must have passed, as in the game: clocks differ a little. */
+const PATIENCE = 0.7
+const STATUS = { START: 0, CANCEL: 1, FINISH: 2, DROP_STACK: 3, DROP_ONE: 4, RELEASE: 5, SWAP: 6 }
+const OFF_HAND_SLOT = 45
+
+/** Mining at the speed of the tool in hand, and the other acts of the same packet. */
+module.exports.server = (serv) => {
+  const Block = require('prismarine-block')(serv.registry)
+
+  /** Milliseconds a player needs for a block. */
+  serv.digTime = (player, stateId) => Block.fromStateId(stateId, 0).digTime(
+    player.itemInHand()?.type ?? null, false, serv.blocks.at(player.eyes()).name === 'water',
+    !player.onGround, player.itemInHand()?.enchants ?? [], {})
+
+  /** Breaks a block for a player, with what it drops. */
+  serv.mine = (player, position) => {
+    const block = serv.blocks.at(position)
+    const drops = dropsOf(serv.registry, block, player.itemInHand(), Math.random)
+    const rest = block.properties.waterlogged ? serv.blocks.state('water') : 0
+    serv.blocks.set(position, rest, player)
+    for (const { name, count } of drops) {
+      serv.popItem(position, new serv.Item(serv.registry.itemsByName[name].id, count))
+    }
+    player.emitEvent({
+      kind: 'mine_block', detail: { position: listOf(position), block: serv.blocks.text(block.stateId) },
+    })
+  }
+
+  serv.onTick(() => serv.players.forEach((player) => player.digTick()))
+}
+
+module.exports.player = (player, serv) => {
+  let digging = null
+
+  player.digTick = () => { if (digging) digging.ticks += 1 }
+
+  const canMine = (position) => player.health > 0 && player.canReach(position) &&
+    serv.registry.blocks[serv.blocks.at(position).type].diggable && serv.blocks.at(position).name !== 'air'
+
+  function start (position) {
+    const { stateId } = serv.blocks.at(position)
+    digging = { position, stateId, ticks: 0 }
+    if (canMine(position) && serv.digTime(player, stateId) === 0) {
+      digging = null
+      serv.mine(player, position)
+    }
+  }
+
+  /** The client has waited as long as it takes; one that has not is told that the block is still there. */
+  function finish (position) {
+    const begun = digging
+    digging = null
+    if (!begun || !begun.position.equals(position) || !canMine(position)) return
+    if (begun.stateId !== serv.blocks.at(position).stateId) return
+    const passed = (begun.ticks + 1) * TICK_MS
+    if (passed >= serv.digTime(player, begun.stateId) * PATIENCE) serv.mine(player, position)
+  }
+
+  function drop (count) {
+    const slot = player.slotOfHand(0)
+    const item = player.itemInHand()
+    if (!item) return
+    const thrown = Math.min(count, item.count)
+    player.inventory.slots[slot] = withCount(item, item.count - thrown)
+    serv.tossItem(player, withCount(item, thrown))
+    player.inventoryChanged()
+  }
+
+  function swapHands () {
+    const { slots } = player.inventory
+    const held = player.slotOfHand(0);
+    [slots[held], slots[OFF_HAND_SLOT]] = [slots[OFF_HAND_SLOT], slots[held]]
+    player.inventoryChanged()
+  }
+
+  function dig ({ status, location, sequence }) {
+    const position = vecOf(location)
+    if (status === STATUS.START) start(position)
+    else if (status === STATUS.CANCEL) digging = null
+    else finish(position)
+    player.acknowledge(sequence, [position])
+  }
+
+  player._client.on('block_dig', (packet) => {
+    if (packet.status <= STATUS.FINISH) dig(packet)
+    else if (packet.status === STATUS.DROP_STACK) drop(Infinity)
+    else if (packet.status === STATUS.DROP_ONE) drop(1)
+    else if (packet.status === STATUS.RELEASE) player.stopUsing?.()
+    else if (packet.status === STATUS.SWAP) swapHands()
+  })
+}

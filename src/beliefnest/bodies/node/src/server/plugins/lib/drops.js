@@ -1,0 +1,52 @@
+'use strict'
+/**
+ * What a mined block drops, after minecraft-data: `drops` of the block (what it always drops),
+ * with the counts of its loot table; nothing where the tool in hand cannot harvest it.
+ */
+
+const DOUBLE_SLAB = 2
+
+function countOf ([low, high], random) {
+  const least = low ?? 1
+  return least + Math.floor(random() * (Math.max(high, least) - least + 1))
+}
+
+function slabCount (properties, count) {
+  return count === DOUBLE_SLAB && properties.type !== undefined && properties.type !== 'double' ? 1 : count
+}
+
+/** Entries of a loot table that apply: by touch, and by the age of a plant. */
+function applicable (loot, properties, silkTouch) {
+  return loot.filter(({ silkTouch: silk, noSilkTouch: noSilk, blockAge }) =>
+    !(silk && !silkTouch) && !(noSilk && silkTouch) &&
+    (blockAge === undefined || properties.age === blockAge))
+}
+
+function sureNames (registry, data, entries, silkTouch) {
+  if (silkTouch && entries.some(({ silkTouch: silk }) => silk)) {
+    return entries.filter(({ silkTouch: silk }) => silk).map(({ item }) => item)
+  }
+  const names = data.drops.map((drop) => registry.items[drop].name)
+  if (names.length) return [...names, ...entries.filter(({ blockAge }) => blockAge !== undefined).map(({ item }) => item)]
+  return entries.length === 1 && entries[0].dropChance === 1 ? [entries[0].item] : []
+}
+
+/**
+ * @param {object} registry
+ * @param {{name, properties}} block
+ * @param {object | null} tool prismarine-item in hand
+ * @param {() => number} random
+ * @returns {{name: string, count: number}[]}
+ */
+function dropsOf (registry, { name, properties }, tool, random) {
+  const data = registry.blocksByName[name]
+  if (data.harvestTools && !data.harvestTools[tool?.type]) return []
+  const silkTouch = Boolean(tool?.enchants?.some((enchant) => enchant.name === 'silk_touch'))
+  const entries = applicable(registry.blockLoot[name]?.drops ?? [], properties, silkTouch)
+  return [...new Set(sureNames(registry, data, entries, silkTouch))].map((item) => {
+    const range = entries.find((entry) => entry.item === item)?.stackSizeRange ?? [1, 1]
+    return { name: item, count: slabCount(properties, countOf(range, random)) }
+  })
+}
+
+module.exports = { dropsOf }
