@@ -96,7 +96,8 @@ class Mail {
     this.waiting.push({ end, name, params })
     if (this.scheduled) return
     this.scheduled = true
-    queueMicrotask(() => this.handOver())
+    // Not sooner: a sender may first write and then, some promises later, listen for the answer.
+    setImmediate(() => this.handOver())
   }
 
   handOver () {
