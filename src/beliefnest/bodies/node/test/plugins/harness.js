@@ -16,9 +16,9 @@ const LIMIT = 2000
 /**
  * Runs `body(world)` in a region with a stone floor.
  * @param {object} setting `agents` (AGENT by name), `blocks` ([x, y, z, name, properties]),
- *   `containers` ([x, y, z, ITEMS])
+ *   `containers` ([x, y, z, ITEMS]), `box` (inclusive corners)
  */
-async function inWorld ({ agents = { sally: agent([0.5, FLOOR, 0.5]) }, blocks = [], containers = [] }, body) {
+async function inWorld ({ agents = { sally: agent([0.5, FLOOR, 0.5]) }, blocks = [], containers = [], box = BOX }, body) {
   const frames = []
   const session = new Session(clock, ({ frame }) => frames.push(frame))
   await session.perform({ op: 'hello', protocol: 1, seed: 0, minecraft: '1.20.4' })
@@ -26,7 +26,7 @@ async function inWorld ({ agents = { sally: agent([0.5, FLOOR, 0.5]) }, blocks =
   const { serv } = regions
   const states = blocks.map(([x, y, z, name, properties]) => [x, y, z, serv.blocks.state(name, properties)])
   await regions.create({
-    region: 'test', seed: 'test', box: BOX, tick: 0, blocks: floor(states), containers, agents, items: {}
+    region: 'test', seed: 'test', box, tick: 0, blocks: floor(states, box), containers, agents, items: {}
   })
   await regions.inside(regions.get('test'), () => body(worldOf(regions, frames)))
 }
