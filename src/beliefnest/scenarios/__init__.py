@@ -1,1 +1,13 @@
 """Scenario files, what they mean, and how they are run and judged."""
+
+from beliefnest.scenarios.scenario import (
+    Arrives,
+    Expectation,
+    Holds,
+    Opens,
+    Probe,
+    Scenario,
+    Stands,
+)
+
+__all__ = ["Arrives", "Expectation", "Holds", "Opens", "Probe", "Scenario", "Stands"]

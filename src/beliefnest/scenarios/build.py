@@ -62,6 +62,7 @@ def build_scenario(
     return Scenario(
         setting=builder.setting(),
         description=file.description,
+        reported_by=file.reported_by,
         condition=condition,
         condition_description=descriptions.get(condition, "") if condition is not None else "",
         conditions=descriptions,

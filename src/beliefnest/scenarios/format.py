@@ -197,6 +197,9 @@ class ScenarioFile(_Entry, frozen=True):
     ]
     agents: Annotated[dict[str, AgentEntry], msgspec.Meta(min_length=1)]
     description: Annotated[str, _note("What it is about.")] = ""
+    reported_by: Annotated[
+        str, _note("Who reported what is expected, as in 'as the paper reports'.")
+    ] = ""
     blocks: Annotated[list[BlockEntry], _note("The rest of the box is air.")] = []
     containers: list[ContainerEntry] = []
     perception: PerceptionEntry = PerceptionEntry()

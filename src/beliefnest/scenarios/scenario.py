@@ -100,6 +100,7 @@ class Scenario:
     Attributes:
         setting: What a nest starts from, the script included.
         description: What it is about.
+        reported_by: Who reported what is expected; empty: the author of the scenario.
         condition: Number of the condition it is under; None: as written, no overrides.
         condition_description: What is special about the condition.
         conditions: All conditions it could be loaded under: number to description.
@@ -111,6 +112,7 @@ class Scenario:
 
     setting: Setting
     description: str = ""
+    reported_by: str = ""
     condition: int | None = None
     condition_description: str = ""
     conditions: Mapping[int, str] = field(default_factory=dict)

@@ -1,0 +1,89 @@
+"""The commands, their options, and what the process ends with."""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from beliefnest.errors import BeliefNestError
+
+__all__ = ["app", "run_command_line"]
+
+_INTERRUPTED = 130
+_BAD_USAGE = 2
+# Click's ClickException. Typer may have its own copy of click and exports only what derives
+# from it: BadParameter, then UsageError, then this.
+_UsageFault: Any = typer.BadParameter.__mro__[2]
+
+app = typer.Typer(
+    name="beliefnest",
+    help="Nested belief simulators for embodied agents, in a Minecraft world.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
+
+
+def run_command_line(arguments: Sequence[str]) -> int:
+    """Run a command; every fault becomes one line on stderr and an exit status."""
+    command = typer.main.get_command(app)
+    try:
+        status: Any = command.main(list(arguments), prog_name="beliefnest", standalone_mode=False)
+    except _UsageFault as error:
+        return _fail(f"{error.format_message()} (see beliefnest --help)", _BAD_USAGE)
+    except BeliefNestError as error:
+        return _fail(str(error), error.exit_status)
+    except (KeyboardInterrupt, typer.Abort):
+        return _fail("interrupted", _INTERRUPTED)
+    except BrokenPipeError:
+        # Whoever read our output has left; there is nobody to tell.
+        sys.stderr.close()
+        return 0
+    return status if isinstance(status, int) else 0
+
+
+def _fail(message: str, status: int) -> int:
+    print(f"beliefnest: {' '.join(message.split())}", file=sys.stderr)  # noqa: T201
+    return status
+
+
+@app.command()
+def run(
+    scenario: Annotated[str, typer.Argument(help="A built-in name, or a scenario file.")],
+    condition: Annotated[
+        list[int] | None, typer.Option(help="Run only this one; can be repeated.")
+    ] = None,
+    world: Annotated[str, typer.Option(help="Where it plays.")] = "embedded",
+    model: Annotated[
+        str, typer.Option(help="Who answers: offline, or PROVIDER:MODEL.")
+    ] = "offline",
+    out: Annotated[Path | None, typer.Option(help="Folder for what is recorded.")] = None,
+    seed: Annotated[int, typer.Option(help="Drives every random number.")] = 0,
+    json: Json = False,
+) -> int:
+    """Play a scenario, follow the beliefs, ask the model, and say whether all is as expected."""
+    from beliefnest.cli.run import RunOptions, run_scenarios
+
+    options = RunOptions(scenario, tuple(condition or ()), world, model, out, seed, json)
+    return run_scenarios(options)
+
+
+@app.command("list")
+def list_installed(json: Json = False) -> None:
+    """List the scenarios, worlds and models that are installed."""
+    from beliefnest.cli.listing import print_installed
+
+    print_installed(as_json=json)
+
+
+@app.command()
+def doctor(json: Json = False) -> int:
+    """Check Node, the bundle, a world and a model; say what to do about what fails."""
+    from beliefnest.cli.doctor import examine
+
+    return examine(as_json=json)

@@ -1,0 +1,125 @@
+"""The folder of a run: what is in it, and how it is written so that it is always readable."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from beliefnest.errors import InputError
+
+__all__ = ["PICTURE", "STORE", "ConditionFolder", "RunFolder", "store_in"]
+
+STORE = "run.bn"
+PICTURE = "picture.png"
+_REPORT = "run.json"
+_RESULT = "result.json"
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionFolder:
+    """The part of a run folder that belongs to one condition."""
+
+    path: Path
+
+    @property
+    def store(self) -> Path:
+        """The timelines."""
+        return self.path / STORE
+
+    @property
+    def picture(self) -> Path:
+        """The picture of the decisive moment."""
+        return self.path / PICTURE
+
+    def write_result(self, result: Mapping[str, object]) -> None:
+        """Write what came of the condition."""
+        _write(self.path / _RESULT, _json(result))
+
+    def write_probe(self, name: str, prompt: str, answer: str, program: str) -> None:
+        """Write what a model was asked, what it answered, and the program in it."""
+        folder = self.path / "probes" / "".join(c if c.isalnum() else "-" for c in name)
+        folder.mkdir(parents=True, exist_ok=True)
+        _write(folder / "prompt.txt", prompt)
+        _write(folder / "answer.txt", answer)
+        _write(folder / "program.js", program)
+
+
+@dataclass(frozen=True, slots=True)
+class RunFolder:
+    """A run folder."""
+
+    path: Path
+
+    @staticmethod
+    def create(wanted: Path | None, name: str, now: datetime) -> "RunFolder":
+        """Make the folder of a run.
+
+        Args:
+            wanted: The folder; None: `runs/NAME-DATE-TIME` in the current one.
+            name: Name of the scenario.
+            now: The time, for the name.
+
+        Raises:
+            InputError: It cannot be made, or holds something already.
+        """
+        path = (
+            wanted if wanted is not None else _unused(Path("runs"), f"{name}-{now:%Y%m%d-%H%M%S}")
+        )
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+            if any(path.iterdir()):
+                raise InputError(f"{path} is not empty; name another folder with --out")
+            _write(path / _REPORT, _json({"scenario": name, "status": "running", "runs": []}))
+        except OSError as error:
+            raise InputError(f"the run folder {path} cannot be written: {error.strerror}") from None
+        return RunFolder(path)
+
+    def condition(self, number: int | None) -> ConditionFolder:
+        """Make the folder of a condition; None: of a scenario that has none."""
+        path = self.path / ("run" if number is None else f"condition-{number}")
+        path.mkdir()
+        return ConditionFolder(path)
+
+    def write_report(self, report: Mapping[str, object]) -> None:
+        """Write the whole report anew."""
+        _write(self.path / _REPORT, _json(report))
+
+    def write_summary(self, text: str) -> None:
+        """Write the table as text."""
+        _write(self.path / "summary.txt", text)
+
+
+def store_in(run: Path) -> Path:
+    """The store of a run: itself, in its folder, or in the only condition's folder.
+
+    Raises:
+        InputError: There is none, or there are several.
+    """
+    if run.is_file():
+        return run
+    if (run / STORE).is_file():
+        return run / STORE
+    found = sorted(run.glob(f"*/{STORE}"))
+    if len(found) == 1:
+        return found[0]
+    if found:
+        names = ", ".join(str(store.parent) for store in found)
+        raise InputError(f"{run} holds several runs; name one of {names}")
+    raise InputError(f"there is no run at {run}: it is no run folder and no {STORE} file")
+
+
+def _unused(parent: Path, name: str) -> Path:
+    candidates = [parent / name, *(parent / f"{name}-{number}" for number in range(2, 100))]
+    return next((path for path in candidates if not path.exists()), candidates[-1])
+
+
+def _json(value: Mapping[str, object]) -> str:
+    return json.dumps(value, indent=2) + "\n"
+
+
+def _write(path: Path, text: str) -> None:
+    """Replace a file as a whole, so that whoever reads it never finds half of it."""
+    draft = path.with_name(path.name + ".part")
+    draft.write_text(text, encoding="utf-8")
+    draft.replace(path)

@@ -1,0 +1,182 @@
+"""What a run reports: the object that `--json` prints, and the table."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+from rich import box
+from rich.table import Table
+
+from beliefnest.belief.view import State
+from beliefnest.scenarios.judging import places_of
+from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome, ProbeOutcome
+from beliefnest.scenarios.scenario import Arrives, Holds, Opens, Scenario
+from beliefnest.world.values import Point, Position
+
+__all__ = ["outcome_json", "outcome_table", "report_json", "state_json"]
+
+
+def state_json(state: State) -> dict[str, object]:
+    """A state as the STATE object of the public surface."""
+    return {
+        "containers": {
+            ",".join(map(str, place)): {
+                "items": dict(sorted(container.items.items())),
+                "complete": container.complete,
+            }
+            for place, container in sorted(state.containers.items())
+        },
+        "agents": {
+            name: {"position": _list(agent.position), "current": agent.current}
+            for name, agent in sorted(state.agents.items())
+        },
+        "chat": [list(line) for line in state.chat],
+    }
+
+
+def outcome_json(outcome: Outcome, run_dir: Path) -> dict[str, object]:
+    """What came of one condition."""
+    return {
+        "condition": outcome.scenario.condition,
+        "seed": outcome.seed,
+        "ok": outcome.ok,
+        "ticks": outcome.ticks,
+        "seconds": round(outcome.seconds, 3),
+        "reality": state_json(outcome.reality),
+        "beliefs": {path: state_json(state) for path, state in outcome.beliefs.items()},
+        "expectations": [_expectation_json(each) for each in outcome.expectations],
+        "probes": [_probe_json(each) for each in outcome.probes],
+        "run_dir": str(run_dir),
+    }
+
+
+def report_json(
+    scenario: str, world: str, model: str, status: str, runs: Iterable[Mapping[str, object]]
+) -> dict[str, object]:
+    """The whole report."""
+    return {
+        "scenario": scenario,
+        "world": world,
+        "model": model,
+        "status": status,
+        "runs": list(runs),
+    }
+
+
+def outcome_table(outcomes: Sequence[Outcome]) -> Table:
+    """One row for each condition: what is where, what was predicted, whether it is as expected."""
+    scenario = outcomes[0].scenario
+    table = Table(title=scenario.name, title_justify="left", box=box.SIMPLE_HEAVY)
+    if scenario.conditions:
+        table.add_column("condition", justify="right")
+    for heading in _headings(outcomes):
+        table.add_column(heading)
+    table.add_column(f"as {scenario.reported_by or 'expected'}{_verb(scenario)}")
+    table.add_column("ticks", justify="right")
+    table.add_column("seconds", justify="right")
+    for outcome in outcomes:
+        row = [str(outcome.scenario.condition)] if scenario.conditions else []
+        cells = _cells(outcome)
+        row += [cells.get(heading, "") for heading in _headings(outcomes)]
+        verdict = "[green]yes[/green]" if outcome.ok else "[bold red]NO[/bold red]"
+        table.add_row(*row, verdict, str(outcome.ticks), f"{outcome.seconds:.2f}")
+    return table
+
+
+def _verb(scenario: Scenario) -> str:
+    return " reports" if scenario.reported_by else ""
+
+
+def _headings(outcomes: Iterable[Outcome]) -> list[str]:
+    return list(dict.fromkeys(heading for outcome in outcomes for heading in _cells(outcome)))
+
+
+def _cells(outcome: Outcome) -> dict[str, str]:
+    """Heading to text, for everything that is expected or asked."""
+    cells: dict[str, list[str]] = {}
+    for each in outcome.expectations:
+        path = each.expectation.path
+        text = _found(each, outcome.state(path), outcome.scenario)
+        cells.setdefault("in reality" if path == "/" else f"in {path}", []).append(text)
+    for probe in outcome.probes:
+        heading, text = _acted(probe, outcome.scenario)
+        cells.setdefault(heading, []).append(text)
+    return {heading: "\n".join(lines) for heading, lines in cells.items()}
+
+
+def _found(outcome: ExpectationOutcome, state: State, scenario: Scenario) -> str:
+    content = outcome.expectation.content
+    if isinstance(content, Holds):
+        what = ", ".join(content.items) or "nothing"
+        names = [_name(place, scenario) for place in places_of(content.items, state)]
+        text = f"{what}: {' and '.join(names) or 'nowhere'}"
+    else:
+        position = state.agents[content.agent].position
+        text = f"{content.agent}: {'unknown' if position is None else _point(position)}"
+    return _marked(text, outcome.ok)
+
+
+def _acted(outcome: ProbeOutcome, scenario: Scenario) -> tuple[str, str]:
+    probe = outcome.probe
+    if isinstance(probe.expect, Arrives):
+        where = "nowhere" if outcome.arrived is None else _point(outcome.arrived)
+        return f"predicted {probe.agent} arrives at", _marked(where, outcome.ok)
+    opened = _name(outcome.opened[0], scenario) if outcome.opened else "nothing"
+    heading = f"predicted {probe.agent} opens"
+    if isinstance(probe.expect, Opens):
+        return heading, _marked(opened, outcome.ok)
+    return heading, opened
+
+
+def _marked(text: str, ok: bool | None) -> str:
+    return text if ok is not False else f"[bold red]{text}[/bold red]"
+
+
+def _name(place: Position, scenario: Scenario) -> str:
+    return scenario.labels.get(place, f"({', '.join(map(str, place))})")
+
+
+def _point(point: Point) -> str:
+    return f"({', '.join(f'{value:.1f}' for value in point)})"
+
+
+def _list(point: Point | None) -> list[float] | None:
+    return None if point is None else list(point)
+
+
+def _expectation_json(outcome: ExpectationOutcome) -> dict[str, object]:
+    expectation = outcome.expectation
+    content = expectation.content
+    expected: dict[str, object]
+    if isinstance(content, Holds):
+        expected = {"container": list(content.container), "items": dict(content.items)}
+    else:
+        expected = {"agent": content.agent, "position": _list(content.place)}
+    return {
+        "path": expectation.path,
+        "label": expectation.label,
+        "expected": expected,
+        "ok": outcome.ok,
+    }
+
+
+def _probe_json(outcome: ProbeOutcome) -> dict[str, object]:
+    probe = outcome.probe
+    expected: dict[str, object] | None = None
+    if isinstance(probe.expect, Opens):
+        expected = {"opens": list(probe.expect.container)}
+    elif isinstance(probe.expect, Arrives):
+        expected = {"arrives": list(probe.expect.place), "within": probe.expect.within}
+    return {
+        "label": probe.label,
+        "path": probe.path,
+        "acts_in": probe.acts_in,
+        "agent": probe.agent,
+        "task": probe.task,
+        "program": outcome.program,
+        "error": outcome.error,
+        "branch": outcome.branch,
+        "opened": [list(place) for place in outcome.opened],
+        "arrived": _list(outcome.arrived),
+        "expected": expected,
+        "ok": outcome.ok,
+    }

@@ -1,0 +1,114 @@
+"""`beliefnest run`: every condition in a world of its own, recorded, judged and pictured."""
+
+import json
+import os
+import sys
+import time
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from beliefnest.cli.console import progress_on, stdout
+from beliefnest.cli.folder import ConditionFolder, RunFolder
+from beliefnest.cli.report import outcome_json, outcome_table, report_json
+from beliefnest.llm.messages import Model
+from beliefnest.llm.resolve import Connection, open_model
+from beliefnest.nest.nest import Nest
+from beliefnest.scenarios.outcome import Outcome
+from beliefnest.scenarios.running import run_scenario
+from beliefnest.scenarios.scenario import Scenario
+
+__all__ = ["RunOptions", "run_scenarios"]
+
+
+@dataclass(frozen=True, slots=True)
+class RunOptions:
+    """What was asked for on the command line.
+
+    Attributes:
+        scenario: Name or path.
+        conditions: Numbers of the conditions to run; empty: all.
+        world: Name of the world.
+        model: Name of the model.
+        out: Run folder; None: a new one in `runs`.
+        seed: Drives every random number.
+        as_json: Whether to print the report as JSON instead of a table.
+    """
+
+    scenario: str
+    conditions: tuple[int, ...]
+    world: str
+    model: str
+    out: Path | None
+    seed: int
+    as_json: bool
+
+
+def run_scenarios(options: RunOptions) -> int:
+    """Run, record, and print; the exit status says whether all was as expected.
+
+    Raises:
+        BeliefNestError: The input is wrong, or a world or model failed.
+    """
+    scenarios = _scenarios(options)
+    model = open_model(options.model, os.environ, Connection())
+    folder = RunFolder.create(options.out, scenarios[0].name, datetime.now())
+    outcomes: list[Outcome] = []
+    runs: list[dict[str, object]] = []
+    status = "failed"
+    try:
+        for scenario in scenarios:
+            place = folder.condition(scenario.condition)
+            outcome = _run(scenario, place, model, options)
+            outcomes.append(outcome)
+            runs.append(outcome_json(outcome, place.path))
+            place.write_result(runs[-1])
+        status = "done"
+    except KeyboardInterrupt:
+        status = "interrupted"
+        raise
+    finally:
+        report = report_json(scenarios[0].name, options.world, options.model, status, runs)
+        folder.write_report(report)
+    _print(outcomes, folder, report, as_json=options.as_json)
+    return 0 if all(outcome.ok for outcome in outcomes) else 1
+
+
+def _scenarios(options: RunOptions) -> tuple[Scenario, ...]:
+    if not options.conditions:
+        return Scenario.load_all(options.scenario)
+    numbers = dict.fromkeys(options.conditions)
+    return tuple(Scenario.load(options.scenario, number) for number in numbers)
+
+
+def _run(scenario: Scenario, place: ConditionFolder, model: Model, options: RunOptions) -> Outcome:
+    title = scenario.name
+    if scenario.condition is not None:
+        title += f", condition {scenario.condition}"
+    started = time.perf_counter()
+    with (
+        progress_on(title) as on_progress,
+        Nest.open(scenario, world=options.world, store=place.store, seed=options.seed) as nest,
+    ):
+        outcome = run_scenario(nest, scenario, model, options.seed, started, on_progress)
+        for number, probe in enumerate(outcome.probes):
+            name = probe.probe.label or f"probe-{number + 1}"
+            place.write_probe(name, probe.prompt, probe.answer, probe.program)
+    return outcome
+
+
+def _print(
+    outcomes: list[Outcome], folder: RunFolder, report: dict[str, object], *, as_json: bool
+) -> None:
+    console = stdout()
+    table = outcome_table(outcomes)
+    with console.capture() as captured:
+        for outcome in outcomes:
+            if outcome.scenario.condition is not None:
+                number, about = outcome.scenario.condition, outcome.scenario.condition_description
+                console.print(f"condition {number}: {about}", highlight=False)
+        console.print(table)
+        console.print(f"recorded in {folder.path}", highlight=False, soft_wrap=True)
+    text = captured.get()
+    folder.write_summary(text)
+    sys.stdout.write(json.dumps(report, indent=2) + "\n" if as_json else text)
