@@ -66,5 +66,5 @@ module.exports.server = (serv) => {
   }
 
   serv.blocks = blocks
-  serv.setBlock = async (world, position, stateId) => { blocks.set(position, stateId); }
+  serv.setBlock = async (world, position, stateId) => { blocks.set(position, stateId) }
 }

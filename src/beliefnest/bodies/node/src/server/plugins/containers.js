@@ -13,13 +13,20 @@ const { keyOf, vecOf } = require('./lib/positions')
  */
 module.exports.server = (serv) => {
   const sizes = new Map()
+  const arrangements = new Map()
   const stored = new Map()
   const changed = new Map()
 
   const sizeAt = (position) => sizes.get(serv.blocks.at(position).name)
 
-  /** Declares a kind of block that holds items. */
-  function define (name, size) { sizes.set(name, size); }
+  /**
+   * Declares a kind of block that holds items. `arrange(stacks)` gives the slots a content is
+   * set into, or null where it does not fit; by default one after the other.
+   */
+  function define (name, size, arrange = (stacks) => (stacks.length > size ? null : stacks)) {
+    sizes.set(name, size)
+    arrangements.set(name, arrange)
+  }
 
   /** The slots of the container at a position; only for those who call `touch` afterwards. */
   function slots (position) {
@@ -51,12 +58,14 @@ module.exports.server = (serv) => {
         `the block there is ${serv.blocks.at(position).name}`)
     }
     const stacks = stacksOf(serv.Item, serv.registry, counts)
-    if (stacks.length > size) {
-      throw new RangeError(`the container at (${position.x}, ${position.y}, ${position.z}) has ` +
-        `${size} slots, its content needs ${stacks.length}`)
+    const { name } = serv.blocks.at(position)
+    const arranged = arrangements.get(name)(stacks)
+    if (arranged === null) {
+      throw new RangeError(`the ${stacks.length} stacks given do not fit into the ${size} slots of the ` +
+        `${name} at (${position.x}, ${position.y}, ${position.z})`)
     }
     const own = slots(position)
-    own.forEach((_, i) => { own[i] = stacks[i] ?? null; })
+    own.forEach((_, i) => { own[i] = arranged[i] ?? null })
     touch(position)
   }
 

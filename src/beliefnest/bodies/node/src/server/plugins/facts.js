@@ -9,7 +9,7 @@ const { EventEmitter } = require('events')
  */
 module.exports.server = (serv) => {
   serv.facts = new EventEmitter()
-  serv.emitEvent = (event) => { serv.facts.emit('event', event); }
+  serv.emitEvent = (event) => { serv.facts.emit('event', event) }
 }
 
 module.exports.player = (player, serv) => {

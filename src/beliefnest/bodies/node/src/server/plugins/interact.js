@@ -16,7 +16,7 @@ const SNEAKING_EYES = 1.27
 module.exports.server = (serv) => {
   const handlers = new Map()
 
-  serv.onInteraction = (name, handler) => { handlers.set(name, handler); }
+  serv.onInteraction = (name, handler) => { handlers.set(name, handler) }
   serv.interact = (use) => handlers.get(use.block.name)?.(use) ?? false
 }
 

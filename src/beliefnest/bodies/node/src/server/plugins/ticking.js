@@ -11,13 +11,13 @@ module.exports.server = (serv) => {
   let countdowns = []
 
   /** Register work done every tick: `ticker(within)`. */
-  serv.onTick = (ticker) => { tickers.push(ticker); }
+  serv.onTick = (ticker) => { tickers.push(ticker) }
 
   /** Run `action` after `ticks` ticks of the place `position`; returns a cancel function. */
   serv.after = (ticks, position, action) => {
     const countdown = { left: ticks, position: position.clone(), action }
     countdowns.push(countdown)
-    return () => { countdowns = countdowns.filter((other) => other !== countdown); }
+    return () => { countdowns = countdowns.filter((other) => other !== countdown) }
   }
 
   function runCountdowns (within) {

@@ -167,7 +167,7 @@ module.exports.player = (player, serv) => {
     if (packet.windowId !== window.id) return
     const stale = packet.stateId !== windows.stateId
     let outcome = null
-    const run = () => { outcome = click(window.menu, windows.cursor, packet); }
+    const run = () => { outcome = click(window.menu, windows.cursor, packet) }
     if (window.around) window.around(run)
     else run()
     predict(window, packet)
