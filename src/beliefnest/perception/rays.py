@@ -6,7 +6,7 @@ range in the shape tables), plus `INTRUDED` if the shape of a neighbour reaches 
 cell. Coordinates are those of the grid: cell (i, j, k) is the cube from (i, j, k) to
 (i + 1, j + 1, k + 1). A ray is eye + t * d, 0 <= t <= 1.
 
-Shapes lie on a grid of 1/32 and reach out of their cell by less than one cell along one
+Shapes lie on a grid of 1/32 and reach out of their cell by half a cell at most, along one
 axis, as all shapes of Minecraft do; tests/world/test_registry.py holds that.
 """
 
@@ -24,113 +24,81 @@ __all__ = [
     "FULL",
     "INTRUDED",
     "NOWHERE",
+    "LEAST_LENGTH",
+    "MISSED",
     "OWN",
+    "Ray",
+    "Boxes",
+    "Cell",
     "Codes",
-    "Shapes",
+    "Starts",
+    "Vector",
+    "at",
+    "block_entry",
     "compiled",
-    "first_hit",
     "hidden_by",
+    "inlined",
     "is_inside",
+    "main_axis",
+    "may_lie_in_face",
     "neighbour",
+    "span",
+    "turned",
+    "turned_back",
+    "sloped",
 ]
 
+N = TypeVar("N", int, float)
 F = TypeVar("F", bound=Callable[..., Any])
+Cell = tuple[int, int, int]
+Vector = tuple[float, float, float]
 Codes = npt.NDArray[np.uint16]
-Shapes = tuple[npt.NDArray[np.int32], npt.NDArray[np.float64]]
-"""Shape k's boxes are rows starts[k] to starts[k + 1] - 1 of boxes (x0, y0, z0, x1, y1, z1)."""
+Starts = npt.NDArray[np.int32]
+Boxes = npt.NDArray[np.float64]
+Ray = tuple[Vector, Vector, Vector, float]
+"""Eye, d, 1 / d (0 where d is 0), and the t that 1e-9 blocks take."""
 
 EMPTY = 0
 FULL = 1
 FIRST_SHAPE = 2
 INTRUDED = 0x8000
+OWN = 0x7FFF
 NOWHERE = (-1, -1, -1)
 
-OWN = 0x7FFF
-_LEAST_LENGTH = 1e-9
+MISSED = 2.0
+LEAST_LENGTH = 1e-9
 _NUDGE = 1e-7
-_MISSED = 2.0
+# Which cells a ray is tried against is decided with this much to spare.
+_SPARE = 1e-11
+# No shape reaches so near the outer side of the margin.
+_RIM = 1e-3
 
 
 def compiled(function: F) -> F:
     """Compile a kernel on first use and keep the machine code for the next process."""
-    return cast(F, numba.njit(cache=True, nogil=True)(function))
+    return cast(F, numba.njit(cache=True, nogil=True, error_model="numpy")(function))
 
 
-@compiled
-def _clip(e: float, d: float, low: float, high: float) -> tuple[float, float]:
-    """The part (t0, t1) of a ray strictly between two planes; t0 > t1 if there is none."""
-    if d == 0.0:
-        if low < e < high:
-            return 0.0, 1.0
-        return 1.0, 0.0
-    t0 = (low - e) / d
-    t1 = (high - e) / d
-    if t0 > t1:
-        t0, t1 = t1, t0
-    return max(t0, 0.0), min(t1, 1.0)
+def inlined(function: F) -> F:
+    """Compile a kernel into each kernel that calls it."""
+    return cast(F, numba.njit(forceinline=True, nogil=True, error_model="numpy")(function))
 
 
-@compiled
-def _shape_entry(
-    shapes: Shapes,
-    shape: int,
-    cell: tuple[int, int, int],
-    eye: tuple[float, float, float],
-    d: tuple[float, float, float],
-    least: float,
-) -> float:
-    """Where a ray first enters a box of a shape standing in a cell; `_MISSED` if nowhere."""
-    starts, boxes = shapes
-    entry = _MISSED
-    for row in range(starts[shape], starts[shape + 1]):
-        x0, x1 = _clip(eye[0], d[0], cell[0] + boxes[row, 0], cell[0] + boxes[row, 3])
-        y0, y1 = _clip(eye[1], d[1], cell[1] + boxes[row, 1], cell[1] + boxes[row, 4])
-        z0, z1 = _clip(eye[2], d[2], cell[2] + boxes[row, 2], cell[2] + boxes[row, 5])
-        t0 = max(x0, y0, z0)
-        if min(x1, y1, z1) - t0 > least:
-            entry = min(entry, t0)
-    return entry
+@inlined
+def is_inside(sizes: Cell, cell: Cell) -> bool:
+    """Whether a cell is one of the grid's."""
+    nx, ny, nz = sizes
+    return 0 <= cell[0] < nx and 0 <= cell[1] < ny and 0 <= cell[2] < nz
 
 
-@compiled
-def _shaped_cell_hit(
-    codes: Codes,
-    shapes: Shapes,
-    cell: tuple[int, int, int],
-    target: tuple[int, int, int],
-    eye: tuple[float, float, float],
-    d: tuple[float, float, float],
-    least: float,
-) -> tuple[float, int]:
-    """Entry and owner of the first shape met among those in and reaching into a cell.
-
-    The owner is 0 for the cell's own block, 1 to 6 for a neighbour; -1 if none is met.
-    Full cubes are left to the caller.
-    """
-    entry = _MISSED
-    owner = -1
-    code = codes[cell]
-    own = code & OWN
-    if own >= FIRST_SHAPE and cell != target:
-        entry = _shape_entry(shapes, own - FIRST_SHAPE, cell, eye, d, least)
-        if entry != _MISSED:
-            owner = 0
-    if code & INTRUDED:
-        for side in range(6):
-            other = neighbour(cell, side)
-            if other == target or not is_inside(codes, other):
-                continue
-            theirs = codes[other] & OWN
-            if theirs >= FIRST_SHAPE:
-                t = _shape_entry(shapes, theirs - FIRST_SHAPE, other, eye, d, least)
-                if t < entry:
-                    entry = t
-                    owner = 1 + side
-    return entry, owner
+@inlined
+def at(sizes: Cell, cell: Cell) -> int:
+    """Index of a cell in a flat array over a grid of these sizes."""
+    return (cell[0] * sizes[1] + cell[1]) * sizes[2] + cell[2]
 
 
-@compiled
-def neighbour(cell: tuple[int, int, int], side: int) -> tuple[int, int, int]:
+@inlined
+def neighbour(cell: Cell, side: int) -> Cell:
     """The cell across a side: 0 and 1 are low and high x, then y, then z."""
     by = 2 * (side % 2) - 1
     axis = side // 2
@@ -141,129 +109,216 @@ def neighbour(cell: tuple[int, int, int], side: int) -> tuple[int, int, int]:
     )
 
 
-@compiled
-def is_inside(codes: Codes, cell: tuple[int, int, int]) -> bool:
-    """Whether a cell is one of the grid's."""
-    return (
-        0 <= cell[0] < codes.shape[0]
-        and 0 <= cell[1] < codes.shape[1]
-        and 0 <= cell[2] < codes.shape[2]
+@inlined
+def sloped(eye: Vector, d: Vector) -> Ray:
+    """The ray from the eye along d, which is not zero."""
+    inverse = (
+        1.0 / d[0] if d[0] != 0.0 else 0.0,
+        1.0 / d[1] if d[1] != 0.0 else 0.0,
+        1.0 / d[2] if d[2] != 0.0 else 0.0,
     )
+    return eye, d, inverse, LEAST_LENGTH / math.sqrt(d[0] * d[0] + d[2] * d[2] + d[1] * d[1])
+
+
+@inlined
+def _clip(e: float, inverse: float, low: float, high: float) -> tuple[float, float]:
+    """The part (t0, t1) of a line strictly between two planes; t0 > t1 if there is none."""
+    if inverse == 0.0:
+        if low < e < high:
+            return -math.inf, math.inf
+        return math.inf, -math.inf
+    ta = (low - e) * inverse
+    tb = (high - e) * inverse
+    return min(ta, tb), max(ta, tb)
+
+
+@inlined
+def span(ray: Ray, low: Vector, high: Vector) -> tuple[float, float]:
+    """The part (t0, t1) of a ray inside a box; t0 > t1 if there is none."""
+    eye, _, inverse, _ = ray
+    x0, x1 = _clip(eye[0], inverse[0], low[0], high[0])
+    y0, y1 = _clip(eye[1], inverse[1], low[1], high[1])
+    z0, z1 = _clip(eye[2], inverse[2], low[2], high[2])
+    return max(max(x0, z0), max(y0, 0.0)), min(min(x1, z1), min(y1, 1.0))
+
+
+@inlined
+def block_entry(starts: Starts, boxes: Boxes, code: int, cell: Cell, ray: Ray) -> float:
+    """Where a ray first enters a box of a cell's own shape; `MISSED` if nowhere."""
+    i, j, k = cell
+    least = ray[3]
+    if code == FULL:
+        t0, t1 = span(ray, (float(i), float(j), float(k)), (i + 1.0, j + 1.0, k + 1.0))
+        return t0 if t1 - t0 > least else MISSED
+    entry = MISSED
+    for row in range(starts[code - FIRST_SHAPE], starts[code - FIRST_SHAPE + 1]):
+        low = (i + boxes[row, 0], j + boxes[row, 1], k + boxes[row, 2])
+        high = (i + boxes[row, 3], j + boxes[row, 4], k + boxes[row, 5])
+        t0, t1 = span(ray, low, high)
+        if t1 - t0 > least:
+            entry = min(entry, t0)
+    return entry
+
+
+@inlined
+def _cell_entry(
+    codes: Codes, sizes: Cell, starts: Starts, boxes: Boxes, cell: Cell, target: Cell, ray: Ray
+) -> tuple[float, Cell]:
+    """Entry and place of the block met first among those in and reaching into a cell."""
+    entry = MISSED
+    hit = NOWHERE
+    code = codes[at(sizes, cell)]
+    if code & OWN != EMPTY and cell != target:
+        entry = block_entry(starts, boxes, code & OWN, cell, ray)
+        if entry != MISSED:
+            hit = cell
+    if code & INTRUDED:
+        for side in range(6):
+            other = neighbour(cell, side)
+            if (
+                other != target
+                and is_inside(sizes, other)
+                and codes[at(sizes, other)] & OWN >= FIRST_SHAPE
+            ):
+                t = block_entry(starts, boxes, codes[at(sizes, other)] & OWN, other, ray)
+                if t < entry:
+                    entry = t
+                    hit = other
+    return entry, hit
+
+
+@inlined
+def turned(vector: tuple[N, N, N], axis: int) -> tuple[N, N, N]:
+    """A vector's components from an axis on: (x, y, z), (y, z, x) or (z, x, y)."""
+    x, y, z = vector
+    if axis == 0:
+        return x, y, z
+    if axis == 1:
+        return y, z, x
+    return z, x, y
+
+
+@inlined
+def turned_back(a: int, b: int, c: int, axis: int) -> Cell:
+    if axis == 0:
+        return a, b, c
+    if axis == 1:
+        return c, a, b
+    return b, c, a
+
+
+@inlined
+def main_axis(d: Vector) -> int:
+    x, y, z = abs(d[0]), abs(d[1]), abs(d[2])
+    if x >= y and x >= z:
+        return 0
+    return 1 if y >= z else 2
+
+
+@inlined
+def _part_inside(sizes: Cell, ray: Ray) -> tuple[float, float]:
+    """The part (t0, t1) of a ray inside the grid, short of its outer rim."""
+    nx, ny, nz = sizes
+    (x, y, z), d, _, _ = ray
+    low, high = (_RIM, _RIM, _RIM), (nx - _RIM, ny - _RIM, nz - _RIM)
+    if (
+        low[0] < min(x, x + d[0])
+        and max(x, x + d[0]) < high[0]
+        and low[1] < min(y, y + d[1])
+        and max(y, y + d[1]) < high[1]
+        and low[2] < min(z, z + d[2])
+        and max(z, z + d[2]) < high[2]
+    ):
+        return 0.0, 1.0
+    return span(ray, low, high)
 
 
 @compiled
-def _first_crossing(e: float, d: float, cell: int) -> tuple[int, float, float]:
-    """Step, t of the first cell boundary, and t between boundaries, along one axis."""
-    if d > 0.0:
-        return 1, (cell + 1 - e) / d, 1.0 / d
-    if d < 0.0:
-        return -1, (cell - e) / d, -1.0 / d
-    return 0, math.inf, math.inf
-
-
-@compiled
-def _start_cell(e: float, d: float, t: float, size: int) -> int:
-    return min(max(int(math.floor(e + t * d)), 0), size - 1)
-
-
-@compiled
-def first_hit(
-    codes: Codes,
-    shapes: Shapes,
-    target: tuple[int, int, int],
-    eye: tuple[float, float, float],
-    d: tuple[float, float, float],
-) -> tuple[int, int, int]:
+def _first_hit(
+    codes: Codes, sizes: Cell, starts: Starts, boxes: Boxes, target: Cell, ray: Ray
+) -> Cell:
     """The cell of the first block whose shape a ray enters; `NOWHERE` if there is none.
 
-    The target's own shape is passed through. Rays within a face plane are not treated
-    specially (`hidden_by` does).
+    Goes layer by layer along the ray's longest axis. In a layer the ray lies in two cells
+    at most along each other axis; what it enters of the shapes there is decided by
+    clipping, so that the order in which it passes edges and corners plays no part.
     """
-    x0, x1 = _clip(eye[0], d[0], 0.0, float(codes.shape[0]))
-    y0, y1 = _clip(eye[1], d[1], 0.0, float(codes.shape[1]))
-    z0, z1 = _clip(eye[2], d[2], 0.0, float(codes.shape[2]))
-    t = max(x0, y0, z0)
-    if t >= min(x1, y1, z1):
+    t0, t1 = _part_inside(sizes, ray)
+    if not t0 < t1:
         return NOWHERE
-    least = _LEAST_LENGTH / math.sqrt(d[0] * d[0] + d[2] * d[2] + d[1] * d[1])
-    i = _start_cell(eye[0], d[0], t, codes.shape[0])
-    j = _start_cell(eye[1], d[1], t, codes.shape[1])
-    k = _start_cell(eye[2], d[2], t, codes.shape[2])
-    step_i, next_i, each_i = _first_crossing(eye[0], d[0], i)
-    step_j, next_j, each_j = _first_crossing(eye[1], d[1], j)
-    step_k, next_k, each_k = _first_crossing(eye[2], d[2], k)
-    while True:
-        leave = min(next_i, next_j, next_k, 1.0)
-        code = codes[i, j, k]
-        if code != EMPTY:
-            cell = (i, j, k)
-            entry = _MISSED
-            owner = -1
-            if code != FULL:
-                entry, owner = _shaped_cell_hit(codes, shapes, cell, target, eye, d, least)
-            if code & OWN == FULL and cell != target and leave - t > least and t < entry:
-                return cell
-            if owner >= 0:
-                return neighbour(cell, owner - 1) if owner > 0 else cell
-        if leave >= 1.0:
-            return NOWHERE
-        t = leave
-        # Among crossings at the same t the order is free: a cell passed at an edge gets
-        # no length, so it cannot block.
-        if leave == next_i:
-            i += step_i
-            next_i += each_i
-            if i < 0 or i >= codes.shape[0]:
-                return NOWHERE
-        elif leave == next_j:
-            j += step_j
-            next_j += each_j
-            if j < 0 or j >= codes.shape[1]:
-                return NOWHERE
-        else:
-            k += step_k
-            next_k += each_k
-            if k < 0 or k >= codes.shape[2]:
-                return NOWHERE
+    eye, d, _, _ = ray
+    axis = main_axis(d)
+    ea, eb, ec = turned(eye, axis)
+    da, db, dc = turned(d, axis)
+    stride_a, stride_b, stride_c = turned((sizes[1] * sizes[2], sizes[2], 1), axis)
+    slope_b, slope_c = db / da, dc / da
+    spare_b, spare_c = math.copysign(_SPARE, db), math.copysign(_SPARE, dc)
+    start, end = ea + t0 * da, ea + t1 * da
+    layer, last = int(start), int(end)
+    step = 1 if da > 0.0 else -1
+    ahead = 1 if da > 0.0 else 0
+    b, c = eb + (start - ea) * slope_b, ec + (start - ea) * slope_c
+    for _ in range(abs(last - layer) + 1):
+        x = float(layer + ahead) if layer != last else end
+        b_far, c_far = eb + (x - ea) * slope_b, ec + (x - ea) * slope_c
+        b0, b1 = int(b - spare_b), int(b_far + spare_b)
+        c0, c1 = int(c - spare_c), int(c_far + spare_c)
+        row0 = layer * stride_a + b0 * stride_b
+        row1 = layer * stride_a + b1 * stride_b
+        if (
+            codes[row0 + c0 * stride_c]
+            | codes[row0 + c1 * stride_c]
+            | codes[row1 + c0 * stride_c]
+            | codes[row1 + c1 * stride_c]
+            or abs(b1 - b0) > 1
+            or abs(c1 - c0) > 1
+        ):
+            entry, hit = MISSED, NOWHERE
+            for nb in range(min(b0, b1), max(b0, b1) + 1):
+                for nc in range(min(c0, c1), max(c0, c1) + 1):
+                    cell = turned_back(layer, nb, nc, axis)
+                    if codes[at(sizes, cell)] != EMPTY:
+                        t, block = _cell_entry(codes, sizes, starts, boxes, cell, target, ray)
+                        if t < entry:
+                            entry, hit = t, block
+            if entry != MISSED:
+                return hit
+        layer += step
+        b, c = b_far, c_far
+    return NOWHERE
 
 
-@compiled
-def _may_lie_in_face(e: float, d: float) -> bool:
+@inlined
+def may_lie_in_face(e: float, d: float) -> bool:
     return d == 0.0 and e * 32.0 == math.floor(e * 32.0)
 
 
 @compiled
 def hidden_by(
-    codes: Codes,
-    shapes: Shapes,
-    target: tuple[int, int, int],
-    eye: tuple[float, float, float],
-    sample: tuple[float, float, float],
-) -> tuple[int, int, int]:
-    """The cell of the first block that hides a sample; `NOWHERE` if none does.
+    codes: Codes, sizes: Cell, starts: Starts, boxes: Boxes, target: Cell, eye: Vector, d: Vector
+) -> Cell:
+    """The cell of the first block that hides eye + d; `NOWHERE` if none does.
 
     The target hides nothing. A ray in the plane of a face is free if it is free on one
     side of the plane: two blocks side by side leave no crack, and one may be grazed.
     """
-    d = (sample[0] - eye[0], sample[1] - eye[1], sample[2] - eye[2])
     if d[0] != 0.0 and d[1] != 0.0 and d[2] != 0.0:
-        return first_hit(codes, shapes, target, eye, d)
+        return _first_hit(codes, sizes, starts, boxes, target, sloped(eye, d))
     hit = NOWHERE
     if d[0] == 0.0 and d[1] == 0.0 and d[2] == 0.0:
         return hit
     # Along an axis without such a plane there is one side, and nothing to be moved.
-    sides_x = 2 if _may_lie_in_face(eye[0], d[0]) else 1
-    sides_y = 2 if _may_lie_in_face(eye[1], d[1]) else 1
-    sides_z = 2 if _may_lie_in_face(eye[2], d[2]) else 1
-    for x in range(sides_x):
-        for y in range(sides_y):
-            for z in range(sides_z):
-                moved = (
-                    eye[0] + (sides_x - 1) * (2 * x - 1) * _NUDGE,
-                    eye[1] + (sides_y - 1) * (2 * y - 1) * _NUDGE,
-                    eye[2] + (sides_z - 1) * (2 * z - 1) * _NUDGE,
-                )
-                hit = first_hit(codes, shapes, target, moved, d)
-                if hit[0] < 0:
-                    return hit
+    sides_x = 2 if may_lie_in_face(eye[0], d[0]) else 1
+    sides_y = 2 if may_lie_in_face(eye[1], d[1]) else 1
+    sides_z = 2 if may_lie_in_face(eye[2], d[2]) else 1
+    for n in range(sides_x * sides_y * sides_z):
+        x, y, z = n % sides_x, n // sides_x % sides_y, n // (sides_x * sides_y)
+        moved = (
+            eye[0] + (sides_x - 1) * (2 * x - 1) * _NUDGE,
+            eye[1] + (sides_y - 1) * (2 * y - 1) * _NUDGE,
+            eye[2] + (sides_z - 1) * (2 * z - 1) * _NUDGE,
+        )
+        hit = _first_hit(codes, sizes, starts, boxes, target, sloped(moved, d))
+        if hit[0] < 0:
+            return hit
     return hit

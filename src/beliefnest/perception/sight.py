@@ -81,7 +81,7 @@ class Sight:
         _check_grid(blocks, self.registry.states)
         codes = np.zeros([size + 2 for size in blocks.shape], dtype=np.uint16)
         codes[1:-1, 1:-1, 1:-1] = self._state_codes[blocks]
-        views.mark_intruded(codes, self._reaches)
+        views.mark_intruded(codes.ravel(), codes.shape, self._reaches)
         codes.flags.writeable = False
         return Geometry(self, origin, codes)
 
@@ -212,7 +212,9 @@ class Geometry:
             _check_states(state, state, states)
             i, j, k = cell
             code = int(self.sight._state_codes[state])
-            views.set_code(codes, self.sight._reaches, (i + 1, j + 1, k + 1), code)
+            views.set_code(
+                codes.ravel(), codes.shape, self.sight._reaches, (i + 1, j + 1, k + 1), code
+            )
         codes.flags.writeable = False
         return Geometry(self.sight, self.origin, codes)
 
@@ -220,7 +222,7 @@ class Geometry:
         """Which blocks of the grid are seen: bool (nx, ny, nz)."""
         from beliefnest.perception import views
 
-        return views.visible_blocks(self.codes, self.sight._shapes, self._eye(eye, yaw, pitch))
+        return views.visible_blocks(*self._scene, self.sight._reaches, self._eye(eye, yaw, pitch))
 
     def sees_blocks(
         self, eye: Point, yaw: float, pitch: float, positions: npt.ArrayLike
@@ -232,7 +234,7 @@ class Geometry:
         if rows.dtype.kind not in "iu" and len(rows):
             raise InputError(f"block positions are of type {rows.dtype}; give integers")
         cells = rows.astype(np.int64) + (1 - np.array(self.origin))
-        return views.seen_blocks(self.codes, self.sight._shapes, self._eye(eye, yaw, pitch), cells)
+        return views.seen_blocks(*self._scene, self._eye(eye, yaw, pitch), cells)
 
     def sees_points(self, eye: Point, yaw: float, pitch: float, points: npt.ArrayLike) -> BoolArray:
         """Which of the points (n, 3) are seen; each has to be within the visible distance."""
@@ -240,8 +242,7 @@ class Geometry:
 
         local = self._local(points)
         seer = self._eye(eye, yaw, pitch)
-        shapes = self.sight._shapes
-        return views.near_points(seer, local) & views.seen_points(self.codes, shapes, seer, local)
+        return views.near_points(seer, local) & views.seen_points(*self._scene, seer, local)
 
     def sees_agents(self, eye: Point, yaw: float, pitch: float, feet: npt.ArrayLike) -> BoolArray:
         """Which of the agents with feet at (n, 3) are seen.
@@ -255,7 +256,7 @@ class Geometry:
         seer = self._eye(eye, yaw, pitch)
         heights = np.array([(0.0, height, 0.0) for height in AGENT_SAMPLE_HEIGHTS])
         samples = (local[:, None, :] + heights).reshape(-1, 3)
-        seen = views.seen_points(self.codes, self.sight._shapes, seer, samples)
+        seen = views.seen_points(*self._scene, seer, samples)
         near = views.near_points(seer, local + (0.0, BODY_CENTRE_HEIGHT, 0.0))
         return near & seen.reshape(-1, len(heights)).any(axis=1)
 
@@ -263,14 +264,17 @@ class Geometry:
         """Position of the first block whose shape the ray from eye to point enters."""
         from beliefnest.perception import rays
 
-        start, end = self._local([eye, point]).tolist()
-        i, j, k = rays.hidden_by(
-            self.codes, self.sight._shapes, rays.NOWHERE, tuple(start), tuple(end)
-        )
+        start, end = self._local([eye, point])
+        d = tuple((end - start).tolist())
+        i, j, k = rays.hidden_by(*self._scene, rays.NOWHERE, tuple(start.tolist()), d)
         if i < 0:
             return None
         x, y, z = self.origin
         return (x + i - 1, y + j - 1, z + k - 1)
+
+    @functools.cached_property
+    def _scene(self) -> "Scene":
+        return self.codes.ravel(), self.codes.shape, *self.sight._shapes
 
     def _local(self, points: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """Points in coordinates of the codes, which have a margin of one cell."""

@@ -1,26 +1,27 @@
 """What an eye sees of a grid of shapes: compiled loops over blocks and points.
 
-Coordinates and codes are those of `rays`. An `Eye` is (place, look, cos_half, far): the
-eye's place, the unit vector it looks along, the cosine of half its field of view (-2 if
-it sees all around), and how far it sees (infinite if there is no limit).
+Coordinates and codes are those of `rays`, an `Eye` is that of `beams`.
 """
-
-import math
 
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.perception.beams import Eye, in_field, in_reach, new_beam, sees_block
 from beliefnest.perception.rays import (
     INTRUDED,
     NOWHERE,
     OWN,
+    Boxes,
+    Cell,
     Codes,
-    Shapes,
+    Starts,
+    at,
     compiled,
     hidden_by,
     is_inside,
     neighbour,
 )
+from beliefnest.perception.shadows import CLEAR, HIDDEN, cast_shadows
 
 __all__ = [
     "Eye",
@@ -32,110 +33,67 @@ __all__ = [
     "visible_blocks",
 ]
 
-Eye = tuple[tuple[float, float, float], tuple[float, float, float], float, float]
-
-# Limits are meant to be inclusive whatever the rounding of a mirrored or turned world.
-_SLACK = 1e-9
-# Face corners are pulled in by 0.01. Counted from the middle so that a mirrored block
-# has the mirrored samples to the last bit.
-_CORNER = 0.49
-
 
 @compiled
-def _in_field(eye: Eye, sample: tuple[float, float, float]) -> bool:
-    place, look, cos_half, _ = eye
-    if cos_half < -1.0:
-        return True
-    x, y, z = sample[0] - place[0], sample[1] - place[1], sample[2] - place[2]
-    along = x * look[0] + z * look[2] + y * look[1]
-    return along >= (cos_half - _SLACK) * math.sqrt(x * x + z * z + y * y)
-
-
-@compiled
-def _in_reach(eye: Eye, point: tuple[float, float, float]) -> bool:
-    place, _, _, far = eye
-    x, y, z = point[0] - place[0], point[1] - place[1], point[2] - place[2]
-    return math.sqrt(x * x + z * z + y * y) <= far + _SLACK
-
-
-@compiled
-def _turned_face(e: float, cell: int) -> float:
-    """Offset from the cell's middle of the face turned to the eye along an axis; 0 if none."""
-    if e < cell:
-        return -0.5
-    if e > cell + 1:
-        return 0.5
-    return 0.0
-
-
-@compiled
-def _sees_sample(
-    codes: Codes, shapes: Shapes, eye: Eye, cell: tuple[int, int, int], x: float, y: float, z: float
-) -> bool:
-    """Whether the point at an offset from a cell's middle is seen."""
-    sample = (cell[0] + 0.5 + x, cell[1] + 0.5 + y, cell[2] + 0.5 + z)
-    return _in_field(eye, sample) and hidden_by(codes, shapes, cell, eye[0], sample)[0] < 0
-
-
-@compiled
-def _sees_block(codes: Codes, shapes: Shapes, eye: Eye, cell: tuple[int, int, int]) -> bool:
-    middle = (cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5)
-    if not _in_reach(eye, middle):
-        return False
-    if _sees_sample(codes, shapes, eye, cell, 0.0, 0.0, 0.0):
-        return True
-    place = eye[0]
-    for axis in range(3):
-        face = _turned_face(place[axis], cell[axis])
-        if face == 0.0:
-            continue
-        for corner in range(5):
-            u = 0.0 if corner == 4 else _CORNER * ((corner & 1) * 2 - 1)
-            v = 0.0 if corner == 4 else _CORNER * ((corner & 2) - 1)
-            if axis == 0:
-                seen = _sees_sample(codes, shapes, eye, cell, face, u, v)
-            elif axis == 1:
-                seen = _sees_sample(codes, shapes, eye, cell, u, face, v)
-            else:
-                seen = _sees_sample(codes, shapes, eye, cell, u, v, face)
-            if seen:
-                return True
-    return False
-
-
-@compiled
-def visible_blocks(codes: Codes, shapes: Shapes, eye: Eye) -> npt.NDArray[np.bool_]:
+def visible_blocks(
+    codes: Codes,
+    sizes: Cell,
+    starts: Starts,
+    boxes: Boxes,
+    reaches: npt.NDArray[np.uint8],
+    eye: Eye,
+) -> npt.NDArray[np.bool_]:
     """Which blocks of the grid (without its margin) are seen."""
-    nx, ny, nz = codes.shape[0] - 2, codes.shape[1] - 2, codes.shape[2] - 2
+    nx, ny, nz = sizes[0] - 2, sizes[1] - 2, sizes[2] - 2
+    px, py, pz = eye[0]
     seen = np.zeros((nx, ny, nz), dtype=np.bool_)
+    beam = new_beam()
+    marks = cast_shadows(codes, sizes, starts, boxes, reaches, eye[0])
     for i in range(nx):
         for j in range(ny):
             for k in range(nz):
-                seen[i, j, k] = _sees_block(codes, shapes, eye, (i + 1, j + 1, k + 1))
+                cell = (i + 1, j + 1, k + 1)
+                mark = marks[at(sizes, cell)]
+                if mark == HIDDEN:
+                    continue
+                d = (i + 1.5 - px, j + 1.5 - py, k + 1.5 - pz)
+                if mark == CLEAR and in_field(eye, d[0], d[1], d[2]):
+                    seen[i, j, k] = in_reach(eye, d[0], d[1], d[2])
+                else:
+                    seen[i, j, k] = sees_block(codes, sizes, starts, boxes, eye, cell, mark, beam)
     return seen
 
 
 @compiled
 def seen_blocks(
-    codes: Codes, shapes: Shapes, eye: Eye, cells: npt.NDArray[np.int64]
+    codes: Codes, sizes: Cell, starts: Starts, boxes: Boxes, eye: Eye, cells: npt.NDArray[np.int64]
 ) -> npt.NDArray[np.bool_]:
     """Which of the cells (n, 3), in or out of the grid, are seen."""
     seen = np.zeros(len(cells), dtype=np.bool_)
+    beam = new_beam()
     for n in range(len(cells)):
-        cell = (int(cells[n, 0]), int(cells[n, 1]), int(cells[n, 2]))
-        seen[n] = _sees_block(codes, shapes, eye, cell)
+        cell = (cells[n, 0], cells[n, 1], cells[n, 2])
+        seen[n] = sees_block(codes, sizes, starts, boxes, eye, cell, 0, beam)
     return seen
 
 
 @compiled
 def seen_points(
-    codes: Codes, shapes: Shapes, eye: Eye, points: npt.NDArray[np.float64]
+    codes: Codes,
+    sizes: Cell,
+    starts: Starts,
+    boxes: Boxes,
+    eye: Eye,
+    points: npt.NDArray[np.float64],
 ) -> npt.NDArray[np.bool_]:
     """To which of the points (n, 3) a ray inside the field of view is free, however far."""
     seen = np.zeros(len(points), dtype=np.bool_)
+    x, y, z = eye[0]
     for n in range(len(points)):
-        point = (points[n, 0], points[n, 1], points[n, 2])
-        seen[n] = _in_field(eye, point) and hidden_by(codes, shapes, NOWHERE, eye[0], point)[0] < 0
+        d = (points[n, 0] - x, points[n, 1] - y, points[n, 2] - z)
+        if in_field(eye, d[0], d[1], d[2]):
+            hit = hidden_by(codes, sizes, starts, boxes, NOWHERE, eye[0], d)
+            seen[n] = hit[0] < 0
     return seen
 
 
@@ -143,47 +101,46 @@ def seen_points(
 def near_points(eye: Eye, points: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
     """Which of the points (n, 3) are no farther away than the eye sees."""
     near = np.zeros(len(points), dtype=np.bool_)
+    x, y, z = eye[0]
     for n in range(len(points)):
-        near[n] = _in_reach(eye, (points[n, 0], points[n, 1], points[n, 2]))
+        near[n] = in_reach(eye, points[n, 0] - x, points[n, 1] - y, points[n, 2] - z)
     return near
 
 
 @compiled
-def _update_intruded(
-    codes: Codes, reaches: npt.NDArray[np.uint8], cell: tuple[int, int, int]
-) -> None:
+def _update_intruded(codes: Codes, sizes: Cell, reaches: npt.NDArray[np.uint8], cell: Cell) -> None:
     """Set or clear a cell's `INTRUDED` from the shapes of its neighbours."""
     intruded = False
     for side in range(6):
         other = neighbour(cell, side)
-        if is_inside(codes, other):
+        if is_inside(sizes, other):
             # The neighbour across a low side reaches in through its own high side.
-            intruded |= (reaches[codes[other] & OWN] >> (side ^ 1)) & 1 != 0
-    own = codes[cell] & OWN
-    codes[cell] = own | INTRUDED if intruded else own
+            intruded |= (reaches[codes[at(sizes, other)] & OWN] >> (side ^ 1)) & 1 != 0
+    own = codes[at(sizes, cell)] & OWN
+    codes[at(sizes, cell)] = own | INTRUDED if intruded else own
 
 
 @compiled
 def set_code(
-    codes: Codes, reaches: npt.NDArray[np.uint8], cell: tuple[int, int, int], code: int
+    codes: Codes, sizes: Cell, reaches: npt.NDArray[np.uint8], cell: Cell, code: int
 ) -> None:
     """Put another block into a cell of the grid.
 
     Bit s of reaches[code] says that a code's shape reaches out of its cell at side s.
     """
-    codes[cell] = codes[cell] & INTRUDED | code
+    codes[at(sizes, cell)] = codes[at(sizes, cell)] & INTRUDED | code
     for side in range(6):
-        _update_intruded(codes, reaches, neighbour(cell, side))
+        _update_intruded(codes, sizes, reaches, neighbour(cell, side))
 
 
 @compiled
-def mark_intruded(codes: Codes, reaches: npt.NDArray[np.uint8]) -> None:
+def mark_intruded(codes: Codes, sizes: Cell, reaches: npt.NDArray[np.uint8]) -> None:
     """Set `INTRUDED` in a grid of codes without it; reaches is that of `set_code`."""
-    for i in range(1, codes.shape[0] - 1):
-        for j in range(1, codes.shape[1] - 1):
-            for k in range(1, codes.shape[2] - 1):
-                reach = reaches[codes[i, j, k] & OWN]
+    for i in range(1, sizes[0] - 1):
+        for j in range(1, sizes[1] - 1):
+            for k in range(1, sizes[2] - 1):
+                reach = reaches[codes[at(sizes, (i, j, k))] & OWN]
                 if reach != 0:
                     for side in range(6):
                         if (reach >> side) & 1:
-                            codes[neighbour((i, j, k), side)] |= INTRUDED
+                            codes[at(sizes, neighbour((i, j, k), side))] |= INTRUDED

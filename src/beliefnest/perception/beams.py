@@ -1,0 +1,267 @@
+"""All rays from an eye to the sample points of one block, tried together: compiled.
+
+The rays of a beam run close to each other, so that the cells they pass are looked up once
+and each shape met is clipped against all rays in one loop. Grids and codes as in `rays`.
+"""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.perception.rays import (
+    EMPTY,
+    FIRST_SHAPE,
+    FULL,
+    INTRUDED,
+    LEAST_LENGTH,
+    OWN,
+    Boxes,
+    Cell,
+    Codes,
+    Starts,
+    Vector,
+    at,
+    compiled,
+    hidden_by,
+    inlined,
+    is_inside,
+    main_axis,
+    may_lie_in_face,
+    neighbour,
+    turned,
+    turned_back,
+)
+
+__all__ = ["Eye", "in_field", "in_reach", "new_beam", "sees_block"]
+
+Eye = tuple[Vector, Vector, float, float]
+"""Place, unit vector it looks along, cosine of half its field of view (-2: it sees all
+around), and how far it sees (infinite: no limit)."""
+
+Slopes = npt.NDArray[np.float64]
+"""Of each ray (second index) 1 / d along x, y and z, and the t that 1e-9 blocks take."""
+
+Open = npt.NDArray[np.int64]
+"""Of each ray -1 as long as nothing was found to hide its end, then 0."""
+
+_SAMPLES = 16
+# Limits are meant to be inclusive whatever the rounding of a mirrored or turned world.
+_SLACK = 1e-9
+# Face corners are pulled in by 0.01. Counted from the middle so that a mirrored block
+# has the mirrored samples to the last bit.
+_CORNER = 0.49
+# Stands for 1 / 0 without yielding infinity times zero.
+_STEEP = 1e300
+_SPARE = 1e-9
+
+
+@inlined
+def new_beam() -> tuple[Slopes, Open]:
+    """Room for the rays of one beam after the other."""
+    return np.empty((4, _SAMPLES)), np.empty(_SAMPLES, dtype=np.int64)
+
+
+@inlined
+def in_field(eye: Eye, x: float, y: float, z: float) -> bool:
+    """Whether what lies at (x, y, z) from the eye's place is in the field of view."""
+    _, look, cos_half, _ = eye
+    if cos_half < -1.0:
+        return True
+    along = x * look[0] + z * look[2] + y * look[1]
+    return along >= (cos_half - _SLACK) * math.sqrt(x * x + z * z + y * y)
+
+
+@inlined
+def in_reach(eye: Eye, x: float, y: float, z: float) -> bool:
+    """Whether what lies at (x, y, z) from the eye's place is within the visible distance."""
+    return math.sqrt(x * x + z * z + y * y) <= eye[3] + _SLACK
+
+
+@inlined
+def _inverse(d: float) -> float:
+    return 1.0 / d if d != 0.0 else _STEEP
+
+
+@inlined
+def _offset(eye: Vector, cell: Cell, number: int) -> tuple[bool, Vector]:
+    """A sample point's place from the middle of its cell, and whether there is that point.
+
+    Number 0 is the middle; 1 to 5 are on the face turned to the eye along x, 6 to 10
+    along y, 11 to 15 along z, each time the face's middle and its corners.
+    """
+    if number == 0:
+        return True, (0.0, 0.0, 0.0)
+    axis, corner = (number - 1) // 5, (number - 1) % 5
+    e, low = turned(eye, axis)[0], turned(cell, axis)[0]
+    face = 0.5 if e > low else -0.5
+    u = _CORNER * ((corner & 1) * 2 - 1) if corner > 0 else 0.0
+    v = _CORNER * ((corner & 2) - 1) if corner > 0 else 0.0
+    return not low <= e <= low + 1, turned((face, u, v), (3 - axis) % 3)
+
+
+@inlined
+def _block_box(
+    eye: Vector, low: Vector, high: Vector, slopes: Slopes, opens: Open, count: int
+) -> bool:
+    """Close the rays that enter a box; whether any is left open."""
+    x0, y0, z0 = low[0] - eye[0], low[1] - eye[1], low[2] - eye[2]
+    x1, y1, z1 = high[0] - eye[0], high[1] - eye[1], high[2] - eye[2]
+    left = 0
+    for n in range(count):
+        xa, xb = x0 * slopes[0, n], x1 * slopes[0, n]
+        ya, yb = y0 * slopes[1, n], y1 * slopes[1, n]
+        za, zb = z0 * slopes[2, n], z1 * slopes[2, n]
+        t0 = max(max(min(xa, xb), min(za, zb)), max(min(ya, yb), 0.0))
+        t1 = min(min(max(xa, xb), max(za, zb)), min(max(ya, yb), 1.0))
+        opens[n] = 0 if t1 - t0 > slopes[3, n] else opens[n]
+        left |= opens[n]
+    return left != 0
+
+
+@compiled
+def _block_cell(
+    codes: Codes,
+    sizes: Cell,
+    starts: Starts,
+    boxes: Boxes,
+    eye: Vector,
+    cell: Cell,
+    slopes: Slopes,
+    opens: Open,
+    count: int,
+) -> bool:
+    """Close the rays that enter the shape of a cell's own block; whether any is left open."""
+    i, j, k = cell
+    code = codes[at(sizes, cell)] & OWN
+    low, high = (float(i), float(j), float(k)), (i + 1.0, j + 1.0, k + 1.0)
+    first, last = 0, 1
+    if code != FULL:
+        first, last = starts[code - FIRST_SHAPE], starts[code - FIRST_SHAPE + 1]
+    left = True
+    for row in range(first, last):
+        if code != FULL:
+            low = (i + boxes[row, 0], j + boxes[row, 1], k + boxes[row, 2])
+            high = (i + boxes[row, 3], j + boxes[row, 4], k + boxes[row, 5])
+        left = _block_box(eye, low, high, slopes, opens, count)
+    return left
+
+
+@inlined
+def _bounds(
+    e: float, low: float, slope0: float, slope1: float, d0: float, d1: float
+) -> tuple[int, int]:
+    """First and last cell a beam can touch between two distances, along one axis."""
+    first = e + slope0 * (d1 if slope0 < 0 else d0)
+    last = e + slope1 * (d1 if slope1 > 0 else d0)
+    first, last = max(first, min(e, low)), min(last, max(e, low + 1.0))
+    return math.floor(first - _SPARE), math.floor(last + _SPARE)
+
+
+@compiled
+def _beam_ends(
+    codes: Codes,
+    sizes: Cell,
+    starts: Starts,
+    boxes: Boxes,
+    eye: Vector,
+    target: Cell,
+    slopes: Slopes,
+    opens: Open,
+    count: int,
+) -> bool:
+    """Whether any ray of a beam gets to the target, layer by layer along its longest axis."""
+    axis = main_axis((target[0] + 0.5 - eye[0], target[1] + 0.5 - eye[1], target[2] + 0.5 - eye[2]))
+    ea, eb, ec = turned(eye, axis)
+    ta, tb, tc = turned(target, axis)
+    size_a, size_b, size_c = turned(sizes, axis)
+    stride_a, stride_b, stride_c = turned((sizes[1] * sizes[2], sizes[2], 1), axis)
+    step = 1 if ta + 0.5 > ea else -1
+    far = abs(ta + 0.5 - ea) + 0.5
+    near = max(far - 1.0, 1e-6)
+    lb, hb, lc, hc = tb - eb, tb + 1 - eb, tc - ec, tc + 1 - ec
+    b_slope0, b_slope1 = lb / (near if lb < 0 else far), hb / (near if hb > 0 else far)
+    c_slope0, c_slope1 = lc / (near if lc < 0 else far), hc / (near if hc > 0 else far)
+    start = math.floor(ea) if step > 0 else math.ceil(ea) - 1
+    for layer in range(start, ta + step, step):
+        if layer < 0 or layer >= size_a:
+            continue
+        d = (layer + 0.5 - ea) * step
+        b0, b1 = _bounds(eb, tb, b_slope0, b_slope1, max(d - 0.5, 0.0), d + 0.5)
+        c0, c1 = _bounds(ec, tc, c_slope0, c_slope1, max(d - 0.5, 0.0), d + 0.5)
+        for b in range(max(b0, 0), min(b1, size_b - 1) + 1):
+            for c in range(max(c0, 0), min(c1, size_c - 1) + 1):
+                code = codes[layer * stride_a + b * stride_b + c * stride_c]
+                if code == EMPTY:
+                    continue
+                cell = turned_back(layer, b, c, axis)
+                for side in range(-1, 6 if code & INTRUDED else 0):
+                    block = neighbour(cell, side) if side >= 0 else cell
+                    if (
+                        block != target
+                        and is_inside(sizes, block)
+                        and codes[at(sizes, block)] & OWN > (EMPTY if side < 0 else FULL)
+                        and not _block_cell(
+                            codes, sizes, starts, boxes, eye, block, slopes, opens, count
+                        )
+                    ):
+                        return False
+    return True
+
+
+@compiled
+def sees_block(
+    codes: Codes,
+    sizes: Cell,
+    starts: Starts,
+    boxes: Boxes,
+    eye: Eye,
+    cell: Cell,
+    suspect: int,
+    beam: tuple[Slopes, Open],
+) -> bool:
+    """Whether a block is seen; the block at index suspect, if above 0, is tried first."""
+    place = eye[0]
+    x, y, z = cell[0] + 0.5 - place[0], cell[1] + 0.5 - place[1], cell[2] + 0.5 - place[2]
+    if not in_reach(eye, x, y, z):
+        return False
+    slopes, opens = beam
+    count = 0
+    special = 0
+    for number in range(_SAMPLES):
+        exists, offset = _offset(place, cell, number)
+        d = (x + offset[0], y + offset[1], z + offset[2])
+        if not exists or not in_field(eye, d[0], d[1], d[2]):
+            continue
+        if (
+            may_lie_in_face(place[0], d[0])
+            or may_lie_in_face(place[1], d[1])
+            or may_lie_in_face(place[2], d[2])
+        ):
+            special |= 1 << number
+            continue
+        slopes[0, count] = _inverse(d[0])
+        slopes[1, count] = _inverse(d[1])
+        slopes[2, count] = _inverse(d[2])
+        slopes[3, count] = LEAST_LENGTH / math.sqrt(d[0] * d[0] + d[2] * d[2] + d[1] * d[1])
+        opens[count] = -1
+        count += 1
+    if count > 0:
+        left = True
+        if suspect > 0:
+            by = (
+                suspect // (sizes[1] * sizes[2]),
+                suspect // sizes[2] % sizes[1],
+                suspect % sizes[2],
+            )
+            if by != cell:
+                left = _block_cell(codes, sizes, starts, boxes, place, by, slopes, opens, count)
+        if left and _beam_ends(codes, sizes, starts, boxes, place, cell, slopes, opens, count):
+            return True
+    for number in range(_SAMPLES):
+        if (special >> number) & 1:
+            _, offset = _offset(place, cell, number)
+            d = (x + offset[0], y + offset[1], z + offset[2])
+            if hidden_by(codes, sizes, starts, boxes, cell, place, d)[0] < 0:
+                return True
+    return False

@@ -1,0 +1,212 @@
+"""Shadows cast from an eye: compiled bounds on what it can and cannot see.
+
+For every cell of a grid of codes (as in `rays`) a mark: `CLEAR` where the middle of the
+cell is certainly seen, `HIDDEN` where nothing in the closed cell is, else the index of a
+block that hides the middle, or may do so. Bounds err to the side of the last kind.
+"""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.perception.rays import (
+    EMPTY,
+    FIRST_SHAPE,
+    FULL,
+    OWN,
+    Boxes,
+    Cell,
+    Codes,
+    Ray,
+    Starts,
+    Vector,
+    at,
+    compiled,
+    inlined,
+    sloped,
+    span,
+    turned,
+    turned_back,
+)
+
+__all__ = ["CLEAR", "HIDDEN", "Marks", "cast_shadows"]
+
+Marks = npt.NDArray[np.int32]
+
+CLEAR = 0
+HIDDEN = -1
+
+# Full shadows are drawn this much too small, and partial ones too large, so that rays
+# which barely enter a box, or lie in the plane of its face, are left to be tried.
+_SHRINK = 1e-4
+_GROW = 1e-6
+# An eye nearer than this to a box is taken to be in it.
+_TOUCHING = 1e-3
+
+
+@inlined
+def _is_enclosed(
+    codes: Codes, sizes: Cell, marks: Marks, sides: tuple[int, int, int], index: int
+) -> bool:
+    """Whether every ray to a cell comes out of a full cube or a hidden cell.
+
+    Sides are the index steps to the neighbours nearer to the eye, 0 along an axis where
+    the eye is level with the cell. Cells across edges and corners count: a ray may come
+    through an edge without entering the neighbours beside it.
+    """
+    if sides[0] == 0 and sides[1] == 0 and sides[2] == 0:
+        return False
+    for n in range(1, 8):
+        if (n & 1 and sides[0] == 0) or (n & 2 and sides[1] == 0) or (n & 4 and sides[2] == 0):
+            continue
+        before = index
+        before += sides[0] if n & 1 else 0
+        before += sides[1] if n & 2 else 0
+        before += sides[2] if n & 4 else 0
+        if marks[before] != HIDDEN and codes[before] & OWN != FULL:
+            return False
+    return True
+
+
+@inlined
+def _side(e: float, cell: int, stride: int) -> int:
+    if e < cell:
+        return -stride
+    return stride if e > cell + 1 else 0
+
+
+@inlined
+def _first_last(low: float, high: float, size: int) -> tuple[int, int]:
+    """First and last cell between two planes that lie wholly between them, without margin."""
+    low, high = max(low, 1.0), min(high, size - 1.0)
+    return math.ceil(low), math.floor(high) - 1
+
+
+@inlined
+def _may_enter(ray: Ray, low: Vector, high: Vector) -> bool:
+    t0, t1 = span(ray, low, high)
+    inverse = ray[2]
+    return t1 - t0 > ray[3] or inverse[0] == 0.0 or inverse[1] == 0.0 or inverse[2] == 0.0
+
+
+@compiled
+def _cast_box(
+    marks: Marks, sizes: Cell, eye: Vector, low: Vector, high: Vector, index: int, casts_full: bool
+) -> None:
+    """Mark the cells in the shadow of a box, which is part of the block of that index."""
+    axis, near = 0, -1.0
+    for n in range(3):
+        gap = max(turned(low, n)[0] - turned(eye, n)[0], turned(eye, n)[0] - turned(high, n)[0])
+        if gap > near:
+            axis, near = n, gap
+    if near < _TOUCHING:
+        for n in range(len(marks)):
+            if marks[n] == CLEAR:
+                marks[n] = index
+        return
+    ea, eb, ec = turned(eye, axis)
+    la, lb, lc = turned(low, axis)
+    ha, hb, hc = turned(high, axis)
+    size_a, size_b, size_c = turned(sizes, axis)
+    stride_a, stride_b, stride_c = turned((sizes[1] * sizes[2], sizes[2], 1), axis)
+    far = near + ha - la
+    lb, hb, lc, hc = lb - eb, hb - eb, lc - ec, hc - ec
+    # Edges of the shadow, per block of distance from the eye along the axis.
+    part_b0, part_b1 = lb / (near if lb < 0 else far), hb / (near if hb > 0 else far)
+    part_c0, part_c1 = lc / (near if lc < 0 else far), hc / (near if hc > 0 else far)
+    full_b0, full_b1 = (lb + _SHRINK) / near, (hb - _SHRINK) / near
+    full_c0, full_c1 = (lc + _SHRINK) / near, (hc - _SHRINK) / near
+    step = 1 if la > ea else -1
+    layer = max(math.floor(la), 1) if la > ea else min(math.ceil(ha) - 1, size_a - 2)
+    while 1 <= layer < size_a - 1:
+        d = abs(layer + 0.5 - ea)
+        base = layer * stride_a
+        layer += step
+        if d <= near:
+            continue
+        # Half a cell more on either side: it is the middles that must lie in between.
+        b0, b1 = _first_last(eb + part_b0 * d - 0.5 - _GROW, eb + part_b1 * d + 0.5 + _GROW, size_b)
+        c0, c1 = _first_last(ec + part_c0 * d - 0.5 - _GROW, ec + part_c1 * d + 0.5 + _GROW, size_c)
+        if b0 > b1 or c0 > c1:
+            continue
+        for b in range(b0, b1 + 1):
+            for c in range(c0, c1 + 1):
+                n = base + b * stride_b + c * stride_c
+                if marks[n] == CLEAR:
+                    i, j, k = turned_back(layer - step, b, c, axis)
+                    ray = sloped(eye, (i + 0.5 - eye[0], j + 0.5 - eye[1], k + 0.5 - eye[2]))
+                    if _may_enter(ray, low, high):
+                        marks[n] = index
+        if d - 0.5 < near or not casts_full:
+            continue
+        d0, d1 = d - 0.5, d + 0.5
+        b0, b1 = _first_last(
+            eb + full_b0 * (d1 if full_b0 > 0 else d0),
+            eb + full_b1 * (d0 if full_b1 > 0 else d1),
+            size_b,
+        )
+        c0, c1 = _first_last(
+            ec + full_c0 * (d1 if full_c0 > 0 else d0),
+            ec + full_c1 * (d0 if full_c1 > 0 else d1),
+            size_c,
+        )
+        for b in range(b0, b1 + 1):
+            for c in range(c0, c1 + 1):
+                marks[base + b * stride_b + c * stride_c] = HIDDEN
+
+
+@inlined
+def _outward(e: float, size: int) -> npt.NDArray[np.int64]:
+    """The cells of a grid along an axis, without margin, from the eye outwards."""
+    order = np.empty(size - 2, dtype=np.int64)
+    up = min(max(math.floor(e), 1), size - 1)
+    down = up - 1
+    for n in range(size - 2):
+        if up < size - 1 and (down < 1 or up + 0.5 - e < e - down - 0.5):
+            order[n] = up
+            up += 1
+        else:
+            order[n] = down
+            down -= 1
+    return order
+
+
+@compiled
+def cast_shadows(
+    codes: Codes,
+    sizes: Cell,
+    starts: Starts,
+    boxes: Boxes,
+    reaches: npt.NDArray[np.uint8],
+    eye: Vector,
+) -> Marks:
+    """Marks of all cells, near blocks first: what they hide casts no shadow of its own."""
+    marks = np.zeros(sizes[0] * sizes[1] * sizes[2], dtype=np.int32)
+    for i in _outward(eye[0], sizes[0]):
+        for j in _outward(eye[1], sizes[1]):
+            for k in _outward(eye[2], sizes[2]):
+                index = at(sizes, (i, j, k))
+                sides = (
+                    _side(eye[0], i, sizes[1] * sizes[2]),
+                    _side(eye[1], j, sizes[2]),
+                    _side(eye[2], k, 1),
+                )
+                if marks[index] != HIDDEN and _is_enclosed(codes, sizes, marks, sides, index):
+                    marks[index] = HIDDEN
+                mark = marks[index]
+                code = codes[index] & OWN
+                if code == EMPTY or (mark == HIDDEN and reaches[code] == 0):
+                    continue
+                low, high = (float(i), float(j), float(k)), (i + 1.0, j + 1.0, k + 1.0)
+                first, last = 0, 1
+                if code != FULL:
+                    first, last = starts[code - FIRST_SHAPE], starts[code - FIRST_SHAPE + 1]
+                for row in range(first, last):
+                    if code != FULL:
+                        low = (i + boxes[row, 0], j + boxes[row, 1], k + boxes[row, 2])
+                        high = (i + boxes[row, 3], j + boxes[row, 4], k + boxes[row, 5])
+                    _cast_box(marks, sizes, eye, low, high, index, reaches[code] == 0)
+                # A block does not hide itself.
+                marks[index] = mark
+    return marks
