@@ -1,0 +1,37 @@
+"""Language models: one protocol, adapters to providers, and what a run puts around them."""
+
+from beliefnest.llm.asking import Attempt, Check, ProgramAnswer, Prompt, ask_for_program
+from beliefnest.llm.budget import Budget, RunLimits
+from beliefnest.llm.cache import CacheMode
+from beliefnest.llm.clock import Clock, SystemClock
+from beliefnest.llm.extract import NoProgramError, extract_program
+from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
+from beliefnest.llm.remote import AnswerLimits
+from beliefnest.llm.resolve import Connection, model_names, open_model, resolve_model
+from beliefnest.llm.retrying import RetryPolicy
+
+__all__ = [
+    "Answer",
+    "AnswerLimits",
+    "Attempt",
+    "Budget",
+    "CacheMode",
+    "Check",
+    "Clock",
+    "Connection",
+    "Message",
+    "Model",
+    "NoProgramError",
+    "ProgramAnswer",
+    "Prompt",
+    "RetryPolicy",
+    "RunLimits",
+    "Sampling",
+    "SystemClock",
+    "Usage",
+    "ask_for_program",
+    "extract_program",
+    "model_names",
+    "open_model",
+    "resolve_model",
+]

@@ -1,0 +1,125 @@
+"""From a prompt to a program that passes a check, with the faults sent back."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from beliefnest.errors import InputError, ModelError
+from beliefnest.llm.extract import NoProgramError, extract_program
+from beliefnest.llm.failures import excerpt
+from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
+
+__all__ = ["Attempt", "Check", "ProgramAnswer", "Prompt", "ask_for_program"]
+
+Check = Callable[[str], str | None]
+"""Given a program, what is wrong with it, for the model to read; None: nothing."""
+
+Prompt = str | Callable[[str | None, str | None], str]
+"""A prompt, or how to render it with the code and the error of the round before."""
+
+
+@dataclass(frozen=True, slots=True)
+class Attempt:
+    """One round.
+
+    Attributes:
+        messages: What was asked.
+        answer: What came back.
+        program: The program in it; None if there was none.
+        complaint: What was wrong; None: nothing.
+    """
+
+    messages: tuple[Message, ...]
+    answer: Answer
+    program: str | None
+    complaint: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramAnswer:
+    """A program that passed the check.
+
+    Attributes:
+        program: JavaScript.
+        attempts: All rounds, the last one good.
+    """
+
+    program: str
+    attempts: tuple[Attempt, ...]
+
+    @property
+    def usage(self) -> Usage:
+        """What all rounds took."""
+        return sum((attempt.answer.usage for attempt in self.attempts), Usage())
+
+
+def ask_for_program(
+    model: Model,
+    prompt: Prompt,
+    check: Check,
+    attempts: int = 3,
+    *,
+    system: str | None = None,
+    sampling: Sampling | None = None,
+) -> ProgramAnswer:
+    """Ask a model for a program until one passes a check.
+
+    Args:
+        model: The model to ask.
+        prompt: A text: faults are then sent back as further messages of one conversation.
+            Or a function of the code and the error of the round before (None at first):
+            each round is then a conversation of its own, as with the paper's template.
+        check: What is wrong with a program.
+        attempts: Rounds at most, at least 1.
+        system: A message before the prompt, such as how to answer.
+        sampling: How answers are drawn.
+
+    Raises:
+        InputError: `attempts` is below 1.
+        ModelError: The model failed, or no round gave a program that passed.
+    """
+    if attempts < 1:
+        raise InputError(f"attempts is {attempts}; it must be at least 1")
+    rounds: list[Attempt] = []
+    while len(rounds) < attempts:
+        messages = _messages(prompt, system, rounds)
+        answer = model.answer(messages, sampling or Sampling())
+        program, complaint = _judge(answer.text, check)
+        rounds.append(Attempt(messages, answer, program, complaint))
+        if program is not None and complaint is None:
+            return ProgramAnswer(program, tuple(rounds))
+    raise ModelError(
+        f"{model.name} gave no usable program in {_times(attempts)}: {rounds[-1].complaint}"
+    )
+
+
+def _judge(text: str, check: Check) -> tuple[str | None, str | None]:
+    """The program of an answer, and what is wrong."""
+    try:
+        program = extract_program(text)
+    except NoProgramError as error:
+        return None, str(error)
+    return program, check(program)
+
+
+def _messages(prompt: Prompt, system: str | None, rounds: list[Attempt]) -> tuple[Message, ...]:
+    first = () if system is None else (Message("system", system),)
+    last = rounds[-1] if rounds else None
+    if callable(prompt):
+        code, error = (None, None) if last is None else (last.program, last.complaint)
+        return (*first, Message("user", prompt(code, error)))
+    if last is None:
+        return (*first, Message("user", prompt))
+    said = Message("assistant", last.answer.text if last.program else excerpt(last.answer.text))
+    return (*last.messages, said, Message("user", _feedback(last)))
+
+
+def _feedback(attempt: Attempt) -> str:
+    fault = "There is a fault in this program" if attempt.program else "There is no program in this"
+    return (
+        f"{fault}: {attempt.complaint}\n\n"
+        "Answer with the whole corrected program in one fenced ```javascript block."
+    )
+
+
+def _times(attempts: int) -> str:
+    return "one attempt" if attempts == 1 else f"{attempts} attempts"

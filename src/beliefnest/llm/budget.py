@@ -1,0 +1,82 @@
+"""What a run may spend on a model."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from beliefnest.errors import ModelError
+from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
+
+__all__ = ["Budget", "MeteredModel", "RunLimits"]
+
+
+@dataclass(frozen=True, slots=True)
+class RunLimits:
+    """What all answers of a run together may take; None: no limit.
+
+    Attributes:
+        tokens: Sent and received.
+        cost: US dollars. Answers whose price is not known are held by `tokens` alone.
+    """
+
+    tokens: int | None = 1_000_000
+    cost: float | None = 5.0
+
+
+@dataclass
+class Budget:
+    """What a run has spent so far, over all its models.
+
+    Attributes:
+        limits: What it may spend.
+        spent: What it has spent; the cost counts known prices only.
+    """
+
+    limits: RunLimits = field(default_factory=RunLimits)
+    spent: Usage = field(default_factory=Usage)
+
+    def check(self) -> None:
+        """Refuse a further request when nothing is left.
+
+        Raises:
+            ModelError: A limit is reached.
+        """
+        tokens, cost = self.limits.tokens, self.limits.cost
+        if tokens is not None and self.spent.tokens >= tokens:
+            raise ModelError(
+                f"the run has used {self.spent.tokens:,} tokens and may use {tokens:,}; "
+                "raise the limit to go on"
+            )
+        if cost is not None and (self.spent.cost or 0.0) >= cost:
+            raise ModelError(
+                f"the run has cost {self.spent.cost:.2f} US dollars and may cost {cost:.2f}; "
+                "raise the limit to go on"
+            )
+
+    def add(self, usage: Usage) -> None:
+        """Count what an answer took."""
+        priced = Usage(usage.requests, usage.input_tokens, usage.output_tokens, usage.cost or 0.0)
+        self.spent = self.spent + priced
+
+
+@dataclass(frozen=True)
+class MeteredModel:
+    """A model whose answers are counted against a budget; asked only while some is left."""
+
+    model: Model
+    budget: Budget
+
+    @property
+    def name(self) -> str:
+        """Name of the model that is asked."""
+        return self.model.name
+
+    def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
+        """Ask, if the budget allows.
+
+        Raises:
+            ModelError: A limit of the run is reached, or the model failed.
+        """
+        self.budget.check()
+        answer = self.model.answer(messages, sampling)
+        self.budget.add(answer.usage)
+        return answer

@@ -1,0 +1,36 @@
+"""How a model's failures are told: short, without secrets, with what to do."""
+
+from collections.abc import Iterable
+
+from beliefnest.errors import ModelError
+
+__all__ = ["TransientModelError", "excerpt", "without_secrets"]
+
+_LONGEST_EXCERPT = 300
+
+
+class TransientModelError(ModelError):
+    """A failure that may pass: a rate limit, an overloaded server, a dropped connection.
+
+    Attributes:
+        retry_after: Seconds the provider asked to wait; None if it named none.
+    """
+
+    def __init__(self, message: str, retry_after: float | None = None) -> None:
+        super().__init__(message)
+        self.retry_after = retry_after
+
+
+def excerpt(text: str) -> str:
+    """The beginning of a text, on one line, for a message."""
+    line = " ".join(text[: 2 * _LONGEST_EXCERPT].split())
+    cut = len(text) > 2 * _LONGEST_EXCERPT or len(line) > _LONGEST_EXCERPT
+    return f"{line[:_LONGEST_EXCERPT]}..." if cut else line
+
+
+def without_secrets(text: str, secrets: Iterable[str]) -> str:
+    """A text in which every secret is replaced by `***`."""
+    for secret in secrets:
+        if secret:
+            text = text.replace(secret, "***")
+    return text

@@ -1,0 +1,149 @@
+"""The providers of chat models: where they are, and which variables hold their keys."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from beliefnest.errors import ModelError
+
+__all__ = ["PROVIDERS", "Endpoint", "Provider", "endpoint"]
+
+Protocol = Literal["openai", "compatible", "anthropic", "google"]
+
+
+@dataclass(frozen=True, slots=True)
+class Provider:
+    """A provider of chat models.
+
+    Attributes:
+        name: What stands before the colon in `PROVIDER:MODEL`.
+        protocol: What its servers speak.
+        key_variables: Variables of the environment that may hold the key, in order.
+        url_variable: Variable that may hold the base URL.
+        default_url: Base URL without that variable; None: there is none.
+        needs_key: Whether it refuses to answer without a key.
+        free: Whether it runs on the user's own machine and costs nothing.
+    """
+
+    name: str
+    protocol: Protocol
+    key_variables: tuple[str, ...]
+    url_variable: str
+    default_url: str | None
+    needs_key: bool = True
+    free: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Endpoint:
+    """Where a provider is spoken to and with which key.
+
+    Attributes:
+        provider: The provider.
+        url: Base URL.
+        key: Never printed; None where none is needed.
+        key_variable: The variable the key came from, for messages.
+    """
+
+    provider: Provider
+    url: str
+    key: "_Key"
+    key_variable: str
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class _Key:
+    """A key that does not show in a representation."""
+
+    value: str | None
+
+    def __repr__(self) -> str:
+        return "<key>" if self.value else "<no key>"
+
+
+PROVIDERS: Mapping[str, Provider] = {
+    provider.name: provider
+    for provider in (
+        Provider(
+            "openai",
+            "openai",
+            ("OPENAI_API_KEY",),
+            "OPENAI_BASE_URL",
+            "https://api.openai.com/v1",
+        ),
+        Provider(
+            "anthropic",
+            "anthropic",
+            ("ANTHROPIC_API_KEY",),
+            "ANTHROPIC_BASE_URL",
+            "https://api.anthropic.com",
+        ),
+        Provider(
+            "google",
+            "google",
+            ("GOOGLE_API_KEY", "GEMINI_API_KEY"),
+            "GOOGLE_GEMINI_BASE_URL",
+            "https://generativelanguage.googleapis.com",
+        ),
+        Provider(
+            "ollama",
+            "compatible",
+            ("OLLAMA_API_KEY",),
+            "OLLAMA_BASE_URL",
+            "http://localhost:11434/v1",
+            needs_key=False,
+            free=True,
+        ),
+        Provider(
+            "vllm",
+            "compatible",
+            ("VLLM_API_KEY",),
+            "VLLM_BASE_URL",
+            "http://localhost:8000/v1",
+            needs_key=False,
+            free=True,
+        ),
+        Provider(
+            "lmstudio",
+            "compatible",
+            ("LMSTUDIO_API_KEY",),
+            "LMSTUDIO_BASE_URL",
+            "http://localhost:1234/v1",
+            needs_key=False,
+            free=True,
+        ),
+        Provider(
+            "compatible",
+            "compatible",
+            ("COMPATIBLE_API_KEY",),
+            "COMPATIBLE_BASE_URL",
+            None,
+            needs_key=False,
+        ),
+    )
+}
+"""Name to provider; `compatible` is any other server that speaks OpenAI's protocol."""
+
+
+def endpoint(provider: Provider, environment: Mapping[str, str]) -> Endpoint:
+    """Where a provider is, and the key, from the environment.
+
+    Raises:
+        ModelError: A key or a URL is needed and not in the environment.
+    """
+    url = environment.get(provider.url_variable) or provider.default_url
+    if not url:
+        raise ModelError(
+            f"{provider.name} needs the server's address: "
+            f"set {provider.url_variable}, as http://localhost:8000/v1"
+        )
+    for variable in provider.key_variables:
+        if environment.get(variable):
+            return Endpoint(provider, url, _Key(environment[variable]), variable)
+    # A server at an address of the user's own may do without a key.
+    if provider.needs_key and not environment.get(provider.url_variable):
+        raise ModelError(
+            f"{provider.name} needs a key: set {' or '.join(provider.key_variables)}, "
+            "or run with --model offline"
+        )
+    return Endpoint(provider, url, _Key(None), provider.key_variables[0])

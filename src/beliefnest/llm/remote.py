@@ -1,0 +1,283 @@
+"""Chat models behind a network, through pydantic-ai."""
+
+import math
+from collections.abc import Callable, Coroutine, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from beliefnest.errors import ModelError
+from beliefnest.llm.clock import Clock
+from beliefnest.llm.failures import TransientModelError, excerpt, without_secrets
+from beliefnest.llm.messages import Answer, Message, Sampling, Usage
+from beliefnest.llm.providers import Endpoint
+
+if TYPE_CHECKING:
+    from pydantic_ai.messages import ModelMessage, ModelResponse
+    from pydantic_ai.models import Model as ChatModel
+    from pydantic_ai.settings import ModelSettings
+
+__all__ = ["AnswerLimits", "RemoteModel"]
+
+_CHARACTERS_PER_TOKEN = 4
+"""For servers that do not say what they counted; a low guess would let a limit slip."""
+
+
+@dataclass(frozen=True, slots=True)
+class AnswerLimits:
+    """What one answer may take.
+
+    Attributes:
+        seconds: From the request to the last character.
+        characters: Longest text, thinking included.
+    """
+
+    seconds: float = 120.0
+    characters: int = 200_000
+
+
+@dataclass(frozen=True)
+class RemoteModel:
+    """A model of a provider. Connects when it is asked, and only then.
+
+    Attributes:
+        endpoint: Where it is.
+        model: The provider's name for it.
+        limits: What one answer may take.
+        clock: Measures `limits.seconds` while text arrives.
+    """
+
+    endpoint: Endpoint
+    model: str
+    limits: AnswerLimits
+    clock: Clock
+
+    @property
+    def name(self) -> str:
+        """`PROVIDER:MODEL`."""
+        return f"{self.endpoint.provider.name}:{self.model}"
+
+    def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
+        """Ask the provider once.
+
+        Raises:
+            TransientModelError: It may answer later.
+            ModelError: It will not answer this, or the answer exceeds a limit.
+        """
+        _require_library()
+        from pydantic_ai.exceptions import AgentRunError, UserError
+
+        try:
+            return _run(lambda: self._ask(messages, sampling))
+        except (AgentRunError, UserError) as error:
+            _refuse(self, error)
+
+    async def _ask(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
+        from pydantic_ai.direct import model_request_stream
+
+        model = _chat_model(self.endpoint, self.model)
+        settings = _settings(sampling, self.limits.seconds)
+        end = self.clock.now() + self.limits.seconds
+        async with model:
+            request = model_request_stream(model, _history(messages), model_settings=settings)
+            async with request as stream:
+                length = 0
+                async for event in stream:
+                    length += _length(event)
+                    if length > self.limits.characters:
+                        raise ModelError(
+                            f"{self.name} wrote more than {self.limits.characters:,} characters "
+                            "and was cut off: ask for less, or raise the limit of an answer"
+                        )
+                    if self.clock.now() > end:
+                        _too_slow(self)
+                return _answer(self, messages, stream.get())
+
+
+def _require_library() -> None:
+    try:
+        import pydantic_ai  # noqa: F401
+    except ImportError as error:
+        raise ModelError(
+            f"models of providers need the extra 'llm' ({error.name} is missing): "
+            "pip install 'beliefnest[llm]', or run with --model offline"
+        ) from None
+
+
+def _run(ask: Callable[[], Coroutine[Any, Any, Answer]]) -> Answer:
+    """Run a coroutine to its end, also where an event loop runs already (notebooks)."""
+    import asyncio
+    import concurrent.futures
+
+    try:
+        asyncio.get_running_loop()
+    except RuntimeError:
+        return asyncio.run(ask())
+    with concurrent.futures.ThreadPoolExecutor(max_workers=1) as pool:
+        return pool.submit(lambda: asyncio.run(ask())).result()
+
+
+def _chat_model(endpoint: Endpoint, model: str) -> "ChatModel":
+    key, url = endpoint.key.value, endpoint.url
+    match endpoint.provider.protocol:
+        case "anthropic":
+            from pydantic_ai.models.anthropic import AnthropicModel
+            from pydantic_ai.providers.anthropic import AnthropicProvider
+
+            return AnthropicModel(model, provider=AnthropicProvider(api_key=key, base_url=url))
+        case "google":
+            from pydantic_ai.models.google import GoogleModel
+            from pydantic_ai.providers.google import GoogleProvider
+
+            return GoogleModel(model, provider=GoogleProvider(api_key=key or "", base_url=url))
+        case "openai":
+            from pydantic_ai.models.openai import OpenAIChatModel
+            from pydantic_ai.providers.openai import OpenAIProvider
+
+            # Chat completions and not the newer responses: only these take a seed.
+            openai = OpenAIProvider(api_key=key or "none", base_url=url)
+            return OpenAIChatModel(model, provider=openai)
+        case "compatible":
+            from pydantic_ai.models.openai import OpenAIChatModel
+            from pydantic_ai.providers.openai_compatible import OpenAICompatibleProvider
+
+            name = endpoint.provider.name
+            compatible = OpenAICompatibleProvider(name, base_url=url, api_key=key)
+            return OpenAIChatModel(model, provider=compatible)
+
+
+def _settings(sampling: Sampling, seconds: float) -> "ModelSettings":
+    # Retrying is done by `retrying`, on the project's clock.
+    settings: ModelSettings = {"max_retries": 0, "request_timeout": seconds}
+    if sampling.temperature is not None:
+        settings["temperature"] = sampling.temperature
+    if sampling.seed is not None:
+        settings["seed"] = sampling.seed
+    if sampling.max_output_tokens is not None:
+        settings["max_tokens"] = sampling.max_output_tokens
+    return settings
+
+
+def _history(messages: Sequence[Message]) -> "list[ModelMessage]":
+    from pydantic_ai.messages import (
+        ModelRequest,
+        ModelResponse,
+        SystemPromptPart,
+        TextPart,
+        UserPromptPart,
+    )
+
+    history: list[ModelMessage] = []
+    asked: list[SystemPromptPart | UserPromptPart] = []
+    for message in messages:
+        match message.role:
+            case "system":
+                asked.append(SystemPromptPart(message.text))
+            case "user":
+                asked.append(UserPromptPart(message.text))
+            case "assistant":
+                history += [ModelRequest(parts=asked)] if asked else []
+                history.append(ModelResponse(parts=[TextPart(message.text)]))
+                asked = []
+    return [*history, ModelRequest(parts=asked)] if asked else history
+
+
+def _length(event: object) -> int:
+    """Characters of text or thinking that an event of a stream adds."""
+    from pydantic_ai.messages import (
+        PartDeltaEvent,
+        PartStartEvent,
+        TextPart,
+        TextPartDelta,
+        ThinkingPart,
+        ThinkingPartDelta,
+    )
+
+    match event:
+        case PartStartEvent(part=TextPart(content=text) | ThinkingPart(content=text)):
+            return len(text)
+        case PartDeltaEvent(delta=TextPartDelta(content_delta=text)):
+            return len(text)
+        case PartDeltaEvent(delta=ThinkingPartDelta(content_delta=str() as text)):
+            return len(text)
+        case _:
+            return 0
+
+
+def _answer(model: RemoteModel, messages: Sequence[Message], response: "ModelResponse") -> Answer:
+    text = response.text or ""
+    if response.finish_reason == "content_filter":
+        words = (response.provider_details or {}).get("refusal") or text
+        told = f": {excerpt(_clean(model, str(words)))}" if words else ""
+        raise ModelError(f"{model.name} refused to answer{told}; word the task differently")
+    if response.finish_reason == "length":
+        raise ModelError(
+            f"{model.name} was cut off at the limit of output tokens; "
+            "raise max_output_tokens or ask for less"
+        )
+    if not text.strip():
+        raise ModelError(f"{model.name} gave an empty answer; ask again or use another model")
+    return Answer(text, _usage(model, messages, response))
+
+
+def _usage(model: RemoteModel, messages: Sequence[Message], response: "ModelResponse") -> Usage:
+    free = 0.0 if model.endpoint.provider.free else None
+    counted = response.usage
+    if counted.input_tokens or counted.output_tokens:
+        cost = _cost(response) if free is None else free
+        return Usage(1, counted.input_tokens, counted.output_tokens, cost)
+    sent = sum(len(message.text) for message in messages)
+    received = len(response.text or "")
+    return Usage(1, _guessed_tokens(sent), _guessed_tokens(received), free)
+
+
+def _guessed_tokens(characters: int) -> int:
+    return math.ceil(characters / _CHARACTERS_PER_TOKEN)
+
+
+def _cost(response: "ModelResponse") -> float | None:
+    """US dollars by the library's price list; None for a model that is not on it."""
+    try:
+        return float(response.cost().total_price)
+    except (LookupError, ValueError, AssertionError):
+        return None
+
+
+def _too_slow(model: RemoteModel) -> NoReturn:
+    raise ModelError(
+        f"{model.name} did not finish its answer in {model.limits.seconds:g} s; "
+        "raise the time limit or use a faster model"
+    )
+
+
+def _clean(model: RemoteModel, text: str) -> str:
+    return without_secrets(text, [model.endpoint.key.value or ""])
+
+
+def _refuse(model: RemoteModel, error: Exception) -> NoReturn:
+    """Raise the project's error for one of the library's, without its cause: it holds headers."""
+    from pydantic_ai import exceptions as library
+
+    where = f"{model.name} at {model.endpoint.url}"
+    said = excerpt(_clean(model, str(error)))
+    match error:
+        case library.ModelRequestTimeout():
+            _too_slow(model)
+        case library.ModelAuthenticationError():
+            message = f"{where} refused the key in {model.endpoint.key_variable}: check it"
+        case library.ModelNotFoundError():
+            message = f"{where} was not found: check the model's name and the address ({said})"
+        case library.ModelQuotaExceededError():
+            message = f"{where}: the account has no credit left ({said})"
+        case library.ModelContextWindowExceededError():
+            message = f"{where}: the prompt is longer than the model can read; shorten it"
+        case library.ModelRateLimitError(retry_after=seconds):
+            raise TransientModelError(f"{where} limits the rate of requests", seconds) from None
+        case library.ModelConnectionError():
+            raise TransientModelError(f"{where} dropped the connection ({said})") from None
+        case library.ModelServerError(retry_after=s) | library.ModelUnavailableError(retry_after=s):
+            raise TransientModelError(f"{where} failed ({said})", s) from None
+        case library.ModelAPIError():
+            message = f"{where} rejected the request ({said})"
+        case _:
+            message = f"{where} gave no usable answer ({said})"
+    raise ModelError(message) from None

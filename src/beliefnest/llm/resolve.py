@@ -1,0 +1,119 @@
+"""From the name of a model to the model, and with it all that a run puts around it."""
+
+import difflib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.llm.budget import Budget, MeteredModel
+from beliefnest.llm.cache import CachedModel, CacheMode
+from beliefnest.llm.clock import Clock, SystemClock
+from beliefnest.llm.messages import Model
+from beliefnest.llm.offline import OfflineModel
+from beliefnest.llm.providers import PROVIDERS, endpoint
+from beliefnest.llm.recorded import RecordingModel, load_replay, load_script
+from beliefnest.llm.remote import AnswerLimits, RemoteModel
+from beliefnest.llm.retrying import RetryingModel, RetryPolicy
+
+__all__ = ["Connection", "model_names", "open_model", "resolve_model"]
+
+
+@dataclass(frozen=True)
+class Connection:
+    """What a run puts around a model.
+
+    Attributes:
+        budget: What the run may spend, and has spent.
+        answer_limits: What one answer may take.
+        retries: How often a request is made again.
+        cache: Folder of kept answers; None: none are kept or used.
+        cache_mode: How the folder is used.
+        record: File to append every exchange to; None: none.
+        clock: Time for limits and pauses.
+    """
+
+    budget: Budget = field(default_factory=Budget)
+    answer_limits: AnswerLimits = field(default_factory=AnswerLimits)
+    retries: RetryPolicy = field(default_factory=RetryPolicy)
+    cache: Path | None = None
+    cache_mode: CacheMode = "read"
+    record: Path | None = None
+    clock: Clock = field(default_factory=SystemClock)
+
+
+def model_names() -> tuple[str, ...]:
+    """The forms of names that `resolve_model` takes."""
+    remote = (f"{name}:MODEL" for name in PROVIDERS)
+    return ("offline", "replay:FILE", "scripted:FILE", *remote)
+
+
+def resolve_model(
+    name: str,
+    environment: Mapping[str, str],
+    *,
+    limits: AnswerLimits | None = None,
+    clock: Clock | None = None,
+) -> Model:
+    """The model of a name: one request an answer, nothing around it.
+
+    Args:
+        name: `offline`, `replay:FILE`, `scripted:FILE` or `PROVIDER:MODEL`.
+        environment: Holds keys and base URLs; the process's environment, as a rule.
+        limits: What one answer of a provider may take.
+        clock: Measures the limits.
+
+    Raises:
+        UnknownNameError: There is no such kind of model.
+        InputError: Nothing stands behind the colon.
+        ModelError: A key, a URL or a file is missing.
+    """
+    if name == "offline":
+        return OfflineModel()
+    kind, _, rest = name.partition(":")
+    if kind not in ("replay", "scripted", *PROVIDERS):
+        raise UnknownNameError(f"no model {name!r}{_nearest(kind)}")
+    if not rest:
+        raise InputError(f"{name!r} is not complete; write {kind}:{_placeholder(kind)}")
+    if kind == "replay":
+        return load_replay(name, Path(rest))
+    if kind == "scripted":
+        return load_script(name, Path(rest))
+    return RemoteModel(
+        endpoint(PROVIDERS[kind], environment),
+        rest,
+        limits or AnswerLimits(),
+        clock or SystemClock(),
+    )
+
+
+def open_model(name: str, environment: Mapping[str, str], connection: Connection) -> Model:
+    """The model of a name with retries, limits, cache and recording around it.
+
+    A kept answer costs nothing and is recorded like any other; only models of providers
+    are retried, metered and kept.
+
+    Raises:
+        As `resolve_model`.
+    """
+    model = resolve_model(
+        name, environment, limits=connection.answer_limits, clock=connection.clock
+    )
+    if isinstance(model, RemoteModel):
+        model = RetryingModel(model, connection.retries, connection.clock)
+        model = MeteredModel(model, connection.budget)
+        if connection.cache is not None and connection.cache_mode != "off":
+            model = CachedModel(model, connection.cache, connection.cache_mode)
+    if connection.record is not None:
+        model = RecordingModel(model, connection.record)
+    return model
+
+
+def _placeholder(kind: str) -> str:
+    return "FILE" if kind in ("replay", "scripted") else "MODEL"
+
+
+def _nearest(kind: str) -> str:
+    close = difflib.get_close_matches(kind, ["offline", "replay", "scripted", *PROVIDERS], n=1)
+    hint = f"; did you mean {close[0]}?" if close else ""
+    return f"{hint}; a model is one of {', '.join(model_names())}"

@@ -1,0 +1,137 @@
+"""Programs out of answers, and faults sent back."""
+
+from collections import deque
+
+import pytest
+
+from beliefnest.errors import InputError, ModelError
+from beliefnest.llm import NoProgramError, Sampling, Usage, ask_for_program, extract_program
+from beliefnest.llm.messages import Answer
+from beliefnest.llm.recorded import ScriptedModel
+
+
+class Listening(ScriptedModel):
+    """A scripted model that keeps what it was asked."""
+
+    def __init__(self, *answers):
+        super().__init__("scripted:test", deque(answers))
+        self.asked = []
+
+    def answer(self, messages, sampling):
+        self.asked.append((tuple((m.role, m.text) for m in messages), sampling))
+        return Answer(super().answer(messages, sampling).text, Usage(1, 10, 5, 0.5))
+
+
+def fenced(code, language="javascript"):
+    return f"```{language}\n{code}\n```"
+
+
+@pytest.mark.parametrize(
+    ("answer", "program"),
+    [
+        (fenced("a();"), "a();"),
+        (f"First I think.\n\n{fenced('a();', 'js')}\nDone.", "a();"),
+        (f"{fenced('a();')}\nNo, better:\n{fenced('b();')}", "b();"),
+        (f"{fenced('a();')}\n{fenced('{}', 'json')}", "a();"),
+        (f"{fenced('a();')}\n{fenced('output', '')}", "a();"),
+        (fenced("a();", ""), "a();"),
+        (fenced("a();", "JavaScript"), "a();"),
+        ("~~~js\na();\n~~~", "a();"),
+        ("````js\nconst x = `\n```\n`;\n````", "const x = `\n```\n`;"),
+        ("  ```js\n  a();\n  ```", "  a();"),
+        ("```js\r\na();\r\n```", "a();"),
+        ("await a(bot);", "await a(bot);"),
+        ("\nconst p = new Vec3(1, 2, 3);\nawait goToPosition(bot, p);\n", None),
+        ("bot.chat('hi')", "bot.chat('hi')"),
+        ("async function get(bot) {\n  await a();\n}", None),
+        ("// nothing\na(); // end", None),
+    ],
+)
+def test_the_program_of_an_answer(answer, program):
+    found = extract_program(answer)
+    assert found.replace("\r", "") == (answer.strip() if program is None else program)
+
+
+@pytest.mark.parametrize(
+    ("answer", "message"),
+    [
+        ("", "is empty"),
+        (" \n", "is empty"),
+        ("I'm sorry, but I can't help with that.", "no program: I'm sorry"),
+        ("Let me think (about it).", "no program"),
+        ("Sure! I would go to the chest;", "no program"),
+        (fenced("print(1)", "python"), "code in python and none in JavaScript"),
+        (fenced("  "), "block is empty"),
+        ("```js\nawait goToPosi", "cut off"),
+    ],
+)
+def test_answers_without_a_program(answer, message):
+    with pytest.raises(NoProgramError, match=message):
+        extract_program(answer)
+
+
+def test_a_long_answer_is_not_repeated_whole():
+    with pytest.raises(NoProgramError) as caught:
+        extract_program("word " * 100_000)
+    assert len(str(caught.value)) < 500
+
+
+def no_fault(program):
+    return None
+
+
+def complains_of_a(program):
+    return "a is not defined" if program == "a();" else None
+
+
+def test_a_good_program_at_once():
+    model = Listening(fenced("a();"))
+    sampling = Sampling(seed=3)
+    found = ask_for_program(model, "Do it.", no_fault, system="JS only.", sampling=sampling)
+    assert found.program == "a();"
+    assert found.usage == Usage(1, 10, 5, 0.5)
+    assert model.asked == [((("system", "JS only."), ("user", "Do it.")), sampling)]
+
+
+def test_faults_are_sent_back_in_the_conversation():
+    model = Listening(fenced("a();"), "No.", fenced("b();"))
+    found = ask_for_program(model, "Do it.", complains_of_a)
+    assert found.program == "b();"
+    assert [each.complaint for each in found.attempts] == [
+        "a is not defined",
+        "the answer holds no program: No.",
+        None,
+    ]
+    assert found.usage.tokens == 45
+    last, _ = model.asked[-1]
+    assert [role for role, _ in last] == ["user", "assistant", "user", "assistant", "user"]
+    assert last[1][1] == fenced("a();")
+    assert "a is not defined" in last[2][1]
+    assert "no program" in last[4][1]
+
+
+def test_a_template_is_rendered_anew_with_code_and_error():
+    model = Listening(fenced("a();"), fenced("b();"))
+    found = ask_for_program(model, lambda code, error: f"{code}|{error}", complains_of_a)
+    assert found.program == "b();"
+    assert [asked for asked, _ in model.asked] == [
+        (("user", "None|None"),),
+        (("user", "a();|a is not defined"),),
+    ]
+
+
+def test_attempts_end_with_the_last_fault():
+    model = Listening(fenced("a();"), fenced("a();"), fenced("b();"))
+    with pytest.raises(ModelError, match=r"scripted:test.*2 attempts: a is not defined"):
+        ask_for_program(model, "Do it.", complains_of_a, attempts=2)
+    assert len(model.asked) == 2
+
+
+def test_a_model_s_own_failure_ends_the_asking():
+    with pytest.raises(ModelError, match="no answer left"):
+        ask_for_program(Listening(), "Do it.", no_fault)
+
+
+def test_no_attempts_are_refused():
+    with pytest.raises(InputError, match="at least 1"):
+        ask_for_program(Listening(), "Do it.", no_fault, attempts=0)

@@ -1,0 +1,262 @@
+"""Providers' models, against a local server that speaks OpenAI's protocol."""
+
+import asyncio
+import sys
+import traceback
+
+import pytest
+
+from beliefnest.errors import InputError, ModelError, UnknownNameError
+from beliefnest.llm import (
+    AnswerLimits,
+    Connection,
+    Message,
+    RetryPolicy,
+    Sampling,
+    model_names,
+    open_model,
+    resolve_model,
+)
+from beliefnest.llm.failures import TransientModelError
+
+KEY = "sk-a-very-secret-key"
+ASK = (Message("system", "Be brief."), Message("user", "Get a diamond."))
+PROGRAM = "```javascript\nawait doNothing(bot);\n```"
+
+
+def environment(fake, **more):
+    return {"OPENAI_BASE_URL": fake.url, "OPENAI_API_KEY": KEY, **more}
+
+
+def model(fake, clock, name="openai:gpt-4o-mini", **limits):
+    return resolve_model(name, environment(fake), limits=AnswerLimits(**limits), clock=clock)
+
+
+def test_an_answer_with_its_usage_and_cost(fake, clock):
+    fake.will(fake.says(PROGRAM))
+    answer = model(fake, clock).answer(ASK, Sampling(temperature=0.25, seed=7))
+    assert answer.text == PROGRAM
+    assert (answer.usage.requests, answer.usage.input_tokens, answer.usage.output_tokens) == (
+        1,
+        120,
+        30,
+    )
+    assert answer.usage.cost is not None
+    assert 0 < answer.usage.cost < 0.01
+    (request,) = fake.requests
+    assert request.path == "/v1/chat/completions"
+    assert request.headers["authorization"] == f"Bearer {KEY}"
+    assert (request.body["temperature"], request.body["seed"]) == (0.25, 7)
+    assert [(m["role"], m["content"]) for m in request.body["messages"]] == [
+        (m.role, m.text) for m in ASK
+    ]
+
+
+def test_what_the_sampling_leaves_open_is_not_sent(fake, clock):
+    fake.will(fake.says(PROGRAM))
+    model(fake, clock).answer(ASK, Sampling(temperature=None, max_output_tokens=None))
+    sent = fake.requests[0].body
+    assert not {"temperature", "seed", "max_tokens", "max_completion_tokens"} & set(sent)
+
+
+def test_a_conversation_keeps_its_order(fake, clock):
+    fake.will(fake.says(PROGRAM))
+    talk = (*ASK, Message("assistant", "Here."), Message("user", "Again."))
+    model(fake, clock).answer(talk, Sampling())
+    roles = [message["role"] for message in fake.requests[0].body["messages"]]
+    assert roles == ["system", "user", "assistant", "user"]
+
+
+def test_several_answers_from_one_model(fake, clock):
+    fake.will(fake.says("one();"), fake.says("two();"))
+    asked = model(fake, clock)
+    assert [asked.answer(ASK, Sampling()).text for _ in range(2)] == ["one();", "two();"]
+
+
+def test_an_answer_while_an_event_loop_runs(fake, clock):
+    fake.will(fake.says(PROGRAM))
+
+    async def notebook():
+        return model(fake, clock).answer(ASK, Sampling())
+
+    assert asyncio.run(notebook()).text == PROGRAM
+
+
+def test_a_server_that_counts_nothing_is_guessed_for(fake, clock):
+    fake.will(fake.says(PROGRAM, usage=False))
+    usage = model(fake, clock).answer(ASK, Sampling()).usage
+    assert (usage.input_tokens, usage.output_tokens) == (6, 10)
+    assert usage.cost is None
+
+
+@pytest.mark.parametrize("provider", ["ollama", "vllm", "lmstudio"])
+def test_servers_of_one_s_own_need_no_key_and_cost_nothing(fake, clock, provider):
+    fake.will(fake.says(PROGRAM))
+    own = {f"{provider.upper()}_BASE_URL": fake.url}
+    asked = resolve_model(f"{provider}:qwen3:8b", own, clock=clock)
+    assert asked.name == f"{provider}:qwen3:8b"
+    assert asked.answer(ASK, Sampling()).usage.cost == 0.0
+    assert fake.requests[0].body["model"] == "qwen3:8b"
+    assert KEY not in str(fake.requests[0].headers)
+
+
+def test_any_compatible_server(fake, clock):
+    fake.will(fake.says(PROGRAM))
+    own = {"COMPATIBLE_BASE_URL": fake.url, "COMPATIBLE_API_KEY": KEY}
+    asked = resolve_model("compatible:some-model", own, clock=clock)
+    assert asked.answer(ASK, Sampling()).usage.cost is None
+    assert fake.requests[0].headers["authorization"] == f"Bearer {KEY}"
+
+
+FAULTS = [
+    ("refuses", r"refused to answer: I will not steal diamonds"),
+    ("floods", r"more than 200,000 characters"),
+    ("hangs_up", r"dropped the connection"),
+    ("drops_halfway", r"dropped the connection"),
+]
+
+
+@pytest.mark.parametrize(("behaviour", "message"), FAULTS)
+def test_faulty_servers_are_told_apart(fake, clock, behaviour, message):
+    fake.will(getattr(fake, behaviour))
+    with pytest.raises(ModelError, match=f"^openai:gpt-4o-mini.*{message}"):
+        model(fake, clock).answer(ASK, Sampling())
+
+
+@pytest.mark.parametrize(
+    ("status", "code", "message"),
+    [
+        (401, "invalid_api_key", "refused the key in OPENAI_API_KEY"),
+        (404, "model_not_found", "was not found: check the model's name"),
+        (402, "insufficient_quota", "no credit left"),
+        (400, "context_length_exceeded", "longer than the model can read"),
+        (400, "bad_thing", "rejected the request"),
+    ],
+)
+def test_requests_that_cannot_succeed(fake, clock, status, code, message):
+    fake.will(fake.fails(status, code=code))
+    with pytest.raises(ModelError, match=message) as caught:
+        model(fake, clock).answer(ASK, Sampling())
+    assert not isinstance(caught.value, TransientModelError)
+
+
+def test_an_answer_that_is_empty_or_cut_off(fake, clock):
+    fake.will(fake.says("  \n"), fake.says("await go", reason="length"))
+    asked = model(fake, clock)
+    with pytest.raises(ModelError, match="empty answer"):
+        asked.answer(ASK, Sampling())
+    with pytest.raises(ModelError, match="max_output_tokens"):
+        asked.answer(ASK, Sampling())
+
+
+def test_an_answer_that_drips_is_given_up_by_the_clock(fake, impatient_clock):
+    fake.will(fake.drips)
+    with pytest.raises(ModelError, match="did not finish its answer in 50 s"):
+        model(fake, impatient_clock, seconds=50).answer(ASK, Sampling())
+    assert impatient_clock.time < 60
+
+
+def test_a_server_that_says_nothing_is_given_up(fake, clock):
+    fake.will(fake.says_nothing)
+    with pytest.raises(ModelError, match=r"did not finish its answer in 0.2 s"):
+        model(fake, clock, seconds=0.2).answer(ASK, Sampling())
+
+
+def test_nobody_listens(clock):
+    own = {"OLLAMA_BASE_URL": "http://127.0.0.1:1/v1"}
+    with pytest.raises(TransientModelError, match=r"ollama:x at http://127\.0\.0\.1:1/v1"):
+        resolve_model("ollama:x", own, clock=clock).answer(ASK, Sampling())
+
+
+def test_the_key_is_in_no_message_traceback_or_representation(fake, clock):
+    fake.will(fake.fails(400, f"bad request by {KEY}"), fake.fails(500, f"{KEY} broke"))
+    asked = model(fake, clock)
+    assert KEY not in repr(asked)
+    for _ in range(2):
+        with pytest.raises(ModelError, match=r"\*\*\*") as caught:
+            asked.answer(ASK, Sampling())
+        assert KEY not in "".join(traceback.format_exception(caught.value))
+
+
+def connection(clock, **options):
+    return Connection(clock=clock, retries=RetryPolicy(attempts=3, first_wait=1.0), **options)
+
+
+def test_rate_limits_and_faults_are_waited_out(fake, clock):
+    fake.will(fake.fails(429, headers=[("Retry-After", "7")]), fake.hangs_up, fake.says(PROGRAM))
+    asked = open_model("openai:gpt-4o-mini", environment(fake), connection(clock))
+    assert asked.answer(ASK, Sampling()).text == PROGRAM
+    assert clock.waits == [7.0, 2.0]
+
+
+def test_retries_end(fake, clock):
+    fake.will(fake.fails(503))
+    asked = open_model("openai:gpt-4o-mini", environment(fake), connection(clock))
+    with pytest.raises(ModelError, match="gave up after 3 requests"):
+        asked.answer(ASK, Sampling())
+    assert clock.waits == [1.0, 2.0]
+    assert len(fake.requests) == 3
+
+
+def test_nobody_waits_for_an_hour(fake, clock):
+    fake.will(fake.fails(429, headers=[("Retry-After", "3600")]))
+    asked = open_model("openai:gpt-4o-mini", environment(fake), connection(clock))
+    with pytest.raises(ModelError, match="asks to wait 3600 s"):
+        asked.answer(ASK, Sampling())
+    assert clock.waits == []
+
+
+def test_what_cannot_succeed_is_not_tried_again(fake, clock):
+    fake.will(fake.fails(401))
+    asked = open_model("openai:gpt-4o-mini", environment(fake), connection(clock))
+    with pytest.raises(ModelError, match="refused the key"):
+        asked.answer(ASK, Sampling())
+    assert len(fake.requests) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "variable"),
+    [
+        ("openai:gpt-4o", "OPENAI_API_KEY"),
+        ("anthropic:claude", "ANTHROPIC_API_KEY"),
+        ("google:gemini", "GOOGLE_API_KEY or GEMINI_API_KEY"),
+        ("compatible:x", "COMPATIBLE_BASE_URL"),
+    ],
+)
+def test_what_is_missing_in_the_environment_is_named(name, variable):
+    with pytest.raises(ModelError, match=variable):
+        resolve_model(name, {})
+
+
+OTHERS = [
+    ("anthropic:some-claude", "ANTHROPIC_BASE_URL", "ANTHROPIC_API_KEY", "/v1/messages"),
+    ("google:gemini-2.5-flash", "GOOGLE_GEMINI_BASE_URL", "GEMINI_API_KEY", "GenerateContent"),
+]
+
+
+@pytest.mark.parametrize(("name", "url_variable", "key_variable", "path"), OTHERS)
+def test_other_protocols_are_spoken(fake, clock, name, url_variable, key_variable, path):
+    fake.will(fake.says_as(name.partition(":")[0], PROGRAM), fake.fails(401))
+    own = {url_variable: fake.url.removesuffix("/v1"), key_variable: KEY}
+    asked = resolve_model(name, own, clock=clock)
+    answer = asked.answer(ASK, Sampling(temperature=0.5))
+    assert answer.text == PROGRAM
+    assert (answer.usage.input_tokens, answer.usage.output_tokens) == (120, 30)
+    assert path.lower() in fake.requests[0].path.lower()
+    assert "Get a diamond." in str(fake.requests[0].body)
+    with pytest.raises(ModelError, match=f"refused the key in {key_variable}"):
+        asked.answer(ASK, Sampling())
+
+
+def test_unknown_and_incomplete_names():
+    with pytest.raises(UnknownNameError, match=r"'opnai:x'; did you mean openai\?.*replay:FILE"):
+        resolve_model("opnai:x", {})
+    with pytest.raises(InputError, match="openai:MODEL"):
+        resolve_model("openai", {})
+    assert {"offline", "replay:FILE", "scripted:FILE", "openai:MODEL"} <= set(model_names())
+
+
+def test_the_missing_extra_is_named(fake, clock, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pydantic_ai", None)
+    with pytest.raises(ModelError, match=r"pip install 'beliefnest\[llm\]'"):
+        model(fake, clock).answer(ASK, Sampling())
