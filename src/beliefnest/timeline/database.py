@@ -5,6 +5,7 @@ what a transaction did once it is committed, whatever becomes of the process, an
 others read meanwhile.
 """
 
+import os
 import sqlite3
 import zlib
 from collections.abc import Iterable, Iterator
@@ -23,6 +24,7 @@ __all__ = ["Database", "Row", "checked", "seal"]
 Row = tuple[Any, ...]
 
 _MAGIC = b"SQLite format 3\0"
+_HEADER_BYTES = 100
 _KNOWN_STARTS = (
     (b"PK\x03\x04", "a zip archive"),
     (b"\x1f\x8b", "gzip-compressed data"),
@@ -50,20 +52,23 @@ _PRIMARY_CODE = 0xFF
 
 
 def seal(*values: object) -> int:
-    """Checksum of a row's values; the last one may be long bytes."""
+    """Checksum of a row's values; the last one may be long bytes.
+
+    Raises:
+        StoreError: A number is too large to be stored.
+    """
     *head, last = values
-    body = last if isinstance(last, bytes) else msgspec.msgpack.encode(last)
-    return zlib.crc32(body, zlib.crc32(msgspec.msgpack.encode(head)))
+    try:
+        body = last if isinstance(last, bytes) else msgspec.msgpack.encode(last)
+        return zlib.crc32(body, zlib.crc32(msgspec.msgpack.encode(head)))
+    except OverflowError as fault:
+        raise StoreError(f"{head} cannot be stored: {fault}") from fault
 
 
 def checked(row: Row, path: Path, what: str) -> Row:
     """The row without its seal, which is its last value; StoreError if they do not agree."""
     *values, found = row
-    try:
-        agrees = seal(*values) == found
-    except (TypeError, OverflowError, msgspec.MsgspecError):
-        agrees = False
-    if not agrees:
+    if seal(*values) != found:
         raise StoreError(f"{path} {_DAMAGED} (checksum of {what} does not agree)")
     return tuple(values)
 
@@ -107,6 +112,8 @@ class Database:
                 another writer.
         """
         _recognise_start(path)
+        if not os.access(path, os.W_OK):
+            raise StoreError(f"{path} {_FAULTS[sqlite3.SQLITE_READONLY]}")
         database = cls._locked(path, "rw")
         with database.closed_on_fault():
             database._recognise()
@@ -235,7 +242,7 @@ class Database:
 
     def _check_small_tables(self) -> None:
         for table in SMALL_TABLES:
-            self._expect_ok(f"PRAGMA quick_check({table})")
+            self._expect_ok(f"PRAGMA integrity_check({table})")
 
     def _expect_ok(self, check: str) -> None:
         found = self.row(check)
@@ -268,7 +275,8 @@ class Database:
 
 
 def _wal(path: Path) -> Path:
-    return path.with_name(path.name + "-wal")
+    real = path.resolve()
+    return real.with_name(real.name + "-wal")
 
 
 def _is_unshareable(fault: StoreError) -> bool:
@@ -292,17 +300,27 @@ def _connected(path: Path, mode: str) -> sqlite3.Connection:
 
 
 def _recognise_start(path: Path) -> None:
+    """Check by its first bytes that a file is SQLite's and whole."""
+    settled = not _wal(path).exists()
     try:
         with path.open("rb") as file:
-            start = file.read(len(_MAGIC))
+            header = file.read(_HEADER_BYTES)
+            size = path.stat().st_size
     except FileNotFoundError as fault:
         raise StoreError(f"there is no run file {path}; check the path") from fault
     except OSError as fault:
-        raise StoreError(
-            f"{path} cannot be read: {fault.strerror}; give the file of a run"
-        ) from fault
-    if start == _MAGIC:
-        return
-    kinds = [kind for magic, kind in _KNOWN_STARTS if start.startswith(magic)]
-    what = kinds[0] if kinds else f"a file that begins with {start!r}" if start else "an empty file"
-    raise StoreError(f"{path} is no run: it is {what}; give the file of a run")
+        raise StoreError(f"{path} cannot be read ({fault.strerror}); check the path") from fault
+    if not header.startswith(_MAGIC):
+        kinds = [kind for start, kind in _KNOWN_STARTS if header.startswith(start)]
+        begin = header[: len(_MAGIC)]
+        what = kinds[0] if kinds else f"a file that begins with {begin!r}"
+        what = what if header else "an empty file"
+        raise StoreError(f"{path} is no run: it is {what}; give the file of a run")
+    # With a write-ahead log beside it, the rest of the file may still lie in there.
+    if settled and size < _page_size(header) * int.from_bytes(header[28:32], "big"):
+        raise StoreError(f"{path} {_DAMAGED} (its end is missing)")
+
+
+def _page_size(header: bytes) -> int:
+    stored = int.from_bytes(header[16:18], "big")
+    return 65536 if stored == 1 else stored

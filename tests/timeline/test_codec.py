@@ -1,0 +1,177 @@
+"""Values become bytes and come back the same, bit for bit."""
+
+import math
+import struct
+
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from beliefnest.errors import StoreError
+from beliefnest.timeline import codec
+from beliefnest.timeline.journal import Edit
+from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.values import (
+    EQUIPMENT_SLOTS,
+    AgentState,
+    Box,
+    DroppedItem,
+    Event,
+    EventKind,
+)
+
+floats = st.floats(allow_nan=False)
+whole = st.integers(-(2**31), 2**31 - 1)
+names = st.text(max_size=16)
+positions = st.tuples(whole, whole, whole)
+points = st.tuples(floats, floats, floats)
+contents = st.dictionaries(names, st.integers(1, 10_000), max_size=4)
+ticks = st.integers(0, 2**40)
+agents = st.builds(
+    AgentState,
+    position=points,
+    yaw=floats,
+    pitch=floats,
+    on_ground=st.booleans(),
+    equipment=st.dictionaries(st.sampled_from(EQUIPMENT_SLOTS), names),
+    inventory=contents,
+    health=floats,
+    food=floats,
+)
+dropped = st.builds(DroppedItem, name=names, count=st.integers(1, 64), position=points)
+details = st.dictionaries(
+    names,
+    st.recursive(
+        names | whole | floats | st.booleans() | st.none() | positions | points | contents,
+        lambda inner: st.lists(inner, max_size=3).map(tuple) | st.dictionaries(names, inner),
+        max_leaves=5,
+    ),
+    max_size=4,
+)
+events = st.builds(Event, kind=st.sampled_from(EventKind), actor=names | st.none(), detail=details)
+frames = st.builds(
+    Frame,
+    tick=ticks,
+    agents=st.dictionaries(names, agents | st.none(), max_size=3),
+    blocks=st.dictionaries(positions, whole, max_size=5),
+    containers=st.dictionaries(positions, contents | st.none(), max_size=3),
+    items=st.dictionaries(whole, dropped | st.none(), max_size=3),
+    events=st.lists(events, max_size=3).map(tuple),
+)
+edits = st.builds(
+    Edit,
+    tick=ticks,
+    path=st.lists(names, max_size=3).map(tuple),
+    blocks=st.dictionaries(positions, whole, max_size=5),
+    containers=st.dictionaries(positions, contents, max_size=3),
+)
+
+
+@st.composite
+def snapshots(draw):
+    low = draw(positions)
+    shape = draw(st.tuples(*[st.integers(1, 4)] * 3))
+    box = Box(low, tuple(a + n - 1 for a, n in zip(low, shape, strict=True)))
+    count = math.prod(shape)
+    cells = draw(st.lists(whole, min_size=count, max_size=count))
+    return Snapshot(
+        draw(ticks),
+        box,
+        np.array(cells, dtype=np.int32).reshape(shape),
+        draw(st.dictionaries(positions, contents, max_size=3)),
+        draw(st.dictionaries(names, agents, max_size=3)),
+        draw(st.dictionaries(whole, dropped, max_size=3)),
+    )
+
+
+@given(frames | edits)
+def test_entries_round_trip(entry):
+    back = codec.decode_entry(codec.encode_entry(entry))
+    assert back == entry
+    assert repr(back) == repr(entry)
+
+
+@given(agents | events | dropped)
+def test_single_values_round_trip(value):
+    back = codec.decode(codec.encode(value), type(value))
+    assert repr(back) == repr(value)
+
+
+@given(snapshots())
+def test_snapshots_round_trip(snapshot):
+    back = codec.decode_snapshot(codec.encode_snapshot(snapshot))
+    assert back.blocks.dtype == np.int32
+    assert not back.blocks.flags.writeable
+    assert np.array_equal(back.blocks, snapshot.blocks)
+    for part in ("tick", "box", "containers", "agents", "items"):
+        assert repr(getattr(back, part)) == repr(getattr(snapshot, part))
+
+
+@given(st.lists(frames | edits, max_size=5))
+@settings(max_examples=30)
+def test_joined_entries_are_split_again(entries):
+    pieces = codec.split(codec.join(codec.encode_entry(entry) for entry in entries))
+    assert [codec.decode_entry(piece) for piece in pieces] == entries
+    assert codec.decode_ticks(pieces) == [entry.tick for entry in entries]
+
+
+@pytest.mark.parametrize("bits", [1, 0x7FEFFFFFFFFFFFFF, 0x8000000000000000, 0x7FF8DEADBEEF0001])
+def test_floats_keep_every_bit(bits):
+    value = struct.unpack("<d", struct.pack("<Q", bits))[0]
+    back = codec.decode(codec.encode(AgentState((value, 0.0, 0.0))), AgentState)
+    assert struct.pack("<d", back.position[0]) == struct.pack("<Q", bits)
+
+
+@given(frames | edits, st.data())
+@settings(max_examples=50)
+def test_cut_bytes_are_refused(entry, data):
+    whole_entry = codec.encode_entry(entry)
+    cut = data.draw(st.integers(0, len(whole_entry) - 1))
+    with pytest.raises(StoreError):
+        codec.decode_entry(whole_entry[:cut])
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"tick": 1.5}, "tick"),
+        ({"tick": "1"}, "tick"),
+        ({"agents": {"sally": {"position": [0, 1]}}}, "position"),
+        ({"agents": {"sally": {"position": [0, 1, True]}}}, "position"),
+        ({"blocks": {"0,0,0": 1}}, "blocks"),
+        ({"events": [{"kind": "dance", "actor": None}]}, "kind"),
+    ],
+)
+def test_values_of_another_type_are_refused_by_name(change, told):
+    body = msgspec.msgpack.encode(["frame", {"tick": 1, **change}])
+    with pytest.raises(StoreError, match=told):
+        codec.decode_entry(body)
+
+
+def test_entries_of_an_unknown_sort_are_refused():
+    with pytest.raises(StoreError, match="entry"):
+        codec.decode_entry(msgspec.msgpack.encode(["dream", {"tick": 1}]))
+
+
+def test_numpy_numbers_are_stored_as_numbers():
+    frame = Frame(
+        1, blocks={(0, 0, 0): np.int32(7)}, agents={"a": AgentState((np.float64(0.1),) * 3)}
+    )
+    back = codec.decode_entry(codec.encode_entry(frame))
+    assert back.blocks == {(0, 0, 0): 7}
+    assert back.agents["a"].position == (0.1, 0.1, 0.1)
+    assert type(back.agents["a"].position[0]) is float
+
+
+def test_a_grid_that_does_not_fill_its_box_is_refused():
+    box = Box((0, 0, 0), (1, 1, 1))
+    with pytest.raises(StoreError, match="does not fill"):
+        codec.encode_snapshot(Snapshot(0, box, np.zeros((1, 2, 2), np.int32), {}, {}))
+    good = msgspec.msgpack.decode(
+        codec.encode_snapshot(Snapshot(0, box, np.zeros((2, 2, 2), np.int32), {}, {}))
+    )
+    for blocks in (b"", b"\0" * 31, b"\0" * 36):
+        with pytest.raises(StoreError, match="does not fill"):
+            codec.decode_snapshot(msgspec.msgpack.encode({**good, "blocks": blocks}))

@@ -1,0 +1,189 @@
+"""What every journal does, whatever keeps it."""
+
+import pytest
+
+from beliefnest.errors import BranchError, TickError
+from beliefnest.timeline.journal import ForkPoint, TimelineInfo, TimelineKey
+from beliefnest.timeline.store import PIECE_ENTRIES
+from beliefnest.world.frames import Frame
+
+MAIN = TimelineKey((), "main")
+PLAN = TimelineKey(("observer", "sally"), "plan")
+
+
+def begin(journal, entries, step=7):
+    """Put entries on the main timeline, `step` in each call."""
+    journal.create(MAIN, None, 0)
+    for at in range(0, len(entries), step):
+        part = entries[at : at + step]
+        journal.append(MAIN, part, part[-1].tick)
+
+
+@pytest.mark.parametrize("step", [1, 7, PIECE_ENTRIES, 1000])
+@pytest.mark.parametrize("ticks", [1, PIECE_ENTRIES, 3 * PIECE_ENTRIES + 5])
+def test_entries_come_back_as_they_were(journal, make_history, ticks, step):
+    entries = make_history(ticks)
+    begin(journal, entries, step)
+    assert list(journal.entries(MAIN, 0, len(entries))) == entries
+    assert journal.info(MAIN) == TimelineInfo(MAIN, None, 0, ticks, len(entries))
+
+
+def test_any_range_of_entries(journal, make_history):
+    entries = make_history(400)
+    begin(journal, entries, 3)
+    for start in range(0, len(entries), 37):
+        for length in (0, 1, 30, 300):
+            assert (
+                list(journal.entries(MAIN, start, start + length))
+                == (entries[start : start + length])
+            )
+
+
+def test_entries_appended_meanwhile_are_not_returned(journal, make_history):
+    entries = make_history(20)
+    begin(journal, entries)
+    reading = journal.entries(MAIN, 0, 1000)
+    first = next(reading)
+    journal.append(MAIN, [Frame(21)], 21)
+    assert [first, *reading] == entries
+
+
+def test_reading_goes_on_while_pieces_are_joined(journal, make_history):
+    entries = make_history(100)
+    begin(journal, entries, 1)
+    reading = journal.entries(MAIN, 0, len(entries))
+    first = [next(reading), next(reading)]
+    journal.append(MAIN, [Frame(tick) for tick in range(101, 500)], 500)
+    assert [*first, *reading] == entries
+
+
+def test_entries_until_counts_ticks_included(journal, make_history):
+    entries = make_history(300)
+    begin(journal, entries, 5)
+    for tick in range(-1, 305):
+        assert journal.entries_until(MAIN, tick) == sum(e.tick <= tick for e in entries)
+
+
+def test_entries_of_one_tick_are_counted_across_pieces(journal):
+    journal.create(MAIN, None, 0)
+    for _ in range(PIECE_ENTRIES + 10):
+        journal.append(MAIN, [Frame(4)], 4)
+    journal.append(MAIN, [Frame(5)], 5)
+    assert journal.entries_until(MAIN, 3) == 0
+    assert journal.entries_until(MAIN, 4) == PIECE_ENTRIES + 10
+    assert journal.entries_until(MAIN, 5) == PIECE_ENTRIES + 11
+
+
+def test_quiet_ticks_move_the_head_alone(journal):
+    journal.create(MAIN, None, 3)
+    journal.append(MAIN, [], 9)
+    assert journal.info(MAIN) == TimelineInfo(MAIN, None, 3, 9)
+
+
+@pytest.mark.parametrize(
+    ("ticks", "head"),
+    [([4], 10), ([6, 5], 10), ([6], 5), ([11], 10), ([], 4)],
+    ids=["before the head", "falling", "head before entry", "after the head", "head falls"],
+)
+def test_time_does_not_run_backwards(journal, ticks, head):
+    journal.create(MAIN, None, 0)
+    journal.append(MAIN, [Frame(5)], 5)
+    with pytest.raises(TickError, match="main"):
+        journal.append(MAIN, [Frame(tick) for tick in ticks], head)
+    assert journal.info(MAIN) == TimelineInfo(MAIN, None, 0, 5, 1)
+
+
+def test_timelines_are_listed_in_order_of_creation(journal):
+    keys = [TimelineKey(("b",), "z"), TimelineKey((), "z"), TimelineKey(("b",), "a")]
+    for key in keys:
+        journal.create(key, None, 0)
+    assert [info.key for info in journal.timelines()] == keys
+
+
+def test_a_fork_knows_its_base(journal, make_history):
+    begin(journal, make_history(30))
+    base = ForkPoint(MAIN, 12, 11)
+    journal.create(PLAN, base, 11)
+    assert journal.info(PLAN) == TimelineInfo(PLAN, base, 11, 11)
+    assert list(journal.entries(PLAN, 0, 10)) == []
+    assert journal.entries_until(PLAN, 99) == 0
+
+
+def test_a_fork_needs_a_base_of_that_length(journal, make_history):
+    with pytest.raises(BranchError, match="no branch 'main'"):
+        journal.create(PLAN, ForkPoint(MAIN, 0, 0), 0)
+    begin(journal, make_history(5))
+    too_far = journal.info(MAIN).entries + 1
+    with pytest.raises(BranchError, match="cannot begin"):
+        journal.create(PLAN, ForkPoint(MAIN, too_far, 5), 5)
+    assert [info.key for info in journal.timelines()] == [MAIN]
+
+
+def test_a_name_is_taken_once_for_each_path(journal):
+    journal.create(MAIN, None, 0)
+    with pytest.raises(BranchError, match="already has a branch 'main'"):
+        journal.create(MAIN, None, 0)
+    journal.create(TimelineKey(("sally",), "main"), None, 0)
+
+
+def test_unknown_timelines_are_refused_with_those_there_are(journal):
+    journal.create(TimelineKey((), "a"), None, 0)
+    calls = [
+        lambda: journal.info(MAIN),
+        lambda: journal.append(MAIN, [], 1),
+        lambda: journal.entries(MAIN, 0, 1),
+        lambda: journal.entries_until(MAIN, 1),
+        lambda: journal.rename(MAIN, "b"),
+        lambda: journal.delete(MAIN),
+        lambda: journal.describe(MAIN, "x"),
+    ]
+    for call in calls:
+        with pytest.raises(BranchError, match="no branch 'main'; it has 'a'"):
+            call()
+
+
+def test_renaming_takes_forks_along(journal, make_history):
+    entries = make_history(10)
+    begin(journal, entries)
+    journal.create(PLAN, ForkPoint(MAIN, 2, 2), 2)
+    journal.rename(MAIN, "trunk")
+    trunk = TimelineKey((), "trunk")
+    assert [info.key for info in journal.timelines()] == [trunk, PLAN]
+    assert journal.info(PLAN).base == ForkPoint(trunk, 2, 2)
+    assert list(journal.entries(trunk, 0, 100)) == entries
+    journal.create(MAIN, None, 0)
+    assert journal.info(MAIN).entries == 0
+
+
+def test_renaming_to_a_taken_name_changes_nothing(journal):
+    journal.create(MAIN, None, 0)
+    journal.create(TimelineKey((), "b"), None, 0)
+    for name in ("b", "main"):
+        with pytest.raises(BranchError, match="already"):
+            journal.rename(MAIN, name)
+    assert [info.key.branch for info in journal.timelines()] == ["main", "b"]
+
+
+def test_only_leaves_are_deleted(journal, make_history):
+    begin(journal, make_history(10))
+    journal.create(PLAN, ForkPoint(MAIN, 2, 2), 2)
+    with pytest.raises(BranchError, match="/observer/sally 'plan'"):
+        journal.delete(MAIN)
+    journal.delete(PLAN)
+    journal.delete(MAIN)
+    assert list(journal.timelines()) == []
+
+
+def test_a_deleted_name_begins_anew(journal, make_history):
+    begin(journal, make_history(200))
+    journal.describe(MAIN, "old")
+    journal.delete(MAIN)
+    journal.create(MAIN, None, 0)
+    assert journal.info(MAIN) == TimelineInfo(MAIN, None, 0, 0)
+    assert list(journal.entries(MAIN, 0, 500)) == []
+
+
+def test_descriptions_are_kept(journal):
+    journal.create(MAIN, None, 0)
+    journal.describe(MAIN, "Sally goes left — 試し")
+    assert journal.info(MAIN).description == "Sally goes left — 試し"

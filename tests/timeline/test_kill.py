@@ -1,0 +1,63 @@
+"""What a call did survives a kill of the process once the call has returned."""
+
+import os
+import random
+import runpy
+import signal
+import subprocess
+import sys
+from itertools import islice
+from pathlib import Path
+
+import pytest
+
+from beliefnest.timeline.journal import MemoryJournal
+from beliefnest.timeline.store import SqliteJournal
+
+WRITER = Path(__file__).with_name("killed_writer.py")
+KILLS = 200 if os.environ.get("BELIEFNEST_NIGHTLY") else 10
+LONGEST = 2500
+"""Calls after which a writer is killed at the latest, while it still writes."""
+
+
+def kept(journal):
+    """All a journal holds."""
+    return [
+        (info, list(journal.entries(info.key, 0, info.entries))) for info in journal.timelines()
+    ]
+
+
+def expected(seed, calls):
+    """All a journal holds after a number of the writer's calls, and after one more."""
+    model = MemoryJournal()
+    going = runpy.run_path(str(WRITER))["calls"](model, seed)
+    assert sum(1 for _ in islice(going, calls)) == calls
+    before = kept(model)
+    next(going, None)
+    return before, kept(model)
+
+
+def kill_after(path, seed, calls):
+    """Let a writer make at least that many calls, kill it; how many returned."""
+    with subprocess.Popen(
+        [sys.executable, str(WRITER), str(path), str(seed)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+    ) as writer:
+        told = writer.stdout.read(calls)
+        writer.send_signal(signal.SIGKILL)
+        told += writer.stdout.read()
+    assert writer.returncode == -signal.SIGKILL
+    return len(told)
+
+
+@pytest.mark.parametrize("seed", range(KILLS))
+def test_a_killed_writer_leaves_what_it_was_told_was_kept(tmp_path, seed):
+    path = tmp_path / "run.bn"
+    calls = kill_after(path, seed, random.Random(seed).randrange(1, LONGEST))
+    before, after = expected(seed, calls)
+    with SqliteJournal.read(path) as reader:
+        assert kept(reader) in (before, after)
+    with SqliteJournal.open(path) as journal:
+        assert kept(journal) in (before, after)
+        journal.verify()
