@@ -5,8 +5,8 @@ import dataclasses
 import pytest
 
 from beliefnest.belief.entries import AgentBelief, PerceivedEvent
+from beliefnest.belief.view import State
 from beliefnest.errors import TemplateError
-from beliefnest.nest.state import State
 from beliefnest.prompts import BUILT_IN, render
 from beliefnest.prompts.actions import ACTION_NAMES
 from beliefnest.prompts.example import ExampleBlocks, ExampleBranch, example_branch

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
-from beliefnest.nest.state import State
+from beliefnest.belief.view import State
 from beliefnest.prompts import BUILT_IN, built_in_template, render
 from beliefnest.prompts.example import ExampleBlocks, ExampleBranch
 from beliefnest.world.values import Box, EventKind

@@ -7,7 +7,7 @@ word such as `No data`; a fault is raised.
 from collections.abc import Iterable, Mapping
 
 from beliefnest.belief.entries import AgentBelief, PerceivedEvent
-from beliefnest.nest.state import State
+from beliefnest.belief.view import State
 from beliefnest.prompts import actions, text
 from beliefnest.prompts.filterset import FilterSet, filter
 from beliefnest.prompts.view import BranchView, belief_of, believed_agent, owner_of
@@ -33,6 +33,11 @@ def position(branch: BranchView, agent: str | None = None) -> str:
     believed = believed_agent(state, agent)
     if agent in (None, state.owner):
         return text.NO_DATA if believed.position is None else text.point(believed.position)
+    return _position(believed)
+
+
+def _position(believed: AgentBelief) -> str:
+    """Where an agent is seen that is not the owner."""
     if believed.position is None or not believed.current:
         return text.CANNOT_BE_SEEN
     return text.point(believed.position)
@@ -138,7 +143,7 @@ def other_players(branch: BranchView) -> str:
     return text.as_json(
         {
             name: {
-                "position": position(branch, name),
+                "position": _position(state.agents[name]),
                 "helditem": _helditem(state.agents[name]),
                 "inventory": _inventory(state.agents[name]),
             }
@@ -276,7 +281,7 @@ def _known_blocks(state: State, names: Iterable[str] | None) -> dict[str, list[P
             if block is not None and text.block_name(block) not in _AIRS:
                 grouped.setdefault(text.block_name(block), []).append(at)
         return {name: sorted(grouped[name]) for name in sorted(grouped)}
-    wanted = _strings(names)
+    wanted = [name.removeprefix("minecraft:") for name in _strings(names)]
     grouped = {name: [] for name in wanted}
     for at, block in sorted(state.blocks.named(frozenset(wanted)).items()):
         grouped[text.block_name(block)].append(at)

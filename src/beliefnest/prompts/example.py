@@ -10,8 +10,8 @@ from beliefnest.belief.entries import (
     PerceivedEvent,
     Source,
 )
+from beliefnest.belief.view import State
 from beliefnest.errors import PathError, PositionError
-from beliefnest.nest.state import State
 from beliefnest.world.values import Box, EventKind, Position
 
 __all__ = ["ExampleBlocks", "ExampleBranch", "example_branch"]

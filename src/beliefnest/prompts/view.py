@@ -3,8 +3,8 @@
 from typing import Protocol
 
 from beliefnest.belief.entries import AgentBelief
+from beliefnest.belief.view import State
 from beliefnest.errors import InputError, UnknownNameError
-from beliefnest.nest.state import State
 from beliefnest.prompts.text import nearest
 
 __all__ = ["BranchView", "belief_of", "believed_agent", "owner_of"]
