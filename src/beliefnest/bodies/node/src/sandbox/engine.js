@@ -8,14 +8,11 @@
 const { QuickJSWASMModule, Lifetime } = require('quickjs-emscripten-core')
 const { QuickJSFFI } = require('@jitl/quickjs-wasmfile-release-sync/ffi')
 const loadGlue = require('@jitl/quickjs-wasmfile-release-sync/emscripten-module')
-const { meter } = require('./meter')
-const { quickjsBytes } = require('./quickjs-bytes')
+const { STACK_BYTES, interpreterBytes } = require('./interpreter')
 const { guestSource } = require('./guest/source')
 
 const PAGE = 65536
 const INITIAL_PAGES = 256
-// Estimated bytes; the JavaScript stack of Node overflows above 900,000 (test/sandbox/engine.test.js).
-const STACK_BYTES = 600_000
 const SHADOW_STACK_BYTES = 400_000
 const UNMETERED = 0x7fffffff
 // The part of the limit that only loops without a poll can reach: they trap, polls end politely.
@@ -42,7 +39,7 @@ class GuestEnded extends Error {
 /** The compiled interpreter; makes guests. */
 class Engine {
   constructor () {
-    this.module = new WebAssembly.Module(meter(quickjsBytes(), { stackBytes: STACK_BYTES }))
+    this.module = new WebAssembly.Module(interpreterBytes())
   }
 
   /**
@@ -74,6 +71,7 @@ class Guest {
     this.ffi = new QuickJSFFI(glue)
     this.limits = limits
     this.ended = null
+    this.marks = { offset: 0, length: 0 }
     this.nesting = 0
     this.runtime = new QuickJSWASMModule(glue, this.ffi).newRuntime()
     this.runtime.setMemoryLimit(limits.memory)
@@ -153,7 +151,7 @@ class Guest {
     const memory = new Uint32Array(this.glue.HEAPU8.buffer, this.marks.offset, this.marks.length)
     const ran = []
     for (let n = 1; n < memory.length; n++) if (memory[n] === n) ran.push(n)
-    return { ran, last: memory[0] < memory.length ? memory[0] : 0 }
+    return { ran, last: memory.length > 0 ? memory[0] : 0 }
   }
 
   // An array buffer at a known place, so that it can be read whatever state the guest is in.

@@ -1,7 +1,7 @@
 'use strict'
 /** Runs untrusted programs: SECURITY.md says against what, and against what not. */
 
-const { Engine } = require('./engine')
+const { Engine, GuestEnded } = require('./engine')
 const { Session } = require('./session')
 const { prepareProgram, ProgramSyntaxError } = require('./program')
 const { describeOutcome } = require('./outcome')
@@ -56,7 +56,7 @@ async function run (engine, { code, bot, scope = {}, fuel, memory, signal }) {
 }
 
 async function observe (session, guest, program, parameters, { fuel, memory, signal }) {
-  const abort = () => session.finish({ ok: false, error: { message: 'the program was ended', kind: null } })
+  const abort = () => session.finish({ ok: false, ended: new GuestEnded('aborted', 'the program was ended from outside') })
   signal?.addEventListener('abort', abort, { once: true })
   if (signal?.aborted) abort()
   else session.begin(program, parameters)

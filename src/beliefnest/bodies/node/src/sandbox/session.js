@@ -143,10 +143,12 @@ class Session {
       if (this.outcome !== null) throw new GuestEnded('ended', 'the program has ended')
       const ticket = this.nextId++
       const wires = args.map((arg, i) => this.exchange.toGuest(arg, `argument ${i + 1} of the callback`))
+      const later = new Promise((resolve, reject) => this.tickets.set(ticket, { resolve, reject }))
       const { ok, value } = this.guarded(() => this.guest.send(['invoke', id, wires, ticket]))
+      if (ok && value.later) return later
+      this.tickets.delete(ticket)
       if (!ok) throw this.errorOfGuest(value)
-      if (!value.later) return this.exchange.toHost(value.now, 'the result of the callback')
-      return new Promise((resolve, reject) => this.tickets.set(ticket, { resolve, reject }))
+      return this.exchange.toHost(value.now, 'the result of the callback')
     }
   }
 

@@ -94,7 +94,7 @@ describe('the membrane', () => {
     assert.strictEqual(await logged(`
       const chest = await bot.openContainer(bot.blockAt(new Vec3(1, 1, 1)))
       console.log(chest.items().map((item) => item.name + item.count), chest.slots[0])
-      chest.close()`), '[diamond3] null')
+      chest.close()`), '["diamond3"] null')
     assert.strictEqual(opened.closed, true)
   })
 
@@ -135,7 +135,7 @@ describe('the membrane', () => {
       console.log(mcData.version.minecraftVersion, mcData.version.isNewer, bot.registry.itemsByName.diamond.id)
       for (const act of [() => { mcData.blocksByName.stone = 1 }, () => { 'use strict'; mcData.blocksByName.stone.hardness = 0 }, () => { delete mcData.blocksByName.stone }]) {
         try { act(); console.log('changed') } catch (error) { console.log(error.name) }
-      }`), '1.5 undefined [stone, lever] true\n1.20.4 undefined 7\nTypeError\nTypeError\nTypeError'.replace('[stone, lever]', '["stone", "lever"]'))
+      }`), '1.5 undefined ["stone", "lever"] true\n1.20.4 undefined 7\nTypeError\nTypeError\nTypeError')
   })
 
   it('calls listeners with what the events carry, and none after the end', async () => {

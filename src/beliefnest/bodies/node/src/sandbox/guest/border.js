@@ -78,10 +78,10 @@ module.exports = function defineBorder (env) {
     return states.get(id)
   }
 
-  function decodeError ({ message, name, skill, kind }) {
+  function decodeError ({ message, name, skill, kind, stack }) {
     const error = new Error(message)
     if (name !== 'Error') Object.defineProperty(error, 'name', { value: name, configurable: true, writable: true })
-    errorNotes.set(error, { skill, kind })
+    errorNotes.set(error, { skill, kind, stack })
     return error
   }
 
