@@ -8,7 +8,8 @@ const path = require('node:path')
 const esbuild = require('esbuild')
 const { encode } = require('@msgpack/msgpack')
 const { MINECRAFT_VERSION, buildRegistry } = require('./registry')
-const { replacements } = require('./bundling/replacements')
+const { interpreterBytes } = require('./src/sandbox/interpreter')
+const { INTERPRETER, replacements } = require('./bundling/replacements')
 
 const SOURCE = path.join(__dirname, 'src')
 const DEFAULT_OUTDIR = path.join(__dirname, '..', '..', '_bundle')
@@ -25,7 +26,6 @@ async function build (outdir) {
     target: 'node24',
     minifySyntax: true,
     minifyWhitespace: true,
-    keepNames: true,
     legalComments: 'linked',
     metafile: true,
     logLevel: 'warning',
@@ -34,6 +34,7 @@ async function build (outdir) {
   })
   fs.writeFileSync(
     path.join(outdir, `registry-${MINECRAFT_VERSION}.msgpack`), encode(buildRegistry(MINECRAFT_VERSION)))
+  fs.writeFileSync(path.join(outdir, INTERPRETER), interpreterBytes())
   fs.writeFileSync(path.join(outdir, 'packages.json'), `${JSON.stringify(packagesIn(result.metafile), null, 1)}\n`)
 }
 

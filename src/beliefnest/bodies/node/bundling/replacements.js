@@ -7,11 +7,15 @@
 const fs = require('node:fs')
 const path = require('node:path')
 const { MEMOISED } = require('../src/memoise')
+const { STACK_BYTES } = require('../src/sandbox/interpreter')
 
 const ROOT = path.join(__dirname, '..')
 const DATA = path.join(ROOT, 'node_modules', 'minecraft-data', 'minecraft-data', 'data')
 // Larger ones are kept as files of their own and read when first needed.
 const INLINE_BYTES = 20000
+
+// Where build.js puts the interpreter of agent programs.
+const INTERPRETER = 'quickjs.wasm'
 
 const empty = 'module.exports = {}'
 
@@ -25,6 +29,10 @@ const STAND_INS = [
   }`],
   [/flying-squid\/src\/lib\/plugins\/index\.js$/, 'module.exports = { builtinPlugins: null }'],
   [/node\/src\/prepare\.js$/, 'module.exports = { prepare () {} }'],
+  [/sandbox\/interpreter\.js$/, `module.exports = {
+    STACK_BYTES: ${STACK_BYTES},
+    interpreterBytes: () => require('node:fs').readFileSync(require('node:path').join(__dirname, '${INTERPRETER}'))
+  }`],
   [/minecraft-data\/minecraft-data\/schemas\/.*\.json$/, empty],
   [/minecraft-data\/minecraft-data\/data\/bedrock\/common\/(legacy|features)\.json$/, empty],
   [/prismarine-registry\/lib\/bedrock\/index\.js$/, empty],
@@ -85,4 +93,4 @@ function memoise (build) {
   }
 }
 
-module.exports = { replacements }
+module.exports = { INTERPRETER, replacements }

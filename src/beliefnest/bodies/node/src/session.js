@@ -5,7 +5,7 @@ const { rememberBlocks } = require('./blocks')
 const { createServer } = require('./server')
 const { Regions } = require('./regions/regions')
 const { Runner } = require('./runner')
-const { evaluate } = require('./evaluate')
+const { createSandbox } = require('./sandbox')
 const { scopeOf } = require('./scope')
 const { BadRequest } = require('./channel/errors')
 const versions = require('./versions')
@@ -62,7 +62,8 @@ class Session {
     rememberBlocks(registry)
     const serv = createServer(registry)
     this.regions = new Regions(serv, this.clock, frame => this.send({ frame }))
-    this.runner = new Runner(this.regions, evaluate, scopeOf)
+    const sandbox = createSandbox()
+    this.runner = new Runner(this.regions, request => sandbox.run(request), scopeOf)
     return { protocol: PROTOCOL, node: process.version, ...versions }
   }
 }

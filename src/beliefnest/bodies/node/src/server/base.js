@@ -14,7 +14,6 @@ module.exports = [
   named('animations', require('flying-squid/src/lib/plugins/animations')),
   named('sound', require('flying-squid/src/lib/plugins/sound')),
   named('particle', require('flying-squid/src/lib/plugins/particle')),
-  require('./digging'),
   require('./metadata'),
   require('./chat'),
   require('./login')
