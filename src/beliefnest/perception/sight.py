@@ -15,7 +15,7 @@ import functools
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from beliefnest.perception.rays import Codes, Shapes
     from beliefnest.perception.views import Eye
 
-__all__ = ["AGENT_SAMPLE_HEIGHTS", "BODY_CENTRE_HEIGHT", "Geometry", "Sight"]
+__all__ = ["AGENT_SAMPLE_HEIGHTS", "BODY_CENTRE_HEIGHT", "Geometry", "Sight", "Tables"]
 
 BODY_CENTRE_HEIGHT = 0.9
 """Height of an agent's middle above its feet, in blocks."""
@@ -38,6 +38,22 @@ AGENT_SAMPLE_HEIGHTS = (EYE_HEIGHT, BODY_CENTRE_HEIGHT, 0.05)
 """Heights above the feet of the points by which an agent is seen, in blocks."""
 
 BoolArray = npt.NDArray[np.bool_]
+
+
+class Tables(NamedTuple):
+    """Shapes as the kernels of `rays` want them.
+
+    Attributes:
+        starts: int32 (shapes + 1,), first row of each shape in `boxes`.
+        boxes: float64 (n, 6), as `Registry.shape_boxes`.
+        reaches: uint8 by code, the sides at which a shape reaches out of its cell.
+        codes: uint16 by block state, and at the end that of unknown.
+    """
+
+    starts: npt.NDArray[np.int32]
+    boxes: npt.NDArray[np.float64]
+    reaches: npt.NDArray[np.uint8]
+    codes: npt.NDArray[np.uint16]
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +100,11 @@ class Sight:
         views.mark_intruded(codes.ravel(), codes.shape, self._reaches)
         codes.flags.writeable = False
         return Geometry(self, origin, codes)
+
+    def tables(self) -> "Tables":
+        """What kernels of other rooms need to know of shapes."""
+        starts, boxes = self._shapes
+        return Tables(starts, boxes, self._reaches, self._state_codes)
 
     def visible_blocks(
         self, blocks: BlockGrid, origin: Position, eye: Point, yaw: float, pitch: float

@@ -204,6 +204,11 @@ class Registry:
         count = math.prod(len(values) for _, values in block.properties)
         return range(block.first_state, block.first_state + count)
 
+    @property
+    def containers(self) -> frozenset[str]:
+        """Names of the blocks whose contents the simulators follow."""
+        return CONTAINER_NAMES & self._blocks.keys()
+
     def is_container(self, name: str) -> bool:
         """Whether the simulators follow the contents of the block of that name."""
         return _bare(name) in CONTAINER_NAMES
