@@ -52,13 +52,14 @@ def updated_containers(
     looked_into = _looked_into(percept, around, options)
     touches = [event for event in percept.events if event.kind in _TOUCHES]
     for event in touches:
-        if event.detail["position"] not in looked_into:
+        place = event.detail["position"]
+        if place not in looked_into and not _is_seen_gone(place, percept, around, registry):
             _witness(contents, around.tick, event)
     for place in looked_into:
         contents[place] = around.containers[place]
     for event in touches:
         place = event.detail["position"]
-        if event.actor == percept.agent and place in looked_into:
+        if event.actor == percept.agent and place in looked_into and contents[place].current:
             basis = Basis(around.tick, Source.WITNESSED, event.kind)
             contents[place] = replace(contents[place], basis=basis)
     return contents
@@ -99,6 +100,16 @@ def _looked_into(percept: Percept, around: BeliefState, options: Perception) -> 
         box = around.terrain.box
         own |= {place for place in around.containers if percept.visible[box.index(place)]}
     return frozenset(own & around.containers.keys())
+
+
+def _is_seen_gone(
+    place: Position, percept: Percept, around: BeliefState, registry: Registry
+) -> bool:
+    """Whether the agent sees by the end of the tick that there is no container any more."""
+    assert percept.visible is not None
+    index = around.terrain.box.index(place)
+    seen = bool(percept.visible[index] and around.grounds.current[index])
+    return seen and container_at(around.terrain, place, registry) is None
 
 
 def _witness(contents: dict[Position, ContainerBelief], tick: int, event: Event) -> None:
