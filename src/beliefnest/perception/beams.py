@@ -59,7 +59,7 @@ _SPARE = 1e-9
 @inlined
 def new_beam() -> tuple[Slopes, Open]:
     """Room for the rays of one beam after the other."""
-    return np.empty((4, _SAMPLES)), np.empty(_SAMPLES, dtype=np.int64)
+    return np.ones((4, _SAMPLES)), np.empty(_SAMPLES, dtype=np.int64)
 
 
 @inlined
@@ -84,31 +84,28 @@ def _inverse(d: float) -> float:
 
 
 @inlined
-def _offset(eye: Vector, cell: Cell, number: int) -> tuple[bool, Vector]:
-    """A sample point's place from the middle of its cell, and whether there is that point.
+def _offset(eye: Vector, cell: Cell, number: int) -> Vector:
+    """A sample point's place from the middle of its cell.
 
     Number 0 is the middle; 1 to 5 are on the face turned to the eye along x, 6 to 10
     along y, 11 to 15 along z, each time the face's middle and its corners.
     """
     if number == 0:
-        return True, (0.0, 0.0, 0.0)
+        return 0.0, 0.0, 0.0
     axis, corner = (number - 1) // 5, (number - 1) % 5
-    e, low = turned(eye, axis)[0], turned(cell, axis)[0]
-    face = 0.5 if e > low else -0.5
+    face = 0.5 if turned(eye, axis)[0] > turned(cell, axis)[0] else -0.5
     u = _CORNER * ((corner & 1) * 2 - 1) if corner > 0 else 0.0
     v = _CORNER * ((corner & 2) - 1) if corner > 0 else 0.0
-    return not low <= e <= low + 1, turned((face, u, v), (3 - axis) % 3)
+    return turned((face, u, v), (3 - axis) % 3)
 
 
 @inlined
-def _block_box(
-    eye: Vector, low: Vector, high: Vector, slopes: Slopes, opens: Open, count: int
-) -> bool:
+def _block_box(eye: Vector, low: Vector, high: Vector, slopes: Slopes, opens: Open) -> bool:
     """Close the rays that enter a box; whether any is left open."""
     x0, y0, z0 = low[0] - eye[0], low[1] - eye[1], low[2] - eye[2]
     x1, y1, z1 = high[0] - eye[0], high[1] - eye[1], high[2] - eye[2]
     left = 0
-    for n in range(count):
+    for n in range(_SAMPLES):
         xa, xb = x0 * slopes[0, n], x1 * slopes[0, n]
         ya, yb = y0 * slopes[1, n], y1 * slopes[1, n]
         za, zb = z0 * slopes[2, n], z1 * slopes[2, n]
@@ -129,7 +126,6 @@ def _block_cell(
     cell: Cell,
     slopes: Slopes,
     opens: Open,
-    count: int,
 ) -> bool:
     """Close the rays that enter the shape of a cell's own block; whether any is left open."""
     i, j, k = cell
@@ -143,7 +139,7 @@ def _block_cell(
         if code != FULL:
             low = (i + boxes[row, 0], j + boxes[row, 1], k + boxes[row, 2])
             high = (i + boxes[row, 3], j + boxes[row, 4], k + boxes[row, 5])
-        left = _block_box(eye, low, high, slopes, opens, count)
+        left = _block_box(eye, low, high, slopes, opens)
     return left
 
 
@@ -168,7 +164,6 @@ def _beam_ends(
     target: Cell,
     slopes: Slopes,
     opens: Open,
-    count: int,
 ) -> bool:
     """Whether any ray of a beam gets to the target, layer by layer along its longest axis."""
     axis = main_axis((target[0] + 0.5 - eye[0], target[1] + 0.5 - eye[1], target[2] + 0.5 - eye[2]))
@@ -201,12 +196,76 @@ def _beam_ends(
                         block != target
                         and is_inside(sizes, block)
                         and codes[at(sizes, block)] & OWN > (EMPTY if side < 0 else FULL)
-                        and not _block_cell(
-                            codes, sizes, starts, boxes, eye, block, slopes, opens, count
-                        )
+                        and not _block_cell(codes, sizes, starts, boxes, eye, block, slopes, opens)
                     ):
                         return False
     return True
+
+
+@inlined
+def _fill_axis(slopes: Slopes, axis: int, d: float, e: float, low: float) -> tuple[bool, bool]:
+    """Write the slopes of a beam's rays along one axis.
+
+    Returns whether a face is turned to the eye along the axis, and whether rays to the
+    middles may lie in the plane of some face across it.
+    """
+    level, inner, outer = _inverse(d), _inverse(d - _CORNER), _inverse(d + _CORNER)
+    face = _inverse(d + (0.5 if e > low else -0.5))
+    for n in range(_SAMPLES):
+        slopes[axis, n] = level
+    for corner in range(5):
+        slopes[axis, 1 + 5 * axis + corner] = face
+    for corner in range(1, 5):
+        # The order of axes is that of `_offset`: first the one after the face's own.
+        slopes[axis, 1 + 5 * ((axis + 2) % 3) + corner] = outer if corner & 1 else inner
+        slopes[axis, 1 + 5 * ((axis + 1) % 3) + corner] = outer if corner & 2 else inner
+    return not low <= e <= low + 1, may_lie_in_face(e, d)
+
+
+@inlined
+def _close_face(opens: Open, axis: int, is_turned: bool) -> None:
+    if not is_turned:
+        for number in range(1 + 5 * axis, 6 + 5 * axis):
+            opens[number] = 0
+
+
+@inlined
+def _take_middles(opens: Open, level_x: bool, level_y: bool, level_z: bool) -> int:
+    """Close the rays that may lie in the plane of a face; bit n of the result: ray n was open."""
+    taken = 0
+    for number in (0, 1, 6, 11):
+        if opens[number] != 0 and (
+            (level_x and number != 1) or (level_y and number != 6) or (level_z and number != 11)
+        ):
+            opens[number] = 0
+            taken |= 1 << number
+    return taken
+
+
+@inlined
+def _aim(eye: Eye, cell: Cell, slopes: Slopes, opens: Open) -> int:
+    """Set up the beam from an eye to a block; rays in the plane of a face go to the result."""
+    place = eye[0]
+    x, y, z = cell[0] + 0.5 - place[0], cell[1] + 0.5 - place[1], cell[2] + 0.5 - place[2]
+    turned_x, level_x = _fill_axis(slopes, 0, x, place[0], cell[0])
+    turned_y, level_y = _fill_axis(slopes, 1, y, place[1], cell[1])
+    turned_z, level_z = _fill_axis(slopes, 2, z, place[2], cell[2])
+    # One length stands for all: that of a ray to a sample differs by less than a block.
+    least = LEAST_LENGTH / max(math.sqrt(x * x + z * z + y * y), 0.5)
+    for n in range(_SAMPLES):
+        slopes[3, n] = least
+        opens[n] = -1
+    _close_face(opens, 0, turned_x)
+    _close_face(opens, 1, turned_y)
+    _close_face(opens, 2, turned_z)
+    if eye[2] >= -1.0:
+        for number in range(_SAMPLES):
+            offset = _offset(place, cell, number)
+            if not in_field(eye, x + offset[0], y + offset[1], z + offset[2]):
+                opens[number] = 0
+    if level_x or level_y or level_z:
+        return _take_middles(opens, level_x, level_y, level_z)
+    return 0
 
 
 @compiled
@@ -218,49 +277,31 @@ def sees_block(
     eye: Eye,
     cell: Cell,
     suspect: int,
-    beam: tuple[Slopes, Open],
+    slopes: Slopes,
+    opens: Open,
 ) -> bool:
     """Whether a block is seen; the block at index suspect, if above 0, is tried first."""
     place = eye[0]
     x, y, z = cell[0] + 0.5 - place[0], cell[1] + 0.5 - place[1], cell[2] + 0.5 - place[2]
     if not in_reach(eye, x, y, z):
         return False
-    slopes, opens = beam
-    count = 0
-    special = 0
+    in_plane = _aim(eye, cell, slopes, opens)
+    left = False
+    for n in range(_SAMPLES):
+        left |= opens[n] != 0
+    if left and suspect > 0:
+        by = (
+            suspect // (sizes[1] * sizes[2]),
+            suspect // sizes[2] % sizes[1],
+            suspect % sizes[2],
+        )
+        if by != cell:
+            left = _block_cell(codes, sizes, starts, boxes, place, by, slopes, opens)
+    if left and _beam_ends(codes, sizes, starts, boxes, place, cell, slopes, opens):
+        return True
     for number in range(_SAMPLES):
-        exists, offset = _offset(place, cell, number)
-        d = (x + offset[0], y + offset[1], z + offset[2])
-        if not exists or not in_field(eye, d[0], d[1], d[2]):
-            continue
-        if (
-            may_lie_in_face(place[0], d[0])
-            or may_lie_in_face(place[1], d[1])
-            or may_lie_in_face(place[2], d[2])
-        ):
-            special |= 1 << number
-            continue
-        slopes[0, count] = _inverse(d[0])
-        slopes[1, count] = _inverse(d[1])
-        slopes[2, count] = _inverse(d[2])
-        slopes[3, count] = LEAST_LENGTH / math.sqrt(d[0] * d[0] + d[2] * d[2] + d[1] * d[1])
-        opens[count] = -1
-        count += 1
-    if count > 0:
-        left = True
-        if suspect > 0:
-            by = (
-                suspect // (sizes[1] * sizes[2]),
-                suspect // sizes[2] % sizes[1],
-                suspect % sizes[2],
-            )
-            if by != cell:
-                left = _block_cell(codes, sizes, starts, boxes, place, by, slopes, opens, count)
-        if left and _beam_ends(codes, sizes, starts, boxes, place, cell, slopes, opens, count):
-            return True
-    for number in range(_SAMPLES):
-        if (special >> number) & 1:
-            _, offset = _offset(place, cell, number)
+        if (in_plane >> number) & 1:
+            offset = _offset(place, cell, number)
             d = (x + offset[0], y + offset[1], z + offset[2])
             if hidden_by(codes, sizes, starts, boxes, cell, place, d)[0] < 0:
                 return True

@@ -47,7 +47,7 @@ def visible_blocks(
     nx, ny, nz = sizes[0] - 2, sizes[1] - 2, sizes[2] - 2
     px, py, pz = eye[0]
     seen = np.zeros((nx, ny, nz), dtype=np.bool_)
-    beam = new_beam()
+    slopes, opens = new_beam()
     marks = cast_shadows(codes, sizes, starts, boxes, reaches, eye[0])
     for i in range(nx):
         for j in range(ny):
@@ -60,7 +60,9 @@ def visible_blocks(
                 if mark == CLEAR and in_field(eye, d[0], d[1], d[2]):
                     seen[i, j, k] = in_reach(eye, d[0], d[1], d[2])
                 else:
-                    seen[i, j, k] = sees_block(codes, sizes, starts, boxes, eye, cell, mark, beam)
+                    seen[i, j, k] = sees_block(
+                        codes, sizes, starts, boxes, eye, cell, mark, slopes, opens
+                    )
     return seen
 
 
@@ -70,10 +72,10 @@ def seen_blocks(
 ) -> npt.NDArray[np.bool_]:
     """Which of the cells (n, 3), in or out of the grid, are seen."""
     seen = np.zeros(len(cells), dtype=np.bool_)
-    beam = new_beam()
+    slopes, opens = new_beam()
     for n in range(len(cells)):
         cell = (cells[n, 0], cells[n, 1], cells[n, 2])
-        seen[n] = sees_block(codes, sizes, starts, boxes, eye, cell, 0, beam)
+        seen[n] = sees_block(codes, sizes, starts, boxes, eye, cell, 0, slopes, opens)
     return seen
 
 
