@@ -81,6 +81,11 @@ class RunFolder:
         path.mkdir()
         return ConditionFolder(path)
 
+    @property
+    def picture(self) -> Path:
+        """The picture of all conditions."""
+        return self.path / PICTURE
+
     def write_report(self, report: Mapping[str, object]) -> None:
         """Write the whole report anew."""
         _write(self.path / _REPORT, _json(report))

@@ -7,10 +7,11 @@ from rich import box
 from rich.table import Table
 
 from beliefnest.belief.view import State
+from beliefnest.cli.pictures import container_name, point_text
 from beliefnest.scenarios.judging import places_of
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Arrives, Holds, Opens, Scenario
-from beliefnest.world.values import Point, Position
+from beliefnest.world.values import Point
 
 __all__ = ["outcome_json", "outcome_table", "report_json", "state_json"]
 
@@ -94,33 +95,33 @@ def _cells(outcome: Outcome) -> dict[str, str]:
     """Heading to text, for everything that is expected or asked."""
     cells: dict[str, list[str]] = {}
     for each in outcome.expectations:
-        path = each.expectation.path
-        text = _found(each, outcome.state(path), outcome.scenario)
-        cells.setdefault("in reality" if path == "/" else f"in {path}", []).append(text)
+        state = outcome.state(each.expectation.path)
+        heading, text = _found(each, state, outcome.scenario)
+        cells.setdefault(heading, []).append(text)
     for probe in outcome.probes:
         heading, text = _acted(probe, outcome.scenario)
         cells.setdefault(heading, []).append(text)
     return {heading: "\n".join(lines) for heading, lines in cells.items()}
 
 
-def _found(outcome: ExpectationOutcome, state: State, scenario: Scenario) -> str:
+def _found(outcome: ExpectationOutcome, state: State, scenario: Scenario) -> tuple[str, str]:
     content = outcome.expectation.content
     if isinstance(content, Holds):
-        what = ", ".join(content.items) or "nothing"
-        names = [_name(place, scenario) for place in places_of(content.items, state)]
-        text = f"{what}: {' and '.join(names) or 'nowhere'}"
+        names = [container_name(place, scenario) for place in places_of(content.items, state)]
+        what, where = ", ".join(content.items) or "nothing", " and ".join(names) or "nowhere"
     else:
         position = state.agents[content.agent].position
-        text = f"{content.agent}: {'unknown' if position is None else _point(position)}"
-    return _marked(text, outcome.ok)
+        what, where = content.agent, "unknown" if position is None else point_text(position)
+    path = outcome.expectation.path
+    return f"{what} in {'reality' if path == '/' else path}", _marked(where, outcome.ok)
 
 
 def _acted(outcome: ProbeOutcome, scenario: Scenario) -> tuple[str, str]:
     probe = outcome.probe
     if isinstance(probe.expect, Arrives):
-        where = "nowhere" if outcome.arrived is None else _point(outcome.arrived)
+        where = "nowhere" if outcome.arrived is None else point_text(outcome.arrived)
         return f"predicted {probe.agent} arrives at", _marked(where, outcome.ok)
-    opened = _name(outcome.opened[0], scenario) if outcome.opened else "nothing"
+    opened = container_name(outcome.opened[0], scenario) if outcome.opened else "nothing"
     heading = f"predicted {probe.agent} opens"
     if isinstance(probe.expect, Opens):
         return heading, _marked(opened, outcome.ok)
@@ -129,14 +130,6 @@ def _acted(outcome: ProbeOutcome, scenario: Scenario) -> tuple[str, str]:
 
 def _marked(text: str, ok: bool | None) -> str:
     return text if ok is not False else f"[bold red]{text}[/bold red]"
-
-
-def _name(place: Position, scenario: Scenario) -> str:
-    return scenario.labels.get(place, f"({', '.join(map(str, place))})")
-
-
-def _point(point: Point) -> str:
-    return f"({', '.join(f'{value:.1f}' for value in point)})"
 
 
 def _list(point: Point | None) -> list[float] | None:

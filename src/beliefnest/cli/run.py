@@ -10,6 +10,7 @@ from pathlib import Path
 
 from beliefnest.cli.console import progress_on, stdout
 from beliefnest.cli.folder import ConditionFolder, RunFolder
+from beliefnest.cli.pictures import read_outcome_scene
 from beliefnest.cli.report import outcome_json, outcome_table, report_json
 from beliefnest.llm.messages import Model
 from beliefnest.llm.resolve import Connection, open_model
@@ -17,6 +18,8 @@ from beliefnest.nest.nest import Nest
 from beliefnest.scenarios.outcome import Outcome
 from beliefnest.scenarios.running import run_scenario
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.viewer.picture import draw_overview, draw_scene, save
+from beliefnest.viewer.scene import Scene
 
 __all__ = ["RunOptions", "run_scenarios"]
 
@@ -54,15 +57,20 @@ def run_scenarios(options: RunOptions) -> int:
     model = open_model(options.model, os.environ, Connection())
     folder = RunFolder.create(options.out, scenarios[0].name, datetime.now())
     outcomes: list[Outcome] = []
+    scenes: list[Scene] = []
     runs: list[dict[str, object]] = []
     status = "failed"
     try:
         for scenario in scenarios:
             place = folder.condition(scenario.condition)
-            outcome = _run(scenario, place, model, options)
+            outcome, scene = _run(scenario, place, model, options)
             outcomes.append(outcome)
+            scenes.append(scene)
             runs.append(outcome_json(outcome, place.path))
             place.write_result(runs[-1])
+        if len(scenes) > 1:
+            title = scenarios[0].description or scenarios[0].name
+            save(draw_overview(scenes, title), folder.picture)
         status = "done"
     except KeyboardInterrupt:
         status = "interrupted"
@@ -81,7 +89,9 @@ def _scenarios(options: RunOptions) -> tuple[Scenario, ...]:
     return tuple(Scenario.load(options.scenario, number) for number in numbers)
 
 
-def _run(scenario: Scenario, place: ConditionFolder, model: Model, options: RunOptions) -> Outcome:
+def _run(
+    scenario: Scenario, place: ConditionFolder, model: Model, options: RunOptions
+) -> tuple[Outcome, Scene]:
     title = scenario.name
     if scenario.condition is not None:
         title += f", condition {scenario.condition}"
@@ -94,7 +104,9 @@ def _run(scenario: Scenario, place: ConditionFolder, model: Model, options: RunO
         for number, probe in enumerate(outcome.probes):
             name = probe.probe.label or f"probe-{number + 1}"
             place.write_probe(name, probe.prompt, probe.answer, probe.program)
-    return outcome
+        scene = read_outcome_scene(nest, outcome)
+        save(draw_scene(scene), place.picture)
+    return outcome, scene
 
 
 def _print(

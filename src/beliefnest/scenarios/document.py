@@ -122,7 +122,10 @@ def merged(document: Document, condition: int) -> Document:
             f"{document.source}: there is no condition {condition}; "
             + (f"conditions are {known}" if known else "it has no conditions")
         )
-    override = conditions[condition]
+    # The description of a condition says what is special about it, not what the scenario is.
+    written = conditions[condition]
+    kept = {key: node for key, node in written.value.items() if key != "description"}
+    override = Node(kept, written.line)
     for key in LABELLED:
         change = override.value.get(key)
         if change is not None and isinstance(change.value, dict) and key in base:
