@@ -22,6 +22,7 @@ from beliefnest.perception.rays import (
     Starts,
     Vector,
     at,
+    cell_at,
     compiled,
     hidden_by,
     inlined,
@@ -32,6 +33,7 @@ from beliefnest.perception.rays import (
     turned,
     turned_back,
 )
+from beliefnest.perception.shadows import ROOM, Counts, Suspects
 
 __all__ = ["Eye", "in_field", "in_reach", "new_beam", "sees_block"]
 
@@ -276,11 +278,13 @@ def sees_block(
     boxes: Boxes,
     eye: Eye,
     cell: Cell,
-    suspect: int,
     slopes: Slopes,
     opens: Open,
+    counts: Counts,
+    suspects: Suspects,
+    index: int,
 ) -> bool:
-    """Whether a block is seen; the block at index suspect, if above 0, is tried first."""
+    """Whether a block is seen, given what `cast_shadows` noted at an index, if above 0."""
     place = eye[0]
     x, y, z = cell[0] + 0.5 - place[0], cell[1] + 0.5 - place[1], cell[2] + 0.5 - place[2]
     if not in_reach(eye, x, y, z):
@@ -289,15 +293,15 @@ def sees_block(
     left = False
     for n in range(_SAMPLES):
         left |= opens[n] != 0
-    if left and suspect > 0:
-        by = (
-            suspect // (sizes[1] * sizes[2]),
-            suspect // sizes[2] % sizes[1],
-            suspect % sizes[2],
-        )
-        if by != cell:
-            left = _block_cell(codes, sizes, starts, boxes, place, by, slopes, opens)
-    if left and _beam_ends(codes, sizes, starts, boxes, place, cell, slopes, opens):
+    known = counts[index] if index > 0 else ROOM + 1
+    if index > 0:
+        for n in range(min(known, ROOM)):
+            if left:
+                by = cell_at(sizes, suspects[index, n])
+                left = _block_cell(codes, sizes, starts, boxes, place, by, slopes, opens)
+    if left and known > ROOM:
+        left = _beam_ends(codes, sizes, starts, boxes, place, cell, slopes, opens)
+    if left:
         return True
     for number in range(_SAMPLES):
         if (in_plane >> number) & 1:

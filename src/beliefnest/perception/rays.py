@@ -35,6 +35,7 @@ __all__ = [
     "Vector",
     "at",
     "block_entry",
+    "cell_at",
     "compiled",
     "hidden_by",
     "inlined",
@@ -95,6 +96,16 @@ def is_inside(sizes: Cell, cell: Cell) -> bool:
 def at(sizes: Cell, cell: Cell) -> int:
     """Index of a cell in a flat array over a grid of these sizes."""
     return (cell[0] * sizes[1] + cell[1]) * sizes[2] + cell[2]
+
+
+@inlined
+def cell_at(sizes: Cell, index: int) -> Cell:
+    """The cell of an index in a flat array over a grid of these sizes."""
+    return (
+        index // (sizes[1] * sizes[2]),
+        index // sizes[2] % sizes[1],
+        index % sizes[2],
+    )
 
 
 @inlined

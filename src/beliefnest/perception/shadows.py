@@ -1,8 +1,9 @@
 """Shadows cast from an eye: compiled bounds on what it can and cannot see.
 
 For every cell of a grid of codes (as in `rays`) a mark: `CLEAR` where the middle of the
-cell is certainly seen, `HIDDEN` where nothing in the closed cell is, else the index of a
-block that hides the middle, or may do so. Bounds err to the side of the last kind.
+cell is certainly free to the eye, `HIDDEN` where nothing in the closed cell is, else
+`UNSURE`. Of a cell that is not hidden all blocks that may hide parts of it are noted,
+nearest layers first: up to `ROOM` indices, and their number, at most `ROOM` + 1.
 """
 
 import math
@@ -18,7 +19,6 @@ from beliefnest.perception.rays import (
     Boxes,
     Cell,
     Codes,
-    Ray,
     Starts,
     Vector,
     at,
@@ -30,12 +30,16 @@ from beliefnest.perception.rays import (
     turned_back,
 )
 
-__all__ = ["CLEAR", "HIDDEN", "Marks", "cast_shadows"]
+__all__ = ["CLEAR", "HIDDEN", "ROOM", "UNSURE", "Counts", "Marks", "Suspects", "cast_shadows"]
 
-Marks = npt.NDArray[np.int32]
+Marks = npt.NDArray[np.int8]
+Counts = npt.NDArray[np.uint8]
+Suspects = npt.NDArray[np.int32]
 
 CLEAR = 0
-HIDDEN = -1
+UNSURE = 1
+HIDDEN = 2
+ROOM = 8
 
 # Full shadows are drawn this much too small, and partial ones too large, so that rays
 # which barely enter a box, or lie in the plane of its face, are left to be tried.
@@ -77,22 +81,42 @@ def _side(e: float, cell: int, stride: int) -> int:
 
 
 @inlined
-def _first_last(low: float, high: float, size: int) -> tuple[int, int]:
-    """First and last cell between two planes that lie wholly between them, without margin."""
-    low, high = max(low, 1.0), min(high, size - 1.0)
-    return math.ceil(low), math.floor(high) - 1
+def _cells(low: float, high: float, size: int) -> tuple[int, int]:
+    """First and last cell, without margin, that a closed interval touches."""
+    return max(math.floor(low), 1), min(math.floor(high), size - 2)
 
 
 @inlined
-def _may_enter(ray: Ray, low: Vector, high: Vector) -> bool:
+def _may_enter(eye: Vector, cell: Cell, low: Vector, high: Vector) -> bool:
+    """Whether the ray to a cell's middle enters a box or may lie in a plane of it."""
+    d = (cell[0] + 0.5 - eye[0], cell[1] + 0.5 - eye[1], cell[2] + 0.5 - eye[2])
+    if d[0] == 0.0 or d[1] == 0.0 or d[2] == 0.0:
+        return True
+    ray = sloped(eye, d)
     t0, t1 = span(ray, low, high)
-    inverse = ray[2]
-    return t1 - t0 > ray[3] or inverse[0] == 0.0 or inverse[1] == 0.0 or inverse[2] == 0.0
+    return t1 - t0 > ray[3]
+
+
+@inlined
+def _suspect(counts: Counts, suspects: Suspects, cell: int, block: int) -> None:
+    """Note a block that may hide parts of a cell; beyond the room for them only their number."""
+    if cell != block and counts[cell] <= ROOM:
+        if counts[cell] < ROOM:
+            suspects[cell, counts[cell]] = block
+        counts[cell] += 1
 
 
 @compiled
 def _cast_box(
-    marks: Marks, sizes: Cell, eye: Vector, low: Vector, high: Vector, index: int, casts_full: bool
+    marks: Marks,
+    counts: Counts,
+    suspects: Suspects,
+    sizes: Cell,
+    eye: Vector,
+    low: Vector,
+    high: Vector,
+    index: int,
+    casts_full: bool,
 ) -> None:
     """Mark the cells in the shadow of a box, which is part of the block of that index."""
     axis, near = 0, -1.0
@@ -102,8 +126,8 @@ def _cast_box(
             axis, near = n, gap
     if near < _TOUCHING:
         for n in range(len(marks)):
-            if marks[n] == CLEAR:
-                marks[n] = index
+            _suspect(counts, suspects, n, index)
+            marks[n] = UNSURE if marks[n] == CLEAR else marks[n]
         return
     ea, eb, ec = turned(eye, axis)
     la, lb, lc = turned(low, axis)
@@ -117,43 +141,48 @@ def _cast_box(
     part_c0, part_c1 = lc / (near if lc < 0 else far), hc / (near if hc > 0 else far)
     full_b0, full_b1 = (lb + _SHRINK) / near, (hb - _SHRINK) / near
     full_c0, full_c1 = (lc + _SHRINK) / near, (hc - _SHRINK) / near
+    casts_full = casts_full and full_b0 < full_b1 and full_c0 < full_c1
     step = 1 if la > ea else -1
     layer = max(math.floor(la), 1) if la > ea else min(math.ceil(ha) - 1, size_a - 2)
     while 1 <= layer < size_a - 1:
-        d = abs(layer + 0.5 - ea)
-        base = layer * stride_a
-        layer += step
-        if d <= near:
-            continue
-        # Half a cell more on either side: it is the middles that must lie in between.
-        b0, b1 = _first_last(eb + part_b0 * d - 0.5 - _GROW, eb + part_b1 * d + 0.5 + _GROW, size_b)
-        c0, c1 = _first_last(ec + part_c0 * d - 0.5 - _GROW, ec + part_c1 * d + 0.5 + _GROW, size_c)
-        if b0 > b1 or c0 > c1:
-            continue
-        for b in range(b0, b1 + 1):
-            for c in range(c0, c1 + 1):
-                n = base + b * stride_b + c * stride_c
-                if marks[n] == CLEAR:
-                    i, j, k = turned_back(layer - step, b, c, axis)
-                    ray = sloped(eye, (i + 0.5 - eye[0], j + 0.5 - eye[1], k + 0.5 - eye[2]))
-                    if _may_enter(ray, low, high):
-                        marks[n] = index
-        if d - 0.5 < near or not casts_full:
-            continue
-        d0, d1 = d - 0.5, d + 0.5
-        b0, b1 = _first_last(
-            eb + full_b0 * (d1 if full_b0 > 0 else d0),
-            eb + full_b1 * (d0 if full_b1 > 0 else d1),
+        d = (layer + 0.5 - ea) * step
+        d0, d1 = max(d - 0.5, 0.0), d + 0.5
+        b0, b1 = _cells(
+            eb + part_b0 * (d1 if part_b0 < 0 else d0) - _GROW,
+            eb + part_b1 * (d1 if part_b1 > 0 else d0) + _GROW,
             size_b,
         )
-        c0, c1 = _first_last(
-            ec + full_c0 * (d1 if full_c0 > 0 else d0),
-            ec + full_c1 * (d0 if full_c1 > 0 else d1),
+        c0, c1 = _cells(
+            ec + part_c0 * (d1 if part_c0 < 0 else d0) - _GROW,
+            ec + part_c1 * (d1 if part_c1 > 0 else d0) + _GROW,
             size_c,
         )
+        if b0 > b1 or c0 > c1:
+            break
         for b in range(b0, b1 + 1):
+            is_b = part_b0 * d - _GROW <= b + 0.5 - eb <= part_b1 * d + _GROW
             for c in range(c0, c1 + 1):
-                marks[base + b * stride_b + c * stride_c] = HIDDEN
+                n = layer * stride_a + b * stride_b + c * stride_c
+                if marks[n] == HIDDEN:
+                    continue
+                _suspect(counts, suspects, n, index)
+                if (
+                    is_b
+                    and marks[n] == CLEAR
+                    and part_c0 * d - _GROW <= c + 0.5 - ec <= part_c1 * d + _GROW
+                    and _may_enter(eye, turned_back(layer, b, c, axis), low, high)
+                ):
+                    marks[n] = UNSURE
+        if casts_full and d0 >= near:
+            # A cell in full shadow has both sides of its layer in it.
+            b0 = math.ceil(eb + full_b0 * (d1 if full_b0 > 0 else d0))
+            b1 = math.floor(eb + full_b1 * (d0 if full_b1 > 0 else d1)) - 1
+            c0 = math.ceil(ec + full_c0 * (d1 if full_c0 > 0 else d0))
+            c1 = math.floor(ec + full_c1 * (d0 if full_c1 > 0 else d1)) - 1
+            for b in range(max(b0, 1), min(b1, size_b - 2) + 1):
+                for c in range(max(c0, 1), min(c1, size_c - 2) + 1):
+                    marks[layer * stride_a + b * stride_b + c * stride_c] = HIDDEN
+        layer += step
 
 
 @inlined
@@ -180,9 +209,12 @@ def cast_shadows(
     boxes: Boxes,
     reaches: npt.NDArray[np.uint8],
     eye: Vector,
-) -> Marks:
-    """Marks of all cells, near blocks first: what they hide casts no shadow of its own."""
-    marks = np.zeros(sizes[0] * sizes[1] * sizes[2], dtype=np.int32)
+) -> tuple[Marks, Counts, Suspects]:
+    """Marks and suspects of all cells, near blocks first: the hidden cast no shadow."""
+    size = sizes[0] * sizes[1] * sizes[2]
+    marks = np.zeros(size, dtype=np.int8)
+    counts = np.zeros(size, dtype=np.uint8)
+    suspects = np.empty((size, ROOM), dtype=np.int32)
     for i in _outward(eye[0], sizes[0]):
         for j in _outward(eye[1], sizes[1]):
             for k in _outward(eye[2], sizes[2]):
@@ -206,7 +238,9 @@ def cast_shadows(
                     if code != FULL:
                         low = (i + boxes[row, 0], j + boxes[row, 1], k + boxes[row, 2])
                         high = (i + boxes[row, 3], j + boxes[row, 4], k + boxes[row, 5])
-                    _cast_box(marks, sizes, eye, low, high, index, reaches[code] == 0)
+                    _cast_box(
+                        marks, counts, suspects, sizes, eye, low, high, index, reaches[code] == 0
+                    )
                 # A block does not hide itself.
                 marks[index] = mark
-    return marks
+    return marks, counts, suspects

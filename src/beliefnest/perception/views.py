@@ -21,7 +21,7 @@ from beliefnest.perception.rays import (
     is_inside,
     neighbour,
 )
-from beliefnest.perception.shadows import CLEAR, HIDDEN, cast_shadows
+from beliefnest.perception.shadows import CLEAR, HIDDEN, ROOM, cast_shadows
 
 __all__ = [
     "Eye",
@@ -48,7 +48,7 @@ def visible_blocks(
     px, py, pz = eye[0]
     seen = np.zeros((nx, ny, nz), dtype=np.bool_)
     slopes, opens = new_beam()
-    marks = cast_shadows(codes, sizes, starts, boxes, reaches, eye[0])
+    marks, counts, suspects = cast_shadows(codes, sizes, starts, boxes, reaches, eye[0])
     for i in range(nx):
         for j in range(ny):
             for k in range(nz):
@@ -61,7 +61,17 @@ def visible_blocks(
                     seen[i, j, k] = in_reach(eye, d[0], d[1], d[2])
                 else:
                     seen[i, j, k] = sees_block(
-                        codes, sizes, starts, boxes, eye, cell, mark, slopes, opens
+                        codes,
+                        sizes,
+                        starts,
+                        boxes,
+                        eye,
+                        cell,
+                        slopes,
+                        opens,
+                        counts,
+                        suspects,
+                        at(sizes, cell),
                     )
     return seen
 
@@ -73,9 +83,12 @@ def seen_blocks(
     """Which of the cells (n, 3), in or out of the grid, are seen."""
     seen = np.zeros(len(cells), dtype=np.bool_)
     slopes, opens = new_beam()
+    counts, suspects = np.zeros(1, dtype=np.uint8), np.zeros((1, ROOM), dtype=np.int32)
     for n in range(len(cells)):
         cell = (cells[n, 0], cells[n, 1], cells[n, 2])
-        seen[n] = sees_block(codes, sizes, starts, boxes, eye, cell, 0, slopes, opens)
+        seen[n] = sees_block(
+            codes, sizes, starts, boxes, eye, cell, slopes, opens, counts, suspects, 0
+        )
     return seen
 
 
