@@ -2,7 +2,7 @@
 
 import pytest
 
-from beliefnest.errors import BranchError, TickError
+from beliefnest.errors import BranchError, InputError, TickError
 from beliefnest.timeline.journal import ForkPoint, TimelineInfo, TimelineKey
 from beliefnest.timeline.store import PIECE_ENTRIES
 from beliefnest.world.frames import Frame
@@ -136,6 +136,8 @@ def test_unknown_timelines_are_refused_with_those_there_are(journal):
         lambda: journal.rename(MAIN, "b"),
         lambda: journal.delete(MAIN),
         lambda: journal.describe(MAIN, "x"),
+        lambda: journal.put_checkpoint(MAIN, "a", 0, b""),
+        lambda: journal.nearest_checkpoint(MAIN, "a", 0),
     ]
     for call in calls:
         with pytest.raises(BranchError, match="no branch 'main'; it has 'a'"):
@@ -187,3 +189,31 @@ def test_descriptions_are_kept(journal):
     journal.create(MAIN, None, 0)
     journal.describe(MAIN, "Sally goes left — 試し")
     assert journal.info(MAIN).description == "Sally goes left — 試し"
+
+
+def test_the_nearest_checkpoint_lies_at_or_before(journal, make_history):
+    begin(journal, make_history(30))
+    assert journal.nearest_checkpoint(MAIN, "a", 30) is None
+    for name, place in (("a", 0), ("a", 10), ("a", 20), ("b", 15)):
+        journal.put_checkpoint(MAIN, name, place, f"{name}{place}".encode())
+    journal.put_checkpoint(MAIN, "a", 20, b"new")
+    assert journal.nearest_checkpoint(MAIN, "a", 9) == (0, b"a0")
+    assert journal.nearest_checkpoint(MAIN, "a", 10) == (10, b"a10")
+    assert journal.nearest_checkpoint(MAIN, "a", 19) == (10, b"a10")
+    assert journal.nearest_checkpoint(MAIN, "a", 999) == (20, b"new")
+    assert journal.nearest_checkpoint(MAIN, "b", 14) is None
+    assert journal.nearest_checkpoint(MAIN, "b", 16) == (15, b"b15")
+    for place in (-1, journal.info(MAIN).entries + 1):
+        with pytest.raises(InputError, match="no checkpoint"):
+            journal.put_checkpoint(MAIN, "a", place, b"")
+
+
+def test_checkpoints_go_with_their_timeline(journal, make_history):
+    begin(journal, make_history(30))
+    journal.put_checkpoint(MAIN, "a", 10, b"x")
+    journal.rename(MAIN, "trunk")
+    trunk = TimelineKey((), "trunk")
+    assert journal.nearest_checkpoint(trunk, "a", 10) == (10, b"x")
+    journal.delete(trunk)
+    journal.create(trunk, None, 0)
+    assert journal.nearest_checkpoint(trunk, "a", 10) is None

@@ -439,7 +439,7 @@ def test_the_nearest_keyframe_lies_at_or_before(run_file):
             found, there = journal.nearest_keyframe(MAIN, asked)
             assert (found, there.tick) == (place, place)
             assert np.array_equal(there.blocks, snapshot(place).blocks)
-        with pytest.raises(InputError, match="no keyframe"):
+        with pytest.raises(InputError, match="no checkpoint"):
             journal.put_keyframe(MAIN, 10**6, snapshot(0))
         with pytest.raises(BranchError):
             journal.nearest_keyframe(PLAN, 0)

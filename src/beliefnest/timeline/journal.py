@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
-from beliefnest.errors import BranchError, TickError
+from beliefnest.errors import BranchError, InputError, TickError
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import Items, Position
 
@@ -27,6 +27,7 @@ __all__ = [
     "branch_taken",
     "check_append",
     "check_base",
+    "check_place",
     "path_text",
 ]
 
@@ -157,6 +158,19 @@ def check_append(info: TimelineInfo, entries: Sequence[Entry], head: int) -> Non
         )
 
 
+def check_place(info: TimelineInfo, entries: int) -> None:
+    """Check that a timeline has a place after its first `entries` entries.
+
+    Raises:
+        InputError: It has fewer.
+    """
+    if not 0 <= entries <= info.entries:
+        raise InputError(
+            f"branch {info.key.branch!r} of {path_text(info.key.path)} has {info.entries} "
+            f"entries; no checkpoint lies after {entries}"
+        )
+
+
 class Journal(Protocol):
     """Where timelines are kept. One writer; what a call did is kept once it returns."""
 
@@ -214,6 +228,26 @@ class Journal(Protocol):
     def describe(self, key: TimelineKey, description: str) -> None:
         """Set a timeline's description; BranchError if there is none of that key."""
 
+    def put_checkpoint(self, key: TimelineKey, name: str, entries: int, body: bytes) -> None:
+        """Keep bytes that stand for the first `entries` entries of a timeline.
+
+        They spare a reader those entries, replace what was kept there under that name, and go
+        with the timeline.
+
+        Raises:
+            BranchError: There is no timeline of that key.
+            InputError: The timeline does not have that many entries.
+        """
+
+    def nearest_checkpoint(
+        self, key: TimelineKey, name: str, entries: int
+    ) -> tuple[int, bytes] | None:
+        """The last checkpoint of that name at or before entry `entries`, with its place.
+
+        None if the timeline itself has none there; its base may. BranchError if there is no
+        timeline of that key.
+        """
+
     def close(self) -> None:
         """Give up what the journal holds open."""
 
@@ -224,6 +258,7 @@ class MemoryJournal:
     def __init__(self) -> None:
         self._infos: dict[TimelineKey, TimelineInfo] = {}
         self._entries: dict[TimelineKey, list[Entry]] = {}
+        self._checkpoints: dict[TimelineKey, dict[tuple[str, int], bytes]] = {}
 
     def timelines(self) -> Sequence[TimelineInfo]:
         """All timelines, in order of creation."""
@@ -243,6 +278,7 @@ class MemoryJournal:
             check_base(key, base, self.info(base.timeline).entries)
         self._infos[key] = TimelineInfo(key, base, start, start)
         self._entries[key] = []
+        self._checkpoints[key] = {}
 
     def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:
         """Add entries and move the head."""
@@ -281,6 +317,7 @@ class MemoryJournal:
             infos[changed.key] = changed
         self._infos = infos
         self._entries[new_key] = self._entries.pop(key)
+        self._checkpoints[new_key] = self._checkpoints.pop(key)
 
     def delete(self, key: TimelineKey) -> None:
         """Remove a timeline; BranchError if another is based on it."""
@@ -290,11 +327,24 @@ class MemoryJournal:
         ]
         if based:
             raise branch_carries(key, based)
-        del self._infos[key], self._entries[key]
+        del self._infos[key], self._entries[key], self._checkpoints[key]
 
     def describe(self, key: TimelineKey, description: str) -> None:
         """Set a timeline's description."""
         self._infos[key] = replace(self.info(key), description=description)
+
+    def put_checkpoint(self, key: TimelineKey, name: str, entries: int, body: bytes) -> None:
+        """Keep bytes that stand for the first `entries` entries; InputError if too few."""
+        check_place(self.info(key), entries)
+        self._checkpoints[key][name, entries] = body
+
+    def nearest_checkpoint(
+        self, key: TimelineKey, name: str, entries: int
+    ) -> tuple[int, bytes] | None:
+        """The last checkpoint of that name at or before entry `entries`, with its place."""
+        there = self._checkpoints[self.info(key).key]
+        places = [at for kind, at in there if kind == name and at <= entries]
+        return (max(places), there[name, max(places)]) if places else None
 
     def close(self) -> None:
         """Nothing is held open."""

@@ -46,14 +46,15 @@ STATEMENTS = (
         UNIQUE (timeline, first)
     )""",
     "CREATE INDEX piece_by_tick ON piece (timeline, last_tick, first)",
-    # The state after the first `entries` entries of a timeline; see codec.encode_snapshot.
+    # A state after the first `entries` entries of a timeline, compressed; whose, says `name`.
     """CREATE TABLE keyframe (
         id INTEGER PRIMARY KEY,
         timeline INTEGER NOT NULL,
+        name TEXT NOT NULL,
         entries INTEGER NOT NULL,
         body BLOB NOT NULL,
         seal INTEGER NOT NULL,
-        UNIQUE (timeline, entries)
+        UNIQUE (timeline, name, entries)
     )""",
     """CREATE TABLE meta (
         name TEXT PRIMARY KEY,

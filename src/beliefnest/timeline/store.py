@@ -14,7 +14,7 @@ from pathlib import Path
 import msgspec
 import zstandard
 
-from beliefnest.errors import InputError, StoreError
+from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
 from beliefnest.timeline.database import Database, Row, checked, seal
 from beliefnest.timeline.journal import (
@@ -27,6 +27,7 @@ from beliefnest.timeline.journal import (
     branch_taken,
     check_append,
     check_base,
+    check_place,
     path_text,
 )
 from beliefnest.timeline.records import Records, path_from, path_to
@@ -36,6 +37,9 @@ __all__ = ["PIECE_ENTRIES", "SqliteJournal"]
 
 PIECE_ENTRIES = 128
 """Entries of one compressed piece: larger ones hardly pack better and are slower to read from."""
+
+_FACTS = "facts"
+"""Name of the checkpoints that are snapshots of the timeline's own simulator."""
 
 _COMPRESSION = 1
 """Level of zstandard; higher ones save nothing on poses, which are noise in their last digits."""
@@ -245,24 +249,36 @@ class SqliteJournal:
         with self._database.transaction():
             self._write(replace(self._row(key), description=description))
 
-    def put_keyframe(self, key: TimelineKey, entries: int, snapshot: Snapshot) -> None:
-        """Keep the state after the first `entries` entries of a timeline.
-
-        Raises:
-            BranchError: There is no timeline of that key.
-            InputError: The timeline does not have that many entries.
-        """
-        body = self._packer.compress(codec.encode_snapshot(snapshot))
+    def put_checkpoint(self, key: TimelineKey, name: str, entries: int, body: bytes) -> None:
+        """Keep bytes that stand for the first `entries` entries; InputError if too few."""
+        packed = self._packer.compress(body)
         with self._database.transaction():
             row = self._row(key)
-            if not 0 <= entries <= row.entries:
-                raise InputError(f"{key} has {row.entries} entries; no keyframe lies at {entries}")
-            values = (row.id, entries, body)
+            check_place(_info(row, None), entries)
+            values = (row.id, name, entries, packed)
             self._database.execute(
-                "INSERT OR REPLACE INTO keyframe (timeline, entries, body, seal) "
-                "VALUES (?, ?, ?, ?)",
+                "INSERT OR REPLACE INTO keyframe (timeline, name, entries, body, seal) "
+                "VALUES (?, ?, ?, ?, ?)",
                 (*values, seal(*values)),
             )
+
+    def nearest_checkpoint(
+        self, key: TimelineKey, name: str, entries: int
+    ) -> tuple[int, bytes] | None:
+        """The last checkpoint of that name at or before entry `entries`, with its place."""
+        found = self._database.row(
+            "SELECT timeline, name, entries, body, seal FROM keyframe "
+            "WHERE timeline = ? AND name = ? AND entries <= ? ORDER BY entries DESC LIMIT 1",
+            (self._row(key).id, name, entries),
+        )
+        if found is None:
+            return None
+        _, _, place, body = checked(found, self.path, f"a keyframe of {key}")
+        return place, self._decompressed(body)
+
+    def put_keyframe(self, key: TimelineKey, entries: int, snapshot: Snapshot) -> None:
+        """Keep the facts after the first `entries` entries; InputError if there are fewer."""
+        self.put_checkpoint(key, _FACTS, entries, codec.encode_snapshot(snapshot))
 
     def nearest_keyframe(self, key: TimelineKey, entries: int) -> tuple[int, Snapshot] | None:
         """The last keyframe of a timeline at or before entry `entries`, with its place.
@@ -272,15 +288,8 @@ class SqliteJournal:
         Raises:
             BranchError: There is no timeline of that key.
         """
-        found = self._database.row(
-            "SELECT timeline, entries, body, seal FROM keyframe "
-            "WHERE timeline = ? AND entries <= ? ORDER BY entries DESC LIMIT 1",
-            (self._row(key).id, entries),
-        )
-        if found is None:
-            return None
-        _, place, body = checked(found, self.path, f"a keyframe of {key}")
-        return place, codec.decode_snapshot(self._decompressed(body))
+        found = self.nearest_checkpoint(key, _FACTS, entries)
+        return None if found is None else (found[0], codec.decode_snapshot(found[1]))
 
     def verify(self) -> None:
         """Read the whole file; StoreError names the first damage found.
@@ -296,10 +305,10 @@ class SqliteJournal:
         for row in self._timeline_rows("ORDER BY id"):
             for _ in self._entries_of(row, 0, row.entries):
                 pass
-            for (place,) in self._database.rows(
-                "SELECT entries FROM keyframe WHERE timeline = ?", (row.id,)
+            for name, place in self._database.rows(
+                "SELECT name, entries FROM keyframe WHERE timeline = ?", (row.id,)
             ):
-                self.nearest_keyframe(row.key, place)
+                self.nearest_checkpoint(row.key, name, place)
 
     def close(self) -> None:
         """Close the file and let another writer have it; closing twice is allowed."""
