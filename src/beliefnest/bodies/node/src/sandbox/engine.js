@@ -85,6 +85,11 @@ class Guest {
     return this.limits.fuel + GRACE - this.meters.fuel.value
   }
 
+  /** Whether nothing of the guest is on the stack. */
+  get idle () {
+    return this.nesting === 0
+  }
+
   /**
    * Prepares the global object.
    * @param {{host: function(string): string, now: function(): number, random: function(): number}} functions
@@ -105,16 +110,36 @@ class Guest {
     ]))
     this.dispatch = context.getProp(guest, 'dispatch')
     this.startFunction = context.getProp(guest, 'start')
+    this.describeFunction = context.getProp(guest, 'describe')
     this.meters.fuel.value = this.limits.fuel + GRACE
   }
 
-  /** Starts the program, the text of a function of (marks, ...parameters). */
+  /**
+   * Starts the program.
+   * @param {string} text of a function of (marks, ...parameters) that returns a promise
+   * @param {string} fileName for the guest's stacks
+   */
   start (text, fileName) {
     const { context } = this
     this.enter(() => {
       const program = this.take(context.evalCode(text, fileName))
-      this.take(context.callFunction(this.startFunction, context.undefined, [program])).dispose()
+      this.program = this.take(context.callFunction(this.startFunction, context.undefined, [program]))
     })
+  }
+
+  /**
+   * Asks the interpreter, not the program, which could lie or break what it would say it with.
+   * @returns {?{ok: boolean, error: object}} how the program ended, null while it goes on
+   */
+  result () {
+    const state = this.context.getPromiseState(this.program)
+    if (state.type === 'pending') return null
+    return state.type === 'fulfilled' ? { ok: true } : { ok: false, error: this.enter(() => this.described(state.error)) }
+  }
+
+  described (error) {
+    const answer = this.context.callFunction(this.describeFunction, this.context.undefined, [error])
+    return answer.error ? {} : JSON.parse(this.context.getString(answer.value))
   }
 
   /**
@@ -182,6 +207,9 @@ class Guest {
       const jobs = this.runtime.executePendingJobs(100)
       if (jobs.error) this.take(jobs)
     }
+    if (this.ended) throw this.ended
+    // A job that was interrupted leaves no error behind.
+    if (this.meters.fuel.value <= GRACE) this.end('fuel', 'interrupted')
     if (this.ended) throw this.ended
   }
 

@@ -6,7 +6,7 @@ const PLACE = /\(?program\.js:(\d+):(\d+)\)?/
 
 /**
  * @param {{ok: boolean, error?: object, ended?: import('./engine').GuestEnded}} outcome of the session
- * @param {{locate: function, statement: function}} program
+ * @param {{locate: function, callee: function, statement: function}} program
  * @param {{fuel: number, memory: number}} limits
  * @param {number} last number of the statement that ran last, 0 for none
  * @returns {?{message: string, line: ?number, column: ?number, skill: ?string, kind: string}}
@@ -14,8 +14,14 @@ const PLACE = /\(?program\.js:(\d+):(\d+)\)?/
 function describeOutcome ({ ok, error, ended }, program, limits, last) {
   if (ok) return null
   const { message, skill, kind, stack } = ended ? ofEnd(ended, limits) : ofError(error, limits)
-  const place = placeIn(stack, program) ?? program.statement(last) ?? { line: null, column: null }
-  return { message: message.slice(0, MAX_MESSAGE), line: place.line, column: place.column, skill, kind }
+  const { place, callee } = placeIn(stack, program)
+  const { line, column } = place ?? program.statement(last) ?? { line: null, column: null }
+  return { message: named(message, callee).slice(0, MAX_MESSAGE), line, column, skill, kind }
+}
+
+// The interpreter does not say what is not a function.
+function named (message, callee) {
+  return message === 'TypeError: not a function' && callee !== null ? `TypeError: ${callee} is not a function` : message
 }
 
 function ofEnd ({ kind, message, guestStack }, limits) {
@@ -35,7 +41,7 @@ function plainError (record) {
   const field = (key, otherwise) => typeof record?.[key] === 'string' ? record[key] : otherwise
   const thrown = record?.thrown === true
   return {
-    message: thrown ? `the program threw ${field('message', 'something')}` : field('message', 'the program failed'),
+    message: thrown ? `the program threw ${field('message', 'something')}` : field('message', 'the program failed, and broke what would have said how'),
     name: thrown ? 'Error' : field('name', 'Error').slice(0, 100),
     skill: field('skill', null),
     kind: ['skill', 'refused'].includes(record?.kind) ? record.kind : null,
@@ -58,12 +64,13 @@ function limitMessage (kind, { fuel, memory }) {
 }
 
 function placeIn (stack, program) {
-  for (const line of stack.split('\n')) {
-    const match = PLACE.exec(line)
-    const place = match && program.locate(Number(match[1]), Number(match[2]))
-    if (place) return place
+  for (const frame of stack.split('\n')) {
+    const match = PLACE.exec(frame)
+    const [line, column] = match ? [Number(match[1]), Number(match[2])] : []
+    const place = match && program.locate(line, column)
+    if (place) return { place, callee: program.callee(line, column) }
   }
-  return null
+  return { place: null, callee: null }
 }
 
 module.exports = { describeOutcome }

@@ -7,6 +7,7 @@
 const acorn = require('acorn')
 
 const MAX_LENGTH = 200_000
+const MAX_NAME = 80
 const STATEMENT_LISTS = { Program: 'body', BlockStatement: 'body', StaticBlock: 'body', SwitchCase: 'consequent' }
 const SKIPPED_KEYS = new Set(['type', 'start', 'end'])
 
@@ -30,9 +31,11 @@ class ProgramSyntaxError extends Error {
  *   last async one (or the only one) is called with `bot`
  * @param {string[]} parameters the names in scope, `bot` among them
  * @returns {{text: string, marks: number, locate: function(number, number): ?{line: number, column: number},
+ *   callee: function(number, number): ?string,
  *   statement: function(number): ?{line: number, column: number}, linesOf: function(Iterable<number>): number[]}}
  *   `text` is an expression, a function of (marks, ...parameters); `marks` the length of the array that
- *   takes the numbers of executed statements; `locate` maps a place in `text` to one in `code`
+ *   takes the numbers of executed statements; `locate` maps a place in `text` to one in
+ *   `code`, `callee` to the text of what is called there
  * @throws {ProgramSyntaxError}
  */
 function prepareProgram (code, parameters) {
@@ -42,17 +45,19 @@ function prepareProgram (code, parameters) {
   }
   const tree = parse(code)
   const marker = freeName(code)
-  const { edits, statements, places } = survey(tree, code, marker)
+  const { edits, statements, places, callees } = survey(tree, code, marker)
   const prefix = `(function (${[marker, ...parameters].join(', ')}) { return (async function () {`
   const text = `${prefix}${applyEdits(code, edits)}\n${entryCall(tree)}})() })`
   const position = (offset) => offsetToPlace(code, offset)
+  const original = (line, column) => originalOffset(placeToOffset(text, line, column) - prefix.length, edits)
   return {
     text,
     marks: statements.length + 1,
     locate: (line, column) => {
-      const offset = originalOffset(placeToOffset(text, line, column) - prefix.length, edits)
+      const offset = original(line, column)
       return offset < 0 || offset > code.length ? null : position(places.get(offset) ?? offset)
     },
+    callee: (line, column) => callees.get(original(line, column)) ?? null,
     statement: (number) => number >= 1 && number <= statements.length ? position(statements[number - 1]) : null,
     linesOf: (numbers) => [...new Set(Array.from(numbers, (n) => position(statements[n - 1]).line))].sort((a, b) => a - b)
   }
@@ -93,6 +98,7 @@ function survey (tree, code, marker) {
   const edits = []
   const statements = []
   const places = new Map()
+  const callees = new Map()
   const mark = (node) => {
     if (node.type === 'FunctionDeclaration' || node.directive !== undefined) return
     statements.push(node.start)
@@ -104,11 +110,11 @@ function survey (tree, code, marker) {
     if (node.type === 'ImportExpression') refuseImport(node, code)
     const list = STATEMENT_LISTS[node.type]
     if (list) node[list].forEach(mark)
-    notePlace(node, code, places)
+    notePlace(node, code, places, callees)
     stack.push(...childrenOf(node))
   }
   edits.sort((a, b) => a.at - b.at)
-  return { edits, statements, places }
+  return { edits, statements, places, callees }
 }
 
 function refuseImport (node, code) {
@@ -129,14 +135,14 @@ function childrenOf (node) {
 }
 
 // The interpreter names the parenthesis of a call and the dot of a member; a reader looks for the name.
-function notePlace (node, code, places) {
-  if (node.type === 'NewExpression') places.set(code.indexOf('(', node.callee.end), node.start)
-  if (node.type === 'CallExpression') {
-    const { callee } = node
-    const start = callee.type === 'MemberExpression' ? callee.property.start : callee.start
-    places.set(code.indexOf('(', callee.end), start)
-  }
+function notePlace (node, code, places, callees) {
   if (node.type === 'MemberExpression') places.set(code.indexOf(node.computed ? '[' : '.', node.object.end), node.property.start)
+  if (node.type !== 'NewExpression' && node.type !== 'CallExpression') return
+  const { callee } = node
+  const parenthesis = code.indexOf('(', callee.end)
+  const named = callee.type === 'MemberExpression' ? callee.property.start : callee.start
+  places.set(parenthesis, node.type === 'NewExpression' ? node.start : named)
+  callees.set(parenthesis, code.slice(callee.start, callee.end).slice(0, MAX_NAME))
 }
 
 function applyEdits (code, edits) {

@@ -55,9 +55,19 @@ class Session {
       this.guarded(() => {
         this.guest.prepare(functions, config, program.marks)
         this.guest.start(program.text, 'program.js')
+        this.look()
       })
     } catch (error) {
       if (!(error instanceof GuestEnded)) throw error
+    }
+  }
+
+  // Looks whether the program has ended, or waits for what cannot happen any more.
+  look () {
+    const result = this.guest.result()
+    if (result !== null) this.finish(result)
+    else if (this.calls.size + this.timers.size + this.listeners.length === 0) {
+      this.finish({ ok: false, ended: new GuestEnded('stuck', 'the program waits for a promise that nothing will settle') })
     }
   }
 
@@ -86,8 +96,11 @@ class Session {
   wake (message) {
     if (this.outcome !== null) return
     try {
-      const { ok, value } = this.guarded(() => this.guest.send(message))
-      if (!ok) this.finish({ ok: false, error: value })
+      this.guarded(() => {
+        const { ok, value } = this.guest.send(message)
+        if (!ok) this.finish({ ok: false, error: value })
+        else if (this.guest.idle) this.look()
+      })
     } catch (error) {
       if (!(error instanceof GuestEnded)) throw error
     }
@@ -295,8 +308,7 @@ const HANDLERS = {
   data: (session, name, key) => session.entry(name, key),
   keys: (session, name) => Object.keys(session.table(name)),
   state: (session, id) => session.blockState(id),
-  settled: (session, ticket, ok, wire) => session.settled(ticket, ok, wire),
-  done: (session, ok, error) => { session.finish({ ok: ok === true, error }); return null }
+  settled: (session, ticket, ok, wire) => session.settled(ticket, ok, wire)
 }
 
 // mcData holds only data; what JSON cannot say is left out.

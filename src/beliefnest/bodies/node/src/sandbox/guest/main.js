@@ -4,17 +4,14 @@
  * Runs inside QuickJS: the function is handed over as text and must not refer to anything outside it.
  */
 module.exports = function defineMain (env) {
-  const { config, describe, decode, request } = env
-
-  function finish (ok, value) {
-    request(['done', ok, value])
-  }
+  const { config, describe, decode } = env
+  const { parse, stringify } = JSON
 
   function start (program) {
     const scope = { ...env.skills, ...(env.data && { mcData: env.data }), Vec3: env.Vec3, goals: env.goals, Movements: env.Movements }
     scope.bot = decode({ $: 'h', id: config.bot, k: 'bot' })
     const parameters = config.parameters.map((name) => scope[name])
-    program(env.marks, ...parameters).then(() => finish(true, null), (error) => finish(false, describe(error)))
+    return program(env.marks, ...parameters)
   }
 
   const actions = {
@@ -24,13 +21,13 @@ module.exports = function defineMain (env) {
   }
 
   function dispatch (text) {
-    const [action, ...args] = JSON.parse(text)
+    const [action, ...args] = parse(text)
     try {
-      return JSON.stringify({ ok: true, value: actions[action](...args) ?? null })
+      return stringify({ ok: true, value: actions[action](...args) ?? null })
     } catch (error) {
-      return JSON.stringify({ ok: false, value: describe(error) })
+      return stringify({ ok: false, value: describe(error) })
     }
   }
 
-  return { start, dispatch }
+  return { start, dispatch, describe: (error) => stringify(describe(error)) }
 }
