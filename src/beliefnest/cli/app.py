@@ -87,3 +87,14 @@ def doctor(json: Json = False) -> int:
     from beliefnest.cli.doctor import examine
 
     return examine(as_json=json)
+
+
+@app.command()
+def bench(
+    names: Annotated[list[str] | None, typer.Argument(help="Benches; none: all.")] = None,
+    json: Json = False,
+) -> int:
+    """Measure, and print medians and ratios beside the figures to reach."""
+    from beliefnest.cli.bench.command import run_benches
+
+    return run_benches(tuple(names or ()), as_json=json)

@@ -1,0 +1,29 @@
+"""Making a body for a belief."""
+
+from collections.abc import Sequence
+
+from beliefnest.cli.bench.figures import Figure, median_seconds
+from beliefnest.nest.nest import Nest
+from beliefnest.scenarios.scenario import Scenario
+
+__all__ = ["measure"]
+
+_RUNS = 20
+
+
+def measure() -> Sequence[Figure]:
+    """Fork of `/observer` with three agents: control mode, region, blocks, chests, bots."""
+    scenario = Scenario.load("sally-anne")
+    numbers = iter(range(_RUNS + 1))
+    with Nest.open(scenario) as nest:
+        nest.play()
+        belief = nest["/observer"]
+
+        def fork() -> None:
+            belief.switch("follow")
+            belief.switch(f"try {next(numbers)}")
+
+        fork()
+        return [
+            Figure("a body for a belief with three agents", median_seconds(fork, _RUNS), "s", 0.3)
+        ]

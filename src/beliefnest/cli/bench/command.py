@@ -1,0 +1,60 @@
+"""Running benches and printing their figures."""
+
+import json
+import sys
+from collections.abc import Sequence
+
+from rich import box
+from rich.table import Table
+
+from beliefnest.cli.bench.figures import Figure
+from beliefnest.cli.bench.registry import BENCHES, measure
+from beliefnest.cli.console import progress_on, stdout
+
+__all__ = ["run_benches"]
+
+
+def run_benches(names: Sequence[str], *, as_json: bool) -> int:
+    """Run benches (all, if none is named); the status is 1 if a target was missed.
+
+    Raises:
+        UnknownNameError: There is no bench of a name.
+    """
+    figures: dict[str, Sequence[Figure]] = {}
+    chosen = names or tuple(BENCHES)
+    with progress_on("bench") as on_progress:
+        for number, name in enumerate(chosen):
+            on_progress(name, number, len(chosen))
+            figures[name] = measure(name)
+    if as_json:
+        content = {name: [_json(figure) for figure in found] for name, found in figures.items()}
+        sys.stdout.write(json.dumps(content, indent=2) + "\n")
+    else:
+        stdout().print(_table(figures))
+    return 1 if any(figure.ok is False for found in figures.values() for figure in found) else 0
+
+
+def _json(figure: Figure) -> dict[str, object]:
+    return {
+        "name": figure.name,
+        "value": figure.value,
+        "unit": figure.unit,
+        "target": figure.target,
+        "at_least": figure.at_least,
+        "ok": figure.ok,
+    }
+
+
+def _table(figures: dict[str, Sequence[Figure]]) -> Table:
+    table = Table(box=box.SIMPLE_HEAVY)
+    for heading in ("bench", "figure"):
+        table.add_column(heading)
+    for heading in ("median", "to reach", ""):
+        table.add_column(heading, justify="right")
+    for name, found in figures.items():
+        for figure in found:
+            sign = "at least" if figure.at_least else "at most"
+            target = "" if figure.target is None else f"{sign} {figure.target:g} {figure.unit}"
+            verdict = {True: "ok", False: "MISSED", None: ""}[figure.ok]
+            table.add_row(name, figure.name, f"{figure.value:.3g} {figure.unit}", target, verdict)
+    return table

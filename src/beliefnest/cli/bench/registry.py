@@ -1,0 +1,29 @@
+"""The benches there are."""
+
+import importlib
+from collections.abc import Mapping, Sequence
+
+from beliefnest.cli.bench.figures import Figure
+from beliefnest.errors import UnknownNameError
+
+__all__ = ["BENCHES", "measure"]
+
+BENCHES: Mapping[str, str] = {
+    "sally-anne": "beliefnest.cli.bench.sally_anne",
+    "startup": "beliefnest.cli.bench.startup",
+    "body": "beliefnest.cli.bench.body",
+    "size": "beliefnest.cli.bench.size",
+}
+"""Name to the module whose `measure()` it is; loaded when it is run."""
+
+
+def measure(name: str) -> Sequence[Figure]:
+    """Run a bench.
+
+    Raises:
+        UnknownNameError: There is none of that name.
+    """
+    if name not in BENCHES:
+        raise UnknownNameError(f"there is no bench {name!r}; there are {', '.join(BENCHES)}")
+    figures: Sequence[Figure] = importlib.import_module(BENCHES[name]).measure()
+    return figures

