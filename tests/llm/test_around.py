@@ -66,6 +66,17 @@ def test_limits_are_on_by_default():
             metered.answer(ASK, Sampling())
 
 
+def test_an_answer_that_cannot_be_used_is_paid_all_the_same(fake, clock):
+    fake.will(fake.refuses, fake.floods)
+    budget = Budget()
+    asked = cached(fake, clock, None, budget=budget)
+    for _ in range(2):
+        with pytest.raises(ModelError):
+            asked.answer(ASK, Sampling())
+    assert budget.spent.requests == 2
+    assert budget.spent.tokens > 50_000
+
+
 def test_usage_adds_up_and_an_unknown_price_stays_unknown():
     assert Usage(1, 2, 3, 0.5) + Usage(1, 1, 1, 0.25) == Usage(2, 3, 4, 0.75)
     assert (Usage(1, 2, 3, 0.5) + Usage(1, 1, 1, None)).cost is None

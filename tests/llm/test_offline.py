@@ -153,6 +153,46 @@ def test_goes_to_places_and_positions(task, place):
     assert program(prompt(task, places=PLACES)) == f"await goToPosition(bot, {place});"
 
 
+def test_goes_where_a_player_was_last_seen_if_nothing_was_said():
+    history = (
+        "7;goToPosition;seller;destination:[1, 64, 2]\n9;lastSeen;seller;position:[5, 64, 6];\n"
+    )
+    text = prompt("Go to the seller.", players=SELLER_HIDDEN, chat=f"t;a;m\n{STAYS_AT_A}")
+    text = text.replace("\nTask:", f"{history}\nTask:")
+    assert program(text) == "await goToPosition(bot, new Vec3(5, 64, 6));"
+
+
+def test_of_several_sentences_the_first_that_is_understood_counts():
+    task = "You are hungry. Go to the ice cream seller. Stall is at (1, 64, 2). Get an apple."
+    found = program(prompt(task, players=SELLER_HIDDEN, chat="t;a;m\n5;seller;I am at Stall."))
+    assert found == "await goToPosition(bot, new Vec3(1, 64, 2));"
+
+
+SALLY = '{"sally": {"position": "[3, 64, 3]"}}'
+
+
+def test_helps_with_the_task_that_is_told():
+    text = prompt("Help Sally.", players=SALLY, chests=TWO_CHESTS)
+    told = text.replace("\nTask:", "\nsally's task: Get a diamond from a chest.\n\nTask:")
+    lines = program(told).splitlines()
+    assert lines[1:] == [
+        'await getItemFromChest(bot, new Vec3(-2, 64, -4), {"diamond": 1});',
+        "await goToPosition(bot, new Vec3(3, 64, 3));",
+        'await giveItemToOther(bot, "sally", "diamond", 1);',
+    ]
+
+
+@pytest.mark.parametrize("words", ["I need a diamond!", "Hello, I'm looking for one diamond."])
+def test_helps_with_what_was_said(words):
+    text = prompt("Help Sally.", players=SALLY, chests=TWO_CHESTS, chat=f"t;a;m\n5;sally;{words}")
+    assert 'giveItemToOther(bot, "sally", "diamond", 1)' in program(text)
+
+
+def test_does_not_know_how_to_help_without_a_wish():
+    found = program(prompt("Help Sally.", players=SALLY, chests=TWO_CHESTS))
+    assert found == 'await think(bot, "I do not know what sally needs.");'
+
+
 @pytest.mark.parametrize("text", ["", "Task:", "Task: Write a sonnet.", "Task: Go to Atlantis."])
 def test_thinks_about_what_it_does_not_understand(text):
     assert program(text).startswith('await think(bot, "I do not understand')

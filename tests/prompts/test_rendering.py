@@ -163,6 +163,8 @@ def test_the_default_template_renders_with_and_without_extras():
     assert "Places:" not in plain
     skill = {"signature": "think(bot, msg)", "description": "Think."}
     full = show(template, task="Go.", skills=[skill], places={"Home": (1, 2, 3)})
+    helping = show(template, task="Help Sally.", tasks={"sally": "Get a diamond."})
+    assert helping.endswith("\n\nsally's task: Get a diamond.\n\nTask: Help Sally.\n")
     assert "Places:\nHome is at (1, 2, 3)\n\nPosition:" in full
     assert "think(bot, msg)\n    Think.\n" in full
     with pytest.raises(TemplateError, match="'task' is undefined"):

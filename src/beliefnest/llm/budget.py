@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from beliefnest.errors import ModelError
+from beliefnest.llm.failures import UnusableAnswerError
 from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 
 __all__ = ["Budget", "MeteredModel", "RunLimits"]
@@ -77,6 +78,10 @@ class MeteredModel:
             ModelError: A limit of the run is reached, or the model failed.
         """
         self.budget.check()
-        answer = self.model.answer(messages, sampling)
+        try:
+            answer = self.model.answer(messages, sampling)
+        except UnusableAnswerError as error:
+            self.budget.add(error.usage)
+            raise
         self.budget.add(answer.usage)
         return answer

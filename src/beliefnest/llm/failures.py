@@ -3,8 +3,9 @@
 from collections.abc import Iterable
 
 from beliefnest.errors import ModelError
+from beliefnest.llm.messages import Usage
 
-__all__ = ["TransientModelError", "excerpt", "without_secrets"]
+__all__ = ["TransientModelError", "UnusableAnswerError", "excerpt", "without_secrets"]
 
 _LONGEST_EXCERPT = 300
 
@@ -19,6 +20,18 @@ class TransientModelError(ModelError):
     def __init__(self, message: str, retry_after: float | None = None) -> None:
         super().__init__(message)
         self.retry_after = retry_after
+
+
+class UnusableAnswerError(ModelError):
+    """An answer came, and cannot be used: refused, empty, cut off or too long.
+
+    Attributes:
+        usage: What it took all the same.
+    """
+
+    def __init__(self, message: str, usage: Usage) -> None:
+        super().__init__(message)
+        self.usage = usage
 
 
 def excerpt(text: str) -> str:

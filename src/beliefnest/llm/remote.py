@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from beliefnest.errors import ModelError
 from beliefnest.llm.clock import Clock
-from beliefnest.llm.failures import TransientModelError, excerpt, without_secrets
+from beliefnest.llm.failures import (
+    TransientModelError,
+    UnusableAnswerError,
+    excerpt,
+    without_secrets,
+)
 from beliefnest.llm.messages import Answer, Message, Sampling, Usage
 from beliefnest.llm.providers import Endpoint
 
@@ -80,17 +85,22 @@ class RemoteModel:
         async with model:
             request = model_request_stream(model, _history(messages), model_settings=settings)
             async with request as stream:
-                length = 0
+                received = 0
                 async for event in stream:
-                    length += _length(event)
-                    if length > self.limits.characters:
-                        raise ModelError(
-                            f"{self.name} wrote more than {self.limits.characters:,} characters "
-                            "and was cut off: ask for less, or raise the limit of an answer"
-                        )
-                    if self.clock.now() > end:
-                        _too_slow(self)
+                    received += _length(event)
+                    self._hold_limits(messages, received, end)
                 return _answer(self, messages, stream.get())
+
+    def _hold_limits(self, messages: Sequence[Message], received: int, end: float) -> None:
+        """Give up an answer that is too long, or later than `end` on the clock."""
+        if received > self.limits.characters:
+            raise UnusableAnswerError(
+                f"{self.name} wrote more than {self.limits.characters:,} characters "
+                "and was cut off: ask for less, or raise the limit of an answer",
+                _guessed_usage(self, messages, received),
+            )
+        if self.clock.now() > end:
+            raise UnusableAnswerError(_too_slow(self), _guessed_usage(self, messages, received))
 
 
 def _require_library() -> None:
@@ -205,29 +215,38 @@ def _length(event: object) -> int:
 
 def _answer(model: RemoteModel, messages: Sequence[Message], response: "ModelResponse") -> Answer:
     text = response.text or ""
+    usage = _usage(model, messages, response)
     if response.finish_reason == "content_filter":
         words = (response.provider_details or {}).get("refusal") or text
         told = f": {excerpt(_clean(model, str(words)))}" if words else ""
-        raise ModelError(f"{model.name} refused to answer{told}; word the task differently")
+        raise UnusableAnswerError(
+            f"{model.name} refused to answer{told}; word the task differently", usage
+        )
     if response.finish_reason == "length":
-        raise ModelError(
+        raise UnusableAnswerError(
             f"{model.name} was cut off at the limit of output tokens; "
-            "raise max_output_tokens or ask for less"
+            "raise max_output_tokens or ask for less",
+            usage,
         )
     if not text.strip():
-        raise ModelError(f"{model.name} gave an empty answer; ask again or use another model")
-    return Answer(text, _usage(model, messages, response))
+        raise UnusableAnswerError(
+            f"{model.name} gave an empty answer; ask again or use another model", usage
+        )
+    return Answer(text, usage)
 
 
 def _usage(model: RemoteModel, messages: Sequence[Message], response: "ModelResponse") -> Usage:
-    free = 0.0 if model.endpoint.provider.free else None
     counted = response.usage
-    if counted.input_tokens or counted.output_tokens:
-        cost = _cost(response) if free is None else free
-        return Usage(1, counted.input_tokens, counted.output_tokens, cost)
+    if not (counted.input_tokens or counted.output_tokens):
+        return _guessed_usage(model, messages, len(response.text or ""))
+    cost = 0.0 if model.endpoint.provider.free else _cost(response)
+    return Usage(1, counted.input_tokens, counted.output_tokens, cost)
+
+
+def _guessed_usage(model: RemoteModel, messages: Sequence[Message], received: int) -> Usage:
     sent = sum(len(message.text) for message in messages)
-    received = len(response.text or "")
-    return Usage(1, _guessed_tokens(sent), _guessed_tokens(received), free)
+    cost = 0.0 if model.endpoint.provider.free else None
+    return Usage(1, _guessed_tokens(sent), _guessed_tokens(received), cost)
 
 
 def _guessed_tokens(characters: int) -> int:
@@ -242,8 +261,8 @@ def _cost(response: "ModelResponse") -> float | None:
         return None
 
 
-def _too_slow(model: RemoteModel) -> NoReturn:
-    raise ModelError(
+def _too_slow(model: RemoteModel) -> str:
+    return (
         f"{model.name} did not finish its answer in {model.limits.seconds:g} s; "
         "raise the time limit or use a faster model"
     )
@@ -261,7 +280,7 @@ def _refuse(model: RemoteModel, error: Exception) -> NoReturn:
     said = excerpt(_clean(model, str(error)))
     match error:
         case library.ModelRequestTimeout():
-            _too_slow(model)
+            message = _too_slow(model)
         case library.ModelAuthenticationError():
             message = f"{where} refused the key in {model.endpoint.key_variable}: check it"
         case library.ModelNotFoundError():

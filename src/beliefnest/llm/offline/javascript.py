@@ -5,7 +5,16 @@ from collections.abc import Mapping, Sequence
 
 from beliefnest.llm.offline.reading import Point
 
-__all__ = ["fenced", "go_to", "look_for_player", "search_chests", "take_items", "vector", "wonder"]
+__all__ = [
+    "fenced",
+    "give_item",
+    "go_to",
+    "look_for_player",
+    "search_chests",
+    "take_items",
+    "vector",
+    "wonder",
+]
 
 _SEARCH_DISTANCE = 20
 
@@ -36,6 +45,11 @@ def take_items(takings: Sequence[tuple[Point, Mapping[str, int]]]) -> str:
         f"await getItemFromChest(bot, {vector(chest)}, {json.dumps(dict(items))});"
         for chest, items in takings
     )
+
+
+def give_item(player: str, item: str, count: int) -> str:
+    """Hand items to a player."""
+    return f"await giveItemToOther(bot, {json.dumps(player)}, {json.dumps(item)}, {count});"
 
 
 def search_chests(chests: Sequence[Point], names: Sequence[str], count: int) -> str:

@@ -1,13 +1,19 @@
 """From what a prompt says to a program for its task.
 
+Of a task of several sentences the first that is understood counts.
+
 Get N ITEM [from ...]: of the chests that are said to hold enough of it, the nearest; if none
 holds enough, those that hold most of it first, until there is enough. If no chest is said to
 hold it, all known chests are opened, nearest first. Chests at the same distance keep the order
 of the prompt; without a known position so do all.
 
 Go to X: a position; a place of that name; a player: where it is seen, else the place named
-last in the newest message that it said or that names it, else it is looked for, in the known
-places in the order of the prompt and then in the four directions.
+last in the newest message that it said or that names it, else where the history last has it,
+else it is looked for, in the known places in the order of the prompt and then in the four
+directions.
+
+Help X: get what X is after and give it to X. What X is after is its task, if the prompt tells
+it ("X's task: Get ..."), else what X said last that it wants, needs or looks for.
 
 Anything else is thought about and nothing is done.
 """
@@ -15,6 +21,7 @@ Anything else is thought about and nothing is done.
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from beliefnest.llm.offline import javascript
 from beliefnest.llm.offline.naming import match_item, match_name, place_named_last, singular
@@ -33,6 +40,12 @@ _GET = re.compile(
     r"(?: (?:from|out of|in|inside) (.+))?",
     re.IGNORECASE,
 )
+_HELP = re.compile(r"(?:please )?(?:help|assist|support) (?:the )?(.+)", re.IGNORECASE)
+_WISH = re.compile(
+    r".*\bI(?: am|'m)? (?:want|need|look for|looking for|would like)(?: to get)? (.+?)[.!?]*",
+    re.IGNORECASE,
+)
+_SENTENCE_END = re.compile(r"(?<=[.!?])\s+")
 _COUNTS = {
     word: count
     for count, word in enumerate(
@@ -41,21 +54,38 @@ _COUNTS = {
 }
 
 
+@dataclass(frozen=True, slots=True)
+class _Wanted:
+    """So many of an item: words of a task."""
+
+    count: int
+    phrase: str
+    source: str | None
+
+
 def plan(reading: Reading) -> str:
     """The program for the task of a prompt, as JavaScript."""
-    task = reading.task.strip().rstrip(".!").strip()
-    going = _GO.fullmatch(task)
-    if going is not None:
-        return _go(going[1], reading) or _not_understood(reading)
-    finding = _FIND.fullmatch(task)
-    if finding is not None:
-        found = _go(finding[1], reading)
-        if found is not None:
-            return found
-    getting = _GET.fullmatch(task)
-    if getting is not None:
-        return _get(_count(getting[1]), getting[2], getting[3], reading)
-    return _not_understood(reading)
+    sentences = (part.rstrip(".!? ") for part in _SENTENCE_END.split(reading.task))
+    programs = (_plan_sentence(sentence, reading) for sentence in sentences)
+    return next((program for program in programs if program), _not_understood(reading))
+
+
+def _plan_sentence(task: str, reading: Reading) -> str | None:
+    for form in (_GO, _FIND):
+        going = form.fullmatch(task)
+        program = _go(going[1], reading) if going is not None else None
+        if program is not None:
+            return program
+    helping = _HELP.fullmatch(task)
+    if helping is not None:
+        return _help(helping[1], reading)
+    wanted = _wanted(task)
+    return None if wanted is None else _get(wanted, reading)
+
+
+def _wanted(task: str) -> _Wanted | None:
+    match = _GET.fullmatch(task)
+    return None if match is None else _Wanted(_count(match[1]), match[2], match[3])
 
 
 def _not_understood(reading: Reading) -> str:
@@ -68,16 +98,56 @@ def _count(word: str | None) -> int:
     return int(text) if text.isdigit() else _COUNTS.get(text, 1)
 
 
-def _get(count: int, phrase: str, source: str | None, reading: Reading) -> str:
-    chests = _nearest_first(_chests_meant(source, reading), reading.position)
-    held = [name for chest in chests for name in reading.chests[chest]]
-    item = match_item(phrase, held)
+def _get(wanted: _Wanted, reading: Reading) -> str:
+    chests = _nearest_first(_chests_meant(wanted.source, reading), reading.position)
+    item = _item_in(chests, wanted, reading)
     if item is not None:
-        return javascript.take_items(_takings(count, item, chests, reading))
+        return javascript.take_items(_takings(wanted.count, item, chests, reading))
+    phrase = wanted.phrase
     names = list(dict.fromkeys(["_".join(words(phrase)), "_".join(singular(phrase))]))
     if not chests:
         return javascript.wonder(f"I know of no chest that could hold {names[0]}.")
-    return javascript.search_chests(chests, names, count)
+    return javascript.search_chests(chests, names, wanted.count)
+
+
+def _item_in(chests: Sequence[Point], wanted: _Wanted, reading: Reading) -> str | None:
+    held = [name for chest in chests for name in reading.chests[chest]]
+    return match_item(wanted.phrase, held)
+
+
+def _help(phrase: str, reading: Reading) -> str | None:
+    """A program to get a player what it is after; None if the phrase names no player."""
+    player = match_name(phrase, reading.players)
+    if player is None:
+        return None
+    wanted = _wish(player, reading)
+    if wanted is None:
+        return javascript.wonder(f"I do not know what {player} needs.")
+    chests = _nearest_first(_chests_meant(wanted.source, reading), reading.position)
+    item = _item_in(chests, wanted, reading)
+    if item is None:
+        return javascript.wonder(f"I know of no chest that holds {wanted.phrase} for {player}.")
+    takings = _takings(wanted.count, item, chests, reading)
+    count = sum(taken[item] for _, taken in takings)
+    where = _believed_place(player, reading)
+    parts = [
+        javascript.take_items(takings),
+        *([] if where is None else [javascript.go_to(where)]),
+        javascript.give_item(player, item, count),
+    ]
+    return "\n".join(parts)
+
+
+def _wish(player: str, reading: Reading) -> _Wanted | None:
+    """What a player is after, by its task or its own words."""
+    told = reading.others_tasks.get(player)
+    if told is not None:
+        return _wanted(told.rstrip(".!? "))
+    for heard in reversed(reading.chat):
+        match = _WISH.fullmatch(heard.text) if heard.speaker == player else None
+        if match is not None:
+            return _wanted(f"get {match[1]}")
+    return None
 
 
 def _chests_meant(source: str | None, reading: Reading) -> list[Point]:
@@ -122,10 +192,17 @@ def _go(phrase: str, reading: Reading) -> str | None:
         return javascript.go_to(reading.places[place])
     if player is None:
         return None
-    where = reading.players[player] or _said_to_be_at(player, reading)
+    where = _believed_place(player, reading)
     if where is not None:
         return javascript.go_to(where)
     return javascript.look_for_player(player, list(reading.places.values()))
+
+
+def _believed_place(player: str, reading: Reading) -> Point | None:
+    """Where a player is seen, else said to be, else was last seen."""
+    return (
+        reading.players[player] or _said_to_be_at(player, reading) or reading.sightings.get(player)
+    )
 
 
 def _said_to_be_at(player: str, reading: Reading) -> Point | None:

@@ -17,6 +17,10 @@ _NUMBER = r"(-?\d+(?:\.\d+)?)"
 _POINT = re.compile(rf"[(\[]\s*{_NUMBER}\s*,\s*{_NUMBER}\s*,\s*{_NUMBER}\s*[)\]]")
 _CHEST = re.compile(rf"({_POINT.pattern}):\s*(\{{.*\}})")
 _CHAT = re.compile(r"\d+;([A-Za-z0-9_]+);(.*)")
+_SIGHTING = re.compile(
+    rf"\d+;(?:goToPosition|lastSeen|visible);(\w+);(?:destination|position):({_POINT.pattern}).*"
+)
+_OTHERS_TASK = re.compile(r"(\w+)'s task:\s*(.+)")
 _PLACE = re.compile(rf"(?:-\s*)?([A-Za-z][\w' ]*?)(?: is at|:)\s*({_POINT.pattern})\.?")
 _PLACE_IN_SENTENCE = re.compile(rf"\b([A-Z]\w*(?: [A-Z]\w*)*) is at ({_POINT.pattern})")
 
@@ -41,6 +45,8 @@ class Reading:
         players: Name of another player to its position; None: cannot be seen.
         chat: What was heard, in the order of the prompt.
         places: Name of a place to its position.
+        sightings: Name of a player to where the history last has it, or going.
+        others_tasks: Name of a player to the task it is said to have.
     """
 
     task: str
@@ -49,6 +55,8 @@ class Reading:
     players: Mapping[str, Point | None]
     chat: Sequence[Utterance]
     places: Mapping[str, Point]
+    sightings: Mapping[str, Point]
+    others_tasks: Mapping[str, str]
 
 
 def words(text: str) -> tuple[str, ...]:
@@ -72,6 +80,8 @@ def read_prompt(text: str) -> Reading:
         players=_players("\n".join(sections.get("Other players", []))),
         chat=_chat(sections.get("Chat log", [])),
         places=_places(sections.get("Places", []), text),
+        sightings=_sightings(text),
+        others_tasks=_others_tasks(text),
     )
 
 
@@ -165,3 +175,13 @@ def _places(lines: Sequence[str], text: str) -> dict[str, Point]:
         if match is not None:
             places[match[1].strip()] = points_in(match[2])[0]
     return places
+
+
+def _sightings(text: str) -> dict[str, Point]:
+    matches = (_SIGHTING.fullmatch(line.strip()) for line in text.splitlines())
+    return {match[1]: points_in(match[2])[0] for match in matches if match is not None}
+
+
+def _others_tasks(text: str) -> dict[str, str]:
+    matches = (_OTHERS_TASK.fullmatch(line.strip()) for line in text.splitlines())
+    return {match[1]: match[2] for match in matches if match is not None}
