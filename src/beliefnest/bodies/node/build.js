@@ -35,24 +35,47 @@ async function build (outdir) {
   fs.writeFileSync(
     path.join(outdir, `registry-${MINECRAFT_VERSION}.msgpack`), encode(buildRegistry(MINECRAFT_VERSION)))
   fs.writeFileSync(path.join(outdir, INTERPRETER), interpreterBytes())
-  fs.writeFileSync(path.join(outdir, 'packages.json'), `${JSON.stringify(packagesIn(result.metafile), null, 1)}\n`)
+  const folders = packageFolders(result.metafile)
+  fs.writeFileSync(path.join(outdir, 'packages.json'), `${JSON.stringify(packageList(folders), null, 1)}\n`)
+  fs.writeFileSync(path.join(outdir, 'licenses.txt'), licenseTexts(folders))
 }
 
-/** @returns {object} version and licence, by name, of every package a bundle has code of */
-function packagesIn (metafile) {
+/** @returns {string[]} folders of the packages the bundle has code or data of, by name */
+function packageFolders (metafile) {
   const folders = new Set()
   for (const input of Object.keys(metafile.inputs)) {
     const parts = input.split('/')
     const last = parts.lastIndexOf('node_modules')
     if (last === -1) continue
     const names = parts[last + 1].startsWith('@') ? 2 : 1
-    folders.add(parts.slice(0, last + 1 + names).join('/'))
+    folders.add(path.resolve(parts.slice(0, last + 1 + names).join('/')))
   }
-  const entries = [...folders].map(folder => {
-    const { name, version, license } = JSON.parse(fs.readFileSync(path.join(folder, 'package.json')))
+  return [...folders].sort()
+}
+
+function manifestOf (folder) {
+  return JSON.parse(fs.readFileSync(path.join(folder, 'package.json')))
+}
+
+/** @returns {object} version and licence by name of a package */
+function packageList (folders) {
+  return Object.fromEntries(folders.map(folder => {
+    const { name, version, license } = manifestOf(folder)
     return [name, { version, license }]
-  })
-  return Object.fromEntries(entries.sort(([a], [b]) => (a < b ? -1 : 1)))
+  }))
+}
+
+/** @returns {string} the licence texts the packages carry, each under the package's name */
+function licenseTexts (folders) {
+  return folders.map(folder => {
+    const { name, version, license, author } = manifestOf(folder)
+    const file = fs.readdirSync(folder).find(entry => /^(licen[cs]e|copying)/i.test(entry))
+    const by = typeof author === 'object' ? author.name : author
+    const text = file === undefined
+      ? `Licensed under ${license} by ${by ?? 'its authors'}; the package carries no licence text.`
+      : fs.readFileSync(path.join(folder, file), 'utf8').trim()
+    return `== ${name} ${version} (${license})\n\n${text}\n`
+  }).join('\n')
 }
 
 build(path.resolve(process.argv[2] ?? DEFAULT_OUTDIR)).catch(error => {

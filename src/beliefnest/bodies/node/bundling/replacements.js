@@ -17,6 +17,9 @@ const INLINE_BYTES = 20000
 // Where build.js puts the interpreter of agent programs.
 const INTERPRETER = 'quickjs.wasm'
 
+// Data of connections and commands, which bots that are joined in memory do not have.
+const UNUSED = ['commands', 'protocol']
+
 const empty = 'module.exports = {}'
 
 /** Whole modules by the end of their path, with what stands for each. */
@@ -33,6 +36,14 @@ const STAND_INS = [
     STACK_BYTES: ${STACK_BYTES},
     interpreterBytes: () => require('node:fs').readFileSync(require('node:path').join(__dirname, '${INTERPRETER}'))
   }`],
+  // Protocol definitions come from packages and are right; checking them costs a tenth of a start.
+  [/protodef-validator\/index\.js$/, `module.exports = class {
+    addType () {}
+    addTypes () {}
+    validateType () {}
+    validateTypeGoingInside () {}
+    validateProtocol () {}
+  }`],
   [/minecraft-data\/minecraft-data\/schemas\/.*\.json$/, empty],
   [/minecraft-data\/minecraft-data\/data\/bedrock\/common\/(legacy|features)\.json$/, empty],
   [/prismarine-registry\/lib\/bedrock\/index\.js$/, empty],
@@ -42,7 +53,7 @@ const STAND_INS = [
 /** @returns {string} minecraft-data's index of versions, with only `version` in it */
 function versionIndex (version) {
   const paths = JSON.parse(fs.readFileSync(path.join(DATA, 'dataPaths.json'))).pc[version]
-  const getters = Object.entries(paths)
+  const getters = Object.entries(paths).filter(([name]) => !UNUSED.includes(name))
     .filter(([name, folder]) => fs.existsSync(path.join(DATA, folder, `${name}.json`)))
     .map(([name, folder]) => {
       const file = JSON.stringify(`./minecraft-data/data/${folder}/${name}.json`)

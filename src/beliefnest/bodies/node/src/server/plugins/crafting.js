@@ -8,13 +8,19 @@ const TABLE_WIDTH = 3
 
 /** Crafting in the 2x2 grid of the inventory and at a table; recipes are minecraft-data's. */
 module.exports.server = (serv) => {
-  const recipes = indexRecipes(serv.registry)
+  // Indexed when something first lies in a grid: a world without crafting starts sooner.
+  let index = null
+  const recipes = () => {
+    index ??= indexRecipes(serv.registry)
+    return index
+  }
   const makeItem = (name) => new serv.Item(serv.registry.itemsByName[name].id, 1)
 
   /** Slot 0 of `slots` shows what slots 1.. make; returns `{refresh, takeResult}`. */
   serv.craftingGrid = (slots, width) => {
     function refresh () {
-      const result = match(recipes, slots.slice(1, width * width + 1), width)
+      const ingredients = slots.slice(1, width * width + 1)
+      const result = ingredients.some(Boolean) ? match(recipes(), ingredients, width) : undefined
       slots[0] = result ? new serv.Item(result.id, result.count ?? 1) : null
     }
     function takeResult () {
