@@ -3,7 +3,6 @@
 import math
 
 import pytest
-
 from tests.nest.places import CHEST, CLOSED, CORNER, EAST, GAP, MEETING, WEST, nest_of
 
 AGENTS = {"a": (2.5, 0, 5.5), "b": (4.5, 0, 7.5), "c": (6.5, 0, 5.5)}

@@ -1,10 +1,10 @@
 """What is believed to be in containers (semantics 4)."""
 
 import pytest
+from tests.nest.places import CHEST, CLOSED, CORNER, EAST, GAP, MEETING, WEST, nest_of
 
 import beliefnest as bn
 from beliefnest.world.values import EventKind
-from tests.nest.places import CHEST, CLOSED, CORNER, EAST, GAP, MEETING, WEST, nest_of
 
 NEAR = (4, 0, 5)
 AGENTS = {"a": (2.5, 0, 5.5), "b": (4.5, 0, 7.5)}

@@ -1,7 +1,6 @@
 """Speech, thought and who is credited with hearing them (semantics 3 and 5.5)."""
 
 import pytest
-
 from tests.nest.places import CLOSED, CORNER, EAST, GAP, MEETING, WEST, nest_of
 
 

@@ -1,0 +1,108 @@
+"""What is known from the start (semantics 4): static blocks and initial beliefs."""
+
+from tests.nest.places import CLOSED, EAST, WEST, nest_of
+
+import beliefnest as bn
+from beliefnest.belief.entries import Source
+from beliefnest.world.registry import Registry
+
+AGENTS = {"a": WEST, "b": EAST, "c": (2.5, 0, 8.5)}
+PLACE = (9, 0, 1)
+"""A position that b alone sees, a wall being between."""
+
+STONE = Registry.load().state_id("stone")
+
+
+def test_static_blocks_are_known_to_everybody_at_every_depth():
+    _, nest = nest_of(AGENTS, CLOSED | {PLACE: "bricks"}, static_blocks=["bricks"])
+    for path in ("/a", "/b", "/a/c", "/c/a/b", "/b/a"):
+        assert nest[path].state.blocks[PLACE] == "bricks"
+
+
+def test_a_static_block_rests_on_a_prior_and_is_current_only_where_seen():
+    _, nest = nest_of(AGENTS, CLOSED | {PLACE: "bricks"}, static_blocks=["bricks"])
+    known = nest["/a"].state.blocks
+    assert known.basis(PLACE).source is Source.PRIOR
+    assert not known.current(PLACE)
+    assert nest["/b"].state.blocks.current(PLACE)
+    assert nest["/b"].state.blocks.basis(PLACE).source is Source.SEEN
+
+
+def test_blocks_of_other_names_are_not_static():
+    _, nest = nest_of(AGENTS, CLOSED | {PLACE: "stone_bricks"}, static_blocks=["bricks"])
+    assert nest["/a"].state.blocks[PLACE] is None
+
+
+def test_a_static_container_is_known_to_be_there_and_nothing_of_its_content():
+    _, nest = nest_of(AGENTS, CLOSED, chests={PLACE: {"diamond": 1}}, static_blocks=["chest"])
+    held = nest["/a"].state.containers[PLACE]
+    assert (held.items, held.complete, held.current) == ({}, False, False)
+
+
+def test_a_static_block_seen_replaced_is_updated():
+    world, nest = nest_of(AGENTS, CLOSED | {PLACE: "bricks"}, static_blocks=["bricks"])
+    world.set_block(PLACE, "air")
+    assert nest["/b"].state.blocks[PLACE] == "air"
+    assert nest["/a"].state.blocks[PLACE] == nest["/b/a"].state.blocks[PLACE] == "bricks"
+
+
+def initially(path, **beliefs):
+    return nest_of(AGENTS, CLOSED, initial_beliefs=[bn.InitialBelief(path, **beliefs)])
+
+
+def test_initial_contents_blocks_and_poses_are_believed():
+    _, nest = initially(
+        ("a",),
+        containers={PLACE: ({"diamond": 1}, True)},
+        blocks={(8, 0, 8): STONE},
+        agents={"b": (7.5, 0, 7.5)},
+    )
+    state = nest["/a"].state
+    assert (state.containers[PLACE].items, state.containers[PLACE].complete) == (
+        {"diamond": 1},
+        True,
+    )
+    assert state.blocks[8, 0, 8] == "stone"
+    assert state.agents["b"].position == (7.5, 0, 7.5)
+    bases = [state.containers[PLACE].basis, state.blocks.basis((8, 0, 8)), state.agents["b"].basis]
+    assert {(basis.source, basis.observed_at) for basis in bases} == {(Source.PRIOR, 0)}
+    assert not state.containers[PLACE].current
+    assert not state.blocks.current((8, 0, 8))
+
+
+def test_who_stands_at_an_initial_pose_is_not_present():
+    world, nest = initially(("a",), agents={"b": (3.5, 0, 3.5)})
+    assert not nest["/a"].state.agents["b"].current
+    world.set_block((2, 0, 2), "bricks")
+    assert nest["/a"].state.blocks[2, 0, 2] == "bricks"
+    assert nest["/a/b"].state.blocks[2, 0, 2] is None
+
+
+def test_initial_beliefs_may_be_at_any_depth_and_stay_there():
+    world, nest = initially(("c", "a", "b"), containers={PLACE: ({"diamond": 1}, False)})
+    world.say("a", "hello")
+    held = nest["/c/a/b"].state.containers[PLACE]
+    assert (held.items, held.complete) == ({"diamond": 1}, False)
+    for path in ("/c", "/c/a", "/b", "/a/b", "/c/b"):
+        assert PLACE not in nest[path].state.containers or path == "/b"
+    assert nest["/b"].state.containers == {}
+
+
+def test_an_initial_belief_is_replaced_by_what_is_seen():
+    _, nest = initially(("a",), blocks={(2, 0, 5): STONE}, agents={"c": (0.5, 0, 0.5)})
+    state = nest["/a"].state
+    assert state.blocks[2, 0, 5] == "air"
+    assert state.agents["c"].position == AGENTS["c"]
+
+
+def test_an_initial_belief_that_is_seen_in_the_belief_is_handed_on_as_stale():
+    _, nest = nest_of(
+        {"a": (0.5, 0, 5.5), "c": (5.5, 0, 5.5)},
+        max_visible_distance=6,
+        initial_beliefs=[bn.InitialBelief(("a",), blocks={(9, 0, 5): STONE})],
+    )
+    handed = nest["/a/c"].state.blocks
+    assert handed[9, 0, 5] == "stone"
+    assert not handed.current((9, 0, 5))
+    assert handed.basis((9, 0, 5)).source is Source.PRIOR
+    assert nest["/c"].state.blocks[9, 0, 5] == "air"
