@@ -132,6 +132,28 @@ def says_nothing(handler: "Handler") -> None:
     handler.fake.closing.wait()
 
 
+def answers_with_a_page(handler: "Handler") -> None:
+    """What a proxy might say."""
+    page = b"<html>Welcome</html>"
+    handler.send_response(200)
+    handler.send_header("Content-Type", "text/html")
+    handler.send_header("Content-Length", str(len(page)))
+    handler.end_headers()
+    handler.wfile.write(page)
+
+
+def garbles(handler: "Handler") -> None:
+    handler.start_stream()
+    handler.wfile.write(b'data: {"id": "x", "choi\n\n')
+
+
+def fails_halfway(handler: "Handler") -> None:
+    handler.start_stream()
+    handler.send_chunk(delta={"role": "assistant", "content": "await"})
+    error = {"message": "overloaded", "type": "server_error", "code": "500"}
+    handler.wfile.write(f"data: {json.dumps({'error': error})}\n\n".encode())
+
+
 @dataclass
 class FakeOpenAI:
     """Each request is answered by the next behaviour; the last one answers all further ones."""
@@ -148,6 +170,9 @@ class FakeOpenAI:
     drops_halfway = staticmethod(drops_halfway)
     refuses = staticmethod(refuses)
     floods = staticmethod(floods)
+    answers_with_a_page = staticmethod(answers_with_a_page)
+    garbles = staticmethod(garbles)
+    fails_halfway = staticmethod(fails_halfway)
     drips = staticmethod(drips)
     says_nothing = staticmethod(says_nothing)
 

@@ -113,6 +113,9 @@ FAULTS = [
     ("floods", r"more than 200,000 characters"),
     ("hangs_up", r"dropped the connection"),
     ("drops_halfway", r"dropped the connection"),
+    ("answers_with_a_page", r"gave no usable answer"),
+    ("garbles", r"Failed to decode response"),
+    ("fails_halfway", r"failed .*overloaded"),
 ]
 
 
