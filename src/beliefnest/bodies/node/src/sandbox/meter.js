@@ -63,7 +63,7 @@ function readSections (bytes) {
 
 function assemble (bytes, replaced) {
   const parts = [bytes.subarray(0, 8)]
-  for (const { id, content, whole } of new Reader(bytes, 8).sections()) {
+  for (const { id, whole } of new Reader(bytes, 8).sections()) {
     parts.push(replaced.has(id) ? section(id, replaced.get(id)) : whole)
   }
   return new Uint8Array(Buffer.concat(parts))
