@@ -10,12 +10,29 @@ const SKILLS = [
   require('./goToPosition'),
   require('./getItemFromChest'),
   require('./depositItemIntoChest'),
+  require('./mineBlock'),
+  require('./placeItem'),
+  require('./craftItem'),
+  require('./smeltItem'),
   require('./turnOnLever'),
   require('./turnOffLever'),
+  require('./giveItemToOther'),
+  require('./receiveItemFromOther'),
+  require('./givePlacedItemBack'),
+  require('./exploreUntil'),
+  require('./waitForMobRemoved'),
   require('./think'),
-  require('./doNothing'),
+  require('./say'),
   require('./emote'),
-  require('./checkValidPosition')
+  require('./equip'),
+  require('./eat'),
+  require('./sleep'),
+  require('./follow'),
+  require('./lookAt'),
+  require('./checkValidPosition'),
+  require('./waitTicks'),
+  require('./waitUntil'),
+  require('./doNothing')
 ]
 
 /**

@@ -2,6 +2,7 @@
 /** Walking: every walk ends where it was to go, or in an error that says how near it came. */
 const { until } = require('./waiting')
 const { show } = require('./arguments')
+const { passOneDoor } = require('./doors')
 
 const REACH = 4
 const EYES = 1.62
@@ -25,6 +26,19 @@ async function settle (bot) {
   await until(() => Math.abs(velocity.x) < STILL && Math.abs(velocity.z) < STILL && bot.entity.onGround, SETTLE_TICKS)
 }
 
+/** One search for a way, and the walk along it; @returns {Promise<Error | null>} why it ended early */
+async function attempt (bot, goal) {
+  try {
+    await bot.pathfinder.goto(goal)
+    return null
+  } catch (error) {
+    if (!(error.name in REASONS)) throw error
+    return error
+  } finally {
+    await settle(bot)
+  }
+}
+
 /**
  * @param {object} context of the skill
  * @param {object} goal of the pathfinder
@@ -32,22 +46,20 @@ async function settle (bot) {
  * @param {Vec3} target for the message
  * @param {string} what for the message, e.g. "the chest"
  */
-async function walk ({ bot, fail }, goal, arrived, target, what) {
-  if (arrived()) return
-  let reason = REASONS.NoPath
-  let fault
-  try {
-    await bot.pathfinder.goto(goal)
-  } catch (error) {
-    if (!(error.name in REASONS)) throw error
-    reason = REASONS[error.name]
-    fault = error
+async function walk (context, goal, arrived, target, what) {
+  const { bot, fail } = context
+  const tried = new Set()
+  let fault = null
+  while (!arrived()) {
+    fault = await attempt(bot, goal)
+    if (arrived()) return
+    const walled = fault === null || fault.name === 'NoPath'
+    if (!walled || !await passOneDoor(context, target, tried)) break
   }
-  await settle(bot)
   if (arrived()) return
   const near = bot.entity.position.distanceTo(target)
-  fail(`could not reach ${what} at ${show(target)}: ${reason}; now at ${rounded(bot.entity.position)}, ` +
-    `${near.toFixed(1)} blocks away. Go somewhere else, or clear the way first.`, fault)
+  fail(`could not reach ${what} at ${show(target)}: ${REASONS[fault?.name ?? 'NoPath']}; now at ${rounded(bot.entity.position)}, ` +
+    `${near.toFixed(1)} blocks away. Go somewhere else, or clear the way first.`, fault ?? undefined)
 }
 
 /** Walks to within `dist` blocks of a position. */

@@ -1,0 +1,132 @@
+'use strict'
+const test = require('node:test')
+const assert = require('node:assert/strict')
+const { agent, failure, withSkills, FLOOR, Vec3 } = require('./harness')
+
+const both = (inventory, blocks = [], annes = {}) => ({
+  agents: { sally: agent([0.5, FLOOR, 0.5], { inventory }), anne: agent([8.5, FLOOR, -6.5], { inventory: annes }) }, blocks
+})
+
+test('what is given is tossed, picked up and received', async () => {
+  await withSkills(both({ diamond: 3 }), async world => {
+    const { bots: { sally, anne }, skills } = world
+    const before = world.everything()
+    await world.during(Promise.all([
+      skills.sally.giveItemToOther(sally, 'anne', 'diamond', 2), skills.anne.receiveItemFromOther(anne, 'sally', 'diamond', 2)
+    ]))
+    await world.ticks(1)
+    assert.deepEqual([world.has('sally'), world.has('anne')], [{ diamond: 1 }, { diamond: 2 }])
+    assert.deepEqual(world.everything(), before)
+    assert.deepEqual(world.emitted.sort((a, b) => (a.kind < b.kind ? -1 : 1)), [
+      { actor: 'sally', kind: 'give_item_to_other', detail: { other: 'anne', items: { diamond: 2 } } },
+      { actor: 'anne', kind: 'receive_item_from_other', detail: { other: 'sally', items: { diamond: 2 } } }
+    ])
+  })
+})
+
+test('a gift that is not picked up, and one that is not there', async () => {
+  await withSkills(both({ diamond: 3 }, [], { dirt: 36 * 64 }), async world => {
+    const { bots: { sally }, skills: { sally: own } } = world
+    assert.match((await failure(world, own.giveItemToOther(sally, 'anne', 'diamond', 4))).message, /4 diamond to be given, the inventory holds 3/)
+    assert.match((await failure(world, own.giveItemToOther(sally, 'bob', 'diamond', 1))).message, /"bob", here are: anne/)
+    assert.match((await failure(world, own.giveItemToOther(sally, 'anne', 'diamond', 1))).message, /anne picked up 0 of the 1 diamond/)
+    assert.equal(world.everything().diamond, 3)
+  })
+})
+
+test('who waits for a gift that does not come is told so', async () => {
+  await withSkills(both({}), async world => {
+    const { bots: { anne }, skills } = world
+    const error = await failure(world, skills.anne.receiveItemFromOther(anne, 'sally', 'diamond', 1))
+    assert.match(error.message, /0 of 1 diamond came from sally within 600 ticks/)
+  })
+})
+
+test('follow stays near somebody who walks', async () => {
+  await withSkills(both({}), async world => {
+    const { bots: { sally, anne }, skills } = world
+    await world.during(Promise.all([
+      skills.sally.goToPosition(sally, new Vec3(-8, FLOOR, 8), 0), skills.anne.follow(anne, 'sally', 160, 2)
+    ]))
+    assert.ok(sally.entity.position.distanceTo(anne.entity.position) <= 3)
+    assert.ok(anne.entity.position.distanceTo(new Vec3(-8, FLOOR, 8)) <= 5)
+  })
+})
+
+test('follow fails behind a wall', async () => {
+  const wall = [0, 1, 2].flatMap(up => Array.from({ length: 23 }, (_, i) => [i - 11, FLOOR + up, -3, 'stone']))
+  await withSkills(both({}, wall), async world => {
+    const { bots: { anne }, skills } = world
+    assert.match((await failure(world, skills.anne.follow(anne, 'sally', 60, 2))).message, /sally is .* blocks away after 60 ticks/)
+  })
+})
+
+const wallWith = (opening) => [0, 1, 2]
+  .flatMap(up => Array.from({ length: 23 }, (_, i) => [i - 11, FLOOR + up, -3, 'stone']))
+  .filter(([x, y]) => !(x === 4 && y < FLOOR + 2)).concat(opening)
+const door = open => ['lower', 'upper'].map((half, up) => [4, FLOOR + up, -3, 'oak_door', { half, open, facing: 'north' }])
+const gate = [[4, FLOOR, -3, 'oak_fence_gate', { open: false, facing: 'north' }]]
+
+for (const [name, opening] of [['a shut door', door(false)], ['an open door', door(true)], ['a gate', gate]]) {
+  test(`the way leads through ${name}, both ways`, async () => {
+    await withSkills(both({}, wallWith(opening)), async world => {
+      const { bots: { sally }, skills } = world
+      await world.during(skills.sally.goToPosition(sally, new Vec3(4, FLOOR, -7), 0))
+      assert.equal(world.block(4, FLOOR, -3).properties.open, true)
+      await world.during(skills.sally.goToPosition(sally, new Vec3(0, FLOOR, 0), 0))
+    })
+  })
+}
+
+test('an iron door is not opened by hand', async () => {
+  const iron = door(false).map(([x, y, z, , properties]) => [x, y, z, 'iron_door', properties])
+  await withSkills(both({}, wallWith(iron)), async world => {
+    const { bots: { sally }, skills } = world
+    assert.match((await failure(world, skills.sally.goToPosition(sally, new Vec3(4, FLOOR, -7), 0))).message, /no way to it on foot/)
+  })
+})
+
+test('exploreUntil stops at what it looks for, and gives null when it is not found', async () => {
+  await withSkills(both({}, [[-9, FLOOR, 0, 'chest'], [9, FLOOR, 0, 'stone'], [9, FLOOR + 1, 0, 'stone']]), async world => {
+    const { bots: { sally }, skills: { sally: own } } = world
+    const near = name => () => sally.findBlock({ matching: sally.registry.blocksByName[name].id, maxDistance: 4 })
+    const found = await world.during(own.exploreUntil(sally, new Vec3(-1, 0, 0), 20, near('chest')))
+    assert.equal(found.name, 'chest')
+    assert.equal(await world.during(own.exploreUntil(sally, new Vec3(0, 0, 1), 6, near('barrel'))), null)
+    assert.match((await failure(world, own.exploreUntil(sally, new Vec3(0, 0, 1), 30, near('barrel')))).message, /could not reach .*further on/)
+    assert.match((await failure(world, own.exploreUntil(sally, new Vec3(0, 1, 0), 5, near('chest')))).message, /on the level/)
+    assert.match((await failure(world, own.exploreUntil(sally, new Vec3(1, 0, 0), 5, 'chest'))).message, /must be a function/)
+  })
+})
+
+test('waiting for a number of ticks, a condition, and a mob', async () => {
+  await withSkills(both({}), async world => {
+    const { bots: { sally }, skills: { sally: own }, region } = world
+    const start = region.tick
+    await world.during(own.waitTicks(sally, 30))
+    assert.ok(Math.abs(region.tick - start - 30) <= 1)
+    assert.equal(await world.during(own.waitUntil(sally, () => region.tick > start + 50 && 'late')), 'late')
+    assert.match((await failure(world, own.waitUntil(sally, () => false, 20))).message, /within 20 ticks/)
+    world.serv.dropItem(world.at(9.5, FLOOR, 9.5), new world.serv.Item(1, 1)).age = 5980
+    await world.ticks(1)
+    const item = Object.values(sally.entities).find(({ name }) => name === 'item')
+    await world.during(own.waitForMobRemoved(sally, item, 5))
+    const anne = sally.players.anne.entity
+    assert.match((await failure(world, own.waitForMobRemoved(sally, anne, 1))).message, /still there after 1 seconds/)
+  })
+})
+
+test('saying and looking', async () => {
+  await withSkills(both({}), async world => {
+    const { bots: { sally, anne }, skills: { sally: own } } = world
+    const heard = []
+    anne.on('chat', (name, text) => heard.push([name, text]))
+    await world.during(own.say(sally, 'Hello'))
+    await world.until(() => heard.length === 1)
+    assert.deepEqual([heard, world.events('chat').map(({ detail }) => detail)], [[['sally', 'Hello']], [{ text: 'Hello' }]])
+    assert.match((await failure(world, own.say(sally, '/give me all'))).message, /slash/)
+    assert.match((await failure(world, own.say(sally, 'x'.repeat(300)))).message, /256 characters; it has 300/)
+    await world.during(own.lookAt(sally, new Vec3(10.5, FLOOR + 1.62, 0.5)))
+    assert.ok(Math.abs(world.players.sally.pose.yaw + Math.PI / 2) < 0.01)
+  })
+})

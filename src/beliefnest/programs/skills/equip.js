@@ -1,0 +1,28 @@
+'use strict'
+const { item: checkItem, show } = require('./lib/arguments')
+const { stackOf } = require('./lib/inventory')
+const { ticks } = require('./lib/waiting')
+
+const PLACES = ['hand', 'off-hand', 'head', 'torso', 'legs', 'feet']
+
+module.exports = {
+  name: 'equip',
+  signature: 'equip(bot, name, destination="hand")',
+  description: 'Take an item from your inventory in hand, or put it on: hand, off-hand, head, torso, legs, feet.',
+  parameters: [
+    { name: 'bot', type: 'Bot', description: 'your own bot' },
+    { name: 'name', type: 'string', description: 'name of the item' },
+    { name: 'destination', type: 'string', description: 'where to' }
+  ],
+  example: 'await equip(bot, "iron_chestplate", "torso")',
+  async run (context, name, destination = 'hand') {
+    const { bot, fail } = context
+    const item = checkItem(context, 'name', name)
+    if (!PLACES.includes(destination)) fail(`destination must be one of ${PLACES.join(', ')}; it is ${show(destination)}`)
+    const slot = () => bot.getEquipmentDestSlot(destination)
+    if (bot.inventory.slots[slot()]?.type === item.id) return
+    await bot.equip(stackOf(context, item), destination)
+    await ticks(1)
+    if (bot.inventory.slots[slot()]?.type !== item.id) fail(`${name} does not go there: ${destination} takes something else.`)
+  }
+}

@@ -1,0 +1,32 @@
+'use strict'
+const { count: checkCount, distance } = require('./lib/arguments')
+const { bodyOf } = require('./lib/others')
+const { settle } = require('./lib/walking')
+const { ticks } = require('./lib/waiting')
+
+const SLACK = 1
+
+module.exports = {
+  name: 'follow',
+  signature: 'follow(bot, otherName, number=100, dist=2)',
+  description: 'Follow another agent for a number of ticks, staying within dist blocks. Fails if it is not near at the end.',
+  parameters: [
+    { name: 'bot', type: 'Bot', description: 'your own bot' },
+    { name: 'otherName', type: 'string', description: 'whom to follow' },
+    { name: 'number', type: 'number', description: 'how many ticks' },
+    { name: 'dist', type: 'number', description: 'how near, in blocks' }
+  ],
+  example: 'await follow(bot, "anne", 200)',
+  async run (context, otherName, number = 100, dist = 2) {
+    const { bot, goals, fail } = context
+    const body = bodyOf(context, 'otherName', otherName)
+    const duration = checkCount(context, 'number', number)
+    const near = distance(context, 'dist', dist)
+    bot.pathfinder.setGoal(new goals.GoalFollow(body, near), true)
+    await ticks(duration)
+    bot.pathfinder.setGoal(null)
+    await settle(bot)
+    const away = bot.entity.position.distanceTo(body.position)
+    if (away > near + SLACK) fail(`${otherName} is ${away.toFixed(1)} blocks away after ${duration} ticks. Follow longer, or there is no way on foot.`)
+  }
+}

@@ -1,0 +1,74 @@
+'use strict'
+const { count: checkCount, item: checkItem } = require('./lib/arguments')
+const { walkNear } = require('./lib/walking')
+const { bodyOf } = require('./lib/others')
+const { countOf, contents } = require('./lib/inventory')
+const { until } = require('./lib/waiting')
+
+const NEAR = 3
+const TOO_NEAR = 1.5
+const PICKUP_TICKS = 200
+const CHEST_HEIGHT = 1
+
+/** Watches who picks up the items of a kind that appear from now on. */
+function watch (bot, item) {
+  const lying = new Map()
+  const taken = []
+  const onDrop = entity => {
+    const dropped = entity.getDroppedItem()
+    if (dropped?.type === item.id && entity.position.distanceTo(bot.entity.position) < NEAR * 2) lying.set(entity.id, dropped.count)
+  }
+  const onCollect = (collector, { id }) => {
+    if (!lying.has(id)) return
+    taken.push({ by: collector.username, count: lying.get(id) })
+    lying.delete(id)
+  }
+  bot.on('itemDrop', onDrop)
+  bot.on('playerCollect', onCollect)
+  const takenBy = name => taken.filter(({ by }) => by === name).reduce((sum, { count }) => sum + count, 0)
+  const stop = () => {
+    bot.removeListener('itemDrop', onDrop)
+    bot.removeListener('playerCollect', onCollect)
+  }
+  return { takenBy, stop, over: number => taken.reduce((sum, { count }) => sum + count, 0) >= number }
+}
+
+module.exports = {
+  name: 'giveItemToOther',
+  signature: 'giveItemToOther(bot, otherName, item, num)',
+  description: 'Go to another agent, toss the items to it, and wait until it has picked them up.',
+  parameters: [
+    { name: 'bot', type: 'Bot', description: 'your own bot' },
+    { name: 'otherName', type: 'string', description: 'who is to get it' },
+    { name: 'item', type: 'string', description: 'name of the item' },
+    { name: 'num', type: 'number', description: 'how many; 1 if left out' }
+  ],
+  example: 'await giveItemToOther(bot, "anne", "diamond", 1)',
+  async run (context, otherName, itemName, num = 1) {
+    const { bot, fail, emit } = context
+    const body = bodyOf(context, 'otherName', otherName)
+    const item = checkItem(context, 'item', itemName)
+    const wanted = checkCount(context, 'num', num)
+    if (countOf(bot, item) < wanted) fail(`${wanted} ${item.name} to be given, the inventory holds ${countOf(bot, item)}; there is: ${contents(bot)}.`)
+    await walkNear(context, body.position.clone(), NEAR, otherName)
+    await bot.lookAt(body.position.offset(0, CHEST_HEIGHT, 0), true)
+    if (bot.entity.position.distanceTo(body.position) < TOO_NEAR) await stepBack(bot, body)
+    const watcher = watch(bot, item)
+    try {
+      await bot.toss(item.id, null, wanted)
+      await until(() => watcher.over(wanted), PICKUP_TICKS)
+    } finally {
+      watcher.stop()
+    }
+    const given = watcher.takenBy(otherName)
+    if (given > 0) emit({ kind: 'give_item_to_other', detail: { other: otherName, items: { [item.name]: given } } })
+    if (given < wanted) fail(`${otherName} picked up ${given} of the ${wanted} ${item.name} that were tossed. The rest lies on the ground, was taken by somebody else, or came back.`)
+  }
+}
+
+/** Who stands too near would pick up its own toss. */
+async function stepBack (bot, body) {
+  bot.setControlState('back', true)
+  await until(() => bot.entity.position.distanceTo(body.position) >= TOO_NEAR, 20)
+  bot.setControlState('back', false)
+}

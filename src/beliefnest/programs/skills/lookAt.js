@@ -1,0 +1,18 @@
+'use strict'
+const { position: checkPosition } = require('./lib/arguments')
+const { ticks } = require('./lib/waiting')
+
+module.exports = {
+  name: 'lookAt',
+  signature: 'lookAt(bot, position)',
+  description: 'Turn to look at a point.',
+  parameters: [
+    { name: 'bot', type: 'Bot', description: 'your own bot' },
+    { name: 'position', type: 'Vec3', description: 'what to look at' }
+  ],
+  example: 'await lookAt(bot, new Vec3(2.5, -50, -3.5))',
+  async run (context, position) {
+    await context.bot.lookAt(checkPosition(context, 'position', position), true)
+    await ticks(1)
+  }
+}

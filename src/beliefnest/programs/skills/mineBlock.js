@@ -1,0 +1,19 @@
+'use strict'
+const { blockPosition, block: checkBlock } = require('./lib/arguments')
+const { mine } = require('./lib/mining')
+
+module.exports = {
+  name: 'mineBlock',
+  signature: 'mineBlock(bot, position, name)',
+  description: 'Go to the block, mine it with the best tool you carry, and pick up what it drops.',
+  parameters: [
+    { name: 'bot', type: 'Bot', description: 'your own bot' },
+    { name: 'position', type: 'Vec3', description: 'position of the block' },
+    { name: 'name', type: 'string', description: 'name of the block that is there' }
+  ],
+  example: 'await mineBlock(bot, new Vec3(4, -51, 2), "oak_log")',
+  async run (context, position, name) {
+    const place = blockPosition(context, 'position', position)
+    await mine(context, place, checkBlock(context, 'name', name).name)
+  }
+}

@@ -1,0 +1,69 @@
+'use strict'
+const { blockPosition, item: checkItem, show } = require('./lib/arguments')
+const { canUse, walk, centreOf } = require('./lib/walking')
+const { hold, stackOf } = require('./lib/inventory')
+
+const EYES = 1.62
+const FACES = [[0, -1, 0], [0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0]]
+const FREE = new Set(['air', 'cave_air', 'void_air', 'water', 'lava', 'short_grass', 'tall_grass', 'fern', 'snow', 'dead_bush', 'vine'])
+const OPENS = /chest$|barrel|furnace|smoker|crafting_table|_door$|_trapdoor$|_gate$|_bed$|lever|_button$/
+
+/** Blocks beside the place that something can be put against: those that do nothing when used first. */
+function references ({ bot }, place) {
+  return FACES.map(([x, y, z]) => bot.blockAt(place.offset(x, y, z)))
+    .filter(block => block && block.boundingBox === 'block' && block.name !== 'barrier')
+    .sort((a, b) => OPENS.test(a.name) - OPENS.test(b.name))
+}
+
+function inTheWay (feet, place) {
+  return feet.equals(place) || feet.offset(0, 1, 0).equals(place)
+}
+
+async function walkToPlace (context, place, reference) {
+  const { bot, goals } = context
+  const sees = eye => canUse(bot, eye, place) || canUse(bot, eye, reference.position)
+  const goal = new goals.GoalNear(place.x, place.y, place.z, 3)
+  goal.isEnd = node => !inTheWay(node, place) && sees(node.offset(0.5, EYES, 0.5))
+  const arrived = () => !inTheWay(bot.entity.position.floored(), place) && sees(bot.entity.position.offset(0, EYES, 0))
+  await walk(context, goal, arrived, place, 'a place to build from, near the position')
+}
+
+async function put ({ bot, fail }, reference, place, name) {
+  const sneaks = OPENS.test(reference.name)
+  if (sneaks) bot.setControlState('sneak', true)
+  try {
+    await bot.placeBlock(reference, place.minus(reference.position))
+  } catch (error) {
+    fail(`${name} could not be placed at ${show(place)}: somebody stands there, or it does not hold there.`, error)
+  } finally {
+    if (sneaks) bot.setControlState('sneak', false)
+  }
+}
+
+module.exports = {
+  name: 'placeItem',
+  signature: 'placeItem(bot, name, position)',
+  description: 'Go there and place a block from your inventory at the position, which must be free and beside a solid block.',
+  parameters: [
+    { name: 'bot', type: 'Bot', description: 'your own bot' },
+    { name: 'name', type: 'string', description: 'name of the item to place' },
+    { name: 'position', type: 'Vec3', description: 'where it is to stand' }
+  ],
+  example: 'await placeItem(bot, "crafting_table", new Vec3(4, -51, 2))',
+  async run (context, name, position) {
+    const { bot, fail } = context
+    const item = checkItem(context, 'name', name)
+    const place = blockPosition(context, 'position', position)
+    stackOf(context, item)
+    const there = bot.blockAt(place)
+    if (!there || !FREE.has(there.name)) {
+      fail(`${show(place)} is not free: ${there ? `${there.name} is there` : 'it is not loaded'}. Choose a free position.`)
+    }
+    const [reference] = references(context, place)
+    if (!reference) fail(`there is no solid block beside ${show(place)} to put ${name} against. Choose a position on the ground or at a wall.`)
+    await walkToPlace(context, place, reference)
+    await hold(context, item)
+    await bot.lookAt(centreOf(reference.position), true)
+    await put(context, reference, place, name)
+  }
+}

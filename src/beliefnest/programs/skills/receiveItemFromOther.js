@@ -1,0 +1,30 @@
+'use strict'
+const { count: checkCount, item: checkItem, otherAgent } = require('./lib/arguments')
+const { countOf } = require('./lib/inventory')
+const { until } = require('./lib/waiting')
+
+const PATIENCE_TICKS = 600
+
+module.exports = {
+  name: 'receiveItemFromOther',
+  signature: 'receiveItemFromOther(bot, otherName, item, num)',
+  description: 'Wait until another agent has given you the items, which it does with giveItemToOther; at most 30 seconds.',
+  parameters: [
+    { name: 'bot', type: 'Bot', description: 'your own bot' },
+    { name: 'otherName', type: 'string', description: 'who is to give it' },
+    { name: 'item', type: 'string', description: 'name of the item' },
+    { name: 'num', type: 'number', description: 'how many; 1 if left out' }
+  ],
+  example: 'await receiveItemFromOther(bot, "sally", "diamond", 1)',
+  async run (context, otherName, itemName, num = 1) {
+    const { bot, fail, emit } = context
+    const other = otherAgent(context, 'otherName', otherName)
+    const item = checkItem(context, 'item', itemName)
+    const wanted = checkCount(context, 'num', num)
+    const before = countOf(bot, item)
+    const received = () => countOf(bot, item) - before
+    const done = await until(() => received() >= wanted, PATIENCE_TICKS)
+    if (received() > 0) emit({ kind: 'receive_item_from_other', detail: { other, items: { [item.name]: received() } } })
+    if (!done) fail(`${received()} of ${wanted} ${item.name} came from ${other} within ${PATIENCE_TICKS} ticks. Ask ${other} to give it at the same time.`)
+  }
+}

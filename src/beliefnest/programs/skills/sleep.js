@@ -1,0 +1,36 @@
+'use strict'
+const { blockPosition, count: checkCount, show } = require('./lib/arguments')
+const { walkToUse } = require('./lib/walking')
+const { ticks, until } = require('./lib/waiting')
+
+const ANSWER_TICKS = 10
+
+module.exports = {
+  name: 'sleep',
+  signature: 'sleep(bot, bedPosition, number=100)',
+  description: 'Go to a bed, sleep in it for a number of ticks, and get up.',
+  parameters: [
+    { name: 'bot', type: 'Bot', description: 'your own bot' },
+    { name: 'bedPosition', type: 'Vec3', description: 'position of the bed' },
+    { name: 'number', type: 'number', description: 'how many ticks to sleep' }
+  ],
+  example: 'await sleep(bot, new Vec3(4, -51, 2))',
+  async run (context, bedPosition, number = 100) {
+    const { bot, fail } = context
+    const position = blockPosition(context, 'bedPosition', bedPosition)
+    const duration = checkCount(context, 'number', number)
+    const bed = () => {
+      const block = bot.blockAt(position)
+      if (!block || !bot.isABed(block)) fail(`there is no bed at ${show(position)}, but ${block ? block.name : 'nothing that is loaded'}.`)
+      return block
+    }
+    bed()
+    await walkToUse(context, position, 'the bed')
+    if (bed().getProperties().occupied) fail(`somebody lies in the bed at ${show(position)}. Wait, or find another one.`)
+    await bot.activateBlock(bed())
+    if (!await until(() => bot.isSleeping, ANSWER_TICKS)) fail(`the bed at ${show(position)} cannot be slept in now.`)
+    await ticks(duration)
+    await bot.wake()
+    await until(() => !bot.isSleeping, ANSWER_TICKS)
+  }
+}

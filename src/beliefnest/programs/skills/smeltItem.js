@@ -1,0 +1,104 @@
+'use strict'
+const { blockPosition, count: checkCount, item: checkItem, show } = require('./lib/arguments')
+const { walkToUse } = require('./lib/walking')
+const { countOf, contents } = require('./lib/inventory')
+const { ticks, until } = require('./lib/waiting')
+
+const FURNACES = ['furnace', 'blast_furnace', 'smoker']
+const ANSWER_TICKS = 5
+const ITEM_TICKS = 250
+
+function checkAmount ({ bot, fail }, item, wanted) {
+  if (countOf(bot, item) < wanted) {
+    fail(`${wanted} ${item.name} asked for, the inventory holds ${countOf(bot, item)}. Get more first; there is: ${contents(bot)}.`)
+  }
+}
+
+function findFurnace ({ bot, fail }, position) {
+  const block = bot.blockAt(position)
+  if (!FURNACES.includes(block?.name)) {
+    fail(`there is no furnace at ${show(position)}, but ${block ? block.name : 'nothing that is loaded'}.`)
+  }
+  return block
+}
+
+function checkEmpty ({ fail }, furnace, item, fuel) {
+  const [input, burning, output] = [furnace.inputItem(), furnace.fuelItem(), furnace.outputItem()]
+  if (input && input.type !== item.id) fail(`the furnace is busy with ${input.name}. Take it out first.`)
+  if (burning && burning.type !== fuel.id) fail(`the furnace has ${burning.name} as fuel. Use that, or take it out first.`)
+  if (output) fail(`${output.count} ${output.name} lie in the furnace. Take them out first.`)
+}
+
+/** Puts one piece of fuel in; fails if the furnace does not take it. */
+async function feed ({ bot, fail }, furnace, fuel) {
+  await furnace.putFuel(fuel.id, null, 1)
+  await ticks(ANSWER_TICKS)
+  if (!furnace.selectedItem) return
+  await bot.putSelectedItemRange(furnace.inventoryStart, furnace.inventoryEnd, furnace, null)
+  fail(`${fuel.name} does not burn. Use a fuel such as coal or planks.`)
+}
+
+/** Smelts what lies in the furnace, with a piece of fuel always ready; returns how many came out. */
+async function smelt (context, furnace, position, item, fuel, wanted) {
+  const { bot, fail } = context
+  const done = () => furnace.outputItem()?.count ?? 0
+  const lit = () => bot.blockAt(position).getProperties().lit
+  const needsFuel = () => !furnace.fuelItem() && countOfWindow(furnace, fuel) > 0
+  while (done() < wanted) {
+    if (needsFuel()) await feed(context, furnace, fuel)
+    if (!lit() && furnace.fuelItem()) fail(`${item.name} cannot be smelted in a ${bot.blockAt(position).name}. Try another kind of furnace.`)
+    if (!lit()) return done()
+    const before = done()
+    const went = await until(() => done() > before || needsFuel() || !lit(), ITEM_TICKS)
+    if (!went) fail(`nothing came out of the furnace for ${ITEM_TICKS} ticks.`)
+  }
+  return done()
+}
+
+const countOfWindow = (window, item) => window.countRange(window.inventoryStart, window.inventoryEnd, item.id, null)
+
+async function emptyFurnace (furnace) {
+  if (furnace.inputItem()) await furnace.takeInput()
+  if (furnace.fuelItem()) await furnace.takeFuel()
+  return furnace.outputItem() ? furnace.takeOutput() : null
+}
+
+module.exports = {
+  name: 'smeltItem',
+  signature: 'smeltItem(bot, itemName, fuelName, furnacePos, count)',
+  description: 'Go to the furnace, smelt count of an item with the fuel, wait for it, and take out what was made and what is left.',
+  parameters: [
+    { name: 'bot', type: 'Bot', description: 'your own bot' },
+    { name: 'itemName', type: 'string', description: 'what to smelt' },
+    { name: 'fuelName', type: 'string', description: 'what to burn' },
+    { name: 'furnacePos', type: 'Vec3', description: 'position of a furnace, blast furnace or smoker' },
+    { name: 'count', type: 'number', description: 'how many; 1 if left out' }
+  ],
+  example: 'await smeltItem(bot, "raw_iron", "coal", new Vec3(4, -51, 2), 3)',
+  async run (context, itemName, fuelName, furnacePos, count = 1) {
+    const { bot, fail, emit } = context
+    const item = checkItem(context, 'itemName', itemName)
+    const fuel = checkItem(context, 'fuelName', fuelName)
+    const position = blockPosition(context, 'furnacePos', furnacePos)
+    const wanted = checkCount(context, 'count', count)
+    checkAmount(context, item, wanted)
+    checkAmount(context, fuel, 1)
+    findFurnace(context, position)
+    await walkToUse(context, position, 'the furnace')
+    const furnace = await bot.openFurnace(findFurnace(context, position))
+    let made = 0
+    try {
+      checkEmpty(context, furnace, item, fuel)
+      await furnace.putInput(item.id, null, wanted)
+      try {
+        made = await smelt(context, furnace, position, item, fuel, wanted)
+      } finally {
+        const output = await emptyFurnace(furnace)
+        if (output) emit({ kind: 'smelt_item', detail: { items: { [output.name]: output.count } } })
+      }
+    } finally {
+      await furnace.close()
+    }
+    if (made < wanted) fail(`${made} of ${wanted} ${item.name} were smelted, then the ${fuel.name} ran out. Get more fuel.`)
+  }
+}

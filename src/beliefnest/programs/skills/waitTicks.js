@@ -1,0 +1,15 @@
+'use strict'
+const { count } = require('./lib/arguments')
+const { ticks } = require('./lib/waiting')
+
+module.exports = {
+  name: 'waitTicks',
+  signature: 'waitTicks(bot, number)',
+  description: 'Wait for a number of ticks; 20 are a second.',
+  parameters: [
+    { name: 'bot', type: 'Bot', description: 'your own bot' },
+    { name: 'number', type: 'number', description: 'how many ticks' }
+  ],
+  example: 'await waitTicks(bot, 20)',
+  run: async (context, number) => ticks(count(context, 'number', number))
+}

@@ -1,0 +1,25 @@
+'use strict'
+const { count, show } = require('./lib/arguments')
+const { ticks } = require('./lib/waiting')
+
+module.exports = {
+  name: 'waitUntil',
+  signature: 'waitUntil(bot, condition, number=200)',
+  description: 'Wait until condition gives something true, and return that; looks every tick, fails after a number of ticks.',
+  parameters: [
+    { name: 'bot', type: 'Bot', description: 'your own bot' },
+    { name: 'condition', type: '() => any', description: 'what is waited for' },
+    { name: 'number', type: 'number', description: 'how many ticks at most' }
+  ],
+  example: 'await waitUntil(bot, () => bot.players.anne.entity.position.z < 0)',
+  async run (context, condition, number = 200) {
+    if (typeof condition !== 'function') context.fail(`condition must be a function, like () => bot.health < 20; it is ${show(condition)}`)
+    const limit = count(context, 'number', number)
+    for (let passed = 0; ; passed++) {
+      const result = await condition()
+      if (result) return result
+      if (passed >= limit) context.fail(`condition did not come true within ${limit} ticks.`)
+      await ticks(1)
+    }
+  }
+}
