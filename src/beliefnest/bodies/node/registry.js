@@ -6,9 +6,9 @@ const fs = require('node:fs')
 const path = require('node:path')
 const { encode } = require('@msgpack/msgpack')
 const minecraftData = require('minecraft-data')
+const { minecraft: MINECRAFT_VERSION } = require('./src/versions')
 
 const FORMAT = 1
-const MINECRAFT_VERSION = '1.20.4'
 
 /** The texts of a property's values, in the order in which state ids count them. */
 function propertyValues (property) {
