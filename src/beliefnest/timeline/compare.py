@@ -1,0 +1,79 @@
+"""Where two histories part: what a replay did otherwise than the record."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from itertools import zip_longest
+from typing import Any
+
+from beliefnest.timeline.journal import Entry
+
+__all__ = ["Difference", "first_difference"]
+
+_ABSENT = object()
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """The first thing two histories do not agree on.
+
+    Attributes:
+        tick: Tick of the earlier of the two entries.
+        entry: Number of the entries, from 0.
+        field: Where in the entry, as `agents.sally.position.0`; empty if one history has no
+            such entry or has another sort of entry.
+        recorded: Value in the first history; None if it has none.
+        found: Value in the second history; None if it has none.
+    """
+
+    tick: int
+    entry: int
+    field: str
+    recorded: Any
+    found: Any
+
+
+def first_difference(recorded: Iterable[Entry], found: Iterable[Entry]) -> Difference | None:
+    """The first difference between two histories; None if they are the same."""
+    for number, (old, new) in enumerate(zip_longest(recorded, found)):
+        if old == new:
+            continue
+        tick = min(entry.tick for entry in (old, new) if entry is not None)
+        # An entry that only one history has at that tick is missing from the other.
+        if old is None or new is None or type(old) is not type(new) or old.tick != new.tick:
+            there = [None if e is None or e.tick > tick else e for e in (old, new)]
+            return Difference(tick, number, "", *there)
+        place, a, b = next(_differences("", old, new))
+        return Difference(tick, number, place, a, b)
+    return None
+
+
+def _differences(place: str, old: Any, new: Any) -> Iterator[tuple[str, Any, Any]]:
+    """Every innermost place where two values differ, with what is there."""
+    if old == new:
+        return
+    parts_old, parts_new = _parts(old), _parts(new)
+    if type(old) is not type(new) or parts_old is None or parts_new is None:
+        yield place, _shown(old), _shown(new)
+        return
+    for name in [*parts_old, *(n for n in parts_new if n not in parts_old)]:
+        inner = f"{place}.{_name(name)}" if place else _name(name)
+        yield from _differences(inner, parts_old.get(name, _ABSENT), parts_new.get(name, _ABSENT))
+
+
+def _parts(value: Any) -> Mapping[Any, Any] | None:
+    """What a value consists of, by name; None if it is of one piece."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return {field.name: getattr(value, field.name) for field in fields(value)}
+    if isinstance(value, Mapping):
+        return value
+    if isinstance(value, tuple):
+        return dict(enumerate(value))
+    return None
+
+
+def _name(name: Any) -> str:
+    return ",".join(map(str, name)) if isinstance(name, tuple) else str(name)
+
+
+def _shown(value: Any) -> Any:
+    return None if value is _ABSENT else value

@@ -1,0 +1,79 @@
+"""Events as other programs tell them: which details each kind has to have."""
+
+from collections.abc import Collection, Mapping
+from types import MappingProxyType
+from typing import Any
+
+import msgspec
+
+from beliefnest.errors import InputError
+from beliefnest.world.values import Event, EventKind, Point, Position
+
+__all__ = ["REQUIRED", "event_from"]
+
+REQUIRED: Mapping[EventKind, tuple[str, ...]] = MappingProxyType(
+    {
+        EventKind.CHAT: ("text",),
+        EventKind.THINK: ("text",),
+        EventKind.MOVE_TO: ("destination",),
+        EventKind.MINE_BLOCK: ("position",),
+        EventKind.PLACE_BLOCK: ("position",),
+        EventKind.CRAFT_ITEM: ("items",),
+        EventKind.SMELT_ITEM: ("items",),
+        EventKind.GET_ITEM_FROM_CHEST: ("position", "items"),
+        EventKind.DEPOSIT_ITEM_INTO_CHEST: ("position", "items"),
+        EventKind.OPEN_CONTAINER: ("position",),
+        EventKind.USE_LEVER: ("position",),
+        EventKind.GIVE_ITEM_TO_OTHER: ("other", "items"),
+        EventKind.RECEIVE_ITEM_FROM_OTHER: ("other", "items"),
+        EventKind.EMOTE: ("name",),
+        EventKind.BLOCK_UPDATE: ("position",),
+    }
+)
+"""Details without which an event of that kind means nothing."""
+
+
+class _Detail(msgspec.Struct, forbid_unknown_fields=True):
+    text: str | msgspec.UnsetType = msgspec.UNSET
+    position: Position | msgspec.UnsetType = msgspec.UNSET
+    block: str | msgspec.UnsetType = msgspec.UNSET
+    items: dict[str, int] | msgspec.UnsetType = msgspec.UNSET
+    other: str | msgspec.UnsetType = msgspec.UNSET
+    powered: bool | msgspec.UnsetType = msgspec.UNSET
+    name: str | msgspec.UnsetType = msgspec.UNSET
+    destination: Point | msgspec.UnsetType = msgspec.UNSET
+
+
+def event_from(
+    kind: str, actor: str | None, detail: Mapping[str, Any], agents: Collection[str]
+) -> Event:
+    """An event from plain data.
+
+    Args:
+        kind: A value of `EventKind`.
+        actor: Who did it; only a block update may have none.
+        detail: As in `Event.detail`, sequences as lists.
+        agents: Names there are.
+
+    Raises:
+        InputError: The kind or an agent is unknown, a detail is missing, unknown or of
+            another type.
+    """
+    if kind not in set(EventKind):
+        raise InputError(f"there is no event {kind!r}; there are {', '.join(EventKind)}")
+    known = EventKind(kind)
+    if actor is None and known is not EventKind.BLOCK_UPDATE:
+        raise InputError(f"event {kind!r} has no actor; name the agent who did it")
+    try:
+        typed = msgspec.convert(detail, _Detail)
+    except msgspec.ValidationError as fault:
+        raise InputError(f"detail of event {kind!r}: {fault}") from fault
+    given = msgspec.structs.asdict(typed)
+    values = {name: value for name, value in given.items() if value is not msgspec.UNSET}
+    missing = [name for name in REQUIRED[known] if name not in values]
+    if missing:
+        raise InputError(f"event {kind!r} lacks the detail {', '.join(missing)}")
+    for name in (actor, values.get("other")):
+        if name is not None and name not in agents:
+            raise InputError(f"event {kind!r} names an unknown agent {name!r}")
+    return Event(known, actor, values)

@@ -1,0 +1,215 @@
+"""A journal as tables for other programs: a folder of JSON lines or Parquet files.
+
+Each file is one table of `tables.TABLES`, with the same columns in both formats.
+"""
+
+import importlib
+import shutil
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any, Literal, Protocol
+
+import msgspec
+
+from beliefnest.errors import InputError, StoreError
+from beliefnest.timeline.journal import Journal, TimelineKey
+from beliefnest.timeline.tables import (
+    TABLES,
+    BeliefRow,
+    Column,
+    Row,
+    belief_row,
+    entry_rows,
+    snapshot_rows,
+    timeline_row,
+)
+from beliefnest.world.frames import Snapshot
+from beliefnest.world.registry import Registry
+
+__all__ = ["FORMATS", "Format", "export"]
+
+Format = Literal["jsonl", "parquet"]
+FORMATS: tuple[Format, ...] = ("jsonl", "parquet")
+
+_ROW_GROUP = 50_000
+"""Rows Parquet files are written in at a time."""
+
+
+class _Table(Protocol):
+    """A table being written."""
+
+    def write(self, values: Mapping[str, Any]) -> None:
+        """Append a row."""
+
+    def close(self) -> None:
+        """Write what is left."""
+
+
+def export(
+    journal: Journal,
+    format: Format,
+    out: Path,
+    *,
+    registry: Registry,
+    first: Snapshot | None = None,
+    timelines: Iterable[TimelineKey] | None = None,
+    beliefs: Iterable[BeliefRow] = (),
+) -> Mapping[str, int]:
+    """Write a journal into a new folder, whole or not at all.
+
+    Args:
+        journal: What to write.
+        format: "jsonl", or "parquet", which needs the extra `beliefnest[parquet]`.
+        out: The folder; it must not exist, or be empty.
+        registry: Names of the blocks.
+        first: State before the first entry of the timelines that have no base.
+        timelines: Which timelines to write; None: all.
+        beliefs: States of nodes, in the order they are to be written in.
+
+    Returns:
+        Number of rows by table.
+
+    Raises:
+        InputError: The format is unknown, its library is missing, or the folder is not empty.
+        BranchError: There is no such timeline.
+        StoreError: The journal cannot be read or the folder cannot be written.
+    """
+    opener = _opener(format)
+    if out.exists() and (not out.is_dir() or any(out.iterdir())):
+        raise InputError(f"{out} is there already; remove it or choose another folder")
+    rows = _rows(journal, registry, first, timelines, beliefs)
+    try:
+        with _folder_in_place_of(out) as folder:
+            return _written(rows, folder, opener)
+    except OSError as fault:
+        raise StoreError(
+            f"{out} cannot be written: {fault}; check the path and the disk"
+        ) from fault
+
+
+def _rows(
+    journal: Journal,
+    registry: Registry,
+    first: Snapshot | None,
+    timelines: Iterable[TimelineKey] | None,
+    beliefs: Iterable[BeliefRow],
+) -> Iterator[Row]:
+    chosen = [i.key for i in journal.timelines()] if timelines is None else list(timelines)
+    for key in chosen:
+        info = journal.info(key)
+        yield timeline_row(info)
+        if info.base is None and first is not None:
+            yield from snapshot_rows(key, first, registry)
+        for number, entry in enumerate(journal.entries(key, 0, info.entries)):
+            yield from entry_rows(key, number, entry, registry)
+    yield from map(belief_row, beliefs)
+
+
+def _written(
+    rows: Iterable[Row], folder: Path, opener: Callable[[Path, str], _Table]
+) -> dict[str, int]:
+    counts = dict.fromkeys(TABLES, 0)
+    with ExitStack() as stack:
+        tables = {}
+        for name in TABLES:
+            tables[name] = opener(folder, name)
+            stack.callback(tables[name].close)
+        for name, values in rows:
+            tables[name].write(values)
+            counts[name] += 1
+    return counts
+
+
+@contextmanager
+def _folder_in_place_of(out: Path) -> Iterator[Path]:
+    """A folder that becomes `out` if all goes well, and vanishes otherwise."""
+    out.parent.mkdir(parents=True, exist_ok=True)
+    folder = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.parent))
+    try:
+        yield folder
+        folder.chmod(0o755)
+        folder.replace(out)
+    except BaseException:
+        shutil.rmtree(folder)
+        raise
+
+
+def _opener(format: str) -> Callable[[Path, str], _Table]:
+    if format == "jsonl":
+        return _JsonLines
+    if format == "parquet":
+        try:
+            arrow = importlib.import_module("pyarrow")
+            parquet = importlib.import_module("pyarrow.parquet")
+        except ImportError as fault:
+            raise InputError(
+                "Parquet needs pyarrow: pip install 'beliefnest[parquet]', or export as jsonl"
+            ) from fault
+        return lambda folder, name: _Parquet(arrow, parquet, folder, name)
+    raise InputError(f"there is no format {format!r}; there are {', '.join(FORMATS)}")
+
+
+class _JsonLines:
+    """One JSON object for each row."""
+
+    def __init__(self, folder: Path, name: str) -> None:
+        self._file = (folder / f"{name}.jsonl").open("wb")
+        self._columns = tuple(TABLES[name])
+
+    def write(self, values: Mapping[str, Any]) -> None:
+        """Append a row."""
+        self._file.write(_json({column: values[column] for column in self._columns}) + b"\n")
+
+    def close(self) -> None:
+        """Write what is left."""
+        self._file.close()
+
+
+class _Parquet:
+    """A Parquet file; objects are JSON text in it."""
+
+    def __init__(self, arrow: Any, parquet: Any, folder: Path, name: str) -> None:
+        self._columns = TABLES[name]
+        self._arrow = arrow
+        types: Mapping[Column, Any] = {
+            "text": arrow.string(),
+            "integer": arrow.int64(),
+            "number": arrow.float64(),
+            "boolean": arrow.bool_(),
+            "object": arrow.string(),
+        }
+        self._schema = arrow.schema([(c, types[kind]) for c, kind in self._columns.items()])
+        self._file = parquet.ParquetWriter(folder / f"{name}.parquet", self._schema)
+        self._rows: list[dict[str, Any]] = []
+
+    def write(self, values: Mapping[str, Any]) -> None:
+        """Append a row."""
+        self._rows.append(
+            {
+                column: _json(values[column]).decode()
+                if kind == "object" and values[column] is not None
+                else values[column]
+                for column, kind in self._columns.items()
+            }
+        )
+        if len(self._rows) >= _ROW_GROUP:
+            self._flush()
+
+    def close(self) -> None:
+        """Write what is left."""
+        self._flush()
+        self._file.close()
+
+    def _flush(self) -> None:
+        if self._rows:
+            self._file.write_table(self._arrow.Table.from_pylist(self._rows, schema=self._schema))
+            self._rows = []
+
+
+def _json(value: object) -> bytes:
+    try:
+        return msgspec.json.encode(value)
+    except (TypeError, msgspec.MsgspecError) as fault:
+        raise InputError(f"a row holds what is no plain data: {fault}") from fault

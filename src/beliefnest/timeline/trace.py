@@ -1,0 +1,282 @@
+"""Histories of other programs: a JSONL file of poses, blocks and events becomes entries.
+
+The first line is the state things begin in, every other line what one tick changed; see
+docs/export.md. All bad lines are found and told together.
+"""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.timeline.events import event_from
+from beliefnest.timeline.journal import Entry, Journal, TimelineKey
+from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import (
+    EQUIPMENT_SLOTS,
+    AgentState,
+    Box,
+    DroppedItem,
+    Event,
+    Items,
+    Point,
+    Position,
+)
+
+__all__ = ["BadLine", "Trace", "load_trace", "read_trace", "record_trace"]
+
+_TOLD = 10
+"""Bad lines an error message quotes."""
+
+
+class _AgentLine(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
+    position: Point | None = None
+    yaw: float | None = None
+    pitch: float | None = None
+    on_ground: bool | None = None
+    equipment: dict[str, str] | None = None
+    inventory: dict[str, int] | None = None
+    health: float | None = None
+    food: float | None = None
+
+
+class _ItemLine(msgspec.Struct, forbid_unknown_fields=True):
+    name: str
+    count: int
+    position: Point
+
+
+class _EventLine(msgspec.Struct, forbid_unknown_fields=True):
+    kind: str
+    actor: str | None = None
+    detail: dict[str, Any] = {}
+
+
+_BlockLine = tuple[int, int, int, str]
+_ContainerLine = tuple[int, int, int, dict[str, int] | None]
+
+
+class _FirstLine(msgspec.Struct, forbid_unknown_fields=True):
+    box: tuple[Position, Position]
+    agents: dict[str, _AgentLine | None]
+    tick: int = 0
+    fills: list[tuple[Position, Position, str]] = []
+    blocks: list[_BlockLine] = []
+    containers: list[_ContainerLine] = []
+    items: dict[int, _ItemLine] = {}
+
+
+class _TickLine(msgspec.Struct, forbid_unknown_fields=True):
+    tick: int
+    agents: dict[str, _AgentLine | None] = {}
+    blocks: list[_BlockLine] = []
+    containers: list[_ContainerLine] = []
+    items: dict[int, _ItemLine | None] = {}
+    events: list[_EventLine] = []
+
+
+@dataclass(frozen=True, slots=True)
+class BadLine:
+    """A line of a trace that cannot be used: its number, from 1, and why."""
+
+    line: int
+    fault: str
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """A history told by another program.
+
+    Attributes:
+        first: The state it begins in.
+        agents: Names of all agents, those who come later included.
+        entries: What changed, in order of ticks.
+        bad: Lines that were left out.
+    """
+
+    first: Snapshot
+    agents: tuple[str, ...]
+    entries: tuple[Entry, ...]
+    bad: tuple[BadLine, ...]
+
+
+def load_trace(path: Path, registry: Registry) -> Trace:
+    """The history in a file, all of whose lines are good.
+
+    Raises:
+        InputError: The file cannot be read or has bad lines; the message tells which.
+    """
+    try:
+        with path.open("rb") as file:
+            trace = read_trace(file, registry)
+    except OSError as fault:
+        raise InputError(f"{path} cannot be read ({fault.strerror}); check the path") from fault
+    except InputError as fault:
+        raise InputError(f"{path}: {fault}") from fault
+    if trace.bad:
+        told = "; ".join(f"line {bad.line}: {bad.fault}" for bad in trace.bad[:_TOLD])
+        more = f"; and {len(trace.bad) - _TOLD} more" if len(trace.bad) > _TOLD else ""
+        raise InputError(f"{path} has {len(trace.bad)} bad lines: {told}{more}")
+    return trace
+
+
+def read_trace(lines: Iterable[bytes], registry: Registry) -> Trace:
+    """The history told by lines of JSON; bad ones are left out and listed.
+
+    Raises:
+        InputError: The first line is bad, so that nothing after it can be judged.
+    """
+    numbered = ((n, line) for n, line in enumerate(lines, start=1) if line.strip())
+    number, first_line = next(numbered, (1, b""))
+    try:
+        reader = _Reader(_decoded(first_line, _FirstLine), registry)
+    except BeliefNestError as fault:
+        raise InputError(f"line {number}, the first state: {fault}") from fault
+    entries: list[Entry] = []
+    bad: list[BadLine] = []
+    for number, line in numbered:
+        try:
+            entries.append(reader.frame(_decoded(line, _TickLine)))
+        except BeliefNestError as fault:
+            bad.append(BadLine(number, str(fault)))
+    return Trace(reader.first, reader.names, tuple(entries), tuple(bad))
+
+
+def record_trace(trace: Trace, journal: Journal, key: TimelineKey) -> None:
+    """Put a trace into a journal as a new timeline.
+
+    Raises:
+        BranchError: There is a timeline of that key already.
+    """
+    start = trace.first.tick
+    journal.create(key, None, start)
+    journal.append(key, trace.entries, trace.entries[-1].tick if trace.entries else start)
+
+
+class _Reader:
+    """Turns lines into frames; remembers what a line leaves out."""
+
+    def __init__(self, line: _FirstLine, registry: Registry) -> None:
+        self._registry = registry
+        self._box = Box(*line.box)
+        if min(self._box.shape) < 1:
+            raise InputError(f"box {line.box} is empty; give its lower corner first")
+        self.names = tuple(line.agents)
+        self._tick = line.tick
+        blocks = np.zeros(self._box.shape, dtype=np.int32)
+        for low, high, text in line.fills:
+            (x0, y0, z0), (x1, y1, z1) = (self._index(low), self._index(high))
+            if min(Box(low, high).shape) < 1:
+                raise InputError(f"fill {low} to {high} is empty; give its lower corner first")
+            blocks[x0 : x1 + 1, y0 : y1 + 1, z0 : z1 + 1] = registry.state_id(text)
+        for place, state in self._blocks(line.blocks).items():
+            blocks[self._box.index(place)] = state
+        self._grid = blocks.copy()
+        containers = self._containers(line.containers, {})
+        self._agents: dict[str, AgentState | None] = {}
+        self._agents = self._changed_agents(line.agents)
+        self.first = Snapshot(
+            line.tick,
+            self._box,
+            blocks,
+            {place: items for place, items in containers.items() if items is not None},
+            {name: agent for name, agent in self._agents.items() if agent is not None},
+            {number: self._item(item) for number, item in line.items.items()},
+        )
+
+    def frame(self, line: _TickLine) -> Frame:
+        """The frame a line tells; nothing is remembered of a line that raises."""
+        if line.tick <= self._tick:
+            raise InputError(f"tick {line.tick} does not come after tick {self._tick}")
+        agents = self._changed_agents(line.agents)
+        blocks = self._blocks(line.blocks)
+        frame = Frame(
+            line.tick,
+            agents,
+            blocks,
+            self._containers(line.containers, blocks),
+            {n: None if item is None else self._item(item) for n, item in line.items.items()},
+            tuple(self._event(event) for event in line.events),
+        )
+        self._tick = line.tick
+        self._agents |= agents
+        for place, state in blocks.items():
+            self._grid[self._box.index(place)] = state
+        return frame
+
+    def _index(self, place: Position) -> Position:
+        if place not in self._box:
+            raise InputError(f"{place} lies outside the box {self._box.low} to {self._box.high}")
+        return self._box.index(place)
+
+    def _blocks(self, lines: Iterable[_BlockLine]) -> dict[Position, int]:
+        blocks = {}
+        for x, y, z, text in lines:
+            self._index((x, y, z))
+            blocks[x, y, z] = self._registry.state_id(text)
+        return blocks
+
+    def _containers(
+        self, lines: Iterable[_ContainerLine], changed: Mapping[Position, int]
+    ) -> dict[Position, Items | None]:
+        contents: dict[Position, Items | None] = {}
+        for x, y, z, items in lines:
+            place = (x, y, z)
+            state = changed.get(place, int(self._grid[self._index(place)]))
+            name = self._registry.name(state)
+            if items is not None and not self._registry.is_container(name):
+                raise InputError(f"the block at {place} is {name}, which holds no items")
+            contents[place] = None if items is None else self._items(items)
+        return contents
+
+    def _items(self, items: Mapping[str, int]) -> dict[str, int]:
+        for name, count in items.items():
+            self._registry.item_stack(name)
+            if count < 1:
+                raise InputError(f"{count} of {name!r}; counts are positive")
+        return dict(items)
+
+    def _item(self, line: _ItemLine) -> DroppedItem:
+        self._items({line.name: line.count})
+        return DroppedItem(line.name, line.count, line.position)
+
+    def _changed_agents(
+        self, lines: Mapping[str, _AgentLine | None]
+    ) -> dict[str, AgentState | None]:
+        return {name: self._agent(name, line) for name, line in lines.items()}
+
+    def _agent(self, name: str, line: _AgentLine | None) -> AgentState | None:
+        if name not in self.names:
+            raise InputError(f"agent {name!r} is not among those of the first line")
+        if line is None:
+            return None
+        given = {k: v for k, v in msgspec.structs.asdict(line).items() if v is not None}
+        before = self._agents.get(name)
+        if before is None and line.position is None:
+            raise InputError(f"agent {name!r} comes without a position")
+        if line.position is not None:
+            x, y, z = line.position
+            self._index((math.floor(x), math.floor(y), math.floor(z)))
+        self._items(line.inventory or {})
+        for slot, item in (line.equipment or {}).items():
+            self._registry.item_stack(item)
+            if slot not in EQUIPMENT_SLOTS:
+                there = ", ".join(EQUIPMENT_SLOTS)
+                raise InputError(f"there is no slot {slot!r}; there are {there}")
+        return AgentState(**given) if before is None else replace(before, **given)
+
+    def _event(self, line: _EventLine) -> Event:
+        return event_from(line.kind, line.actor, line.detail, self.names)
+
+
+def _decoded(line: bytes, kind: Any) -> Any:
+    try:
+        return msgspec.json.decode(line, type=kind)
+    except (msgspec.MsgspecError, UnicodeDecodeError) as fault:
+        raise InputError(str(fault)) from fault
