@@ -20,7 +20,9 @@ module.exports.entity = (entity, serv) => {
   entity.getOtherPlayers = others
   entity.nearbyPlayers = others
   entity.getNearbyPlayers = others
-  entity.getNearby = () => Object.values(serv.entities).filter(other => other !== entity)
+  // Who has no tab list yet would not know whose body it is shown.
+  const hasList = other => other.type !== 'player' || other.listed
+  entity.getNearby = () => Object.values(serv.entities).filter(other => other !== entity && hasList(other))
   entity._writeOthers = (name, packet) => serv._writeArray(name, packet, others())
   entity._writeOthersNearby = entity._writeOthers
   entity._writeNearby = (name, packet) => serv._writeAll(name, packet)

@@ -83,6 +83,7 @@ function introduce (player, serv) {
   serv._writeArray('player_info', { action, data: [entry(player)] }, others)
   player.meet = () => {
     player._client.write('player_info', { action, data: serv.players.map(entry) })
+    player.listed = true
     player.updateAndSpawn()
   }
 }
