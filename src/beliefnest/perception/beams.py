@@ -9,13 +9,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, LIMIT_SLACK, OWN
 from beliefnest.perception.rays import (
-    EMPTY,
-    FIRST_SHAPE,
-    FULL,
-    INTRUDED,
     LEAST_LENGTH,
-    OWN,
     Boxes,
     Cell,
     Codes,
@@ -48,8 +44,6 @@ Open = npt.NDArray[np.int64]
 """Of each ray -1 as long as nothing was found to hide its end, then 0."""
 
 _SAMPLES = 16
-# Limits are meant to be inclusive whatever the rounding of a mirrored or turned world.
-_SLACK = 1e-9
 # Face corners are pulled in by 0.01. Counted from the middle so that a mirrored block
 # has the mirrored samples to the last bit.
 _CORNER = 0.49
@@ -71,13 +65,13 @@ def in_field(eye: Eye, x: float, y: float, z: float) -> bool:
     if cos_half < -1.0:
         return True
     along = x * look[0] + z * look[2] + y * look[1]
-    return along >= (cos_half - _SLACK) * math.sqrt(x * x + z * z + y * y)
+    return along >= (cos_half - LIMIT_SLACK) * math.sqrt(x * x + z * z + y * y)
 
 
 @inlined
 def in_reach(eye: Eye, x: float, y: float, z: float) -> bool:
     """Whether what lies at (x, y, z) from the eye's place is within the visible distance."""
-    return math.sqrt(x * x + z * z + y * y) <= eye[3] + _SLACK
+    return math.sqrt(x * x + z * z + y * y) <= eye[3] + LIMIT_SLACK
 
 
 @inlined
@@ -284,17 +278,15 @@ def sees_block(
     suspects: Suspects,
     index: int,
 ) -> bool:
-    """Whether a block is seen, given what `cast_shadows` noted at an index, if above 0."""
+    """Whether a block is seen, if near enough; index: of what `cast_shadows` noted, or -1."""
     place = eye[0]
     x, y, z = cell[0] + 0.5 - place[0], cell[1] + 0.5 - place[1], cell[2] + 0.5 - place[2]
-    if not in_reach(eye, x, y, z):
-        return False
     in_plane = _aim(eye, cell, slopes, opens)
     left = False
     for n in range(_SAMPLES):
         left |= opens[n] != 0
-    known = counts[index] if index > 0 else ROOM + 1
-    if index > 0:
+    known = counts[index] if index >= 0 else ROOM + 1
+    if index >= 0:
         for n in range(min(known, ROOM)):
             if left:
                 by = cell_at(sizes, suspects[index, n])

@@ -14,13 +14,14 @@ from beliefnest.perception.rays import (
 )
 from beliefnest.perception.views import Eye, _in_field, _in_reach, _sees_block
 
-__all__ = ["eye_sees_agent", "eye_sees_block", "eye_sees_point"]
+__all__ = ["eye_sees_agent", "eye_sees_block", "eye_sees_point", "in_reach"]
 
 # Heights of `sight.AGENT_SAMPLE_HEIGHTS` and `sight.BODY_CENTRE_HEIGHT`, as compiled constants.
 _HEIGHTS = np.array([1.62, 0.9, 0.05])
 _CENTRE = 0.9
 
 eye_sees_block = _sees_block
+in_reach = _in_reach
 
 
 @compiled

@@ -1,9 +1,7 @@
 """One ray through a grid of shapes: compiled, exact, the same in a mirror.
 
-A grid of codes has one uint16 per cell, with a margin of one cell on every side: the
-shape of the cell's own block (`EMPTY`, `FULL`, or `FIRST_SHAPE` + the number of a row
-range in the shape tables), plus `INTRUDED` if the shape of a neighbour reaches into the
-cell. Coordinates are those of the grid: cell (i, j, k) is the cube from (i, j, k) to
+The grid is one of codes (see `codes`), flattened, with its three sizes beside it.
+Coordinates are those of the grid: cell (i, j, k) is the cube from (i, j, k) to
 (i + 1, j + 1, k + 1). A ray is eye + t * d, 0 <= t <= 1.
 
 Shapes lie on a grid of 1/32 and reach out of their cell by half a cell at most, along one
@@ -18,19 +16,17 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, OWN
+
 __all__ = [
-    "EMPTY",
-    "FIRST_SHAPE",
-    "FULL",
-    "INTRUDED",
     "NOWHERE",
     "LEAST_LENGTH",
     "MISSED",
-    "OWN",
     "Ray",
     "Boxes",
     "Cell",
     "Codes",
+    "Scene",
     "Starts",
     "Vector",
     "at",
@@ -54,16 +50,14 @@ F = TypeVar("F", bound=Callable[..., Any])
 Cell = tuple[int, int, int]
 Vector = tuple[float, float, float]
 Codes = npt.NDArray[np.uint16]
+"""The codes of a grid, flattened."""
 Starts = npt.NDArray[np.int32]
 Boxes = npt.NDArray[np.float64]
+Scene = tuple[Codes, Cell, Starts, Boxes]
+"""A grid, its sizes, and the shapes of its blocks."""
 Ray = tuple[Vector, Vector, Vector, float]
 """Eye, d, 1 / d (0 where d is 0), and the t that 1e-9 blocks take."""
 
-EMPTY = 0
-FULL = 1
-FIRST_SHAPE = 2
-INTRUDED = 0x8000
-OWN = 0x7FFF
 NOWHERE = (-1, -1, -1)
 
 MISSED = 2.0

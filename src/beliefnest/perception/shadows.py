@@ -11,11 +11,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, OWN
 from beliefnest.perception.rays import (
-    EMPTY,
-    FIRST_SHAPE,
-    FULL,
-    OWN,
     Boxes,
     Cell,
     Codes,
@@ -30,7 +27,17 @@ from beliefnest.perception.rays import (
     turned_back,
 )
 
-__all__ = ["CLEAR", "HIDDEN", "ROOM", "UNSURE", "Counts", "Marks", "Suspects", "cast_shadows"]
+__all__ = [
+    "CLEAR",
+    "HIDDEN",
+    "ROOM",
+    "UNSURE",
+    "Counts",
+    "Marks",
+    "Suspects",
+    "cast_shadows",
+    "nothing_noted",
+]
 
 Marks = npt.NDArray[np.int8]
 Counts = npt.NDArray[np.uint8]
@@ -244,3 +251,12 @@ def cast_shadows(
                 # A block does not hide itself.
                 marks[index] = mark
     return marks, counts, suspects
+
+
+def nothing_noted() -> tuple[Marks, Counts, Suspects]:
+    """What stands for the result of `cast_shadows` where it was not called."""
+    return (
+        np.empty(0, dtype=np.int8),
+        np.empty(0, dtype=np.uint8),
+        np.empty((0, ROOM), dtype=np.int32),
+    )

@@ -21,13 +21,22 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.perception.codes import (
+    EMPTY,
+    FIRST_SHAPE,
+    FULL,
+    LIMIT_SLACK,
+    CodeGrid,
+    mark_intruded,
+    put_code,
+)
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import EYE_HEIGHT, Point, Position
 
 if TYPE_CHECKING:
-    from beliefnest.perception.rays import Codes, Shapes
-    from beliefnest.perception.views import Eye
+    from beliefnest.perception.beams import Eye
+    from beliefnest.perception.rays import Scene
 
 __all__ = ["AGENT_SAMPLE_HEIGHTS", "BODY_CENTRE_HEIGHT", "Geometry", "Sight", "Tables"]
 
@@ -38,6 +47,7 @@ AGENT_SAMPLE_HEIGHTS = (EYE_HEIGHT, BODY_CENTRE_HEIGHT, 0.05)
 """Heights above the feet of the points by which an agent is seen, in blocks."""
 
 BoolArray = npt.NDArray[np.bool_]
+Points = npt.NDArray[np.float64]
 
 
 class Tables(NamedTuple):
@@ -92,18 +102,16 @@ class Sight:
             InputError: The grid is not three-dimensional.
             UnknownNameError: A value is neither a block state id nor -1.
         """
-        from beliefnest.perception import views
-
         _check_grid(blocks, self.registry.states)
         codes = np.zeros([size + 2 for size in blocks.shape], dtype=np.uint16)
         codes[1:-1, 1:-1, 1:-1] = self._state_codes[blocks]
-        views.mark_intruded(codes.ravel(), codes.shape, self._reaches)
+        mark_intruded(codes, self._reaches)
         codes.flags.writeable = False
         return Geometry(self, origin, codes)
 
     def tables(self) -> "Tables":
         """What kernels of other rooms need to know of shapes."""
-        starts, boxes = self._shapes
+        starts, boxes = self.registry.shape_start, self.registry.shape_boxes
         return Tables(starts, boxes, self._reaches, self._state_codes)
 
     def visible_blocks(
@@ -164,37 +172,29 @@ class Sight:
 
     @functools.cached_property
     def _state_codes(self) -> npt.NDArray[np.uint16]:
-        """Code (as in `rays`) of each state, and at the end that of unknown."""
-        from beliefnest.perception import rays
-
-        shape_codes = np.arange(len(self.registry.shape_start) - 1) + rays.FIRST_SHAPE
+        """Code (see `codes`) of each state, and at the end that of unknown."""
+        shape_codes = np.arange(len(self.registry.shape_start) - 1) + FIRST_SHAPE
         sizes = np.diff(self.registry.shape_start)
         for shape in np.flatnonzero(sizes == 1):
             box = self.registry.shape_boxes[self.registry.shape_start[shape]]
             if (box == (0, 0, 0, 1, 1, 1)).all():
-                shape_codes[shape] = rays.FULL
+                shape_codes[shape] = FULL
         codes = shape_codes[self.registry.state_shape]
-        codes[self._transparent] = rays.EMPTY
-        return np.append(codes, rays.EMPTY).astype(np.uint16)
+        codes[self._transparent] = EMPTY
+        return np.append(codes, EMPTY).astype(np.uint16)
 
     @functools.cached_property
     def _reaches(self) -> npt.NDArray[np.uint8]:
         """By code, the sides at which its shape reaches out of the cell, one bit for each."""
-        from beliefnest.perception import rays
-
-        starts, boxes = self._shapes
-        reaches = np.zeros(len(starts) - 1 + rays.FIRST_SHAPE, dtype=np.uint8)
+        starts, boxes = self.registry.shape_start, self.registry.shape_boxes
+        reaches = np.zeros(len(starts) - 1 + FIRST_SHAPE, dtype=np.uint8)
         for shape in range(len(starts) - 1):
             rows = boxes[starts[shape] : starts[shape + 1]]
             for axis in range(3):
                 low, high = (rows[:, axis] < 0).any(), (rows[:, axis + 3] > 1).any()
-                reaches[shape + rays.FIRST_SHAPE] |= int(low) << 2 * axis
-                reaches[shape + rays.FIRST_SHAPE] |= int(high) << 2 * axis + 1
+                reaches[shape + FIRST_SHAPE] |= int(low) << 2 * axis
+                reaches[shape + FIRST_SHAPE] |= int(high) << 2 * axis + 1
         return reaches
-
-    @functools.cached_property
-    def _shapes(self) -> "Shapes":
-        return self.registry.shape_start, self.registry.shape_boxes
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,12 +208,12 @@ class Geometry:
     Attributes:
         sight: How agents see.
         origin: Position of the grid's low corner.
-        codes: What each cell holds, as described in `rays`, read-only.
+        codes: What each cell holds, as described in `codes`, read-only.
     """
 
     sight: Sight
     origin: Position
-    codes: "Codes"
+    codes: CodeGrid
 
     def with_blocks(self, changes: Mapping[Position, int]) -> "Geometry":
         """The geometry with other block states (-1: unknown) at some positions of the grid.
@@ -222,8 +222,6 @@ class Geometry:
             InputError: A position lies outside the grid.
             UnknownNameError: A value is neither a block state id nor -1.
         """
-        from beliefnest.perception import views
-
         codes = self.codes.copy()
         states = self.sight.registry.states
         for position, state in changes.items():
@@ -233,61 +231,68 @@ class Geometry:
             _check_states(state, state, states)
             i, j, k = cell
             code = int(self.sight._state_codes[state])
-            views.set_code(
-                codes.ravel(), codes.shape, self.sight._reaches, (i + 1, j + 1, k + 1), code
-            )
+            put_code(codes, self.sight._reaches, (i + 1, j + 1, k + 1), code)
         codes.flags.writeable = False
         return Geometry(self.sight, self.origin, codes)
 
     def visible_blocks(self, eye: Point, yaw: float, pitch: float) -> BoolArray:
         """Which blocks of the grid are seen: bool (nx, ny, nz)."""
-        from beliefnest.perception import views
+        from beliefnest.perception import shadows, views
 
-        return views.visible_blocks(*self._scene, self.sight._reaches, self._eye(eye, yaw, pitch))
+        seer = self._eye(eye, yaw, pitch)
+        noted = shadows.cast_shadows(*self._scene, self.sight._reaches, seer[0])
+        no_cells = np.empty((0, 3), dtype=np.int64)
+        seen = views.seen_blocks(*self._scene, seer, no_cells, *noted)
+        return seen.reshape(self.codes.shape)[1:-1, 1:-1, 1:-1]
 
     def sees_blocks(
         self, eye: Point, yaw: float, pitch: float, positions: npt.ArrayLike
     ) -> BoolArray:
-        """Which of the blocks at integer positions (n, 3), in or out of the grid, are seen."""
-        from beliefnest.perception import views
+        """Which of the blocks at integer positions (n, 3), in or out of the grid, are seen.
+
+        Raises:
+            InputError: The positions are not rows of three integers.
+        """
+        from beliefnest.perception import shadows, views
 
         rows = _rows(positions)
         if rows.dtype.kind not in "iu" and len(rows):
             raise InputError(f"block positions are of type {rows.dtype}; give integers")
         cells = rows.astype(np.int64) + (1 - np.array(self.origin))
-        return views.seen_blocks(*self._scene, self._eye(eye, yaw, pitch), cells)
+        seer = self._eye(eye, yaw, pitch)
+        return views.seen_blocks(*self._scene, seer, cells, *shadows.nothing_noted())
 
     def sees_points(self, eye: Point, yaw: float, pitch: float, points: npt.ArrayLike) -> BoolArray:
-        """Which of the points (n, 3) are seen; each has to be within the visible distance."""
-        from beliefnest.perception import views
+        """Which of the points (n, 3) are seen; each has to be within the visible distance.
 
-        local = self._local(points)
-        seer = self._eye(eye, yaw, pitch)
-        return views.near_points(seer, local) & views.seen_points(*self._scene, seer, local)
+        Raises:
+            InputError: The points are not rows of three numbers.
+        """
+        places = _rows(points).astype(np.float64)
+        return self._near(eye, places) & self._free(eye, yaw, pitch, places)
 
     def sees_agents(self, eye: Point, yaw: float, pitch: float, feet: npt.ArrayLike) -> BoolArray:
         """Which of the agents with feet at (n, 3) are seen.
 
         One of the points at `AGENT_SAMPLE_HEIGHTS` has to be seen, and the body centre
         has to be within the visible distance.
-        """
-        from beliefnest.perception import views
 
-        local = self._local(feet)
-        seer = self._eye(eye, yaw, pitch)
+        Raises:
+            InputError: The feet are not rows of three numbers.
+        """
+        places = _rows(feet).astype(np.float64)
         heights = np.array([(0.0, height, 0.0) for height in AGENT_SAMPLE_HEIGHTS])
-        samples = (local[:, None, :] + heights).reshape(-1, 3)
-        seen = views.seen_points(*self._scene, seer, samples)
-        near = views.near_points(seer, local + (0.0, BODY_CENTRE_HEIGHT, 0.0))
-        return near & seen.reshape(-1, len(heights)).any(axis=1)
+        samples = (places[:, None, :] + heights).reshape(-1, 3)
+        seen = self._free(eye, yaw, pitch, samples).reshape(-1, len(heights)).any(axis=1)
+        return self._near(eye, places + np.array((0.0, BODY_CENTRE_HEIGHT, 0.0))) & seen
 
     def blocker(self, eye: Point, point: Point) -> Position | None:
         """Position of the first block whose shape the ray from eye to point enters."""
         from beliefnest.perception import rays
 
-        start, end = self._local([eye, point])
-        d = tuple((end - start).tolist())
-        i, j, k = rays.hidden_by(*self._scene, rays.NOWHERE, tuple(start.tolist()), d)
+        start, end = self._local(np.array([eye, point], dtype=np.float64)).tolist()
+        d = (end[0] - start[0], end[1] - start[1], end[2] - start[2])
+        i, j, k = rays.hidden_by(*self._scene, rays.NOWHERE, (start[0], start[1], start[2]), d)
         if i < 0:
             return None
         x, y, z = self.origin
@@ -295,11 +300,27 @@ class Geometry:
 
     @functools.cached_property
     def _scene(self) -> "Scene":
-        return self.codes.ravel(), self.codes.shape, *self.sight._shapes
+        registry = self.sight.registry
+        sizes = (self.codes.shape[0], self.codes.shape[1], self.codes.shape[2])
+        return self.codes.reshape(-1), sizes, registry.shape_start, registry.shape_boxes
 
-    def _local(self, points: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    def _near(self, eye: Point, points: Points) -> BoolArray:
+        far = self.sight.max_visible_distance
+        if far is None:
+            return np.ones(len(points), dtype=np.bool_)
+        x, y, z = (points - np.array(eye)).T
+        near: BoolArray = np.sqrt(x * x + z * z + y * y) <= far + LIMIT_SLACK
+        return near
+
+    def _free(self, eye: Point, yaw: float, pitch: float, points: Points) -> BoolArray:
+        from beliefnest.perception import rays, views
+
+        seer = self._eye(eye, yaw, pitch)
+        return views.seen_points(*self._scene, seer, self._local(points), rays.NOWHERE)
+
+    def _local(self, points: Points) -> Points:
         """Points in coordinates of the codes, which have a margin of one cell."""
-        return _rows(points).astype(np.float64) + (1.0 - np.array(self.origin))
+        return points + (1.0 - np.array(self.origin))
 
     def _eye(self, eye: Point, yaw: float, pitch: float) -> "Eye":
         x, y, z = (float(e) + (1 - o) for e, o in zip(eye, self.origin, strict=True))

@@ -1,0 +1,73 @@
+"""Grids of shape codes, which the compiled kernels look through.
+
+A grid of codes is uint16 (nx + 2, ny + 2, nz + 2): the blocks and a margin of one cell on
+every side. A code is the shape of the cell's own block (`EMPTY`, `FULL`, or `FIRST_SHAPE`
++ the number of a shape), plus `INTRUDED` if the shape of a neighbour reaches into the cell.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = [
+    "EMPTY",
+    "FIRST_SHAPE",
+    "FULL",
+    "INTRUDED",
+    "LIMIT_SLACK",
+    "OWN",
+    "CodeGrid",
+    "Reaches",
+    "mark_intruded",
+    "put_code",
+]
+
+CodeGrid = npt.NDArray[np.uint16]
+Reaches = npt.NDArray[np.uint8]
+"""By code without `INTRUDED`: bit s says that the shape reaches out of its cell at side s.
+Sides 0 and 1 are low and high x, then y, then z."""
+
+EMPTY = 0
+FULL = 1
+FIRST_SHAPE = 2
+INTRUDED = 0x8000
+OWN = 0x7FFF
+
+LIMIT_SLACK = 1e-9
+"""By this much limits of distance and angle are wider, so that they are inclusive whatever
+the rounding of a mirrored or turned world."""
+
+
+def mark_intruded(codes: CodeGrid, reaches: Reaches) -> None:
+    """Set `INTRUDED` in a contiguous grid of codes without it."""
+    flat = codes.reshape(-1)
+    reaching = np.flatnonzero(reaches[flat])
+    sides = reaches[flat[reaching]]
+    _, ny, nz = codes.shape
+    for side in range(6):
+        step = (ny * nz, nz, 1)[side // 2] * (2 * (side % 2) - 1)
+        flat[reaching[(sides >> side) & 1 != 0] + step] |= INTRUDED
+
+
+def put_code(codes: CodeGrid, reaches: Reaches, cell: tuple[int, int, int], code: int) -> None:
+    """Put another block into a cell of a grid, not of its margin."""
+    codes[cell] = codes[cell] & INTRUDED | code
+    for side in range(6):
+        beside = _neighbour(cell, side)
+        own = codes[beside] & OWN
+        # The neighbour across a low side reaches in through its own high side.
+        intruded = any(
+            reaches[codes[other] & OWN] >> (inward ^ 1) & 1
+            for inward in range(6)
+            if _is_inside(codes, other := _neighbour(beside, inward))
+        )
+        codes[beside] = own | INTRUDED if intruded else own
+
+
+def _neighbour(cell: tuple[int, int, int], side: int) -> tuple[int, int, int]:
+    moved = list(cell)
+    moved[side // 2] += 2 * (side % 2) - 1
+    return moved[0], moved[1], moved[2]
+
+
+def _is_inside(codes: CodeGrid, cell: tuple[int, int, int]) -> bool:
+    return all(0 <= c < size for c, size in zip(cell, codes.shape, strict=True))
