@@ -1,4 +1,4 @@
-"""The Sally-Anne task of the paper, from geometry alone (issue: left, right, left; left, right, right)."""
+"""The Sally-Anne task under the paper's three conditions, from geometry alone."""
 
 import pytest
 
