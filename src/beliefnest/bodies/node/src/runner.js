@@ -26,40 +26,46 @@ class Runner {
   async run (name, programs, timeoutTicks) {
     const region = this.regions.get(name)
     const bodies = Object.keys(programs).map(agent => region.body(agent))
-    let runs
+    const first = region.tick
+    const runs = []
     await this.regions.inside(region, async () => {
-      const first = region.tick
-      runs = Object.values(programs).map((code, index) => this.start(region, bodies[index], code))
-      do {
-        await this.regions.tick(region)
-      } while (runs.some(run => run.result === null) && region.tick - first < timeoutTicks)
-      await this.endAll(runs, timeoutTicks)
-      for (const run of runs) run.result.ticks = run.endTick - first
+      Object.values(programs).forEach((code, index) => runs.push(this.start(region, bodies[index], code)))
+      try {
+        await this.untilEnded(region, runs, first + timeoutTicks)
+      } finally {
+        await this.endAll(region, runs, timeoutTicks)
+      }
     })
+    for (const run of runs) run.result.ticks = run.endTick - first
     const results = Object.keys(programs).map((agent, index) => [agent, runs[index].result])
     return { tick: region.tick, results: Object.fromEntries(results) }
   }
 
   start (region, { bot }, code) {
     const abort = new AbortController()
-    const run = { bot, abort, result: null, endTick: 0 }
+    const run = { bot, abort, result: null, endTick: null }
     const emit = event => region.emit({ ...event, actor: bot.username })
     const request = { code, bot, scope: this.scopeOf(bot, emit), signal: abort.signal }
     this.runProgram(request).then(({ ok, error }) => {
       if (run.result !== null) return
       run.result = { ok, error }
-      // A program ends within the tick that is still going on.
-      run.endTick = region.tick + 1
       stopBot(bot)
     }).catch(fault => region.faults.push(fault))
     return run
   }
 
-  async endAll (runs, timeoutTicks) {
+  async untilEnded (region, runs, lastTick) {
+    do {
+      await this.regions.tick(region)
+      for (const run of runs) if (run.result !== null) run.endTick ??= region.tick
+    } while (runs.some(run => run.result === null) && region.tick < lastTick)
+  }
+
+  async endAll (region, runs, timeoutTicks) {
     for (const run of runs) {
       if (run.result !== null) continue
       run.result = { ok: false, error: timeoutError(timeoutTicks) }
-      run.endTick = this.regions.serv.region.tick
+      run.endTick = region.tick
       run.abort.abort()
       stopBot(run.bot)
     }

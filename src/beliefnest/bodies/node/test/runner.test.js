@@ -1,0 +1,97 @@
+'use strict'
+const assert = require('node:assert/strict')
+const { after, before, describe, it } = require('node:test')
+const { Node, region } = require('./harness')
+
+describe('programs', () => {
+  let node
+  let regions = 0
+  before(async () => {
+    node = new Node()
+    await node.hello()
+  })
+  after(() => node.close())
+
+  /** Runs programs in a new region; gives tick, results and the frames of the run. */
+  async function run (programs, timeoutTicks = 100, more = {}) {
+    const name = `region ${regions++}`
+    await node.request('create_region', region(name, more))
+    node.frames.length = 0
+    const answer = await node.request('run', { region: name, programs, timeout_ticks: timeoutTicks })
+    return { ...answer, name, frames: [...node.frames] }
+  }
+
+  it('go on together, tick by tick, until the last has ended', async () => {
+    const say = ticks => `for (let i = 0; i < ${ticks}; i++) { bot.chat('tick ' + i); await bot.waitForTicks(1) }`
+    const { tick, results, frames } = await run({ sally: say(3), anne: say(6) })
+    assert.equal(tick, results.anne.ticks)
+    assert.ok(results.sally.ticks < results.anne.ticks)
+    const said = frames.map(frame => frame.events.filter(event => event.kind === 'chat').map(event => event.actor).join())
+    // What they do before they first wait belongs to the first tick, as what comes after it.
+    assert.deepEqual(said.filter(Boolean), ['sally,anne,sally,anne', 'sally,anne', 'anne', 'anne', 'anne'])
+  })
+
+  it('may be one whole function', async () => {
+    const { frames } = await run({ sally: "async function greet(bot) { bot.chat('hello') }" })
+    assert.equal(frames[0].events[0].detail.text, 'hello')
+  })
+
+  it('take one tick at least, in which what they did is told', async () => {
+    const { tick, results, frames } = await run({ sally: "bot.chat('hello')" })
+    assert.equal(tick, 1)
+    assert.equal(results.sally.ticks, 1)
+    assert.equal(frames[0].tick, 1)
+  })
+
+  it('that fail say where, and leave the others alone', async () => {
+    const { results } = await run({
+      sally: 'bot.chat("a")\nawait bot.waitForTicks(2)\n  undefinedName()',
+      anne: 'await bot.waitForTicks(5)',
+      observer: 'this is no program'
+    })
+    const { error } = results.sally
+    assert.deepEqual([error.line, error.column], [3, 3])
+    assert.match(error.message, /undefinedName/)
+    assert.deepEqual(results.anne, { ok: true, error: null, ticks: results.anne.ticks })
+    assert.equal(results.observer.error.kind, 'syntax')
+  })
+
+  it('name the skill that failed', async () => {
+    const { results } = await run({ sally: '\nawait goToPosition(bot, "there")' })
+    assert.equal(results.sally.error.skill, 'goToPosition')
+    assert.equal(results.sally.error.line, 2)
+  })
+
+  it('are ended at the time limit, and their bots stand still then', async () => {
+    const { name, tick, results } = await run({
+      sally: 'bot.setControlState("forward", true); setInterval(() => bot.chat("still here"), 50); await new Promise(() => {})'
+    }, 20)
+    assert.equal(tick, 20)
+    assert.equal(results.sally.error.kind, 'timeout')
+    assert.equal(results.sally.ticks, 20)
+    await node.request('step', { region: name, ticks: 20 })
+    node.frames.length = 0
+    await node.request('step', { region: name, ticks: 20 })
+    assert.deepEqual(node.frames, [])
+  })
+
+  it('end with their bot at rest, although a path was not walked to its end', async () => {
+    const { name } = await run({ sally: 'bot.pathfinder.setGoal(new goals.GoalNear(9, -51, 9, 0)); await bot.waitForTicks(8)' })
+    await node.request('step', { region: name, ticks: 20 })
+    node.frames.length = 0
+    await node.request('step', { region: name, ticks: 20 })
+    assert.deepEqual(node.frames, [])
+  })
+
+  it('of endless computation are ended by what they use up', async () => {
+    const { results } = await run({ sally: 'for (;;) {}' })
+    assert.equal(results.sally.ok, false)
+    assert.equal(results.sally.error.kind, 'fuel')
+  })
+
+  it('search for a path without end only as long as time allows', async () => {
+    const { tick, results } = await run({ sally: 'await bot.pathfinder.goto(new goals.GoalNear(300, -51, 300, 0))' }, 400)
+    assert.ok(tick <= 400)
+    assert.equal(results.sally.ok, false)
+  })
+})
