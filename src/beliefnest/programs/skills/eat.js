@@ -1,9 +1,10 @@
 'use strict'
 const { item: checkItem } = require('./lib/arguments')
 const { countOf, hold } = require('./lib/inventory')
-const { ticks } = require('./lib/waiting')
+const { until } = require('./lib/waiting')
 
 const FULL = 20
+const EATING_TICKS = 60
 
 module.exports = {
   name: 'eat',
@@ -21,8 +22,8 @@ module.exports = {
     await hold(context, item)
     if (bot.food >= FULL) fail('you are not hungry: your food level is full.')
     const before = countOf(bot, item)
-    await bot.consume()
-    await ticks(1)
-    if (countOf(bot, item) >= before) fail(`${name} was not eaten. Try again.`)
+    bot.activateItem()
+    const eaten = await until(() => countOf(bot, item) < before, EATING_TICKS)
+    if (!eaten) fail(`${name} was not eaten. Try again.`)
   }
 }

@@ -1,0 +1,47 @@
+'use strict'
+/**
+ * Writes what people and programs read about the skills, from their manifests:
+ * docs/skills.md, and manifests.json for the Python side. `node generate.js` writes both.
+ */
+const fs = require('node:fs')
+const path = require('node:path')
+const { SKILLS } = require('./index')
+
+const ROOT = path.join(__dirname, '..', '..', '..', '..')
+const INTRODUCTION = `# Skills
+
+What a program can call besides Mineflayer's own functions. Every skill does what a player
+could do, returns when it is done, and otherwise throws an error that says what was asked,
+what was found and what to do; \`error.skill\` is its name. Positions are scenario
+coordinates; 20 ticks are a second.
+
+This page is generated from the skills' own files by \`src/beliefnest/programs/skills/generate.js\`.
+`
+
+function markdown ({ name, signature, description, parameters, example }) {
+  const rows = parameters.map(parameter => `| \`${parameter.name}\` | \`${parameter.type.replaceAll('|', '\\|')}\` | ${parameter.description} |`)
+  return [
+    `## ${name}`, '', `\`${signature}\``, '', description, '', '| argument | type | meaning |', '|---|---|---|', ...rows, '',
+    '```js', example, '```', ''
+  ].join('\n')
+}
+
+/** @returns {string} docs/skills.md */
+function documentation () {
+  return [INTRODUCTION, ...SKILLS.map(markdown)].join('\n')
+}
+
+/** @returns {string} manifests.json: the manifests without their code */
+function manifest () {
+  const entries = SKILLS.map(({ name, signature, description, parameters, example }) => ({ name, signature, description, parameters, example }))
+  return `${JSON.stringify(entries, null, 2)}\n`
+}
+
+const OUTPUTS = [
+  { file: path.join(ROOT, 'docs', 'skills.md'), text: documentation },
+  { file: path.join(__dirname, 'manifests.json'), text: manifest }
+]
+
+if (require.main === module) OUTPUTS.forEach(({ file, text }) => fs.writeFileSync(file, text()))
+
+module.exports = { OUTPUTS }
