@@ -13,6 +13,7 @@ BENCHES: Mapping[str, str] = {
     "startup": "beliefnest.cli.bench.startup",
     "body": "beliefnest.cli.bench.body",
     "size": "beliefnest.cli.bench.size",
+    "timelines": "beliefnest.cli.bench.timelines",
 }
 """Name to the module whose `measure()` it is; loaded when it is run."""
 
