@@ -1,18 +1,16 @@
 'use strict'
 /**
- * QuickJS, one WebAssembly instance per program: nothing of a program, not even a damaged
- * interpreter, outlives it. What runs is metered (meter.js), so that a program ends by its own
- * amount of computation and not by a clock.
+ * Guests: QuickJS, one WebAssembly instance per program, so that nothing of a program, not even a
+ * damaged interpreter, outlives it. What runs is metered (meter.js), so that a program ends by
+ * its own amount of computation and not by a clock.
  */
 
-const { QuickJSWASMModule, Lifetime } = require('quickjs-emscripten-core')
-const { QuickJSFFI } = require('@jitl/quickjs-wasmfile-release-sync/ffi')
-const loadGlue = require('@jitl/quickjs-wasmfile-release-sync/emscripten-module')
+const { QuickJS, GuestException } = require('./quickjs')
 const { STACK_BYTES, interpreterBytes } = require('./interpreter')
 const { guestSource } = require('./guest/source')
+const { kindNames, tables } = require('./policy/kinds')
+const { GOAL_NAMES } = require('./constructions')
 
-const PAGE = 65536
-const INITIAL_PAGES = 256
 const SHADOW_STACK_BYTES = 400_000
 const UNMETERED = 0x7fffffff
 // The part of the limit that only loops without a poll can reach: they trap, polls end politely.
@@ -20,6 +18,8 @@ const GRACE = 20_000_000
 const CROSSING_STACK_BYTES = 20_000
 // After its end a guest that called the host still has to take the answer; then it traps.
 const LAST_BREATH = 20_000
+const JOBS_AT_ONCE = 100
+const HOST_FUNCTIONS = { host: 1, now: 2, random: 3 }
 
 /** Why a guest can run no more: `fuel`, `memory`, `stack`, `internal`, or what `end` was told. */
 class GuestEnded extends Error {
@@ -40,49 +40,52 @@ class GuestEnded extends Error {
 class Engine {
   constructor () {
     this.module = new WebAssembly.Module(interpreterBytes())
+    this.template = null
   }
 
   /**
    * @param {{fuel: number, memory: number}} limits fuel in units of the meter, memory in bytes
    * @returns {Promise<Guest>} settled without any timer or input
    */
-  async open ({ fuel, memory }) {
-    const wasmMemory = new WebAssembly.Memory({ initial: INITIAL_PAGES, maximum: INITIAL_PAGES + Math.ceil(memory / PAGE) })
-    let instance
-    const glue = await loadGlue({
-      wasmMemory,
-      print: () => {},
-      printErr: () => {},
-      instantiateWasm: (imports, done) => {
-        instance = new WebAssembly.Instance(this.module, imports)
-        done(instance)
-        return instance.exports
-      }
-    })
-    return new Guest(glue, instance.exports, { fuel, memory })
+  async open (limits) {
+    this.template ??= this.makeTemplate()
+    const { state, functions } = await this.template
+    const guest = new Guest(limits, functions)
+    guest.interpreter = await QuickJS.open(this.module, limits.memory, guest)
+    guest.interpreter.restore(state)
+    guest.interpreter.limitMemory(limits.memory)
+    return guest
+  }
+
+  // The state every guest starts in, made once: a fresh context with the guest's side of the border.
+  async makeTemplate () {
+    const interpreter = await QuickJS.open(this.module, 0, { call: () => 0, interrupt: () => false })
+    interpreter.create(SHADOW_STACK_BYTES)
+    const config = JSON.stringify({ kinds: kindNames, goals: GOAL_NAMES, tables })
+    const setUp = interpreter.evaluate(guestSource, 'guest.js')
+    const guest = interpreter.call(setUp, [
+      ...Object.entries(HOST_FUNCTIONS).map(([name, id]) => interpreter.hostFunction(name, id)), interpreter.string(config)
+    ])
+    const functions = Object.fromEntries(['start', 'dispatch', 'describe'].map((name) => [name, interpreter.property(guest, name)]))
+    return { state: interpreter.save(), functions }
   }
 }
 
-/** One context of one interpreter; after its end every call throws GuestEnded. */
+/** One program's interpreter; after its end every call throws GuestEnded. */
 class Guest {
-  constructor (glue, { fuel, depth }, limits) {
-    this.meters = { fuel, depth }
-    this.glue = glue
-    this.ffi = new QuickJSFFI(glue)
+  constructor (limits, functions) {
     this.limits = limits
+    this.functions = functions
+    this.interpreter = null
     this.ended = null
-    this.marks = { offset: 0, length: 0 }
+    this.fuelAtEnd = null
+    this.marks = { place: 0, length: 0 }
     this.nesting = 0
-    this.runtime = new QuickJSWASMModule(glue, this.ffi).newRuntime()
-    this.runtime.setMemoryLimit(limits.memory)
-    this.runtime.setMaxStackSize(SHADOW_STACK_BYTES)
-    this.runtime.setInterruptHandler(() => this.meters.fuel.value <= GRACE)
-    this.context = this.runtime.newContext()
   }
 
   /** Units of fuel used so far. */
   get used () {
-    return this.limits.fuel + GRACE - this.meters.fuel.value
+    return this.limits.fuel + GRACE - this.interpreter.fuel.value
   }
 
   /** Whether nothing of the guest is on the stack. */
@@ -91,39 +94,26 @@ class Guest {
   }
 
   /**
-   * Prepares the global object.
-   * @param {{host: function(string): string, now: function(): number, random: function(): number}} functions
-   * @param {object} config plain data for the guest
-   * @param {number} marks how many statements can be marked, and one
-   */
-  prepare ({ host, now, random }, config, marks) {
-    const { context } = this
-    this.meters.fuel.value = UNMETERED
-    const setUp = this.take(context.evalCode(guestSource, 'guest.js'))
-    const array = this.take(context.evalCode('(buffer) => new Uint32Array(buffer)', 'guest.js'))
-    const guest = this.take(context.callFunction(setUp, context.undefined, [
-      context.newFunction('host', (text) => context.newString(this.crossing(() => host(context.getString(text))))),
-      context.newFunction('now', () => context.newNumber(now())),
-      context.newFunction('random', () => context.newNumber(random())),
-      this.take(context.callFunction(array, context.undefined, [this.markBuffer(marks)])),
-      context.newString(JSON.stringify(config))
-    ]))
-    this.dispatch = context.getProp(guest, 'dispatch')
-    this.startFunction = context.getProp(guest, 'start')
-    this.describeFunction = context.getProp(guest, 'describe')
-    this.meters.fuel.value = this.limits.fuel + GRACE
-  }
-
-  /**
    * Starts the program.
-   * @param {string} text of a function of (marks, ...parameters) that returns a promise
-   * @param {string} fileName for the guest's stacks
+   * @param {{text: string, marks: number}} program `text` of a function of (marks, ...parameters) that returns a promise
+   * @param {{parameters: string[], skills: string[], data: boolean}} scope
+   * @param {{host: function(string): string, now: function(): number, random: function(): number}} world
    */
-  start (text, fileName) {
-    const { context } = this
+  start (program, scope, { host, now, random }) {
+    const { interpreter } = this
+    interpreter.fuel.value = UNMETERED
+    const { place, value } = interpreter.buffer(program.marks * 4)
+    this.marks = { place, length: program.marks }
+    const config = interpreter.string(JSON.stringify(scope))
+    this.answers = {
+      [HOST_FUNCTIONS.host]: (values) => interpreter.string(host(interpreter.argument(values, 0))),
+      [HOST_FUNCTIONS.now]: () => interpreter.number(now()),
+      [HOST_FUNCTIONS.random]: () => interpreter.number(random())
+    }
+    interpreter.fuel.value = this.limits.fuel + GRACE
     this.enter(() => {
-      const program = this.take(context.evalCode(text, fileName))
-      this.program = this.take(context.callFunction(this.startFunction, context.undefined, [program]))
+      const main = interpreter.evaluate(program.text, 'program.js')
+      this.program = interpreter.call(this.functions.start, [main, config, value])
     })
   }
 
@@ -132,14 +122,19 @@ class Guest {
    * @returns {?{ok: boolean, error: object}} how the program ended, null while it goes on
    */
   result () {
-    const state = this.context.getPromiseState(this.program)
-    if (state.type === 'pending') return null
-    return state.type === 'fulfilled' ? { ok: true } : { ok: false, error: this.enter(() => this.described(state.error)) }
+    const state = this.interpreter.promiseState(this.program)
+    if (state === 'pending') return null
+    return state === 'fulfilled' ? { ok: true } : { ok: false, error: this.enter(() => this.reason()) }
   }
 
-  described (error) {
-    const answer = this.context.callFunction(this.describeFunction, this.context.undefined, [error])
-    return answer.error ? {} : JSON.parse(this.context.getString(answer.value))
+  reason () {
+    const { interpreter } = this
+    try {
+      return JSON.parse(interpreter.text(interpreter.call(this.functions.describe, [interpreter.promiseResult(this.program)])))
+    } catch (error) {
+      if (error instanceof GuestException && error.guest.message !== 'interrupted') return {}
+      throw error
+    }
   }
 
   /**
@@ -148,23 +143,24 @@ class Guest {
    * @returns {{ok: boolean, value: *}}
    */
   send (message) {
-    const { context } = this
+    const { interpreter } = this
     return this.enter(() => {
-      const text = context.newString(JSON.stringify(message))
-      const answer = this.take(context.callFunction(this.dispatch, context.undefined, [text]))
-      text.dispose()
-      const result = JSON.parse(context.getString(answer))
-      answer.dispose()
+      const text = interpreter.string(JSON.stringify(message))
+      const answer = interpreter.call(this.functions.dispatch, [text])
+      interpreter.free(text)
+      const result = JSON.parse(interpreter.text(answer))
+      interpreter.free(answer)
       return result
     })
   }
 
   /** Takes fuel for work that the host does on the program's behalf. */
   charge (units) {
-    this.meters.fuel.value = Math.max(this.meters.fuel.value - units, GRACE)
+    const { fuel } = this.interpreter
+    fuel.value = Math.max(fuel.value - units, GRACE)
   }
 
-  /** Ends the guest: what runs of it stops at the next loop turn or call. */
+  /** Ends the guest: what runs of it stops within `LAST_BREATH`. */
   end (kind, detail, stack) {
     if (this.ended) return
     this.fuelAtEnd = this.used
@@ -173,19 +169,37 @@ class Guest {
 
   /** Numbers of the statements that ran, and the last one, read from the guest's memory. */
   statements () {
-    const memory = new Uint32Array(this.glue.HEAPU8.buffer, this.marks.offset, this.marks.length)
+    const memory = new Uint32Array(this.interpreter.glue.HEAPU8.buffer, this.marks.place, this.marks.length)
     const ran = []
     for (let n = 1; n < memory.length; n++) if (memory[n] === n) ran.push(n)
     return { ran, last: memory.length > 0 ? memory[0] : 0 }
   }
 
-  // An array buffer at a known place, so that it can be read whatever state the guest is in.
-  markBuffer (marks) {
-    const offset = this.glue._malloc(marks * 4)
-    this.marks = { offset, length: marks }
-    this.glue.HEAPU8.fill(0, offset, offset + marks * 4)
-    const pointer = this.ffi.QTS_NewArrayBuffer(this.context.ctx.value, offset, marks * 4)
-    return new Lifetime(pointer, undefined, undefined, this.runtime)
+  /** The interpreter calls a host function. The estimate of the stack counts no frames of the host. */
+  call (id, count, values) {
+    if (this.ended) return 0
+    const { fuel, depth } = this.interpreter
+    const depthBefore = depth.value
+    depth.value += CROSSING_STACK_BYTES
+    const value = this.answered(id, values)
+    depth.value = depthBefore
+    if (this.ended) fuel.value = LAST_BREATH
+    return value
+  }
+
+  // An error of this side must not pass through the interpreter's frames.
+  answered (id, values) {
+    try {
+      return this.answers[id](values)
+    } catch (error) {
+      this.fault(error)
+      return 0
+    }
+  }
+
+  /** The interpreter asks whether to stop. */
+  interrupt () {
+    return this.interpreter.fuel.value <= GRACE
   }
 
   enter (act) {
@@ -203,59 +217,31 @@ class Guest {
   }
 
   drain () {
-    while (!this.ended && this.runtime.hasPendingJob()) {
-      const jobs = this.runtime.executePendingJobs(100)
-      if (jobs.error) this.take(jobs)
-    }
-    if (this.ended) throw this.ended
+    while (!this.ended && this.interpreter.hasJobs) this.interpreter.runJobs(JOBS_AT_ONCE)
     // A job that was interrupted leaves no error behind.
-    if (this.meters.fuel.value <= GRACE) this.end('fuel', 'interrupted')
+    if (!this.ended && this.interrupt()) this.end('fuel', 'interrupted')
     if (this.ended) throw this.ended
-  }
-
-  // The estimate of the stack counts no frames of the host between two of the guest.
-  crossing (act) {
-    if (this.ended) return ''
-    const { fuel, depth } = this.meters
-    const depthBefore = depth.value
-    depth.value += CROSSING_STACK_BYTES
-    const result = act()
-    depth.value = depthBefore
-    if (this.ended) fuel.value = LAST_BREATH
-    return this.ended ? '' : result
-  }
-
-  take (result) {
-    if (!result.error) return result.value
-    const { name, message, stack } = this.describe(result.error)
-    throw Object.assign(new Error(message), { guest: { name, message, stack } })
-  }
-
-  describe (handle) {
-    const text = (key) => {
-      const property = this.context.getProp(handle, key)
-      return this.context.typeof(property) === 'string' ? this.context.getString(property) : ''
-    }
-    return { name: text('name'), message: text('message'), stack: text('stack') }
   }
 
   fault (error) {
     if (this.ended) return this.ended
-    const { guest } = error
-    if (guest === undefined) this.end(...this.trapped(error))
-    else if (guest.message === 'interrupted') this.end('fuel', guest.message, guest.stack)
-    else if (guest.message === 'out of memory') this.end('memory', guest.message, guest.stack)
-    else if (guest.message === 'stack overflow') this.end('stack', guest.message, guest.stack)
-    else if (guest.name === 'SyntaxError') this.end('syntax', `${guest.name}: ${guest.message}`, guest.stack)
-    else this.end('internal', `${guest.name}: ${guest.message}`, guest.stack)
+    if (!(error instanceof GuestException)) this.end(...this.trapped(error))
+    else this.end(...uncaught(error.guest))
     return this.ended
   }
 
   trapped (error) {
-    if (this.meters.fuel.value < 0) return ['fuel', 'trap']
-    if (this.meters.depth.value > STACK_BYTES || error instanceof RangeError) return ['stack', 'trap']
+    if (this.interpreter.fuel.value < 0) return ['fuel', 'trap']
+    if (this.interpreter.depth.value > STACK_BYTES || error instanceof RangeError) return ['stack', 'trap']
     return ['internal', String(error)]
   }
+}
+
+function uncaught ({ name, message, stack }) {
+  if (message === 'interrupted') return ['fuel', message, stack]
+  if (message === 'out of memory') return ['memory', message, stack]
+  if (message === 'stack overflow') return ['stack', message, stack]
+  return [name === 'SyntaxError' ? 'syntax' : 'internal', `${name}: ${message}`, stack]
 }
 
 module.exports = { Engine, GuestEnded }

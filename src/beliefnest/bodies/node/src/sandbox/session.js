@@ -5,9 +5,8 @@
  */
 
 const { Exchange, RefusedError } = require('./exchange')
-const { kinds, kindNames, tables } = require('./policy/kinds')
+const { kinds, tables } = require('./policy/kinds')
 const { events } = require('./policy/events')
-const { GOAL_NAMES } = require('./constructions')
 const { GuestEnded } = require('./engine')
 const { stateOf } = require('./policy/types')
 const { kindOf } = require('./kind-of')
@@ -46,15 +45,12 @@ class Session {
    * @param {string[]} parameters the names in scope, in order
    */
   begin (program, parameters) {
-    const config = {
-      kinds: kindNames, goals: GOAL_NAMES, skills: Object.keys(this.skills), parameters,
-      tables: this.data ? tables : null, bot: this.exchange.handle(this.bot, 'bot').id
-    }
-    const functions = { host: (text) => this.answer(text), now: () => Date.now(), random: this.random }
+    const scope = { parameters, skills: Object.keys(this.skills), data: this.data !== null }
+    const world = { host: (text) => this.answer(text), now: () => Date.now(), random: this.random }
+    this.exchange.handle(this.bot, 'bot')
     try {
       this.guarded(() => {
-        this.guest.prepare(functions, config, program.marks)
-        this.guest.start(program.text, 'program.js')
+        this.guest.start(program, scope, world)
         this.look()
       })
     } catch (error) {

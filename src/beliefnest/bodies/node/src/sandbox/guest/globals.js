@@ -126,7 +126,6 @@ module.exports = function defineGlobals (env) {
     for (const alias of ['off', 'removeListener']) bot[alias] = removeListener
     bot.on = bot.addListener = function (event, listener) { return addListener(this, event, listener, false) }
     bot.once = function (event, listener) { return addListener(this, event, listener, true) }
-    if (env.data) Object.defineProperty(bot, 'registry', { value: env.data })
   }
 
   function addListener (bot, event, listener, once) {
@@ -148,7 +147,6 @@ module.exports = function defineGlobals (env) {
   Object.assign(env, { show, deepFreeze, fire })
   env.kindOf = (value) => Object.keys(env.kinds).find((kind) => Object.getPrototypeOf(value) === env.kinds[kind])
   env.kinds = Object.fromEntries(Object.keys(config.kinds).map((name) => [name, {}]))
-  env.data = config.tables ? defineData() : undefined
   defineKinds()
   defineDate()
   defineConsole()
@@ -158,6 +156,11 @@ module.exports = function defineGlobals (env) {
   globalThis.setImmediate = (callback, ...args) => startTimer(callback, 0, args, false)
   globalThis.clearTimeout = globalThis.clearInterval = globalThis.clearImmediate = stopTimer
   globalThis.queueMicrotask = (callback) => { Promise.resolve().then(callback) }
-  env.skills = Object.fromEntries(config.skills.map((name) =>
+  env.bindSkills = (names) => Object.fromEntries(names.map((name) =>
     [name, (...args) => call(['skill', name, args.map((arg) => encode(arg))])]))
+  env.bindData = () => {
+    const data = defineData()
+    Object.defineProperty(env.kinds.bot, 'registry', { value: data })
+    return data
+  }
 }

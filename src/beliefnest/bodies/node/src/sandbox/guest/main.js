@@ -4,14 +4,16 @@
  * Runs inside QuickJS: the function is handed over as text and must not refer to anything outside it.
  */
 module.exports = function defineMain (env) {
-  const { config, describe, decode } = env
+  const { describe, decode } = env
   const { parse, stringify } = JSON
 
-  function start (program) {
-    const scope = { ...env.skills, ...(env.data && { mcData: env.data }), Vec3: env.Vec3, goals: env.goals, Movements: env.Movements }
-    scope.bot = decode({ $: 'h', id: config.bot, k: 'bot' })
-    const parameters = config.parameters.map((name) => scope[name])
-    return program(env.marks, ...parameters)
+  // The bot is the first object of the game that the host names.
+  function start (program, scopeText, marks) {
+    const { parameters, skills, data } = parse(scopeText)
+    const scope = { ...env.bindSkills(skills), Vec3: env.Vec3, goals: env.goals, Movements: env.Movements }
+    if (data) scope.mcData = env.bindData()
+    scope.bot = decode({ $: 'h', id: 0, k: 'bot' })
+    return program(new Uint32Array(marks), ...parameters.map((name) => scope[name]))
   }
 
   const actions = {

@@ -4,12 +4,12 @@
 const parts = [require('./vec3'), require('./values'), require('./border'), require('./globals'), require('./main')]
 
 /**
- * An expression: a function of (host, now, random, marks, configText) that prepares the
- * global object and returns `{start(program), dispatch(text)}`.
+ * An expression: a function of (host, now, random, configText) that prepares the
+ * global object and returns `{start(program, scope, marks), dispatch(text), describe(error)}`.
  */
-const guestSource = `(function (host, now, random, marks, configText) {
+const guestSource = `(function (host, now, random, configText) {
   'use strict'
-  const env = { host, now, random, marks, config: JSON.parse(configText) };
+  const env = { host, now, random, config: JSON.parse(configText) };
   ${parts.slice(0, -1).map((part) => `(${part})(env);`).join('\n')}
   return (${parts.at(-1)})(env)
 })`

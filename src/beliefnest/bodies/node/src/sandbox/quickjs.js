@@ -1,0 +1,201 @@
+'use strict'
+/**
+ * One instance of the interpreter, through the functions it exports. Values of the guest are
+ * pointers, plain numbers here, so that a copy of an instance's memory carries them all with it.
+ */
+
+const { QuickJSFFI } = require('@jitl/quickjs-wasmfile-release-sync/ffi')
+const loadGlue = require('@jitl/quickjs-wasmfile-release-sync/emscripten-module')
+
+const PAGE = 65536
+const INITIAL_PAGES = 256
+const ALL_INTRINSICS = 0
+const AS_SCRIPT = 0
+const PENDING = 0
+const FULFILLED = 1
+
+/** An exception of the guest that nothing in it caught. */
+class GuestException extends Error {
+  constructor ({ name, message, stack }) {
+    super(message)
+    this.name = 'GuestException'
+    this.guest = { name, message, stack }
+  }
+}
+
+class QuickJS {
+  /** Use `QuickJS.open`. */
+  constructor (glue, { fuel, depth }) {
+    this.glue = glue
+    this.ffi = new QuickJSFFI(glue)
+    this.fuel = fuel
+    this.depth = depth
+    this.runtime = 0
+    this.context = 0
+  }
+
+  /**
+   * @param {WebAssembly.Module} module metered
+   * @param {number} memory the most bytes it may grow to, besides what it starts with
+   * @param {{call: function(number, number, number): number, interrupt: function(): boolean}} host `call` gets the number of
+   *   a host function, the count and the place of its arguments, and returns a value it gives away, or 0
+   * @returns {Promise<QuickJS>} settled without any timer or input
+   */
+  static async open (module, memory, host) {
+    let instance
+    const glue = await loadGlue({
+      wasmMemory: new WebAssembly.Memory({ initial: INITIAL_PAGES, maximum: INITIAL_PAGES + Math.ceil(memory / PAGE) }),
+      print: () => {},
+      printErr: () => {},
+      instantiateWasm: (imports, done) => {
+        instance = new WebAssembly.Instance(module, imports)
+        done(instance)
+        return instance.exports
+      }
+    })
+    glue.callbacks = {
+      callFunction: (asyncify, context, self, count, values, id) => host.call(id, count, values),
+      shouldInterrupt: () => host.interrupt() ? 1 : 0,
+      freeHostRef: () => {}
+    }
+    return new QuickJS(glue, instance.exports)
+  }
+
+  /** Makes a runtime and a context in it. */
+  create (stackBytes) {
+    this.runtime = this.ffi.QTS_NewRuntime()
+    this.ffi.QTS_RuntimeSetMaxStackSize(this.runtime, stackBytes)
+    this.ffi.QTS_RuntimeEnableInterruptHandler(this.runtime)
+    this.context = this.ffi.QTS_NewContext(this.runtime, ALL_INTRINSICS)
+  }
+
+  /** @returns {{start: number, bytes: Uint8Array, runtime: number, context: number}} all of its state; nothing may run */
+  save () {
+    const all = this.glue.HEAPU8
+    const start = all.findIndex((byte) => byte !== 0)
+    const end = all.findLastIndex((byte) => byte !== 0) + 1
+    return { start, bytes: all.slice(start, end), runtime: this.runtime, context: this.context }
+  }
+
+  /** Takes the state another instance of the same module saved. */
+  restore ({ start, bytes, runtime, context }) {
+    this.glue.HEAPU8.fill(0, 0, start)
+    this.glue.HEAPU8.set(bytes, start)
+    this.runtime = runtime
+    this.context = context
+  }
+
+  limitMemory (bytes) {
+    this.ffi.QTS_RuntimeSetMemoryLimit(this.runtime, bytes)
+  }
+
+  /** @returns {number} a host function under a number of its own */
+  hostFunction (name, id) {
+    return this.ffi.QTS_NewFunction(this.context, name, 1, false, id)
+  }
+
+  string (text) {
+    const pointer = this.characters(text)
+    const value = this.ffi.QTS_NewString(this.context, pointer)
+    this.glue._free(pointer)
+    return value
+  }
+
+  number (value) {
+    return this.ffi.QTS_NewFloat64(this.context, value)
+  }
+
+  /** An array buffer at a known place, so that it can be read whatever state the guest is in. */
+  buffer (length) {
+    const place = this.allocate(length)
+    this.glue.HEAPU8.fill(0, place, place + length)
+    return { place, value: this.ffi.QTS_NewArrayBuffer(this.context, place, length) }
+  }
+
+  text (value) {
+    const pointer = this.ffi.QTS_GetString(this.context, value)
+    const text = this.glue.UTF8ToString(pointer)
+    this.ffi.QTS_FreeCString(this.context, pointer)
+    return text
+  }
+
+  /** @returns {string} the text of an argument of a host function */
+  argument (values, index) {
+    return this.text(this.ffi.QTS_ArgvGetJSValueConstPointer(values, index))
+  }
+
+  free (value) {
+    this.ffi.QTS_FreeValuePointer(this.context, value)
+  }
+
+  property (value, name) {
+    const key = this.string(name)
+    const property = this.ffi.QTS_GetProp(this.context, value, key)
+    this.free(key)
+    return property
+  }
+
+  /** @throws {GuestException} */
+  evaluate (code, fileName) {
+    const pointer = this.characters(code)
+    const value = this.ffi.QTS_Eval(this.context, pointer, this.glue.lengthBytesUTF8(code), fileName, 0, AS_SCRIPT)
+    this.glue._free(pointer)
+    return this.checked(value)
+  }
+
+  /** @throws {GuestException} */
+  call (callee, args) {
+    const place = this.allocate(args.length * 4)
+    new Uint32Array(this.glue.HEAPU8.buffer, place, args.length).set(args)
+    const value = this.ffi.QTS_Call(this.context, callee, this.ffi.QTS_GetUndefined(), args.length, place)
+    this.glue._free(place)
+    return this.checked(value)
+  }
+
+  get hasJobs () {
+    return this.ffi.QTS_IsJobPending(this.runtime) !== 0
+  }
+
+  /**
+   * Runs promise jobs.
+   * @throws {GuestException}
+   */
+  runJobs (most) {
+    const context = this.allocate(4)
+    const value = this.ffi.QTS_ExecutePendingJob(this.runtime, most, context)
+    this.glue._free(context)
+    this.free(this.checked(value))
+  }
+
+  /** @returns {'pending'|'fulfilled'|'rejected'} of a promise */
+  promiseState (promise) {
+    const state = this.ffi.QTS_PromiseState(this.context, promise)
+    return state === PENDING ? 'pending' : state === FULFILLED ? 'fulfilled' : 'rejected'
+  }
+
+  promiseResult (promise) {
+    return this.ffi.QTS_PromiseResult(this.context, promise)
+  }
+
+  checked (value) {
+    const error = this.ffi.QTS_ResolveException(this.context, value)
+    if (error === 0) return value
+    const [name, message, stack] = ['name', 'message', 'stack'].map((key) => this.text(this.property(error, key)))
+    throw new GuestException({ name, message, stack })
+  }
+
+  characters (text) {
+    const length = this.glue.lengthBytesUTF8(text) + 1
+    const pointer = this.allocate(length)
+    this.glue.stringToUTF8(text, pointer, length)
+    return pointer
+  }
+
+  allocate (length) {
+    const place = this.glue._malloc(Math.max(length, 1))
+    if (place === 0) throw new GuestException({ name: 'InternalError', message: 'out of memory', stack: '' })
+    return place
+  }
+}
+
+module.exports = { QuickJS, GuestException }
