@@ -106,14 +106,19 @@ def _cells(outcome: Outcome) -> dict[str, str]:
 
 def _found(outcome: ExpectationOutcome, state: State, scenario: Scenario) -> tuple[str, str]:
     content = outcome.expectation.content
-    if isinstance(content, Holds):
+    if isinstance(content, Holds) and content.items:
         names = [container_name(place, scenario) for place in places_of(content.items, state)]
-        what, where = ", ".join(content.items) or "nothing", " and ".join(names) or "nowhere"
+        what, found = ", ".join(content.items), " and ".join(names) or "nowhere"
+    elif isinstance(content, Holds):
+        held = state.containers.get(content.container)
+        what, found = container_name(content.container, scenario), "nothing"
+        if held is not None and held.items:
+            found = ", ".join(f"{count} {name}" for name, count in sorted(held.items.items()))
     else:
         position = state.agents[content.agent].position
-        what, where = content.agent, "unknown" if position is None else point_text(position)
+        what, found = content.agent, "unknown" if position is None else point_text(position)
     path = outcome.expectation.path
-    return f"{what} in {'reality' if path == '/' else path}", _marked(where, outcome.ok)
+    return f"{what} in {'reality' if path == '/' else path}", _marked(found, outcome.ok)
 
 
 def _acted(outcome: ProbeOutcome, scenario: Scenario) -> tuple[str, str]:

@@ -32,8 +32,9 @@ def arrives(expect: Arrives, arrived: Point | None) -> bool:
 def is_held(content: Holds | Stands, state: State) -> bool:
     """Whether a simulator holds what was expected of it."""
     if isinstance(content, Holds):
+        # A container that was never perceived is known to hold nothing in particular.
         container = state.containers.get(content.container)
-        return container is not None and dict(container.items) == dict(content.items)
+        return (dict(container.items) if container else {}) == dict(content.items)
     position = state.agents[content.agent].position
     if content.place is None or position is None:
         return content.place is None and position is None

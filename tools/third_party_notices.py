@@ -1,0 +1,62 @@
+"""Write THIRD_PARTY_NOTICES.md: what the JavaScript bundle contains, and under which licence.
+
+Reads the list of packages that the build writes beside the bundle, and the licence files of
+these packages in `node_modules`. Run it with `make notices` after a change of dependencies.
+"""
+
+import json
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = ROOT / "src" / "beliefnest" / "_bundle" / "packages.json"
+MODULES = ROOT / "src" / "beliefnest" / "bodies" / "node" / "node_modules"
+NOTICES = ROOT / "THIRD_PARTY_NOTICES.md"
+
+_HEAD = """\
+# Third-party notices
+
+BeliefNest's wheel carries a JavaScript bundle made of the npm packages below, and facts about
+Minecraft's blocks and items from minecraft-data. Everything else it needs is installed as a
+dependency of its own, under its own licence.
+
+"Minecraft" is a trademark of Mojang AB. BeliefNest is not an official Minecraft product and is
+not approved by or associated with Mojang or Microsoft. It contains no Mojang code or assets.
+
+This file is written by `make notices`.
+"""
+
+
+def notices() -> str:
+    """The whole text."""
+    packages = json.loads(PACKAGES.read_text(encoding="utf-8"))
+    lines = [_HEAD, "| package | version | licence |", "|---|---|---|"]
+    lines += [f"| {name} | {p['version']} | {p['license']} |" for name, p in packages.items()]
+    by_text: dict[str, list[str]] = {}
+    for name in packages:
+        by_text.setdefault(_licence(name), []).append(name)
+    for text, names in by_text.items():
+        lines += ["", f"## {', '.join(names)}", "", "```text", text, "```"]
+    return "\n".join(lines) + "\n"
+
+
+def _licence(package: str) -> str:
+    folder = MODULES / package
+    files = sorted(
+        path
+        for path in folder.iterdir()
+        if path.is_file() and path.stem.lower() in {"license", "licence", "copying"}
+    )
+    if files:
+        text = files[0].read_text(encoding="utf-8", errors="replace").replace("\r\n", "\n")
+        return "\n".join(line.rstrip() for line in text.strip().splitlines())
+    manifest = json.loads((folder / "package.json").read_text(encoding="utf-8"))
+    author = manifest.get("author", "its authors")
+    holder = author.get("name", "its authors") if isinstance(author, dict) else author
+    return f"{manifest.get('license')} licence; the package has no licence file. By {holder}."
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] == ["--check"]:
+        sys.exit(NOTICES.read_text(encoding="utf-8") != notices())
+    NOTICES.write_text(notices(), encoding="utf-8")
