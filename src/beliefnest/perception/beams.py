@@ -199,12 +199,8 @@ def _beam_ends(
 
 
 @inlined
-def _fill_axis(slopes: Slopes, axis: int, d: float, e: float, low: float) -> tuple[bool, bool]:
-    """Write the slopes of a beam's rays along one axis.
-
-    Returns whether a face is turned to the eye along the axis, and whether rays to the
-    middles may lie in the plane of some face across it.
-    """
+def _fill_axis(slopes: Slopes, axis: int, d: float, e: float, low: int) -> None:
+    """Write the slopes of a beam's rays along one axis; d leads to the block's middle."""
     level, inner, outer = _inverse(d), _inverse(d - _CORNER), _inverse(d + _CORNER)
     face = _inverse(d + (0.5 if e > low else -0.5))
     for n in range(_SAMPLES):
@@ -215,24 +211,19 @@ def _fill_axis(slopes: Slopes, axis: int, d: float, e: float, low: float) -> tup
         # The order of axes is that of `_offset`: first the one after the face's own.
         slopes[axis, 1 + 5 * ((axis + 2) % 3) + corner] = outer if corner & 1 else inner
         slopes[axis, 1 + 5 * ((axis + 1) % 3) + corner] = outer if corner & 2 else inner
-    return not low <= e <= low + 1, may_lie_in_face(e, d)
 
 
 @inlined
-def _close_face(opens: Open, axis: int, is_turned: bool) -> None:
-    if not is_turned:
-        for number in range(1 + 5 * axis, 6 + 5 * axis):
-            opens[number] = 0
+def _take_middles(opens: Open, levels: int) -> int:
+    """Close the rays that may lie in the plane of a face; bit n of the result: ray n was open.
 
-
-@inlined
-def _take_middles(opens: Open, level_x: bool, level_y: bool, level_z: bool) -> int:
-    """Close the rays that may lie in the plane of a face; bit n of the result: ray n was open."""
+    Bit a of levels: the eye is level with the block's middle along axis a, in such a plane.
+    """
     taken = 0
-    for number in (0, 1, 6, 11):
-        if opens[number] != 0 and (
-            (level_x and number != 1) or (level_y and number != 6) or (level_z and number != 11)
-        ):
+    for face in range(-1, 3):
+        number = 1 + 5 * face if face >= 0 else 0
+        others = levels & ~(1 << face) if face >= 0 else levels
+        if opens[number] != 0 and others != 0:
             opens[number] = 0
             taken |= 1 << number
     return taken
@@ -243,25 +234,26 @@ def _aim(eye: Eye, cell: Cell, slopes: Slopes, opens: Open) -> int:
     """Set up the beam from an eye to a block; rays in the plane of a face go to the result."""
     place = eye[0]
     x, y, z = cell[0] + 0.5 - place[0], cell[1] + 0.5 - place[1], cell[2] + 0.5 - place[2]
-    turned_x, level_x = _fill_axis(slopes, 0, x, place[0], cell[0])
-    turned_y, level_y = _fill_axis(slopes, 1, y, place[1], cell[1])
-    turned_z, level_z = _fill_axis(slopes, 2, z, place[2], cell[2])
     # One length stands for all: that of a ray to a sample differs by less than a block.
     least = LEAST_LENGTH / max(math.sqrt(x * x + z * z + y * y), 0.5)
     for n in range(_SAMPLES):
         slopes[3, n] = least
         opens[n] = -1
-    _close_face(opens, 0, turned_x)
-    _close_face(opens, 1, turned_y)
-    _close_face(opens, 2, turned_z)
+    levels = 0
+    for axis in range(3):
+        e, low = turned(place, axis)[0], turned(cell, axis)[0]
+        d = turned((x, y, z), axis)[0]
+        _fill_axis(slopes, axis, d, e, low)
+        levels |= (1 << axis) if may_lie_in_face(e, d) else 0
+        if low <= e <= low + 1:
+            for number in range(1 + 5 * axis, 6 + 5 * axis):
+                opens[number] = 0
     if eye[2] >= -1.0:
         for number in range(_SAMPLES):
             offset = _offset(place, cell, number)
             if not in_field(eye, x + offset[0], y + offset[1], z + offset[2]):
                 opens[number] = 0
-    if level_x or level_y or level_z:
-        return _take_middles(opens, level_x, level_y, level_z)
-    return 0
+    return _take_middles(opens, levels) if levels != 0 else 0
 
 
 @compiled

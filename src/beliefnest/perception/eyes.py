@@ -1,7 +1,13 @@
-"""Single looks, compiled, for kernels of other rooms: one eye, one block or one agent."""
+"""Single looks, compiled, for kernels of other rooms: one eye, one block or one agent.
+
+Coordinates and codes are those of `rays`, an `Eye` is that of `beams`.
+"""
 
 import numpy as np
+import numpy.typing as npt
 
+from beliefnest.perception.beams import Eye, in_field, in_reach, sees_block
+from beliefnest.perception.codes import INTRUDED, OWN
 from beliefnest.perception.rays import (
     NOWHERE,
     Boxes,
@@ -9,31 +15,59 @@ from beliefnest.perception.rays import (
     Codes,
     Starts,
     Vector,
+    at,
     compiled,
     hidden_by,
+    inlined,
+    is_inside,
+    neighbour,
 )
-from beliefnest.perception.views import Eye, _in_field, _in_reach, _sees_block
+from beliefnest.perception.shadows import Counts, Suspects
 
-__all__ = ["eye_sees_agent", "eye_sees_block", "eye_sees_point", "in_reach"]
+__all__ = ["Eye", "eye_sees_agent", "eye_sees_block", "eye_sees_point", "set_code"]
 
 # Heights of `sight.AGENT_SAMPLE_HEIGHTS` and `sight.BODY_CENTRE_HEIGHT`, as compiled constants.
 _HEIGHTS = np.array([1.62, 0.9, 0.05])
 _CENTRE = 0.9
 
-eye_sees_block = _sees_block
-in_reach = _in_reach
+
+@compiled
+def eye_sees_block(
+    codes: Codes,
+    sizes: Cell,
+    starts: Starts,
+    boxes: Boxes,
+    eye: Eye,
+    cell: Cell,
+    slopes: npt.NDArray[np.float64],
+    opens: npt.NDArray[np.int64],
+    counts: Counts,
+    suspects: Suspects,
+) -> bool:
+    """Whether a block is seen; the arrays are room to work in, from `beams.new_beam`."""
+    x, y, z = eye[0]
+    if not in_reach(eye, cell[0] + 0.5 - x, cell[1] + 0.5 - y, cell[2] + 0.5 - z):
+        return False
+    return sees_block(codes, sizes, starts, boxes, eye, cell, slopes, opens, counts, suspects, -1)
 
 
 @compiled
+def _sees_sample(
+    codes: Codes, sizes: Cell, starts: Starts, boxes: Boxes, eye: Eye, d: Vector
+) -> bool:
+    if not in_field(eye, d[0], d[1], d[2]):
+        return False
+    return hidden_by(codes, sizes, starts, boxes, NOWHERE, eye[0], d)[0] < 0
+
+
+@inlined
 def eye_sees_point(
     codes: Codes, sizes: Cell, starts: Starts, boxes: Boxes, eye: Eye, point: Vector
 ) -> bool:
-    """Whether a ray inside the field of view is free from the eye to a point, however far."""
-    if not _in_field(eye, point):
-        return False
+    """Whether a point is seen that is within the visible distance."""
     place = eye[0]
     d = (point[0] - place[0], point[1] - place[1], point[2] - place[2])
-    return hidden_by(codes, sizes, starts, boxes, NOWHERE, place, d)[0] < 0
+    return in_reach(eye, d[0], d[1], d[2]) and _sees_sample(codes, sizes, starts, boxes, eye, d)
 
 
 @compiled
@@ -41,10 +75,34 @@ def eye_sees_agent(
     codes: Codes, sizes: Cell, starts: Starts, boxes: Boxes, eye: Eye, feet: Vector
 ) -> bool:
     """Whether an agent with its feet at a point is seen by one of its sample points."""
-    if not _in_reach(eye, (feet[0], feet[1] + _CENTRE, feet[2])):
+    place = eye[0]
+    x, y, z = feet[0] - place[0], feet[1] - place[1], feet[2] - place[2]
+    if not in_reach(eye, x, y + _CENTRE, z):
         return False
     for height in _HEIGHTS:
-        point = (feet[0], feet[1] + height, feet[2])
-        if eye_sees_point(codes, sizes, starts, boxes, eye, point):
+        if _sees_sample(codes, sizes, starts, boxes, eye, (x, y + height, z)):
             return True
     return False
+
+
+@inlined
+def _update_intruded(codes: Codes, sizes: Cell, reaches: npt.NDArray[np.uint8], cell: Cell) -> None:
+    """Set or clear a cell's `INTRUDED` from the shapes of its neighbours."""
+    intruded = False
+    for side in range(6):
+        other = neighbour(cell, side)
+        if is_inside(sizes, other):
+            # The neighbour across a low side reaches in through its own high side.
+            intruded |= (reaches[codes[at(sizes, other)] & OWN] >> (side ^ 1)) & 1 != 0
+    own = codes[at(sizes, cell)] & OWN
+    codes[at(sizes, cell)] = own | INTRUDED if intruded else own
+
+
+@compiled
+def set_code(
+    codes: Codes, sizes: Cell, reaches: npt.NDArray[np.uint8], cell: Cell, code: int
+) -> None:
+    """Put another block into a cell of the grid; `codes.put_code` for flat codes, compiled."""
+    codes[at(sizes, cell)] = codes[at(sizes, cell)] & INTRUDED | code
+    for side in range(6):
+        _update_intruded(codes, sizes, reaches, neighbour(cell, side))

@@ -3,7 +3,8 @@
 For every cell of a grid of codes (as in `rays`) a mark: `CLEAR` where the middle of the
 cell is certainly free to the eye, `HIDDEN` where nothing in the closed cell is, else
 `UNSURE`. Of a cell that is not hidden all blocks that may hide parts of it are noted,
-nearest layers first: up to `ROOM` indices, and their number, at most `ROOM` + 1.
+the one that hides the middle first, then nearest layers first: up to `ROOM` indices, and
+their number, at most `ROOM` + 1.
 """
 
 import math
@@ -113,6 +114,15 @@ def _suspect(counts: Counts, suspects: Suspects, cell: int, block: int) -> None:
         counts[cell] += 1
 
 
+@inlined
+def _prefer(counts: Counts, suspects: Suspects, cell: int, block: int) -> None:
+    """Let the suspect noted last, which hides a cell's middle, be the first one tried."""
+    if cell != block:
+        if counts[cell] <= ROOM:
+            suspects[cell, counts[cell] - 1] = suspects[cell, 0]
+        suspects[cell, 0] = block
+
+
 @compiled
 def _cast_box(
     marks: Marks,
@@ -180,6 +190,7 @@ def _cast_box(
                     and _may_enter(eye, turned_back(layer, b, c, axis), low, high)
                 ):
                     marks[n] = UNSURE
+                    _prefer(counts, suspects, n, index)
         if casts_full and d0 >= near:
             # A cell in full shadow has both sides of its layer in it.
             b0 = math.ceil(eb + full_b0 * (d1 if full_b0 > 0 else d0))

@@ -81,7 +81,7 @@ def seen_points(
 
     The target, `NOWHERE` if none, hides nothing. It is an argument because compiled constants
     would be a type of their own, and all below would be compiled twice.
-"""
+    """
     seen = np.zeros(len(points), dtype=np.bool_)
     x, y, z = eye[0]
     for n in range(len(points)):
