@@ -3,7 +3,7 @@ const { count: checkCount, item: checkItem } = require('./lib/arguments')
 const { walkNear } = require('./lib/walking')
 const { bodyOf } = require('./lib/others')
 const { countOf, contents } = require('./lib/inventory')
-const { until } = require('./lib/waiting')
+const { ticks, until } = require('./lib/waiting')
 
 const NEAR = 3
 const TOO_NEAR = 1.5
@@ -51,8 +51,10 @@ module.exports = {
     const wanted = checkCount(context, 'num', num)
     if (countOf(bot, item) < wanted) fail(`${wanted} ${item.name} to be given, the inventory holds ${countOf(bot, item)}; there is: ${contents(bot)}.`)
     await walkNear(context, body.position.clone(), NEAR, otherName)
-    await bot.lookAt(body.position.offset(0, CHEST_HEIGHT, 0), true)
     if (bot.entity.position.distanceTo(body.position) < TOO_NEAR) await stepBack(bot, body)
+    await bot.lookAt(body.position.offset(0, CHEST_HEIGHT, 0), true)
+    // The server hears of the look one tick later.
+    await ticks(2)
     const watcher = watch(bot, item)
     try {
       await bot.toss(item.id, null, wanted)
@@ -68,6 +70,7 @@ module.exports = {
 
 /** Who stands too near would pick up its own toss. */
 async function stepBack (bot, body) {
+  await bot.lookAt(body.position.offset(0, CHEST_HEIGHT, 0), true)
   bot.setControlState('back', true)
   await until(() => bot.entity.position.distanceTo(body.position) >= TOO_NEAR, 20)
   bot.setControlState('back', false)

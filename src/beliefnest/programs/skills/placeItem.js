@@ -1,9 +1,8 @@
 'use strict'
 const { blockPosition, item: checkItem, show } = require('./lib/arguments')
-const { canUse, walk, centreOf } = require('./lib/walking')
+const { canUse, walk, viewpoint } = require('./lib/walking')
 const { hold, stackOf } = require('./lib/inventory')
 
-const EYES = 1.62
 const FACES = [[0, -1, 0], [0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0]]
 const FREE = new Set(['air', 'cave_air', 'void_air', 'water', 'lava', 'short_grass', 'tall_grass', 'fern', 'snow', 'dead_bush', 'vine'])
 const OPENS = /chest$|barrel|furnace|smoker|crafting_table|_door$|_trapdoor$|_gate$|_bed$|lever|_button$/
@@ -20,11 +19,9 @@ function inTheWay (feet, place) {
 }
 
 async function walkToPlace (context, place, reference) {
-  const { bot, goals } = context
+  const { bot } = context
   const sees = eye => canUse(bot, eye, place) || canUse(bot, eye, reference.position)
-  const goal = new goals.GoalNear(place.x, place.y, place.z, 3)
-  goal.isEnd = node => !inTheWay(node, place) && sees(node.offset(0.5, EYES, 0.5))
-  const arrived = () => !inTheWay(bot.entity.position.floored(), place) && sees(bot.entity.position.offset(0, EYES, 0))
+  const { goal, arrived } = viewpoint(context, place, (feet, eye) => !inTheWay(feet, place) && sees(eye))
   await walk(context, goal, arrived, place, 'a place to build from, near the position')
 }
 
@@ -63,7 +60,6 @@ module.exports = {
     if (!reference) fail(`there is no solid block beside ${show(place)} to put ${name} against. Choose a position on the ground or at a wall.`)
     await walkToPlace(context, place, reference)
     await hold(context, item)
-    await bot.lookAt(centreOf(reference.position), true)
     await put(context, reference, place, name)
   }
 }

@@ -70,22 +70,35 @@ async function walkNear (context, target, dist, what = 'the position') {
   await walk(context, new goals.GoalNear(block.x, block.y, block.z, dist), arrived, target, what)
 }
 
-/** Whether a block can be used from an eye: near enough, with nothing in between. */
+const SAMPLES = [[0, 0, 0], [0.45, 0, 0], [-0.45, 0, 0], [0, 0.45, 0], [0, -0.45, 0], [0, 0, 0.45], [0, 0, -0.45]]
+
+/** Whether a block can be used from an eye: near enough, with nothing before its centre or one of its sides. */
 function canUse (bot, eye, block) {
-  const way = centreOf(block).minus(eye)
-  const distance = way.norm()
-  if (distance > REACH) return false
-  const hit = bot.world.raycast(eye, way.scaled(1 / distance), distance)
-  return !hit || hit.position.equals(block)
+  if (eye.distanceTo(centreOf(block)) > REACH) return false
+  return SAMPLES.some(sample => {
+    const way = centreOf(block).offset(...sample).minus(eye)
+    const distance = way.norm()
+    const hit = bot.world.raycast(eye, way.scaled(1 / distance), distance)
+    return !hit || hit.position.equals(block)
+  })
+}
+
+/** A goal of the pathfinder, and whether it is reached, judged by the eyes of who stands at a place. */
+function viewpoint ({ bot, goals }, block, accepts) {
+  const goal = new goals.GoalNear(block.x, block.y, block.z, REACH)
+  goal.isEnd = node => accepts(node, node.offset(0.5, EYES, 0.5))
+  const arrived = () => {
+    const { position } = bot.entity
+    // The last step ends somewhere in the block that was aimed at.
+    return accepts(position.floored(), position.offset(0, EYES, 0)) || goal.isEnd(position.floored())
+  }
+  return { goal, arrived }
 }
 
 /** Walks to where a block can be used. */
 async function walkToUse (context, block, what) {
-  const { bot, goals } = context
-  const goal = new goals.GoalNear(block.x, block.y, block.z, REACH)
-  goal.isEnd = node => canUse(bot, node.offset(0.5, EYES, 0.5), block)
-  const arrived = () => canUse(bot, bot.entity.position.offset(0, EYES, 0), block)
+  const { goal, arrived } = viewpoint(context, block, (_, eye) => canUse(context.bot, eye, block))
   await walk(context, goal, arrived, block, what)
 }
 
-module.exports = { walk, walkNear, walkToUse, canUse, settle, centreOf, rounded }
+module.exports = { walk, walkNear, walkToUse, viewpoint, canUse, settle, centreOf, rounded }
