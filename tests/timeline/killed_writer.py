@@ -13,7 +13,7 @@ from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
 
-CALLS = 3000
+CALLS = 1200
 
 
 def calls(journal, seed):
@@ -27,7 +27,7 @@ def calls(journal, seed):
         info = journal.info(key)
         kind = chance.random()
         if kind < 0.8:
-            length = chance.choice((1, 1, 1, 2, 30, 200))
+            length = chance.choice((1, 1, 1, 1, 1, 2, 5, 30, 150))
             ticks = range(info.head + 1, info.head + 1 + length)
             journal.append(key, [entry(tick, chance) for tick in ticks], ticks[-1])
         elif kind < 0.9:

@@ -1,4 +1,4 @@
-"""What a call did survives a kill of the process once the call has returned."""
+"""What a writing process leaves to others: while it writes, and when it is killed."""
 
 import os
 import random
@@ -6,6 +6,7 @@ import runpy
 import signal
 import subprocess
 import sys
+from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from beliefnest.timeline.store import SqliteJournal
 
 WRITER = Path(__file__).with_name("killed_writer.py")
 KILLS = 200 if os.environ.get("BELIEFNEST_NIGHTLY") else 10
-LONGEST = 2500
+LONGEST = 1000
 """Calls after which a writer is killed at the latest, while it still writes."""
 
 
@@ -37,13 +38,23 @@ def expected(seed, calls):
     return before, kept(model)
 
 
-def kill_after(path, seed, calls):
-    """Let a writer make at least that many calls, kill it; how many returned."""
+@contextmanager
+def writing(path, seed):
+    """A process that writes, killed in the end."""
     with subprocess.Popen(
         [sys.executable, str(WRITER), str(path), str(seed)],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
     ) as writer:
+        try:
+            yield writer
+        finally:
+            writer.kill()
+
+
+def kill_after(path, seed, calls):
+    """Let a writer make at least that many calls, kill it; how many returned."""
+    with writing(path, seed) as writer:
         told = writer.stdout.read(calls)
         writer.send_signal(signal.SIGKILL)
         told += writer.stdout.read()
@@ -61,3 +72,34 @@ def test_a_killed_writer_leaves_what_it_was_told_was_kept(tmp_path, seed):
     with SqliteJournal.open(path) as journal:
         assert kept(journal) in (before, after)
         journal.verify()
+
+
+def check_ends(reader):
+    """Check the last entries of every timeline against what is told of it."""
+    for info in reader.timelines():
+        first = max(0, info.entries - 20)
+        ticks = [entry.tick for entry in reader.entries(info.key, first, info.entries)]
+        assert len(ticks) == info.entries - first
+        assert ticks == sorted(ticks)
+        assert all(tick <= info.head for tick in ticks)
+        assert reader.entries_until(info.key, info.head) == info.entries
+
+
+def test_a_reader_sees_whole_calls_while_another_process_writes(tmp_path):
+    path = tmp_path / "run.bn"
+    with writing(path, seed=0) as writer:
+        writer.stdout.read(1)
+        with SqliteJournal.read(path) as reader:
+            for _ in range(30):
+                writer.stdout.read(10)
+                with reader.unchanging():
+                    check_ends(reader)
+
+
+def test_opening_to_read_never_meets_a_half_written_file(tmp_path):
+    path = tmp_path / "run.bn"
+    with writing(path, seed=1) as writer:
+        for _ in range(60):
+            writer.stdout.read(10)
+            with SqliteJournal.read(path) as reader:
+                assert reader.timelines()

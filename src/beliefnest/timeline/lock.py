@@ -59,6 +59,8 @@ class WriterLock:
 def _opened(path: Path, file: Path) -> int:
     try:
         return os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+    except FileNotFoundError as fault:
+        raise StoreError(f"{file} cannot be made: there is no folder {path.parent}") from fault
     except OSError as fault:
         raise StoreError(
             f"{file} cannot be written: no lock file can be made beside it ({fault.strerror}); "

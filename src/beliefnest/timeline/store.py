@@ -148,6 +148,10 @@ class SqliteJournal:
         """All calls made inside are kept together or, if one raises, not at all."""
         return self._database.transaction()
 
+    def unchanging(self) -> AbstractContextManager[None]:
+        """All that is read inside is of one moment, whatever a writer does meanwhile."""
+        return self._database.unchanging()
+
     def timelines(self) -> Sequence[TimelineInfo]:
         """All timelines, in order of creation."""
         rows = {row.id: row for row in self._timeline_rows("ORDER BY id")}
