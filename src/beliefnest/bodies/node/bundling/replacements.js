@@ -7,7 +7,7 @@
 const fs = require('node:fs')
 const path = require('node:path')
 const { MEMOISED } = require('../src/memoise')
-const { STACK_BYTES } = require('../src/sandbox/interpreter')
+const { INITIAL_PAGES, STACK_BYTES } = require('../src/sandbox/interpreter')
 
 const ROOT = path.join(__dirname, '..')
 const DATA = path.join(ROOT, 'node_modules', 'minecraft-data', 'minecraft-data', 'data')
@@ -33,6 +33,7 @@ const STAND_INS = [
   [/flying-squid\/src\/lib\/plugins\/index\.js$/, 'module.exports = { builtinPlugins: null }'],
   [/node\/src\/prepare\.js$/, 'module.exports = { prepare () {} }'],
   [/sandbox\/interpreter\.js$/, `module.exports = {
+    INITIAL_PAGES: ${INITIAL_PAGES},
     STACK_BYTES: ${STACK_BYTES},
     interpreterBytes: () => require('node:fs').readFileSync(require('node:path').join(__dirname, '${INTERPRETER}'))
   }`],
@@ -93,15 +94,22 @@ function dataModule (file, outdir) {
 // Each package's main module makes a thing per version; in the bundle it makes it once.
 function memoise (build) {
   const memoiser = JSON.stringify(path.join(ROOT, 'src', 'memoise.js'))
+  const missing = new Set(MEMOISED)
   for (const name of MEMOISED) {
-    const file = require.resolve(name)
-    const filter = new RegExp(`${file.replace(/[.*+?^${}()|[\]\\]/g, '\\$&')}$`)
-    build.onLoad({ filter }, () => ({
-      contents: `${fs.readFileSync(file, 'utf8')}\nmodule.exports = require(${memoiser}).memoised(module.exports)`,
-      loader: 'js',
-      resolveDir: path.dirname(file)
-    }))
+    const { main = 'index.js' } = require(`${name}/package.json`)
+    const file = path.posix.join(name, main).replaceAll('.', '\\.')
+    build.onLoad({ filter: new RegExp(`node_modules/${file}$`) }, ({ path: found }) => {
+      missing.delete(name)
+      return {
+        contents: `${fs.readFileSync(found, 'utf8')}\nmodule.exports = require(${memoiser}).memoised(module.exports)`,
+        loader: 'js',
+        resolveDir: path.dirname(found)
+      }
+    })
   }
+  build.onEnd(() => missing.size === 0
+    ? undefined
+    : { errors: [{ text: `not in the bundle, or not where expected: ${[...missing].join(', ')}` }] })
 }
 
 module.exports = { INTERPRETER, replacements }

@@ -129,6 +129,7 @@ describe('regions', () => {
     await assert.rejects(wrong({ blocks: floor().subarray(4) }), { kind: 'bad_request', message: /"blocks" must have/ })
     await assert.rejects(wrong({ agents: { sally: agent([0.5, -51, 0.5], { inventory: { nothing_such: 1 } }) } }),
       { kind: 'bad_request', message: /nothing_such/ })
+    await assert.rejects(wrong({ agents: { sally: agent([40.5, -51, 0.5]) } }), { kind: 'bad_request', message: /sally .* outside the box/ })
     await node.request('create_region', region('wrong', { box: BOX }))
     await assert.rejects(wrong({}), { kind: 'bad_request', message: /already/ })
     await assert.rejects(node.request('run', { region: 'wrong', programs: { nobody: '' }, timeout_ticks: 5 }),

@@ -1,6 +1,7 @@
 'use strict'
 /** Puts agents into a region: a server-side player and the Mineflayer bot that is its mind. */
 const { connect } = require('../net/transport')
+const { BadRequest } = require('../channel/errors')
 const { orBadRequest } = require('./changes')
 const { agentUuid, INJECTION_MS, startBot } = require('../bots/bot')
 
@@ -37,6 +38,7 @@ class Bodies {
   }
 
   start (region, agent, state) {
+    requireInside(region, agent, state.position)
     const { client, server } = connect({
       registry: this.serv.registry,
       mail: region.mail,
@@ -98,6 +100,13 @@ class Bodies {
     bot.removeAllListeners()
     this.serv.forgetPlayer?.(player.uuid)
   }
+}
+
+function requireInside (region, agent, position) {
+  // Whoever stands on the topmost blocks has its feet above them.
+  const [x, y, z] = position.map(Math.floor)
+  if (region.box.contains(x, Math.min(y, region.box.high[1]), z)) return
+  throw new BadRequest(`agent ${agent} at (${position.join(', ')}) is outside the box of region ${region.name}`)
 }
 
 function give (player, { inventory, equipment, health }) {
