@@ -7,7 +7,7 @@
 const fs = require('node:fs')
 const path = require('node:path')
 const { MEMOISED } = require('../src/memoise')
-const { INITIAL_PAGES, STACK_BYTES } = require('../src/sandbox/interpreter')
+const { interpreterBytes: _, ...interpreterLimits } = require('../src/sandbox/interpreter')
 
 const ROOT = path.join(__dirname, '..')
 const DATA = path.join(ROOT, 'node_modules', 'minecraft-data', 'minecraft-data', 'data')
@@ -33,8 +33,7 @@ const STAND_INS = [
   [/flying-squid\/src\/lib\/plugins\/index\.js$/, 'module.exports = { builtinPlugins: null }'],
   [/node\/src\/prepare\.js$/, 'module.exports = { prepare () {} }'],
   [/sandbox\/interpreter\.js$/, `module.exports = {
-    INITIAL_PAGES: ${INITIAL_PAGES},
-    STACK_BYTES: ${STACK_BYTES},
+    ...${JSON.stringify(interpreterLimits)},
     interpreterBytes: () => require('node:fs').readFileSync(require('node:path').join(__dirname, '${INTERPRETER}'))
   }`],
   // Protocol definitions come from packages and are right; checking them costs a tenth of a start.
