@@ -105,8 +105,8 @@ def _block_box(eye: Vector, low: Vector, high: Vector, slopes: Slopes, opens: Op
         xa, xb = x0 * slopes[0, n], x1 * slopes[0, n]
         ya, yb = y0 * slopes[1, n], y1 * slopes[1, n]
         za, zb = z0 * slopes[2, n], z1 * slopes[2, n]
-        t0 = max(max(min(xa, xb), min(za, zb)), max(min(ya, yb), 0.0))
-        t1 = min(min(max(xa, xb), max(za, zb)), min(max(ya, yb), 1.0))
+        t0 = max(min(xa, xb), min(za, zb), min(ya, yb), 0.0)
+        t1 = min(max(xa, xb), max(za, zb), max(ya, yb), 1.0)
         opens[n] = 0 if t1 - t0 > slopes[3, n] else opens[n]
         left |= opens[n]
     return left != 0

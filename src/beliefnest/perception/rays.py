@@ -19,13 +19,13 @@ import numpy.typing as npt
 from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, OWN
 
 __all__ = [
-    "NOWHERE",
     "LEAST_LENGTH",
     "MISSED",
-    "Ray",
+    "NOWHERE",
     "Boxes",
     "Cell",
     "Codes",
+    "Ray",
     "Scene",
     "Starts",
     "Vector",
@@ -39,10 +39,10 @@ __all__ = [
     "main_axis",
     "may_lie_in_face",
     "neighbour",
+    "sloped",
     "span",
     "turned",
     "turned_back",
-    "sloped",
 ]
 
 N = TypeVar("N", int, float)
@@ -144,7 +144,7 @@ def span(ray: Ray, low: Vector, high: Vector) -> tuple[float, float]:
     x0, x1 = _clip(eye[0], inverse[0], low[0], high[0])
     y0, y1 = _clip(eye[1], inverse[1], low[1], high[1])
     z0, z1 = _clip(eye[2], inverse[2], low[2], high[2])
-    return max(max(x0, z0), max(y0, 0.0)), min(min(x1, z1), min(y1, 1.0))
+    return max(x0, z0, y0, 0.0), min(x1, z1, y1, 1.0)
 
 
 @inlined
@@ -205,6 +205,7 @@ def turned(vector: tuple[N, N, N], axis: int) -> tuple[N, N, N]:
 
 @inlined
 def turned_back(a: int, b: int, c: int, axis: int) -> Cell:
+    """The cell of components from an axis on; undoes `turned`."""
     if axis == 0:
         return a, b, c
     if axis == 1:
@@ -214,6 +215,7 @@ def turned_back(a: int, b: int, c: int, axis: int) -> Cell:
 
 @inlined
 def main_axis(d: Vector) -> int:
+    """The axis along which d is longest."""
     x, y, z = abs(d[0]), abs(d[1]), abs(d[2])
     if x >= y and x >= z:
         return 0
@@ -295,6 +297,7 @@ def _first_hit(
 
 @inlined
 def may_lie_in_face(e: float, d: float) -> bool:
+    """Whether a ray may lie in the plane of a face across an axis: no other plane counts."""
     return d == 0.0 and e * 32.0 == math.floor(e * 32.0)
 
 

@@ -89,9 +89,23 @@ def _side(e: float, cell: int, stride: int) -> int:
 
 
 @inlined
-def _cells(low: float, high: float, size: int) -> tuple[int, int]:
-    """First and last cell, without margin, that a closed interval touches."""
+def _cells_touched(
+    e: float, edge0: float, edge1: float, d0: float, d1: float, size: int
+) -> tuple[int, int]:
+    """First and last cell, without margin, in partial shadow between two distances."""
+    low = e + edge0 * (d1 if edge0 < 0 else d0) - _GROW
+    high = e + edge1 * (d1 if edge1 > 0 else d0) + _GROW
     return max(math.floor(low), 1), min(math.floor(high), size - 2)
+
+
+@inlined
+def _cells_within(
+    e: float, edge0: float, edge1: float, d0: float, d1: float, size: int
+) -> tuple[int, int]:
+    """First and last cell, without margin, in full shadow all the way between two distances."""
+    low = e + edge0 * (d1 if edge0 > 0 else d0)
+    high = e + edge1 * (d0 if edge1 > 0 else d1)
+    return max(math.ceil(low), 1), min(math.floor(high) - 1, size - 2)
 
 
 @inlined
@@ -115,12 +129,33 @@ def _suspect(counts: Counts, suspects: Suspects, cell: int, block: int) -> None:
 
 
 @inlined
+def _doubt_all(marks: Marks, counts: Counts, suspects: Suspects, index: int) -> None:
+    """Note the block of that index, which the eye touches, for all cells."""
+    for n in range(len(marks)):
+        _suspect(counts, suspects, n, index)
+        if marks[n] == CLEAR:
+            marks[n] = UNSURE
+
+
+@inlined
 def _prefer(counts: Counts, suspects: Suspects, cell: int, block: int) -> None:
     """Let the suspect noted last, which hides a cell's middle, be the first one tried."""
     if cell != block:
         if counts[cell] <= ROOM:
             suspects[cell, counts[cell] - 1] = suspects[cell, 0]
         suspects[cell, 0] = block
+
+
+@inlined
+def _gap(eye: Vector, low: Vector, high: Vector) -> tuple[int, float]:
+    """The axis along which an eye is farthest from a box, and how far."""
+    axis, near = 0, -1.0
+    for n in range(3):
+        e = turned(eye, n)[0]
+        gap = max(turned(low, n)[0] - e, e - turned(high, n)[0])
+        if gap > near:
+            axis, near = n, gap
+    return axis, near
 
 
 @compiled
@@ -136,15 +171,9 @@ def _cast_box(
     casts_full: bool,
 ) -> None:
     """Mark the cells in the shadow of a box, which is part of the block of that index."""
-    axis, near = 0, -1.0
-    for n in range(3):
-        gap = max(turned(low, n)[0] - turned(eye, n)[0], turned(eye, n)[0] - turned(high, n)[0])
-        if gap > near:
-            axis, near = n, gap
+    axis, near = _gap(eye, low, high)
     if near < _TOUCHING:
-        for n in range(len(marks)):
-            _suspect(counts, suspects, n, index)
-            marks[n] = UNSURE if marks[n] == CLEAR else marks[n]
+        _doubt_all(marks, counts, suspects, index)
         return
     ea, eb, ec = turned(eye, axis)
     la, lb, lc = turned(low, axis)
@@ -164,16 +193,8 @@ def _cast_box(
     while 1 <= layer < size_a - 1:
         d = (layer + 0.5 - ea) * step
         d0, d1 = max(d - 0.5, 0.0), d + 0.5
-        b0, b1 = _cells(
-            eb + part_b0 * (d1 if part_b0 < 0 else d0) - _GROW,
-            eb + part_b1 * (d1 if part_b1 > 0 else d0) + _GROW,
-            size_b,
-        )
-        c0, c1 = _cells(
-            ec + part_c0 * (d1 if part_c0 < 0 else d0) - _GROW,
-            ec + part_c1 * (d1 if part_c1 > 0 else d0) + _GROW,
-            size_c,
-        )
+        b0, b1 = _cells_touched(eb, part_b0, part_b1, d0, d1, size_b)
+        c0, c1 = _cells_touched(ec, part_c0, part_c1, d0, d1, size_c)
         if b0 > b1 or c0 > c1:
             break
         for b in range(b0, b1 + 1):
@@ -192,13 +213,10 @@ def _cast_box(
                     marks[n] = UNSURE
                     _prefer(counts, suspects, n, index)
         if casts_full and d0 >= near:
-            # A cell in full shadow has both sides of its layer in it.
-            b0 = math.ceil(eb + full_b0 * (d1 if full_b0 > 0 else d0))
-            b1 = math.floor(eb + full_b1 * (d0 if full_b1 > 0 else d1)) - 1
-            c0 = math.ceil(ec + full_c0 * (d1 if full_c0 > 0 else d0))
-            c1 = math.floor(ec + full_c1 * (d0 if full_c1 > 0 else d1)) - 1
-            for b in range(max(b0, 1), min(b1, size_b - 2) + 1):
-                for c in range(max(c0, 1), min(c1, size_c - 2) + 1):
+            b0, b1 = _cells_within(eb, full_b0, full_b1, d0, d1, size_b)
+            c0, c1 = _cells_within(ec, full_c0, full_c1, d0, d1, size_c)
+            for b in range(b0, b1 + 1):
+                for c in range(c0, c1 + 1):
                     marks[layer * stride_a + b * stride_b + c * stride_c] = HIDDEN
         layer += step
 
