@@ -32,16 +32,19 @@ const MAX_I32 = 0x7fffffff
 /**
  * @param {Uint8Array} bytes a module of the WebAssembly MVP with bulk memory and at most one
  *   result per function
- * @param {{stackBytes: number}} limits the largest value `depth` may take, in estimated bytes
+ * @param {object} limits
+ * @param {number} limits.stackBytes the largest value `depth` may take, in estimated bytes
+ * @param {number} limits.initialPages what the imported memory has at least, in pages of 64 KiB
  * @returns {Uint8Array} the rewritten module, with two more exports: `fuel` and `depth`, mutable i32
  * @throws {Error} if the module has something this rewriting does not know
  */
-function meter (bytes, { stackBytes }) {
+function meter (bytes, { stackBytes, initialPages }) {
   const sections = readSections(bytes)
   const plan = survey(sections, stackBytes)
   const bodies = readBodies(sections.get(SECTION.code)).map((body, i) => rewriteBody(body, plan.signatures[i], plan))
   bodies.push(bulkBody(plan, BULK.copy), bulkBody(plan, BULK.fill))
   const replaced = new Map([
+    [SECTION.import, resizedMemory(sections.get(SECTION.import), initialPages)],
     [SECTION.type, appended(sections.get(SECTION.type), [bulkType()])],
     [SECTION.function, appended(sections.get(SECTION.function), [plan.bulkType, plan.bulkType].map(unsigned))],
     [SECTION.global, appended(sections.get(SECTION.global), [counter(MAX_I32), counter(0)])],
@@ -89,16 +92,30 @@ function readTypes (reader) {
 }
 
 function countImports (reader) {
-  let functions = 0
-  let globals = 0
-  reader.vector((r) => {
-    r.bytes(r.unsigned())
-    r.bytes(r.unsigned())
-    const kind = r.byte()
-    if (kind === KIND.function) { functions++; r.unsigned() } else if (kind === KIND.global) { globals++; r.bytes(2) } else if (kind === KIND.memory) r.limits()
-    else if (kind === KIND.table) { r.byte(); r.limits() } else throw new Error(`an import of the module has the unknown kind ${kind}`)
-  })
-  return { functions, globals }
+  const kinds = reader.vector(importKind)
+  const count = (wanted) => kinds.filter(({ kind }) => kind === wanted).length
+  return { functions: count(KIND.function), globals: count(KIND.global) }
+}
+
+function importKind (reader) {
+  reader.bytes(reader.unsigned())
+  reader.bytes(reader.unsigned())
+  const kind = reader.byte()
+  const start = reader.position
+  if (kind === KIND.function) reader.unsigned()
+  else if (kind === KIND.global) reader.bytes(2)
+  else if (kind === KIND.memory) reader.limits()
+  else if (kind === KIND.table) { reader.byte(); reader.limits() } else throw new Error(`an import of the module has the unknown kind ${kind}`)
+  return { kind, start, end: reader.position }
+}
+
+function resizedMemory (content, initialPages) {
+  const memory = new Reader(content).vector(importKind).find(({ kind }) => kind === KIND.memory)
+  if (memory === undefined) throw new Error('the module imports no memory')
+  const limits = new Reader(content, memory.start)
+  const flags = limits.byte()
+  limits.unsigned()
+  return Buffer.concat([content.subarray(0, memory.start), Uint8Array.from([flags, ...unsigned(initialPages)]), content.subarray(limits.position)])
 }
 
 function readBodies (content) {

@@ -6,9 +6,11 @@
 
 const { QuickJSFFI } = require('@jitl/quickjs-wasmfile-release-sync/ffi')
 const loadGlue = require('@jitl/quickjs-wasmfile-release-sync/emscripten-module')
+const { INITIAL_PAGES } = require('./interpreter')
 
 const PAGE = 65536
-const INITIAL_PAGES = 256
+const CHUNK = 4096
+const EMPTY = Buffer.alloc(CHUNK)
 const ALL_INTRINSICS = 0
 const AS_SCRIPT = 0
 const PENDING = 0
@@ -69,18 +71,20 @@ class QuickJS {
     this.context = this.ffi.QTS_NewContext(this.runtime, ALL_INTRINSICS)
   }
 
-  /** @returns {{start: number, bytes: Uint8Array, runtime: number, context: number}} all of its state; nothing may run */
+  /** @returns {{pages: {place: number, bytes: Uint8Array}[], runtime: number, context: number}} all of its state; nothing may run */
   save () {
     const all = this.glue.HEAPU8
-    const start = all.findIndex((byte) => byte !== 0)
-    const end = all.findLastIndex((byte) => byte !== 0) + 1
-    return { start, bytes: all.slice(start, end), runtime: this.runtime, context: this.context }
+    const pages = []
+    for (let place = 0; place < all.length; place += CHUNK) {
+      const bytes = Buffer.from(all.subarray(place, place + CHUNK))
+      if (!bytes.equals(EMPTY)) pages.push({ place, bytes })
+    }
+    return { pages, runtime: this.runtime, context: this.context }
   }
 
-  /** Takes the state another instance of the same module saved. */
-  restore ({ start, bytes, runtime, context }) {
-    this.glue.HEAPU8.fill(0, 0, start)
-    this.glue.HEAPU8.set(bytes, start)
+  /** Takes the state another instance of the same module saved; this one must be as new. */
+  restore ({ pages, runtime, context }) {
+    for (const { place, bytes } of pages) this.glue.HEAPU8.set(bytes, place)
     this.runtime = runtime
     this.context = context
   }
