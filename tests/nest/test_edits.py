@@ -17,7 +17,7 @@ def corner():
 
 
 def test_an_edit_changes_blocks_and_contents_of_one_belief_and_of_those_below():
-    world, nest = corner()
+    _, nest = corner()
     outside = ["/", "/sally", "/sally/observer", "/anne"]
     before = [everything(nest[path].state) for path in outside]
     nest["/observer"].edit(blocks={PLACE: "stone"}, containers={CHEST: {"apple": 2}})
@@ -48,7 +48,7 @@ def test_an_edit_in_follow_mode_lasts_until_the_place_is_perceived():
 
 def test_children_see_an_edited_block_where_they_are_credited_with_sight():
     """Sally sees the place in the belief; Anne does not."""
-    world, nest = nest_of(THREE | {"anne": (2.5, 0, 2.5), "sally": GAP}, CORNER)
+    _, nest = nest_of(THREE | {"anne": (2.5, 0, 2.5), "sally": GAP}, CORNER)
     place = (6, 0, 5)
     assert nest["/observer"].state.blocks[place] is None
     nest["/observer"].edit(blocks={place: "bricks"})

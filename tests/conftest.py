@@ -1,0 +1,19 @@
+"""Profiles of the property tests: few examples by default, many at night."""
+
+import os
+
+from hypothesis import HealthCheck, settings
+
+_SLOW_TO_MAKE = [HealthCheck.too_slow, HealthCheck.data_too_large]
+
+settings.register_profile(
+    "default",
+    max_examples=25,
+    deadline=None,
+    derandomize=bool(os.environ.get("CI")),
+    suppress_health_check=_SLOW_TO_MAKE,
+)
+settings.register_profile(
+    "nightly", max_examples=2000, deadline=None, suppress_health_check=_SLOW_TO_MAKE
+)
+settings.load_profile("nightly" if os.environ.get("BELIEFNEST_NIGHTLY") == "1" else "default")

@@ -1,0 +1,229 @@
+"""Random stories for the laws of the nest: a small world, agents, and what they do.
+
+A story prints as Python and is replayed by `Stage`; an act that is impossible when its
+turn comes is left out, so that a story shrinks to any part of itself.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi
+from typing import Any
+
+from hypothesis import strategies as st
+
+import beliefnest as bn
+from beliefnest.world.values import Items, Point, Position
+
+LOW, HIGH = (0, 0, 0), (7, 3, 7)
+NAMES = ("ann", "bob", "cat")
+CONTAINERS = ((2, 0, 3), (5, 0, 4))
+
+Act = tuple[Any, ...]
+"""Name of a method of `ScriptedWorld`, or `tick`, `edit`, `switch` or `in`, and its arguments."""
+
+
+@dataclass(frozen=True)
+class Story:
+    """A start and what happens then."""
+
+    blocks: Mapping[Position, str]
+    agents: Mapping[str, Point]
+    options: Mapping[str, Any]
+    acts: tuple[Act, ...] = ()
+    static: tuple[str, ...] = ()
+    contents: Items | None = None
+
+    def world(self) -> bn.ScriptedWorld:
+        """The world at the start; everybody owns an apple and two diamonds."""
+        return bn.ScriptedWorld(
+            (LOW, HIGH),
+            self.blocks,
+            self.agents,
+            inventories={name: {"apple": 1, "diamond": 2} for name in self.agents},
+            containers={place: self.contents or {"emerald": 2} for place in CONTAINERS},
+        )
+
+    def perception(self) -> bn.Perception:
+        """What the agents can perceive."""
+        return bn.Perception(**self.options)
+
+
+class Stage:
+    """A story being played in a world, with its nest.
+
+    Attributes:
+        story: The story.
+        world: The real world.
+        nest: Its nest.
+    """
+
+    def __init__(self, story: Story) -> None:
+        self.story = story
+        self.world = story.world()
+        self.nest = bn.Nest(self.world, story.perception(), static_blocks=story.static)
+
+    def do(self, act: Act) -> bool:
+        """Do one act of the story; false if it was impossible."""
+        name, *args = act
+        try:
+            if name in ("edit", "switch"):
+                path, *rest = args
+                getattr(self.nest[path], name)(*rest)
+            elif name == "in":
+                path, inner = args
+                do_in(self.nest[path].scripted, inner)
+            else:
+                do_in(self.world, act)
+        except (bn.WorldError, bn.BranchError):
+            return False
+        return True
+
+    def play(self, after_each: Callable[[], object] = lambda: None) -> "Stage":
+        """Do all acts; `after_each` is called once before them and after each."""
+        after_each()
+        for act in self.story.acts:
+            self.do(act)
+            after_each()
+        return self
+
+
+def do_in(world: bn.ScriptedWorld, act: Act) -> None:
+    """Do one act in a world; several, in one tick, if it is a `tick`."""
+    name, *args = act
+    if name != "tick":
+        getattr(world, name)(*args)
+        return
+    with world.tick():
+        for inner in args:
+            do_in(world, inner)
+
+
+class Stories:
+    """Strategies for stories.
+
+    Args:
+        blocks: Texts of the blocks that are built with.
+        options: Options of perception that differ from the default, and their values.
+        max_acts: Greatest number of acts.
+        forks: Whether beliefs are forked, acted in and edited as well.
+    """
+
+    def __init__(
+        self,
+        blocks: tuple[str, ...] = ("stone", "glass", "oak_slab", "oak_slab[type=top]"),
+        options: Mapping[str, Any] | None = None,
+        max_acts: int = 15,
+        *,
+        forks: bool = False,
+    ) -> None:
+        self._blocks = st.sampled_from(blocks)
+        self._options = options
+        self._max_acts = max_acts
+        self._forks = forks
+
+    @cached_property
+    def story(self) -> st.SearchStrategy[Story]:
+        """Whole stories."""
+        act = self.act
+        if self._forks:
+            acts = [act] * 6 + [self._edit, self._switch, self._inside, self._inside]
+            act = st.one_of(*acts)
+        return st.builds(
+            Story,
+            blocks=self._walls,
+            agents=st.fixed_dictionaries(dict.fromkeys(NAMES, self._feet)),
+            options=self._perception,
+            acts=st.lists(act, max_size=self._max_acts).map(tuple),
+            static=st.sampled_from([(), ("stone",), ("stone", "chest")]),
+        )
+
+    @cached_property
+    def act(self) -> st.SearchStrategy[Act]:
+        """One act in a world."""
+        single = self._single
+        ticks = st.lists(single, min_size=2, max_size=3).map(lambda acts: ("tick", *acts))
+        return st.one_of(single, single, single, ticks, st.just(("step", 1)))
+
+    @cached_property
+    def _single(self) -> st.SearchStrategy[Act]:
+        who = st.sampled_from(NAMES)
+        container = st.sampled_from(CONTAINERS)
+        items = st.sampled_from([{"diamond": 1}, {"emerald": 1}, {"diamond": 2, "apple": 1}])
+        place = st.tuples(st.just("place_agent"), who, self._feet, self._yaw)
+        anywhere = st.one_of(self._cell(range(4)), container)
+        block = st.one_of(self._blocks, st.sampled_from(["air", "chest", "barrel"]))
+        return st.one_of(
+            place,
+            place,
+            st.tuples(st.just("set_block"), anywhere, block),
+            st.tuples(st.sampled_from(["deposit", "withdraw"]), who, container, items),
+            st.tuples(st.just("open"), who, container),
+            st.tuples(st.sampled_from(["say", "think"]), who, st.sampled_from(["hi", "hm"])),
+            st.tuples(st.just("give"), who, who, items),
+        )
+
+    @cached_property
+    def _path(self) -> st.SearchStrategy[str]:
+        pairs = [f"/{a}/{b}" for a in NAMES for b in NAMES if a != b]
+        return st.sampled_from([f"/{name}" for name in NAMES] + pairs)
+
+    @cached_property
+    def _edit(self) -> st.SearchStrategy[Act]:
+        blocks = st.dictionaries(self._cell(range(2)), self._blocks, max_size=1)
+        contents = st.dictionaries(st.sampled_from(CONTAINERS), st.just({"apple": 3}), max_size=1)
+        return st.tuples(st.just("edit"), self._path, blocks, contents)
+
+    @cached_property
+    def _switch(self) -> st.SearchStrategy[Act]:
+        return st.tuples(st.just("switch"), self._path, st.sampled_from(["one", "two", "follow"]))
+
+    @cached_property
+    def _inside(self) -> st.SearchStrategy[Act]:
+        return st.tuples(st.just("in"), self._path, self.act)
+
+    @cached_property
+    def _walls(self) -> st.SearchStrategy[dict[Position, str]]:
+        wall = st.builds(
+            _wall, self._blocks, st.booleans(), *[st.integers(0, 7)] * 3, st.integers(1, 4)
+        )
+        return st.lists(wall, max_size=4).map(_without_containers)
+
+    @cached_property
+    def _perception(self) -> st.SearchStrategy[dict[str, Any]]:
+        if self._options is not None:
+            return st.just(dict(self._options))
+        return st.fixed_dictionaries(
+            {},
+            optional={
+                "hearing": st.sampled_from(["sight", {"radius": 3}]),
+                "containers": st.just("transparent"),
+                "negative_evidence": st.just(True),
+                "max_visible_distance": st.sampled_from([4, 5.5, None]),
+                "field_of_view": st.sampled_from([90, 200]),
+            },
+        )
+
+    @cached_property
+    def _feet(self) -> st.SearchStrategy[Point]:
+        return self._cell([0]).map(lambda cell: (cell[0] + 0.5, float(cell[1]), cell[2] + 0.5))
+
+    @cached_property
+    def _yaw(self) -> st.SearchStrategy[float]:
+        return st.sampled_from([0.0, pi / 2, pi, -pi / 2])
+
+    def _cell(self, heights: "range | list[int]") -> st.SearchStrategy[Position]:
+        level = st.integers(0, 7)
+        return st.tuples(level, st.sampled_from(list(heights)), level)
+
+
+def _wall(
+    block: str, along_x: bool, where: int, a: int, b: int, height: int
+) -> dict[Position, str]:
+    span = range(min(a, b), max(a, b) + 1)
+    cells = [(k, where) if along_x else (where, k) for k in span]
+    return {(x, y, z): block for x, z in cells for y in range(height)}
+
+
+def _without_containers(walls: list[dict[Position, str]]) -> dict[Position, str]:
+    return {p: block for wall in walls for p, block in wall.items() if p not in CONTAINERS}

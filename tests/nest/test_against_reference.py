@@ -1,0 +1,85 @@
+"""The nest against the slow reference, on random stories, every node to depth 3."""
+
+from hypothesis import given
+from tests.nest.comparing import everything
+from tests.nest.reference import Path, Reference, paths_to
+from tests.nest.stories import NAMES, Act, Stage, Stories, Story
+
+from beliefnest.world.registry import Registry
+
+DEPTH = 3
+REGISTRY = Registry.load()
+PATHS = list(paths_to(NAMES, DEPTH))
+
+
+class Double:
+    """A story played in the nest and in the reference side by side."""
+
+    def __init__(self, story: Story) -> None:
+        self.stage = Stage(story)
+        start = self.stage.world.snapshot()
+        options = story.perception()
+        self.reference = Reference(start, options, frozenset(story.static), depth=DEPTH)
+        self._bodies = {(): self.stage.world}
+        self.stage.world.listen(lambda frame: self.reference.frame((), frame))
+
+    def do(self, act: Act) -> None:
+        name, *args = act
+        if not self.stage.do(act):
+            return
+        if name == "switch":
+            self._switch(*args)
+        elif name == "edit":
+            path, blocks, contents = args
+            states = {place: REGISTRY.state_id(text) for place, text in blocks.items()}
+            self.reference.edit(split(path), states, contents)
+
+    def _switch(self, text: str, branch: str) -> None:
+        path = split(text)
+        self.reference.switch(path, branch)
+        if branch != "follow":
+            body = self.stage.nest[text].scripted
+            if self._bodies.get(path) is not body:
+                self._bodies[path] = body
+                body.listen(lambda frame: self.reference.frame(path, frame))
+
+    def check(self) -> None:
+        for path in PATHS:
+            simulator = self.stage.nest["/" + "/".join(path)]
+            expected, found = self.reference.everything(path), everything(simulator.state)
+            for part, value in expected.items():
+                assert found[part] == value, f"{part} of {simulator.path} at {simulator.tick}"
+            assert simulator.tick == self.reference.head(path)
+
+
+def split(path: str) -> Path:
+    return tuple(name for name in path.split("/") if name)
+
+
+def compare(story: Story, *, each_tick: bool) -> None:
+    double = Double(story)
+    for act in story.acts:
+        if each_tick:
+            double.check()
+        double.do(act)
+    double.check()
+
+
+@given(Stories().story)
+def test_every_node_asked_at_the_end(story):
+    compare(story, each_tick=False)
+
+
+@given(Stories(max_acts=8).story)
+def test_every_node_asked_at_every_tick(story):
+    compare(story, each_tick=True)
+
+
+@given(Stories(forks=True, max_acts=20).story)
+def test_every_node_with_forks_and_edits(story):
+    compare(story, each_tick=False)
+
+
+@given(Stories(forks=True, max_acts=10).story)
+def test_every_node_with_forks_and_edits_asked_at_every_tick(story):
+    compare(story, each_tick=True)
