@@ -58,7 +58,7 @@ function worldOf (regions, frames) {
   const events = (...kinds) => frames.flatMap(frame => frame.events)
     .filter(({ kind }) => kind !== 'block_update' && (kinds.length === 0 || kinds.includes(kind)))
   return {
-    serv, region, bots, players, frames, events, until, during, ticks, at,
+    serv, regions, region, bots, players, frames, events, until, during, ticks, at,
     container: (x, y, z) => serv.containers.get(at(x, y, z)),
     block: (x, y, z) => serv.blocks.at(at(x, y, z)),
     has: name => players[name].possessions().inventory,
