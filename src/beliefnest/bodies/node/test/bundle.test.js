@@ -28,7 +28,8 @@ describe('the bundle', () => {
     })
     assert.deepEqual(results.sally.error, null)
     assert.ok(node.frames.length > 10)
-    await node.close()
+    node.child.stdio[4].destroy()
+    assert.deepEqual(await node.exited, { code: null, signal: 'SIGKILL' })
   })
 
   it('does as the sources do', async () => {
