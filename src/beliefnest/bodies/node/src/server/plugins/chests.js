@@ -75,7 +75,8 @@ module.exports.server = (serv) => {
     })
     player.ledgers.push({ ledger, isOpen: () => player.windows.open?.positions === parts })
     parts.forEach(showLid)
-    player.emitEvent({ kind: 'open_container', detail: { position: listOf(position) } })
+    const clickedFirst = [...parts].sort((a, b) => b.equals(position) - a.equals(position))
+    for (const part of clickedFirst) player.emitEvent({ kind: 'open_container', detail: { position: listOf(part) } })
     return true
   }
   Object.keys(TITLES).forEach((name) => serv.onInteraction(name, open))
