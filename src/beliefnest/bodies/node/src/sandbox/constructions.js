@@ -5,6 +5,7 @@ const { goals, Movements } = require('mineflayer-pathfinder')
 
 const MAX_SUBGOALS = 100
 const MAX_RANGE = 256
+const MAX_DEPTH = 10
 const coordinate = (exchange, wire, where) => exchange.coordinate(wire, where)
 const range = (exchange, wire, where) => {
   const value = exchange.number(wire, where)
@@ -13,11 +14,11 @@ const range = (exchange, wire, where) => {
 }
 const vector = (exchange, wire, where) => exchange.vector(wire, where)
 const entity = (exchange, wire, where) => exchange.object(wire, ['entity'], where)
-const goal = (exchange, wire, where) => buildGoal(exchange, wire, where)
-const goalList = (exchange, wire, where) => {
+const goal = (exchange, wire, where, depth) => buildGoal(exchange, wire, where, depth)
+const goalList = (exchange, wire, where, depth) => {
   const list = Array.isArray(wire) ? wire : []
   if (list.length === 0 || list.length > MAX_SUBGOALS) throw new TypeError(`${where} must be 1 to ${MAX_SUBGOALS} goals`)
-  return list.map((item, i) => buildGoal(exchange, item, `${where}[${i}]`))
+  return list.map((item, i) => buildGoal(exchange, item, `${where}[${i}]`, depth))
 }
 const reach = { range: [range, 5], LOS: [boolean, true] }
 const placing = { ...reach, facing: [facing, undefined], half: [half, undefined] }
@@ -68,12 +69,13 @@ const GOAL_NAMES = Object.keys(FORMS)
  * @param {string} where for messages
  * @returns {object} a goal of mineflayer-pathfinder
  */
-function buildGoal (exchange, wire, where) {
+function buildGoal (exchange, wire, where, depth = 0) {
+  if (depth > MAX_DEPTH) throw new TypeError(`${where} is nested more than ${MAX_DEPTH} deep`)
   if (wire === null || typeof wire !== 'object' || wire.$ !== 'g' || !Object.hasOwn(FORMS, wire.n) || !Array.isArray(wire.a)) {
     throw new TypeError(`${where} must be a goal, such as new goals.GoalNear(x, y, z, range)`)
   }
   const form = FORMS[wire.n]
-  const args = form.args.map((convert, i) => convert(exchange, wire.a[i] ?? null, `argument ${i + 1} of ${wire.n}`))
+  const args = form.args.map((convert, i) => convert(exchange, wire.a[i] ?? null, `argument ${i + 1} of ${wire.n}`, depth + 1))
   if (form.world) args.push(exchange.bot.world, goalOptions(exchange, form, wire))
   return new goals[wire.n](...args)
 }
