@@ -70,8 +70,15 @@ _RIM = 1e-3
 
 
 def compiled(function: F) -> F:
-    """Compile a kernel on first use and keep the machine code for the next process."""
-    return cast(F, numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+    """Compile a kernel on first use and keep the machine code for the next process.
+
+    It is kept beside the package, or in the user's cache folder, or in NUMBA_CACHE_DIR. A
+    process that can write to none of them compiles for itself.
+    """
+    try:
+        return cast(F, numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+    except RuntimeError:  # raised at once, by the search for a folder; compiling comes later
+        return cast(F, numba.njit(nogil=True, error_model="numpy")(function))
 
 
 def inlined(function: F) -> F:
