@@ -17,7 +17,7 @@ from beliefnest.errors import BranchError, InputError, StoreError
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.timeline.schema import APPLICATION_ID, SCHEMA_VERSION
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import PIECE_ENTRIES, SqliteJournal
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.values import AgentState, Box
 
@@ -66,7 +66,7 @@ def test_a_second_writer_is_refused_by_file_and_process(run_file):
 def test_a_second_writer_in_another_process_is_refused(run_file):
     code = (
         "import sys; from beliefnest.errors import StoreError\n"
-        "from beliefnest.timeline.store import SqliteJournal\n"
+        "from beliefnest.timeline.store import PIECE_ENTRIES, SqliteJournal\n"
         "try: SqliteJournal.open(sys.argv[1])\n"
         "except StoreError as refusal: print(refusal)"
     )
@@ -155,6 +155,35 @@ def test_calls_made_together_are_kept_together(run_file):
         assert journal.records.state("random") == b"2"
 
 
+def test_an_inner_part_that_fails_leaves_the_rest(run_file):
+    with SqliteJournal.open(run_file) as journal, journal.together():
+        journal.append(MAIN, [Frame(301)], 301)
+        with pytest.raises(BranchError), journal.together():
+            journal.append(MAIN, [Frame(302)], 302)
+            journal.info(PLAN)
+        journal.append(MAIN, [], 305)
+    with SqliteJournal.read(run_file) as reader:
+        assert reader.info(MAIN).head == 305
+        assert next(reader.entries(MAIN, reader.info(MAIN).entries - 1, 10**6)) == Frame(301)
+
+
+@pytest.mark.parametrize("step", [1, 5, PIECE_ENTRIES + 1])
+def test_entries_are_packed_however_they_come(tmp_path, step):
+    path = tmp_path / "run.bn"
+    frames = [Frame(tick) for tick in range(1, 10 * PIECE_ENTRIES + 4)]
+    with SqliteJournal.create_file(path) as journal:
+        journal.create(MAIN, None, 0)
+        for at in range(0, len(frames), step):
+            part = frames[at : at + step]
+            journal.append(MAIN, part, part[-1].tick)
+    with sqlite3.connect(path) as other:
+        packed = other.execute("SELECT count FROM piece WHERE compressed").fetchall()
+        loose = other.execute("SELECT sum(count) FROM piece WHERE NOT compressed").fetchone()
+    other.close()
+    assert packed == [(PIECE_ENTRIES,)] * 10
+    assert loose == (3,)
+
+
 def test_what_cannot_be_stored_is_refused_whole(run_file):
     with SqliteJournal.open(run_file) as journal:
         before = kept(journal)
@@ -169,7 +198,7 @@ FILL = """
 import resource, sys
 from beliefnest.errors import StoreError
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import PIECE_ENTRIES, SqliteJournal
 from beliefnest.world.frames import Frame
 key = TimelineKey((), "main")
 journal = SqliteJournal.open(sys.argv[1])
@@ -221,7 +250,7 @@ def test_a_full_database_is_told_and_nothing_is_kept(run_file):
 UNPRIVILEGED = """
 import os, sys
 from beliefnest.errors import StoreError
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import PIECE_ENTRIES, SqliteJournal
 if os.getuid() == 0:
     os.setuid(65534)
 with SqliteJournal.read(sys.argv[1]) as reader:
@@ -396,6 +425,17 @@ def test_a_truncated_file_is_refused(sound, tmp_path, part):
         everything(path)
     with pytest.raises(StoreError, match=r"run\.bn"), SqliteJournal.open(path) as journal:
         journal.verify()
+
+
+def test_a_missing_end_is_noticed_where_nothing_lay(run_file):
+    with SqliteJournal.open(run_file) as journal:
+        journal.create(PLAN, None, 0)
+        journal.append(PLAN, [Frame(1, blocks={(x, 0, 0): x for x in range(10_000)})], 1)
+        journal.delete(PLAN)
+    os.truncate(run_file, run_file.stat().st_size - 4096)
+    for opened in (SqliteJournal.open, SqliteJournal.read):
+        with pytest.raises(StoreError, match="its end is missing"):
+            opened(run_file)
 
 
 @pytest.mark.parametrize(
