@@ -1,12 +1,13 @@
 'use strict'
 /**
- * Guests: QuickJS, one WebAssembly instance per program, so that nothing of a program, not even a
- * damaged interpreter, outlives it. What runs is metered (meter.js), so that a program ends by
+ * Guests: QuickJS, one WebAssembly instance per program on an empty memory, so that nothing of a
+ * program, not even a damaged interpreter, outlives it. What runs is metered (meter.js), so that a program ends by
  * its own amount of computation and not by a clock.
  */
 
 const { QuickJS, GuestException } = require('./quickjs')
 const { STACK_BYTES, interpreterBytes } = require('./interpreter')
+const { Memories } = require('./memories')
 const { guestSource } = require('./guest/source')
 const { kindNames, tables } = require('./policy/kinds')
 const { GOAL_NAMES } = require('./constructions')
@@ -41,6 +42,7 @@ class Engine {
   constructor () {
     this.module = new WebAssembly.Module(interpreterBytes())
     this.template = null
+    this.memories = new Memories()
   }
 
   /**
@@ -51,15 +53,21 @@ class Engine {
     this.template ??= this.makeTemplate()
     const { state, functions } = await this.template
     const guest = new Guest(limits, functions)
-    guest.interpreter = await QuickJS.open(this.module, limits.memory, guest)
+    guest.memory = this.memories.take(limits.memory)
+    guest.interpreter = await QuickJS.open(this.module, guest.memory, guest)
     guest.interpreter.restore(state)
     guest.interpreter.limitMemory(limits.memory)
     return guest
   }
 
+  /** Takes a guest back that has ended and is not on the stack; it must not be used any more. */
+  close (guest) {
+    this.memories.give(guest.memory, guest.limits.memory)
+  }
+
   // The state every guest starts in, made once: a fresh context with the guest's side of the border.
   async makeTemplate () {
-    const interpreter = await QuickJS.open(this.module, 0, { call: () => 0, interrupt: () => false })
+    const interpreter = await QuickJS.open(this.module, this.memories.take(0), { call: () => 0, interrupt: () => false })
     interpreter.create(SHADOW_STACK_BYTES)
     const config = JSON.stringify({ kinds: kindNames, goals: GOAL_NAMES, tables })
     const setUp = interpreter.evaluate(guestSource, 'guest.js')
@@ -77,6 +85,7 @@ class Guest {
     this.limits = limits
     this.functions = functions
     this.interpreter = null
+    this.memory = null
     this.ended = null
     this.fuelAtEnd = null
     this.marks = { place: 0, length: 0 }

@@ -52,7 +52,9 @@ async function run (engine, { code, bot, scope = {}, fuel, memory, signal }) {
   }
   const guest = await engine.open({ fuel, memory })
   const session = new Session(guest, { bot, skills, data, random: () => Math.random() })
-  return observe(session, guest, program, parameters, { fuel, memory, signal })
+  const report = await observe(session, guest, program, parameters, { fuel, memory, signal })
+  engine.close(guest)
+  return report
 }
 
 async function observe (session, guest, program, parameters, { fuel, memory, signal }) {

@@ -6,9 +6,7 @@
 
 const { QuickJSFFI } = require('@jitl/quickjs-wasmfile-release-sync/ffi')
 const loadGlue = require('@jitl/quickjs-wasmfile-release-sync/emscripten-module')
-const { INITIAL_PAGES } = require('./interpreter')
 
-const PAGE = 65536
 const CHUNK = 4096
 const EMPTY = Buffer.alloc(CHUNK)
 const ALL_INTRINSICS = 0
@@ -38,15 +36,15 @@ class QuickJS {
 
   /**
    * @param {WebAssembly.Module} module metered
-   * @param {number} memory the most bytes it may grow to, besides what it starts with
+   * @param {WebAssembly.Memory} wasmMemory as new
    * @param {{call: function(number, number, number): number, interrupt: function(): boolean}} host `call` gets the number of
    *   a host function, the count and the place of its arguments, and returns a value it gives away, or 0
    * @returns {Promise<QuickJS>} settled without any timer or input
    */
-  static async open (module, memory, host) {
+  static async open (module, wasmMemory, host) {
     let instance
     const glue = await loadGlue({
-      wasmMemory: new WebAssembly.Memory({ initial: INITIAL_PAGES, maximum: INITIAL_PAGES + Math.ceil(memory / PAGE) }),
+      wasmMemory,
       print: () => {},
       printErr: () => {},
       instantiateWasm: (imports, done) => {

@@ -1,0 +1,34 @@
+'use strict'
+/**
+ * Memories for interpreters. One that a program has left is emptied and used again: making new
+ * ones keeps Node's garbage collector busy with everything else that lives in the process.
+ */
+
+const { INITIAL_PAGES } = require('./interpreter')
+
+const PAGE = 65536
+const MOST_KEPT = 16
+
+class Memories {
+  constructor () {
+    this.free = []
+  }
+
+  /** @returns {WebAssembly.Memory} all zero, that can grow by `bytes` */
+  take (bytes) {
+    const maximum = INITIAL_PAGES + Math.ceil(bytes / PAGE)
+    const index = this.free.findIndex(entry => entry.maximum === maximum)
+    if (index < 0) return new WebAssembly.Memory({ initial: INITIAL_PAGES, maximum })
+    const [{ memory }] = this.free.splice(index, 1)
+    new Uint8Array(memory.buffer).fill(0)
+    return memory
+  }
+
+  /** Takes back a memory that nothing uses any more; `bytes` as when it was taken. */
+  give (memory, bytes) {
+    if (memory.buffer.byteLength > INITIAL_PAGES * PAGE || this.free.length >= MOST_KEPT) return
+    this.free.push({ memory, maximum: INITIAL_PAGES + Math.ceil(bytes / PAGE) })
+  }
+}
+
+module.exports = { Memories }
