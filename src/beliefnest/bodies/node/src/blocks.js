@@ -7,15 +7,17 @@
 
 const { Vec3 } = require('vec3')
 
-/** Makes the chunk columns and worlds of a version remember what they were asked for. */
-function rememberBlocks (registry) {
-  const World = require('prismarine-world')(registry)
-  rememberColumns(World)
-  const world = new World(null)
-  quicken(Object.getPrototypeOf(world.sync))
+// Blocks of a column at one height.
+const LAYER = 256
 
+/** Makes the chunk columns and worlds of a version remember what they were asked for; once is enough. */
+function rememberBlocks (registry) {
   const Block = require('prismarine-block')(registry)
   const Chunk = require('prismarine-chunk')(registry)
+  const World = require('prismarine-world')(registry)
+  if ('remembered' in Chunk.prototype) return
+  rememberColumns(World)
+  quicken(Object.getPrototypeOf(new World(null).sync))
   const copy = copier(Block)
   const known = new Map()
 
@@ -28,19 +30,33 @@ function rememberBlocks (registry) {
     return copy(block)
   }
 
-  Chunk.prototype.getBlock = function getBlock (position) {
-    const stateId = this.getBlockStateId(position)
-    this.remembered ??= new Map()
-    const key = ((position.y - this.minY) << 8) | (position.z << 4) | position.x
-    let block = this.remembered.get(key)
+  rememberIn(Chunk, make)
+}
+
+/** Makes `getBlock` of a column find again what it made, as long as the place keeps its state. */
+function rememberIn (Chunk, make) {
+  const { setBlockStateId, load } = Chunk.prototype
+  Object.assign(Chunk.prototype, {
+    remembered: null,
+    getBlock (place) {
+      this.remembered ??= []
+      const layer = (this.remembered[place.y - this.minY] ??= new Array(LAYER).fill(null))
+      const index = (place.z << 4) | place.x
+      const block = (layer[index] ??= make(this.getBlockStateId(place)))
+      if (hasAny(this.blockEntities)) block.entity = this.getBlockEntity(place)
+      return block
+    },
     // An object that was handed out is never changed: it stays what was seen then.
-    if (block === undefined || block.stateId !== stateId) {
-      block = make(stateId)
-      this.remembered.set(key, block)
+    setBlockStateId (place, stateId) {
+      const layer = this.remembered?.[place.y - this.minY]
+      if (layer) layer[(place.z << 4) | place.x] = null
+      return setBlockStateId.call(this, place, stateId)
+    },
+    load (...data) {
+      this.remembered = []
+      return load.apply(this, data)
     }
-    if (hasAny(this.blockEntities)) block.entity = this.getBlockEntity(position)
-    return block
-  }
+  })
 }
 
 function hasAny (entries) {

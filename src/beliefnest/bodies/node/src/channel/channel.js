@@ -3,8 +3,8 @@
 const { decode, Encoder } = require('@msgpack/msgpack')
 
 const HEADER = 4
-// Half a second of frames.
-const MAX_UNSENT = 10
+// Two seconds of frames.
+const MAX_UNSENT = 40
 
 class Channel {
   /**
