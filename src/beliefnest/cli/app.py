@@ -44,6 +44,9 @@ def run_command_line(arguments: Sequence[str]) -> int:
         # Whoever read our output has left; there is nobody to tell.
         sys.stderr.close()
         return 0
+    if status == _INTERRUPTED:
+        # Newer versions of typer turn the interrupt into this status themselves, silently.
+        return _fail("interrupted", _INTERRUPTED)
     return status if isinstance(status, int) else 0
 
 

@@ -8,7 +8,8 @@ from beliefnest.nest.nest import Nest
 from beliefnest.nest.paths import parse_path
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Arrives, Scenario
-from beliefnest.viewer.scene import Caption, Row, Scene, decisive_tick, read_scene
+from beliefnest.timeline.journal import Journal
+from beliefnest.viewer.scene import Caption, Row, Scene, decisive_tick, read_scene, read_trails
 from beliefnest.world.values import EventKind, Position
 
 __all__ = ["container_name", "point_text", "read_outcome_scene"]
@@ -25,8 +26,14 @@ _DEEDS: Mapping[EventKind, str] = {
 }
 
 
-def read_outcome_scene(nest: Nest, outcome: Outcome) -> Scene:
-    """The scene of the decisive moment of a run whose nest is still open."""
+def read_outcome_scene(nest: Nest, journal: Journal, outcome: Outcome) -> Scene:
+    """The scene of the decisive moment of a run whose nest is still open.
+
+    Args:
+        nest: After the script.
+        journal: The timelines it has recorded.
+        outcome: What came of it.
+    """
     scenario = outcome.scenario
     tick = decisive_tick(nest)
     title = scenario.name
@@ -41,7 +48,8 @@ def read_outcome_scene(nest: Nest, outcome: Outcome) -> Scene:
     )
     rows = [_row((), outcome.reality, outcome)]
     rows += [_row(state.path, state, outcome) for state in outcome.beliefs.values()]
-    return read_scene(nest, tick, caption, scenario.labels, _viewers(scenario), rows)
+    trails = read_trails(journal, scenario.setting.snapshot, tick)
+    return read_scene(nest, tick, caption, scenario.labels, _viewers(scenario), rows, trails)
 
 
 def container_name(place: Position, scenario: Scenario) -> str:

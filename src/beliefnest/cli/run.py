@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
+from beliefnest.bodies.worlds import check_world
 from beliefnest.cli.console import progress_on, stdout
 from beliefnest.cli.folder import ConditionFolder, RunFolder
 from beliefnest.cli.pictures import read_outcome_scene
@@ -18,6 +19,7 @@ from beliefnest.nest.nest import Nest
 from beliefnest.scenarios.outcome import Outcome
 from beliefnest.scenarios.running import run_scenario
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.timeline.store import SqliteJournal
 from beliefnest.viewer.picture import draw_overview, draw_scene, save
 from beliefnest.viewer.scene import Scene
 
@@ -54,6 +56,7 @@ def run_scenarios(options: RunOptions) -> int:
         BeliefNestError: The input is wrong, or a world or model failed.
     """
     scenarios = _scenarios(options)
+    check_world(options.world)
     model = open_model(options.model, os.environ, Connection())
     folder = RunFolder.create(options.out, scenarios[0].name, datetime.now())
     outcomes: list[Outcome] = []
@@ -104,7 +107,8 @@ def _run(
         for number, probe in enumerate(outcome.probes):
             name = probe.probe.label or f"probe-{number + 1}"
             place.write_probe(name, probe.prompt, probe.answer, probe.program)
-        scene = read_outcome_scene(nest, outcome)
+        with SqliteJournal.read(place.store) as journal:
+            scene = read_outcome_scene(nest, journal, outcome)
         save(draw_scene(scene), place.picture)
     return outcome, scene
 

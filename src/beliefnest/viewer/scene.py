@@ -8,6 +8,8 @@ import numpy.typing as npt
 
 from beliefnest.belief.view import State
 from beliefnest.nest.nest import Nest
+from beliefnest.timeline.journal import Journal
+from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import EventKind, Point, Position
 
@@ -21,12 +23,12 @@ __all__ = [
     "View",
     "decisive_tick",
     "read_scene",
+    "read_trails",
 ]
 
 _SILENT = frozenset(
     {EventKind.CHAT, EventKind.THINK, EventKind.MOVE_TO, EventKind.EMOTE, EventKind.BLOCK_UPDATE}
 )
-_TRAIL_POINTS = 80
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,6 +165,7 @@ def read_scene(
     labels: Mapping[Position, str],
     viewers: Iterable[str],
     rows: Iterable[Row],
+    trails: Mapping[str, tuple[Point, ...]],
 ) -> Scene:
     """The scene at a tick of the real world.
 
@@ -173,6 +176,7 @@ def read_scene(
         labels: What people call the containers.
         viewers: Agents whose sight is shown, the outermost believer first.
         rows: What simulators hold.
+        trails: Where agents were before.
     """
     names = list(dict.fromkeys(viewers))
     past = nest.at(tick=tick)["/"]
@@ -185,7 +189,7 @@ def read_scene(
         floor=_floor(state, height, registry),
         containers={place: held.items for place, held in state.containers.items()},
         labels=labels,
-        people=_people(nest, state, tick),
+        people=_people(state, trails, tick),
         views=tuple(View(name, past.visible_blocks(name)[:, layer, :]) for name in names),
         ghosts=_ghosts(nest, tick, state, names),
         rows=tuple(rows),
@@ -215,18 +219,32 @@ def _floor(state: State, height: int, registry: Registry) -> Floor:
     return Floor((x0, z0), layer(height - 1), layer(height))
 
 
-def _people(nest: Nest, state: State, tick: int) -> tuple[Person, ...]:
-    start = nest.setting.snapshot.tick
-    ticks = range(start, tick, max(1, (tick - start) // _TRAIL_POINTS))
-    past = [nest.at(tick=t)["/"].state.agents for t in ticks]
+def read_trails(journal: Journal, start: Snapshot, tick: int) -> dict[str, tuple[Point, ...]]:
+    """Where the agents of the real world stood up to a tick, oldest first.
+
+    Args:
+        journal: The run's timelines.
+        start: The first tick.
+        tick: The last tick to read.
+    """
+    trails = {name: [agent.position] for name, agent in start.agents.items()}
+    key = next(info.key for info in journal.timelines() if not info.key.path)
+    for entry in journal.entries(key, 0, journal.entries_until(key, tick)):
+        if isinstance(entry, Frame):
+            for name, agent in entry.agents.items():
+                if agent is not None:
+                    trails.setdefault(name, []).append(agent.position)
+    return {name: tuple(points) for name, points in trails.items()}
+
+
+def _people(state: State, trails: Mapping[str, tuple[Point, ...]], tick: int) -> tuple[Person, ...]:
     acting = {e.actor for e in state.events if e.tick == tick and e.kind not in _SILENT}
     people = []
     for name, agent in state.agents.items():
         if agent.position is None:
             continue
-        before = (agents[name].position for agents in past)
-        trail = (*(p for p in before if p is not None), agent.position)
         holds = (agent.equipment or {}).get("main_hand")
+        trail = trails.get(name, ())
         people.append(Person(name, agent.position, agent.yaw, holds, trail, name in acting))
     return tuple(people)
 

@@ -1,0 +1,256 @@
+"""The command line: what it prints, writes, and ends with."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from beliefnest.cli.app import run_command_line
+from beliefnest.cli.folder import store_in
+from beliefnest.errors import InputError
+from beliefnest.timeline.store import SqliteJournal
+
+SECONDS = 120
+
+ROOM = """\
+name: room
+box: [[0, 0, 0], [6, 3, 6]]
+blocks:
+  - {block: stone, fill: [[0, 0, 0], [6, 0, 6]]}
+containers:
+  - {label: box, at: [3, 1, 3], items: {apple: 1}}
+agents:
+  ann: {position: [1.5, 1, 1.5]}
+script:
+  - label: ann takes the apple
+    agent: ann
+    program: |
+      await getItemFromChest(bot, new Vec3(3, 1, 3), {apple: 1});
+expectations:
+  - {path: /ann, container: [3, 1, 3], items: {}}
+"""
+
+
+@pytest.fixture(autouse=True)
+def in_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def scenario(text: str) -> str:
+    Path("room.yaml").write_text(text, encoding="utf-8")
+    return "room.yaml"
+
+
+def test_run_writes_a_folder_and_prints_the_report(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    status = run_command_line(["run", "sally-anne", "--condition", "3", "--out", "r", "--json"])
+    printed = capsys.readouterr()
+    report = json.loads(printed.out)
+    assert status == 0
+    assert "condition 3" in printed.err
+    assert (report["scenario"], report["world"], report["model"]) == (
+        "sally-anne",
+        "embedded",
+        "offline",
+    )
+    (run,) = report["runs"]
+    assert (run["condition"], run["seed"], run["ok"]) == (3, 0, True)
+    assert run["reality"]["containers"]["2,-51,-4"]["items"] == {"diamond": 1}
+    assert run["reality"]["agents"]["sally"]["current"] is True
+    assert set(run["beliefs"]) == {"/observer", "/sally", "/observer/sally"}
+    assert run["beliefs"]["/observer/sally"]["containers"]["-2,-51,-4"] == {
+        "items": {"diamond": 1},
+        "complete": False,
+    }
+    assert run["beliefs"]["/observer"]["agents"]["sally"]["current"] is False
+    (probe,) = run["probes"]
+    assert (probe["path"], probe["acts_in"], probe["agent"]) == (
+        "/observer/sally",
+        "/observer",
+        "sally",
+    )
+    assert probe["opened"] == [[-2, -51, -4]]
+    assert probe["ok"] is True
+    folder = tmp_path / run["run_dir"]
+    assert json.loads((folder / "result.json").read_text()) == run
+    assert json.loads(Path("r/run.json").read_text()) == report
+    assert probe["program"] == (folder / "probes" / "prediction" / "program.js").read_text()
+    assert "Get a diamond" in (folder / "probes" / "prediction" / "prompt.txt").read_text()
+    with Image.open(folder / "picture.png") as picture:
+        assert picture.size == (1280, 880)
+    with SqliteJournal.read(folder / "run.bn") as journal:
+        branches = {(info.key.path, info.key.branch) for info in journal.timelines()}
+    assert (("observer",), "prediction") in branches
+
+
+def test_run_prints_a_table(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_command_line(["run", scenario(ROOM), "--out", "r"]) == 0
+    printed = capsys.readouterr().out
+    assert "as expected" in printed
+    assert "nothing" in printed
+    assert Path("r/summary.txt").read_text() == printed
+    assert Path("r/run/picture.png").is_file()
+
+
+def test_an_expectation_that_does_not_hold_ends_with_1(capsys: pytest.CaptureFixture[str]) -> None:
+    wrong = ROOM.replace("items: {}}", "items: {apple: 1}}")
+    assert run_command_line(["run", scenario(wrong), "--out", "r"]) == 1
+    assert "NO" in capsys.readouterr().out
+    assert json.loads(Path("r/run.json").read_text())["runs"][0]["ok"] is False
+
+
+@pytest.mark.parametrize(
+    ("arguments", "hints"),
+    [
+        (["run", "sally-ann"], ["sally-anne"]),
+        (["run", "missing.yaml"], ["missing.yaml", "No such file"]),
+        (["run", "sally-anne", "--condition", "9"], ["condition 9", "1, 2, 3"]),
+        (["run", "sally-anne", "--condition", "one"], ["--condition"]),
+        (["run", "sally-anne", "--world", "flat"], ["flat", "embedded"]),
+        (["run", "sally-anne", "--model", "oracle"], ["oracle", "offline"]),
+        (["run"], ["scenario"]),
+        (["jump"], ["jump"]),
+        (["run", "sally-anne", "--jump"], ["--jump"]),
+        (["bench", "nothing"], ["nothing", "sally-anne"]),
+    ],
+)
+def test_wrong_usage_is_one_line_and_2(
+    capsys: pytest.CaptureFixture[str], arguments: list[str], hints: list[str]
+) -> None:
+    assert run_command_line(arguments) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    (line,) = [each for each in printed.err.splitlines() if not each.startswith("bench:")]
+    assert line.startswith("beliefnest: ")
+    for hint in hints:
+        assert hint in line
+    assert not Path("runs").exists()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "hints"),
+    [
+        ("block: stone", "block: stoen", ["room.yaml:4:", "stone"]),
+        ("at: [3, 1, 3]", "at: [3, 1, 7]", ["room.yaml:6:", "outside"]),
+        ("[1.5, 1, 1.5]", "[3.5, 1, 3.5]", ["room.yaml:8:", "chest"]),
+        ("agent: ann\n", "agent: anna\n", ["room.yaml:11:", "ann"]),
+        ("agents:\n", "agents: [\n", ["room.yaml:", "broken YAML"]),
+    ],
+)
+def test_a_wrong_scenario_is_one_line_and_2(
+    capsys: pytest.CaptureFixture[str], old: str, new: str, hints: list[str]
+) -> None:
+    assert run_command_line(["run", scenario(ROOM.replace(old, new))]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    for hint in hints:
+        assert hint in line
+    assert not Path("runs").exists()
+
+
+@pytest.mark.parametrize(
+    ("program", "hint"),
+    [
+        ("await getItemFromChest(bot, new Vec3(3, 1, 3), {diamond: 1});", "diamond"),
+        ("\n      await nowhere(bot);", "line 2"),
+        ("await goToPosition(bot;", "line 1"),
+    ],
+)
+def test_a_script_whose_program_fails_names_step_place_and_line(
+    capsys: pytest.CaptureFixture[str], program: str, hint: str
+) -> None:
+    failing = ROOM.replace("await getItemFromChest(bot, new Vec3(3, 1, 3), {apple: 1});", program)
+    assert run_command_line(["run", scenario(failing), "--out", "r"]) == 2
+    line = capsys.readouterr().err.splitlines()[-1]
+    assert line.startswith("beliefnest: room.yaml:10: step 1 (ann takes the apple)")
+    assert hint in line
+    assert json.loads(Path("r/run.json").read_text())["status"] == "failed"
+
+
+def test_a_run_folder_that_is_in_use_is_left_alone(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("r").mkdir()
+    Path("r/mine.txt").write_text("mine")
+    assert run_command_line(["run", scenario(ROOM), "--out", "r"]) == 2
+    assert "not empty" in capsys.readouterr().err
+    assert [path.name for path in Path("r").iterdir()] == ["mine.txt"]
+
+
+def test_the_store_of_a_run_is_found_in_its_folders(tmp_path: Path) -> None:
+    for folder in ("one", "two"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "run.bn").touch()
+    assert store_in(tmp_path / "one") == tmp_path / "one" / "run.bn"
+    assert store_in(tmp_path / "one" / "run.bn") == tmp_path / "one" / "run.bn"
+    with pytest.raises(InputError, match="several runs"):
+        store_in(tmp_path)
+    with pytest.raises(InputError, match="no run at"):
+        store_in(tmp_path / "three")
+
+
+def test_list_names_what_there_is(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_command_line(["list", "--json"]) == 0
+    listed = json.loads(capsys.readouterr().out)
+    assert "sally-anne" in [each["name"] for each in listed["scenarios"]]
+    assert "embedded" in listed["worlds"]
+    assert "offline" in listed["models"]
+
+
+def test_doctor_finds_everything_in_order(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_command_line(["doctor"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[1] for line in lines] == [
+        "Python:",
+        "Node:",
+        "bundle:",
+        "sight:",
+        "world:",
+        "model:",
+    ]
+    assert all(line.startswith("ok") for line in lines)
+
+
+def test_doctor_says_what_to_do_about_a_missing_bundle(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr("beliefnest.bodies.node_files._BUNDLE", tmp_path)
+    assert run_command_line(["doctor"]) == 3
+    failed = [line for line in capsys.readouterr().out.splitlines() if line.startswith("FAIL")]
+    assert failed
+    assert all("pip install" in line for line in failed)
+
+
+@pytest.mark.parametrize("whole_group", [True, False], ids=["from a terminal", "to the command"])
+def test_an_interrupt_ends_everything_and_leaves_a_readable_folder(whole_group: bool) -> None:
+    endless = ROOM.replace(
+        "await getItemFromChest(bot, new Vec3(3, 1, 3), {apple: 1});",
+        "while (true) await bot.waitForTicks(1);",
+    ).replace("    agent: ann\n", "    agent: ann\n    timeout_ticks: 100000000\n")
+    process = subprocess.Popen(
+        [sys.executable, "-m", "beliefnest", "run", scenario(endless), "--out", "r"],
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    try:
+        assert process.stderr is not None
+        assert "ann takes the apple" in process.stderr.readline()
+        (os.killpg if whole_group else os.kill)(process.pid, signal.SIGINT)
+        _, errors = process.communicate(timeout=SECONDS)
+        assert process.returncode == 130
+        assert errors.splitlines()[-1] == "beliefnest: interrupted"
+        assert "Traceback" not in errors
+        assert json.loads(Path("r/run.json").read_text())["status"] == "interrupted"
+        with SqliteJournal.read(Path("r/run/run.bn")) as journal:
+            assert journal.timelines()
+        with pytest.raises(ProcessLookupError):
+            os.killpg(process.pid, 0)
+    finally:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
