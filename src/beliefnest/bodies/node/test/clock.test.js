@@ -94,6 +94,22 @@ describe('a clock', () => {
     })
   })
 
+  it('goes on after a timer that throws, and tells of it', async () => {
+    const faults = []
+    const context = new Context('a', fault => faults.push(fault.message))
+    await clock.within(context, async () => {
+      setTimeout(() => { throw new Error('first') }, 1)
+      setTimeout(() => { throw new Error('second') }, 2)
+      await clock.advance(5)
+    })
+    assert.deepEqual(faults, ['first', 'second'])
+    await assert.rejects(clock.within(new Context('b'), async () => {
+      setTimeout(() => { throw new Error('unheard') }, 1)
+      await clock.advance(5)
+    }), /unheard/)
+    assert.equal(clock.active, clock.root)
+  })
+
   it('refuses to run two contexts at once', async () => {
     await clock.within(new Context('a'), async () => {
       await assert.rejects(clock.within(new Context('b'), () => {}), /already running/)

@@ -22,11 +22,12 @@ class Region {
     this.box = box
     this.origin = origin
     this.tick = tick
-    this.context = new Context(seed)
     this.state = regionalState()
     this.columns = columnsOf(box, origin)
     this.faults = []
-    this.mail = new Mail(fault => this.faults.push(fault))
+    const report = fault => this.faults.push(fault)
+    this.context = new Context(seed, report)
+    this.mail = new Mail(report)
     this.translator = new Translator(origin)
     this.bodies = new Map()
     this.recorder = null

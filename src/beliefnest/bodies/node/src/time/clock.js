@@ -15,8 +15,13 @@ const MAX_IMMEDIATES = 100000
 const realSetImmediate = setImmediate
 
 class Context {
-  /** @param {string} seed of this context's random numbers */
-  constructor (seed) {
+  /**
+   * @param {string} seed of this context's random numbers
+   * @param {(error: Error) => void} [report] hears what a timer's callback throws; without it
+   *   `advance` throws that, and what was due after it waits
+   */
+  constructor (seed, report = rethrow) {
+    this.report = report
     this.time = 0
     this.charged = 0
     this.random = new Random(seed)
@@ -90,7 +95,15 @@ function fire (context, timer) {
   context.timers.pop()
   timer.active = false
   if (timer.repeat) context.timers.schedule(timer)
-  timer.callback(...timer.args)
+  try {
+    timer.callback(...timer.args)
+  } catch (error) {
+    context.report(error)
+  }
+}
+
+function rethrow (error) {
+  throw error
 }
 
 /** Resolves when all microtasks and process.nextTick callbacks have run. */
