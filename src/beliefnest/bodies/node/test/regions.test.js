@@ -129,6 +129,8 @@ describe('regions', () => {
     await assert.rejects(wrong({ blocks: floor().subarray(4) }), { kind: 'bad_request', message: /"blocks" must have/ })
     await assert.rejects(wrong({ agents: { sally: agent([0.5, -51, 0.5], { inventory: { nothing_such: 1 } }) } }),
       { kind: 'bad_request', message: /nothing_such/ })
+    const deep = [[0, -64, 0], [3, -60, 3]]
+    await assert.rejects(wrong({ box: deep, blocks: floor([], deep) }), { kind: 'bad_request', message: /y = -63/ })
     await assert.rejects(wrong({ agents: { sally: agent([40.5, -51, 0.5]) } }), { kind: 'bad_request', message: /sally .* outside the box/ })
     await node.request('create_region', region('wrong', { box: BOX }))
     await assert.rejects(wrong({}), { kind: 'bad_request', message: /already/ })

@@ -54,6 +54,7 @@ class Regions {
   async create ({ region: name, seed, box: corners, tick, blocks, containers, agents, items }) {
     if (this.byName.has(name)) throw new BadRequest(`there already is a region ${name}`)
     const box = new Box(...corners)
+    requireHeight(this.serv, box)
     const states = statesOf(blocks, box)
     const region = new Region({ name, seed, box, origin: this.allotment.take(box), tick })
     region.recorder = new Recorder(this.serv, region)
@@ -133,6 +134,13 @@ class Regions {
       }
     })
   }
+}
+
+// The walls need a layer of their own below and above.
+function requireHeight ({ minY, worldHeight }, box) {
+  const [lowest, highest] = [minY + 1, minY + worldHeight - 2]
+  if (box.low[1] >= lowest && box.high[1] <= highest) return
+  throw new BadRequest(`a box lies between y = ${lowest} and y = ${highest}; this one goes from ${box.low[1]} to ${box.high[1]}`)
 }
 
 function statesOf (bytes, box) {
