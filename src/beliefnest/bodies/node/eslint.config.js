@@ -70,9 +70,8 @@ module.exports = [
     rules
   },
   {
-    // A plugin's function is its module: it declares the functions that share one server or player,
-    // or one guest of the sandbox.
-    files: ['src/server/plugins/*.js', 'src/sandbox/guest/*.js'],
+    // A guest's function is its module: it declares the functions that share one guest of the sandbox.
+    files: ['src/sandbox/guest/*.js'],
     rules: { 'max-lines-per-function': 'off' }
   },
   {

@@ -183,7 +183,7 @@ test('any sequence of clicks conserves every item', async () => {
       if (random(12) === 0) bot._client.write('close_window', { windowId: windows[bot.username].id })
       const packet = { slot: random(92) - 1, mouseButton: random(9), mode: random(7) }
       if (packet.slot === -1) packet.slot = -999
-      const windowId = world.players[bot.username].windows.open?.id ?? 0
+      const windowId = world.players[bot.username].windows.current.id
       bot._client.write('window_click', {
         windowId, stateId: random(3), ...packet, changedSlots: [], cursorItem: { present: false }
       })

@@ -1,8 +1,7 @@
 'use strict'
 
 const { cell, containerMenu } = require('./lib/menus')
-const { createLedger } = require('./lib/ledger')
-const { keyOf, listOf, vecOf } = require('./lib/positions')
+const { vecOf } = require('./lib/positions')
 const { vectorOf, clockwise, counterclockwise } = require('./lib/directions')
 
 const HALF = 27
@@ -21,88 +20,62 @@ function partnerOf (position, { properties }) {
 const isFullCube = ({ shapes }) => shapes.length === 1 &&
   shapes[0].every((edge, i) => edge === (i < 3 ? 0 : 1))
 
+/** The halves of what opens at a position, the upper one of the window first. */
+function halvesAt (serv, position) {
+  const block = serv.blocks.at(position)
+  const other = partnerOf(position, block)
+  if (!other || serv.blocks.at(other).name !== block.name) return [vecOf(position)]
+  return block.properties.type === 'right' ? [vecOf(position), other] : [other, vecOf(position)]
+}
+
+function isBlocked (serv, position) {
+  const above = serv.blocks.at(position.offset(0, 1, 0))
+  return serv.blocks.at(position).name !== 'barrel' && isFullCube(above) && !above.transparent
+}
+
+/** Shows whether somebody looks in. */
+function showLid (serv, position) {
+  const block = serv.blocks.at(position)
+  const count = serv.containers.viewers(position).length
+  if (block.name === 'barrel') {
+    serv.blocks.set(position, serv.blocks.stateWith(block, { open: count > 0 }))
+    return
+  }
+  serv._writeAll('block_action', {
+    location: position, byte1: LID_ACTION, byte2: count, blockId: block.type,
+  })
+}
+
 /** Chests, double chests, trapped chests and barrels: opening, moving items, lids. */
 module.exports.server = (serv) => {
   Object.keys(TITLES).forEach((name) => serv.containers.define(name, HALF))
 
-  /** The halves of what opens at a position, the upper one of the window first. */
-  function halves (position) {
-    const block = serv.blocks.at(position)
-    const other = partnerOf(position, block)
-    if (!other || serv.blocks.at(other).name !== block.name) return [vecOf(position)]
-    return block.properties.type === 'right' ? [vecOf(position), other] : [other, vecOf(position)]
-  }
-
-  function isBlocked (position, block) {
-    const above = serv.blocks.at(position.offset(0, 1, 0))
-    return block.name !== 'barrel' && isFullCube(above) && !above.transparent
-  }
-
-  function viewers (position) {
-    return serv.players.filter((player) =>
-      player.windows.open?.positions?.some((open) => keyOf(open) === keyOf(position))).length
-  }
-
-  function showLid (position) {
-    const block = serv.blocks.at(position)
-    const count = viewers(position)
-    if (block.name === 'barrel') {
-      serv.blocks.set(position, serv.blocks.stateWith(block, { open: count > 0 }))
-      return
-    }
-    for (const player of serv.players) {
-      player._client.write('block_action', {
-        location: position, byte1: LID_ACTION, byte2: count, blockId: block.type,
-      })
-    }
-  }
-
   function open ({ player, position, block }) {
-    const parts = halves(position)
-    if (parts.some((part) => isBlocked(part, block))) return true
-    const ledger = createLedger(parts, serv.containers.slots)
-    const cells = parts.flatMap((part) => {
-      const slots = serv.containers.slots(part)
+    const positions = halvesAt(serv, position)
+    if (positions.some((half) => isBlocked(serv, half))) return true
+    const cells = positions.flatMap((half) => {
+      const slots = serv.containers.slots(half)
       return slots.map((_, i) => cell(slots, i))
     })
-    player.openWindow({
-      type: parts.length === 2 ? WINDOW_9X6 : WINDOW_9X3,
-      title: parts.length === 2 ? `Large ${TITLES[block.name]}` : TITLES[block.name],
-      positions: parts,
+    const single = positions.length === 1
+    player.lookInto({
+      type: single ? WINDOW_9X3 : WINDOW_9X6,
+      title: single ? TITLES[block.name] : `Large ${TITLES[block.name]}`,
+      positions,
       menu: containerMenu(cells, player),
-      around: (run) => ledger.record(run).forEach(serv.containers.touch),
-      closed: () => parts.forEach(showLid),
-    })
-    player.ledgers.push({ ledger, isOpen: () => player.windows.open?.positions === parts })
-    parts.forEach(showLid)
-    const clickedFirst = [...parts].sort((a, b) => b.equals(position) - a.equals(position))
-    for (const part of clickedFirst) player.emitEvent({ kind: 'open_container', detail: { position: listOf(part) } })
+      closed: () => positions.forEach((half) => showLid(serv, half)),
+    }, position)
+    positions.forEach((half) => showLid(serv, half))
     return true
   }
   Object.keys(TITLES).forEach((name) => serv.onInteraction(name, open))
 
-  serv.onTick(() => serv.players.forEach((player) => player.reportTransfers()))
-
+  /** What is left of a double chest is a single one. */
   serv.blocks.on('change', ({ position, before, after }) => {
     const old = serv.blocks.describe(before)
     const other = TITLES[old.name] && partnerOf(position, old)
     if (!other || serv.blocks.describe(after).name === old.name) return
     const half = serv.blocks.at(other)
-    if (half.name !== old.name) return
-    serv.blocks.set(other, serv.blocks.stateWith(half, { type: 'single' }))
+    if (half.name === old.name) serv.blocks.set(other, serv.blocks.stateWith(half, { type: 'single' }))
   })
 }
-
-module.exports.player = (player) => {
-  player.ledgers = []
-
-  /** Reports what was moved on balance, once nothing is between chest and inventory any more. */
-  player.reportTransfers = () => {
-    if (player.windows.cursor) return
-    for (const { ledger } of player.ledgers) ledger.settle().forEach((fact) => player.emitEvent(fact))
-    player.ledgers = player.ledgers.filter(({ isOpen }) => isOpen())
-  }
-  player.on('disconnected', () => player.reportTransfers())
-}
-
-module.exports.partnerOf = partnerOf

@@ -41,7 +41,7 @@ module.exports.server = (serv) => {
       mayPlace: (i) => i !== 0,
       into: () => slots.map((_, i) => i).slice(1),
     })
-    player.openWindow({
+    player.windows.open({
       type: TABLE_WINDOW,
       title: 'Crafting',
       menu,

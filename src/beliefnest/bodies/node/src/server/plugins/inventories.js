@@ -107,11 +107,11 @@ module.exports.player = (player, serv) => {
       Object.assign(player, { heldItemSlot: before.heldItemSlot, health: before.health, food: before.food })
     }
     player._client.write('held_item_slot', { slot: player.heldItemSlot })
-    player.sendWindow()
+    player.windows.sendAll()
     player.inventoryChanged()
   })
   player.on('disconnected', () => {
-    player.closeWindow()
+    player.windows.close()
     serv.rememberPlayer(player)
   })
 }

@@ -80,4 +80,4 @@ function propertiesFor (registry, name, spot) {
   return properties
 }
 
-module.exports = { blockFor, propertiesFor, halfOf }
+module.exports = { blockFor, propertiesFor }

@@ -1,0 +1,74 @@
+'use strict'
+
+const { alike, withCount } = require('./lib/items')
+const { isInReach, metadataOf } = require('./lib/itemEntity')
+const { step } = require('./lib/motion')
+
+const LIFETIME = 6000
+const MERGE_DISTANCE = 0.5
+const VOID_DEPTH = 64
+
+/** Dropped items fall, lie, come together, are picked up as far as they fit, and vanish in the end. */
+module.exports.server = (serv) => {
+  const shapesAt = (position) => serv.blocks.at(position).shapes
+  const exists = (entity) => serv.entities[entity.id] === entity
+  const showItem = (entity) => serv._writeAll('entity_metadata', metadataOf(serv.Item, entity))
+
+  function collect (player, entity) {
+    const rest = player.storeItem(entity.item)
+    const taken = entity.item.count - (rest?.count ?? 0)
+    if (taken === 0) return
+    serv._writeAll('collect', {
+      collectedEntityId: entity.id, collectorEntityId: player.id, pickupItemCount: taken,
+    })
+    if (rest) {
+      entity.item = rest
+      showItem(entity)
+    } else {
+      entity.destroy()
+    }
+  }
+
+  /** Alike items that lie together become one stack, as far as a stack goes. */
+  function merge (entity) {
+    for (const other of serv.itemEntities(() => true)) {
+      if (other === entity || !alike(other.item, entity.item)) continue
+      if (other.position.distanceTo(entity.position) > MERGE_DISTANCE) continue
+      const count = other.item.count + entity.item.count
+      if (count > entity.item.stackSize) continue
+      entity.item = withCount(entity.item, count)
+      entity.delay = Math.max(entity.delay, other.delay)
+      other.destroy()
+      showItem(entity)
+    }
+  }
+
+  function fall (entity) {
+    const before = entity.position
+    const next = step(entity, shapesAt)
+    const landed = next.onGround && !entity.onGround
+    Object.assign(entity, next)
+    if (landed) merge(entity)
+    if (before.equals(entity.position)) return
+    const { x, y, z } = entity.position
+    serv._writeAll('entity_teleport', { entityId: entity.id, x, y, z, yaw: 0, pitch: 0, onGround: next.onGround })
+  }
+
+  function tick (entity) {
+    entity.age += 1
+    if (entity.delay > 0) entity.delay -= 1
+    fall(entity)
+    if (entity.age >= LIFETIME || entity.position.y < serv.minY - VOID_DEPTH) entity.destroy()
+    if (entity.delay > 0) return
+    for (const player of serv.players) {
+      if (!exists(entity)) return
+      if (player.health > 0 && isInReach(player.position, entity.position)) collect(player, entity)
+    }
+  }
+
+  serv.onTick((within) => {
+    for (const entity of serv.itemEntities(within)) {
+      if (exists(entity)) tick(entity)
+    }
+  })
+}

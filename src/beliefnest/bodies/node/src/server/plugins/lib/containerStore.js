@@ -1,0 +1,113 @@
+'use strict'
+
+const { countByName, stacksOf } = require('./items')
+const { keyOf, vecOf } = require('./positions')
+
+const show = ({ x, y, z }) => `(${x}, ${y}, ${z})`
+
+/**
+ * What containers hold, by block position; each half of a double chest holds its own 27 slots.
+ * A container is whatever block has a kind declared with `define`.
+ */
+class ContainerStore {
+  /** @param {object} serv */
+  constructor (serv) {
+    this.serv = serv
+    this.kinds = new Map()
+    this.stored = new Map()
+    this.changed = new Map()
+  }
+
+  /**
+   * Declares a kind of block that holds items.
+   * @param {string} name of the block
+   * @param {number} size in slots
+   * @param {(stacks: object[]) => object[] | null} arrange gives the slots a content is set into,
+   *   null where it does not fit; by default one after the other
+   */
+  define (name, size, arrange = (stacks) => (stacks.length > size ? null : stacks)) {
+    this.kinds.set(name, { name, size, arrange })
+  }
+
+  kindAt (position) {
+    return this.kinds.get(this.serv.blocks.at(position).name)
+  }
+
+  /** The slots of the container at a position; only for those who call `touch` afterwards. */
+  slots (position) {
+    const key = keyOf(position)
+    if (!this.stored.has(key)) {
+      const { size } = this.kindAt(position)
+      this.stored.set(key, { position: vecOf(position), slots: new Array(size).fill(null) })
+    }
+    return this.stored.get(key).slots
+  }
+
+  /** To be called after slots were changed: notes it and shows it to those who look in. */
+  touch (position) {
+    this.changed.set(keyOf(position), vecOf(position))
+    this.viewers(position).forEach((player) => player.windows.sync())
+  }
+
+  /** Players who look into the container at a position. */
+  viewers (position) {
+    return this.serv.players.filter((player) => player.windows.looksInto(position))
+  }
+
+  /** @returns {Object<string, number> | null} item name to count; null where no container stands */
+  get (position) {
+    if (this.kindAt(position) === undefined) return null
+    return countByName(this.stored.get(keyOf(position))?.slots ?? [])
+  }
+
+  /** Makes a container hold exactly this. @throws RangeError where it cannot */
+  set (position, counts) {
+    const kind = this.kindAt(position)
+    if (kind === undefined) {
+      throw new RangeError(`no container at ${show(position)}: the block there is ${this.serv.blocks.at(position).name}`)
+    }
+    const stacks = stacksOf(this.serv.Item, this.serv.registry, counts)
+    const arranged = kind.arrange(stacks)
+    if (arranged === null) {
+      throw new RangeError(`the ${stacks.length} stacks given do not fit into the ${kind.size} slots of the ` +
+        `${kind.name} at ${show(position)}`)
+    }
+    const slots = this.slots(position)
+    slots.forEach((_, i) => { slots[i] = arranged[i] ?? null })
+    this.touch(position)
+  }
+
+  /** Takes note that another block came; returns the items that were inside the old one. */
+  blockChanged (position, before, after) {
+    if (before === after || !(this.kinds.has(before) || this.kinds.has(after))) return []
+    const items = this.stored.get(keyOf(position))?.slots.filter(Boolean) ?? []
+    this.drop(position)
+    this.changed.set(keyOf(position), position)
+    return items
+  }
+
+  drop (position) {
+    this.viewers(position).forEach((player) => player.windows.forceClose())
+    this.stored.delete(keyOf(position))
+  }
+
+  /** Positions of a part of the world whose content changed, or whose container came or went, since the last call. */
+  drainChanges (within) {
+    const result = [...this.changed.values()].filter(within)
+    result.forEach((position) => this.changed.delete(keyOf(position)))
+    return result
+  }
+
+  /** Positions of a part of the world whose containers ever held something. */
+  positions (within) {
+    return [...this.stored.values()].map(({ position }) => position).filter(within)
+  }
+
+  /** Drops all that is known of a part of the world. */
+  forget (within) {
+    this.positions(within).forEach((position) => this.drop(position))
+    this.drainChanges(within)
+  }
+}
+
+module.exports = { ContainerStore }

@@ -1,0 +1,40 @@
+'use strict'
+
+const { createLedger } = require('./lib/ledger')
+const { listOf } = require('./lib/positions')
+
+/**
+ * Looking into containers, and what is moved in and out of them: reported on balance, at the
+ * end of a tick in which nothing is on its way between container and inventory any more.
+ */
+module.exports.server = (serv) => {
+  serv.onTick(() => serv.players.forEach((player) => player.reportTransfers()))
+}
+
+module.exports.player = (player, serv) => {
+  const slots = (position) => serv.containers.slots(position)
+  let ledgers = []
+
+  /**
+   * Opens a window on the containers at `window.positions` (see PlayerWindows.open), of which
+   * the one at `clicked` was used.
+   */
+  player.lookInto = (window, clicked) => {
+    const { positions } = window
+    const ledger = createLedger(positions, slots)
+    const around = (run) => ledger.record(run).forEach((position) => serv.containers.touch(position))
+    player.windows.open({ ...window, around })
+    ledgers.push({ ledger, isOpen: () => player.windows.opened?.positions === positions })
+    const clickedFirst = [...positions].sort((a, b) => b.equals(clicked) - a.equals(clicked))
+    for (const position of clickedFirst) {
+      player.emitEvent({ kind: 'open_container', detail: { position: listOf(position) } })
+    }
+  }
+
+  player.reportTransfers = () => {
+    if (player.windows.cursor) return
+    for (const { ledger } of ledgers) ledger.settle().forEach((fact) => player.emitEvent(fact))
+    ledgers = ledgers.filter(({ isOpen }) => isOpen())
+  }
+  player.on('disconnected', () => player.reportTransfers())
+}
