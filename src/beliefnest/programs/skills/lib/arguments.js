@@ -4,7 +4,9 @@
 function show (value) {
   if (typeof value === 'string') return `"${value}"`
   if (value !== null && typeof value === 'object' && Number.isFinite(value.x)) return `(${value.x}, ${value.y}, ${value.z})`
-  return typeof value === 'object' && value !== null ? JSON.stringify(value) : String(value)
+  if (typeof value !== 'object' || value === null) return String(value)
+  const isData = Array.isArray(value) || Object.getPrototypeOf(value) === Object.prototype
+  return isData ? JSON.stringify(value) : 'an object of the game'
 }
 
 /** @returns {Vec3} a finite position */
