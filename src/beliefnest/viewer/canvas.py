@@ -47,8 +47,7 @@ class Canvas:
     @property
     def image(self) -> Image.Image:
         """The finished image."""
-        width, height = self._image.size
-        return self._image.resize((width // _SCALE, height // _SCALE), Image.Resampling.LANCZOS)
+        return self._image.reduce(_SCALE)
 
     def box(
         self,

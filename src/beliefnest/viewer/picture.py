@@ -70,7 +70,7 @@ def draw_overview(scenes: Sequence[Scene], title: str) -> Image.Image:
 
 def save(image: Image.Image, path: Path) -> None:
     """Write a picture as PNG; the same picture gives the same bytes."""
-    image.save(path, format="PNG", optimize=True)
+    image.save(path, format="PNG")
 
 
 def _colours(scene: Scene) -> Mapping[str, Colour]:

@@ -1,0 +1,56 @@
+"""What the papers show does work, and the pictures of the papers are the program's own."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from beliefnest.cli.app import run_command_line
+from beliefnest.scenarios import Scenario
+
+ROOT = Path(__file__).parents[2]
+PAPERS = ("README.md", "docs/scenarios.md")
+EXAMPLES = [
+    pytest.param(code, id=f"{paper}-{number}")
+    for paper in PAPERS
+    for number, code in enumerate(
+        re.findall(r"```python\n(.*?)```", (ROOT / paper).read_text(encoding="utf-8"), re.DOTALL)
+    )
+]
+
+
+@pytest.mark.parametrize("code", EXAMPLES)
+def test_python_examples_run_and_print_what_they_say(
+    code: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    exec(compile(code, "example", "exec"), {"__name__": "example"})
+    printed = capsys.readouterr().out.splitlines()
+    for claim in re.findall(r"print\(.*\)  # (.*)", code):
+        assert claim in printed
+
+
+def test_the_scenario_of_the_guide_does_as_it_expects(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    guide = (ROOT / "docs" / "scenarios.md").read_text(encoding="utf-8")
+    (text,) = re.findall(r"```yaml\n(.*?)```", guide, re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    Path("boxes.yaml").write_text(text, encoding="utf-8")
+    assert run_command_line(["run", "boxes.yaml", "--out", "run"]) == 0
+    assert {scenario.condition for scenario in Scenario.load_all("boxes.yaml")} == {1, 2}
+
+
+def test_the_readme_begins_with_the_two_commands() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    first, second = re.findall(r"```bash\n(.*?)\n```", readme, re.DOTALL)[:2]
+    assert first.endswith("pip install . && beliefnest run sally-anne")
+    assert second == 'pip install -e ".[dev]" && pytest'
+
+
+@pytest.mark.parametrize("paper", [*PAPERS, "CONTRIBUTING.md"])
+def test_links_between_papers_lead_somewhere(paper: str) -> None:
+    file = ROOT / paper
+    for target in re.findall(r"\]\(([^)#]+)\)", file.read_text(encoding="utf-8")):
+        if "://" not in target:
+            assert (file.parent / target).exists(), target
