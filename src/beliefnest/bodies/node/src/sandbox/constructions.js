@@ -90,13 +90,15 @@ function goalOptions (exchange, { options }, wire) {
 /**
  * @param {import('./exchange').Exchange} exchange
  * @param {object} wire `{$: 'm', o: [[name, value]...]}`, switches and costs of Movements
- * @returns {object} movements of mineflayer-pathfinder for this bot
+ * @returns {object} movements of mineflayer-pathfinder: the bot's standard ones, changed as described
  */
 function buildMovements (exchange, wire, where) {
   if (wire === null || typeof wire !== 'object' || wire.$ !== 'm' || !Array.isArray(wire.o)) {
     throw new TypeError(`${where} must be made with new Movements(bot)`)
   }
   const movements = new Movements(exchange.bot)
+  const standard = exchange.bot.pathfinder.movements
+  for (const name of [...SWITCHES, ...COSTS, 'scafoldingBlocks']) movements[name] = standard[name]
   for (const [name, value] of wire.o) {
     if (SWITCHES.includes(name)) movements[name] = boolean(exchange, value, `Movements.${name}`)
     else if (COSTS.includes(name)) movements[name] = exchange.number(value, `Movements.${name}`)

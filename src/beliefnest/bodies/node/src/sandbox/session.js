@@ -5,14 +5,14 @@
  */
 
 const { Exchange, RefusedError } = require('./exchange')
-const { kinds, tables } = require('./policy/kinds')
+const { COST, kinds, tables } = require('./policy/kinds')
 const { events } = require('./policy/events')
 const { GuestEnded } = require('./engine')
 const { stateOf } = require('./policy/types')
 const { kindOf } = require('./kind-of')
 
 const LIMITS = { message: 1_000_000, calls: 100, timers: 1000, listeners: 100, logLines: 1000, logLength: 2000, error: 4000 }
-const COST = { request: 1500, perCharacter: 1 }
+const REQUEST_COST = { each: 1500, character: 20 }
 
 class Session {
   /**
@@ -104,7 +104,7 @@ class Session {
 
   answer (text) {
     try {
-      this.guest.charge(COST.request + COST.perCharacter * text.length)
+      this.guest.charge(REQUEST_COST.each + REQUEST_COST.character * Math.min(text.length, LIMITS.message))
       if (text.length > LIMITS.message) {
         throw new RefusedError(`${text.length} characters leave the program at once, the limit is ${LIMITS.message}`)
       }
@@ -121,7 +121,7 @@ class Session {
     const isError = error !== null && typeof error === 'object' && typeof error.message === 'string'
     const message = (isError ? error.message : String(error)).slice(0, LIMITS.error)
     const name = isError && typeof error.name === 'string' && error.name !== 'RefusedError' ? error.name.slice(0, 100) : 'Error'
-    const place = isError ? this.places.get(error) : undefined
+    const place = isError ? this.places.get(error) ?? this.places.get(error.cause) : undefined
     return { $: 'e', message, name, skill, kind: error instanceof RefusedError ? 'refused' : 'skill', stack: place }
   }
 
@@ -197,10 +197,11 @@ class Session {
   }
 
   call (handle, name, wires) {
-    const { object, where, entry: [types, result] } = this.member(handle, 'call', name)
+    const { object, where, entry: [types, result, cost = COST.call] } = this.member(handle, 'call', name)
     if (typeof object[name] !== 'function') throw new RefusedError(`${where} is not there`)
     return this.outcomeOf(where, () => {
       const args = types.map((type, i) => type.toHost(this.exchange, missing(i, wires), `argument ${i + 1} of ${where}`))
+      this.guest.charge(typeof cost === 'function' ? cost(args) : cost)
       return object[name](...trimmed(args))
     }, result)
   }
@@ -208,6 +209,7 @@ class Session {
   callSkill (name, wires) {
     if (typeof name !== 'string' || !Object.hasOwn(this.skills, name)) throw new RefusedError('there is no such skill')
     const type = { toGuest: (exchange, value) => exchange.toGuest(value, `the result of ${name}`) }
+    this.guest.charge(COST.call)
     return this.outcomeOf(name, () => {
       const args = wires.map((wire, i) => this.exchange.toHost(wire, `argument ${i + 1} of ${name}`))
       return this.skills[name](...args)

@@ -123,6 +123,18 @@ describe('the membrane', () => {
     assert.deepStrictEqual(error, { message: 'step 1', line: 2, column: 9, skill: 'exploreUntil', kind: 'skill' })
   })
 
+  it('reports it there too if the skill wraps the error', async () => {
+    scope.wrap = async (callback) => {
+      try {
+        callback()
+      } catch (cause) {
+        throw new Error(`wrap: ${cause.message}`, { cause })
+      }
+    }
+    const { error } = await run('await wrap(() => {\n  null.x\n})')
+    assert.deepStrictEqual([error.message, error.line, error.skill], ["wrap: cannot read property 'x' of null", 2, 'wrap'])
+  })
+
   it('copies plain data both ways, special numbers and dates of keys included', async () => {
     assert.strictEqual(await logged(`
       const value = await echo(bot, { a: [1, 'x', null, undefined, true], $: 'v', n: -0, nested: { v: new Vec3(1, 2, 3) } })

@@ -58,6 +58,27 @@ describe('a program with a real bot', () => {
     })
   }
 
+  const REFUSED = {
+    'a command in a second line of speech': ['await say(bot, "hello\\n/op sally")', /one line/],
+    'a command by chat': ['bot.chat("/op sally")', /is a command/],
+    'a thought of 10 MB': ['await think(bot, "x".repeat(1e7))', /characters/],
+    'a place outside the world': ['await goToPosition(bot, new Vec3(1e9, 0, 0))', /outside the world/],
+    'the bot as a place': ['await goToPosition(bot, bot)', /an object of the game/],
+    'another bot': ['await goToPosition(bot.players.anne.entity, new Vec3(0, -51, 0))', /must be bot/],
+    'an endless condition': ['await waitUntil(bot, () => { for (;;) {} })', /fuel exhausted/],
+    'a condition that waits for ever': ['await waitUntil(bot, () => new Promise(() => {}))', /did not end within 400 ticks/],
+    'an endless search': ['for (;;) bot.findBlocks({ matching: 1, maxDistance: 128, count: 1000 })', /fuel exhausted/],
+    'an endless listener': ['bot.on("physicsTick", () => { for (;;) {} }); await bot.waitForTicks(5)', /fuel exhausted/],
+    'a lying callback': ['await exploreUntil(bot, new Vec3(1, 0, 0), 5, () => ({ then: 1, get x() { throw 7 } }))', /7/]
+  }
+  for (const [what, [code, message]] of Object.entries(REFUSED)) {
+    it(`is refused ${what}`, async () => {
+      const { ok, error } = await run(code)
+      assert.equal(ok, false)
+      assert.match(error.message, message)
+    })
+  }
+
   it('hears chat', async () => {
     const { error } = await run(`
       const heard = await new Promise((resolve) => bot.once('chat', (name, text) => resolve(name + ': ' + text)))

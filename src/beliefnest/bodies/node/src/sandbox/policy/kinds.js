@@ -1,10 +1,16 @@
 'use strict'
 /**
  * What a program can see and do: the allow-list. What is not named here does not exist for
- * it. `get` and `set` are properties, `call` methods with the types of arguments and result.
+ * it. `get` and `set` are properties, `call` methods with the types of arguments and result,
+ * and with what the host's work costs in fuel, if it is more than `COST.call`: a number, or a
+ * function of the arguments.
  */
 
 const t = require('./types')
+
+const COST = { call: 10_000, message: 200_000, section: 5000, ray: 20_000, recipes: 50_000 }
+const SECTION = 16
+const ofSearch = ([{ maxDistance }]) => COST.section * (2 * Math.ceil(maxDistance / SECTION) + 1) ** 3
 
 const entity = t.live('entity')
 const window = t.live('window')
@@ -27,16 +33,16 @@ const bot = {
     spawnPoint: t.vector, controlState: t.dictionary(t.boolean), pathfinder: t.live('pathfinder')
   },
   call: {
-    chat: [[t.chatText], t.nothing],
-    whisper: [[t.playerName, t.chatText], t.nothing],
-    blockAt: [[t.vector], t.maybe(t.block)],
-    findBlock: [[t.search], t.maybe(t.block)],
-    findBlocks: [[t.search], t.list(t.vector)],
-    blockAtCursor: [[t.maybe(t.within(0, 256))], t.maybe(t.block)],
-    canSeeBlock: [[t.block], t.boolean],
-    canDigBlock: [[t.block], t.boolean],
+    chat: [[t.chatText], t.nothing, COST.message],
+    whisper: [[t.playerName, t.chatText], t.nothing, COST.message],
+    blockAt: [[t.vector], t.maybe(t.block), 0],
+    findBlock: [[t.search], t.maybe(t.block), ofSearch],
+    findBlocks: [[t.search], t.list(t.vector), ofSearch],
+    blockAtCursor: [[t.maybe(t.within(0, 256))], t.maybe(t.block), COST.ray],
+    canSeeBlock: [[t.block], t.boolean, COST.ray],
+    canDigBlock: [[t.block], t.boolean, COST.ray],
     digTime: [[t.block], t.number],
-    entityAtCursor: [[t.maybe(t.within(0, 256))], t.maybe(entity)],
+    entityAtCursor: [[t.maybe(t.within(0, 256))], t.maybe(entity), COST.ray],
     dig: [[t.block, t.maybe(t.either(t.boolean, t.choice('ignore'))), t.maybe(t.either(t.choice('auto', 'raycast'), t.vector))], t.later(t.nothing)],
     stopDigging: [[], t.nothing],
     placeBlock: [[t.block, t.vector], t.later(t.nothing)],
@@ -70,8 +76,8 @@ const bot = {
     openBlock: [[t.block], t.later(window)],
     closeWindow: [[window], t.nothing],
     craft: [[recipe, t.maybe(t.within(1, 1000)), t.maybe(t.block)], t.later(t.nothing)],
-    recipesFor: [[t.count, t.maybe(t.count), t.maybe(t.count), t.maybe(t.either(t.block, t.boolean))], t.list(recipe)],
-    recipesAll: [[t.count, t.maybe(t.count), t.maybe(t.either(t.block, t.boolean))], t.list(recipe)],
+    recipesFor: [[t.count, t.maybe(t.count), t.maybe(t.count), t.maybe(t.either(t.block, t.boolean))], t.list(recipe), COST.recipes],
+    recipesAll: [[t.count, t.maybe(t.count), t.maybe(t.either(t.block, t.boolean))], t.list(recipe), COST.recipes],
     nearestEntity: [[t.maybe(t.entityFilter)], t.maybe(entity)],
     getEquipmentDestSlot: [[destination], t.number]
   }
@@ -121,7 +127,7 @@ const kinds = {
   },
   pathfinder: {
     get: { thinkTimeout: t.number, tickTimeout: t.number, searchRadius: t.number, goal: t.nothing },
-    set: { thinkTimeout: t.within(0, 60_000), tickTimeout: t.within(1, 50), searchRadius: t.within(-1, 1000) },
+    set: { thinkTimeout: t.within(0, 10_000), tickTimeout: t.within(1, 50), searchRadius: t.within(-1, 1000) },
     call: {
       goto: [[t.goal], t.later(t.nothing)],
       setGoal: [[t.maybe(t.goal), t.maybe(t.boolean)], t.nothing],
@@ -130,8 +136,7 @@ const kinds = {
       isMoving: [[], t.boolean],
       isMining: [[], t.boolean],
       isBuilding: [[], t.boolean],
-      bestHarvestTool: [[t.block], t.maybe(t.item)],
-      getPathTo: [[t.movements, t.goal, t.maybe(t.within(0, 60_000))], t.record({ status: t.text, cost: t.number, time: t.number, visitedNodes: t.number, path: t.list(t.vector) })]
+      bestHarvestTool: [[t.block], t.maybe(t.item)]
     }
   }
 }
@@ -148,4 +153,4 @@ const tables = {
   effects: 'table', effectsByName: 'table', materials: 'table', version: 'value'
 }
 
-module.exports = { kinds, kindNames, tables }
+module.exports = { COST, kinds, kindNames, tables }
