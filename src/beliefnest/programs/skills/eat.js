@@ -18,7 +18,7 @@ module.exports = {
   async run (context, name) {
     const { bot, fail } = context
     const item = checkItem(context, 'name', name)
-    if (!bot.registry.foodsByName[item.name]) fail(`${name} is no food. Eat something like bread or an apple.`)
+    if (!Object.hasOwn(bot.registry.foodsByName, item.name)) fail(`${name} is no food. Eat something like bread or an apple.`)
     await hold(context, item)
     if (bot.food >= FULL) fail('you are not hungry: your food level is full.')
     const before = countOf(bot, item)

@@ -12,7 +12,7 @@ module.exports = {
   example: 'await emote("sally", "wave")',
   async run (context, name, type) {
     const { bot, fail, emit } = context
-    if (!(name in bot.players)) {
+    if (!Object.keys(bot.players).includes(name)) {
       fail(`name must be the name of an agent; it is ${show(name)}, here are: ${Object.keys(bot.players).join(', ')}`)
     }
     const detail = { name: text(context, 'type', type) }

@@ -44,9 +44,11 @@ function similar (name, names) {
   return close.length ? `; similar names: ${close.join(', ')}` : ''
 }
 
+const entryOf = (table, name) => (typeof name === 'string' && Object.hasOwn(table, name) ? table[name] : undefined)
+
 /** @returns {object} minecraft-data's entry of an item */
 function item ({ bot, fail }, name, value) {
-  const found = typeof value === 'string' ? bot.registry.itemsByName[value] : undefined
+  const found = entryOf(bot.registry.itemsByName, value)
   if (!found) {
     const hint = typeof value === 'string' ? similar(value, Object.keys(bot.registry.itemsByName)) : ''
     fail(`${name} must be the name of an item, like "diamond"; it is ${show(value)}${hint}`)
@@ -56,7 +58,7 @@ function item ({ bot, fail }, name, value) {
 
 /** @returns {object} minecraft-data's entry of a block */
 function block ({ bot, fail }, name, value) {
-  const found = typeof value === 'string' ? bot.registry.blocksByName[value] : undefined
+  const found = entryOf(bot.registry.blocksByName, value)
   if (!found) {
     const hint = typeof value === 'string' ? similar(value, Object.keys(bot.registry.blocksByName)) : ''
     fail(`${name} must be the name of a block, like "stone"; it is ${show(value)}${hint}`)

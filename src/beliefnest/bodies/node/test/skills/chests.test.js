@@ -92,6 +92,13 @@ test('arguments that make no sense are named', async () => {
     assert.match(await message(own.getItemFromChest(sally, { x: NaN, y: 0, z: 0 }, { dirt: 1 })), /finite/)
     assert.match(await message(own.getItemFromChest(sally, CHEST, { diamnd: 1 })), /name of an item/)
     assert.match(await message(own.getItemFromChest(sally, CHEST, { dirt: 0.5 })), /whole number/)
+    for (const name of ['constructor', '__proto__', 'toString']) {
+      assert.match(await message(own.mineBlock(sally, CHEST, name)), /name of a block/)
+      assert.match(await message(own.equip(sally, name)), /name of an item/)
+      assert.match(await message(own.emote(name, 'wave')), /name of an agent/)
+    }
+    assert.match(await message(own.getItemFromChest(sally, CHEST, { constructor: 1 })), /name of an item/)
+    assert.match(await message(own.goToPosition(sally, { x: 1e300, y: 0, z: 0 })), /no way to it/)
     assert.match(await message(own.getItemFromChest(sally, CHEST)), /how many of which items/)
     assert.match(await message(own.getItemFromChest(CHEST, { dirt: 1 })), /must be bot/)
   })

@@ -43,7 +43,7 @@ function difference (before, after) {
 function stacksOf (Item, registry, counts) {
   const stacks = []
   for (const [name, count] of Object.entries(counts)) {
-    const data = registry.itemsByName[name]
+    const data = Object.hasOwn(registry.itemsByName, name) ? registry.itemsByName[name] : null
     if (!data) throw new RangeError(`there is no item called ${name}`)
     if (!Number.isInteger(count) || count < 0) {
       throw new RangeError(`the count of ${name} is ${count}; it must be a whole number, not negative`)
