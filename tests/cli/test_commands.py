@@ -97,6 +97,7 @@ def test_run_prints_a_table(capsys: pytest.CaptureFixture[str]) -> None:
     assert "nothing" in printed
     assert Path("r/summary.txt").read_text() == printed
     assert Path("r/run/picture.png").is_file()
+    assert Path("r/scenario.yaml").read_text() == ROOM
 
 
 def test_an_expectation_that_does_not_hold_ends_with_1(capsys: pytest.CaptureFixture[str]) -> None:

@@ -90,6 +90,10 @@ class RunFolder:
         """Write the whole report anew."""
         _write(self.path / _REPORT, _json(report))
 
+    def write_scenario(self, text: str) -> None:
+        """Keep the scenario as it was run."""
+        _write(self.path / "scenario.yaml", text)
+
     def write_summary(self, text: str) -> None:
         """Write the table as text."""
         _write(self.path / "summary.txt", text)

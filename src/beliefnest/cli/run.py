@@ -59,6 +59,7 @@ def run_scenarios(options: RunOptions) -> int:
     check_world(options.world)
     model = open_model(options.model, os.environ, Connection())
     folder = RunFolder.create(options.out, scenarios[0].name, datetime.now())
+    folder.write_scenario(scenarios[0].text)
     outcomes: list[Outcome] = []
     scenes: list[Scene] = []
     runs: list[dict[str, object]] = []

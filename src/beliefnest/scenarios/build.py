@@ -72,6 +72,7 @@ def build_scenario(
         ),
         labels={entry.at: entry.label for entry in file.containers if entry.label},
         source=document.source,
+        text=document.text,
     )
 
 

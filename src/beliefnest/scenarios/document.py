@@ -40,11 +40,13 @@ class Document:
         source: File name, or another name for messages.
         root: Its content.
         folder: Where files that it names are looked for.
+        text: The text of the file; empty if there is none.
     """
 
     source: str
     root: Node
     folder: Path
+    text: str = ""
 
     def fault(self, path: KeyPath, message: str) -> ScenarioError:
         """The error that names file, line and key of what is wrong."""

@@ -40,7 +40,7 @@ def read_yaml(path: Path) -> Document:
     if not isinstance(content, CommentedMap):
         raise ScenarioError(f"{path}: is not a mapping of keys to values; see docs/scenarios.md")
     root = _Conversion(str(path)).node(content, 1, 0)
-    return Document(source=str(path), root=root, folder=path.parent)
+    return Document(source=str(path), root=root, folder=path.parent, text=text)
 
 
 class _Conversion:

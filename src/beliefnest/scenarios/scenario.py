@@ -108,6 +108,7 @@ class Scenario:
         expectations: What simulators are to hold after the script.
         labels: What people call the containers.
         source: Where it comes from, for messages.
+        text: The text of its file; empty if it was built in code.
     """
 
     setting: Setting
@@ -120,6 +121,7 @@ class Scenario:
     expectations: tuple[Expectation, ...] = ()
     labels: Mapping[Position, str] = field(default_factory=dict)
     source: str = "scenario"
+    text: str = ""
 
     @property
     def name(self) -> str:
