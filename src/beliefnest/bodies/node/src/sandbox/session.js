@@ -12,6 +12,8 @@ const { stateOf } = require('./policy/types')
 const { kindOf } = require('./kind-of')
 
 const LIMITS = { message: 1_000_000, calls: 100, timers: 1000, listeners: 100, logLines: 1000, logLength: 2000, error: 4000 }
+// Who waits for what a listener or a timer of the program answers.
+const NOBODY = 0
 const REQUEST_COST = { each: 1500, character: 20 }
 
 class Session {
@@ -169,6 +171,10 @@ class Session {
   }
 
   settled (ticket, ok, wire) {
+    if (ticket === NOBODY) {
+      if (!ok) this.finish({ ok: false, error: wire })
+      return null
+    }
     const waiting = this.tickets.get(ticket)
     if (waiting === undefined) throw new RefusedError('nobody waits for that callback')
     this.tickets.delete(ticket)
@@ -235,11 +241,18 @@ class Session {
     const id = this.exchange.functionOf(wire, 'the listener') && wire.id
     const listener = (...values) => {
       if (once) this.unlisten(event, wire)
-      this.wake(['invoke', id, events[event].map((type, i) => this.eventValue(type, values[i], event)), 0])
+      this.hear(event, id, values)
     }
     this.listeners.push({ event, id, listener })
     this.bot.on(event, listener)
     return null
+  }
+
+  // A fault here must not reach whoever emitted the event.
+  hear (event, id, values) {
+    const [ok, wires] = this.converted(true, () => events[event].map((type, i) => this.eventValue(type, values[i], event)), `bot.on ${event}`)
+    if (ok) this.wake(['invoke', id, wires, NOBODY])
+    else this.finish({ ok: false, error: wires })
   }
 
   eventValue (type, value, event) {

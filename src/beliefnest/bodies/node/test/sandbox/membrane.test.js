@@ -165,6 +165,12 @@ describe('the membrane', () => {
     assert.deepStrictEqual([bot.listenerCount('chat'), bot.listenerCount('health')], [0, 0])
   })
 
+  it('keeps an event it cannot hand over from harming who emitted it', async () => {
+    scope.shout = async () => { bot.emit('entityMoved', { get position () { throw new Error('broken') } }); bot.emit('move', 7) }
+    const { error } = await run('bot.on("move", () => {}); await shout(); await bot.waitForTicks(1000)')
+    assert.deepStrictEqual([error.skill, error.kind], ['bot.on move', 'skill'])
+  })
+
   it('runs timers, clears them, and none after the end', async () => {
     assert.strictEqual(await logged(`
       const stopped = setTimeout(() => console.log('stopped'), 1)
@@ -173,6 +179,16 @@ describe('the membrane', () => {
       await new Promise((resolve) => { const each = setInterval((by) => { count += by; if (count === 4) { clearInterval(each); resolve() } }, 1, 2) })
       setTimeout(() => console.log('late'), 0)
       console.log(count)`), '4')
+  })
+
+  it('fails if a listener or a timer fails, async ones too', async () => {
+    scope.shout = async () => { bot.emit('chat', 'anne', 'hi') }
+    for (const start of ['bot.on("chat", ', 'setTimeout(']) {
+      for (const how of ['() => {', 'async () => {\n  await null;']) {
+        const { ok, error } = await run(`${start}${how}\n  null.x\n}); await shout(); await bot.waitForTicks(1000)`)
+        assert.deepStrictEqual([ok, error.message, error.line], [false, "TypeError: cannot read property 'x' of null", how.includes('async') ? 3 : 2])
+      }
+    }
   })
 
   it('takes time and chance from the host', async (t) => {

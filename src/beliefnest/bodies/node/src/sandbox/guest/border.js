@@ -138,12 +138,15 @@ module.exports = function defineBorder (env) {
 
   // A function of the program that answers with a promise answers the host later, by `settled`.
   function invoke (id, args, ticket) {
-    const result = functions.get(id)(...args.map(decode))
+    return answer(functions.get(id)(...args.map(decode)), ticket)
+  }
+
+  function answer (result, ticket) {
     if (!(result instanceof Promise)) return { now: encode(result) }
-    result.then((value) => request(['settled', ticket, true, encode(value)]),
-      (error) => request(['settled', ticket, false, describe(error)]))
+    result.then((value) => request(['settled', ticket, true, encode(value)]))
+      .catch((error) => { request(['settled', ticket, false, describe(error)]) })
     return { later: true }
   }
 
-  Object.assign(env, { handle, isHandle: (value) => handleOf.has(value), encode, decode, request, call, describe, settle, invoke })
+  Object.assign(env, { handle, isHandle: (value) => handleOf.has(value), encode, decode, request, call, describe, settle, invoke, answer })
 }

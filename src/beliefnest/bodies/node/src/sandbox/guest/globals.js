@@ -40,7 +40,8 @@ module.exports = function defineGlobals (env) {
   function fire (id) {
     const { callback, args, repeat } = timers.get(id)
     if (!repeat) timers.delete(id)
-    callback(...args)
+    const result = callback(...args)
+    if (result instanceof Promise) env.answer(result, 0)
   }
 
   // Local time would depend on the machine.
