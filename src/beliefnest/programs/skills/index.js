@@ -43,15 +43,33 @@ const SKILLS = [
  *   knows; positions in `detail` are as the bot speaks them
  * @param {Function} body.Vec3
  * @param {object} body.goals of mineflayer-pathfinder
+ * @param {AbortSignal} [body.signal] once it is aborted, a skill that still runs does nothing more
  * @returns {Object<string, Function>} by name; each rejects with an Error that has `skill`
  */
-function bindSkills ({ bot, emit, Vec3, goals }) {
-  return Object.fromEntries(SKILLS.map(skill => [skill.name, bind(skill, { bot, emit, Vec3, goals })]))
+function bindSkills ({ bot, emit, Vec3, goals, signal }) {
+  return Object.fromEntries(SKILLS.map(skill => [skill.name, bind(skill, { bot, emit, Vec3, goals }, signal)]))
 }
 
-function bind (skill, body) {
+/** The bot and `emit`, until the signal is aborted; whoever uses them then fails. */
+function untilAborted ({ bot, emit }, signal, fail) {
+  const check = () => { if (signal?.aborted) fail('the program that called it has ended') }
+  return {
+    bot: new Proxy(bot, {
+      get (target, key) {
+        check()
+        return target[key]
+      }
+    }),
+    emit (event) {
+      check()
+      emit(event)
+    }
+  }
+}
+
+function bind (skill, body, signal) {
   const fail = (message, cause) => { throw new SkillError(skill.name, `${skill.name}: ${message}`, cause) }
-  const context = { ...body, fail }
+  const context = { ...body, ...untilAborted(body, signal, fail), fail }
   const place = skill.parameters.findIndex(({ name }) => name === 'bot')
   return async (...args) => {
     if (place !== -1 && args[place] !== body.bot) fail(`argument ${place + 1} of ${skill.signature} must be bot, your own bot`)

@@ -8,8 +8,8 @@ class Runner {
    * @param {(request: {code: string, bot: object, scope: object, signal: AbortSignal}) =>
    *   Promise<{ok: boolean, error: object | null}>} runProgram never rejects; ends soon after
    *   `signal` is aborted
-   * @param {(bot: object, emit: (event: object) => void) => object} scopeOf what a program of
-   *   this bot finds in scope; `emit` hears what its skills report
+   * @param {(bot: object, emit: (event: object) => void, signal: AbortSignal) => object} scopeOf what a
+   *   program of this bot finds in scope; `emit` hears what its skills report until `signal` is aborted
    */
   constructor (regions, runProgram, scopeOf) {
     this.regions = regions
@@ -45,10 +45,11 @@ class Runner {
     const abort = new AbortController()
     const run = { bot, abort, result: null, endTick: null }
     const emit = event => region.emit({ ...event, actor: bot.username })
-    const request = { code, bot, scope: this.scopeOf(bot, emit), signal: abort.signal }
+    const request = { code, bot, scope: this.scopeOf(bot, emit, abort.signal), signal: abort.signal }
     this.runProgram(request).then(({ ok, error }) => {
       if (run.result !== null) return
       run.result = { ok, error }
+      abort.abort()
       stopBot(bot)
     }).catch(fault => region.faults.push(fault))
     return run

@@ -7,10 +7,11 @@ const { bindSkills } = require('../../../programs/skills')
 /**
  * @param {object} bot
  * @param {(event: {kind: string, detail: object}) => void} emit hears what the skills report
+ * @param {AbortSignal} signal aborted when the program has ended
  * @returns {object} by name
  */
-function scopeOf (bot, emit) {
-  return { ...bindSkills({ bot, emit, Vec3, goals }), Vec3, goals, mcData: bot.registry }
+function scopeOf (bot, emit, signal) {
+  return { ...bindSkills({ bot, emit, Vec3, goals, signal }), Vec3, goals, mcData: bot.registry }
 }
 
 module.exports = { scopeOf }

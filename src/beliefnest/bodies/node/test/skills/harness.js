@@ -4,11 +4,11 @@ const plugins = require('../plugins/harness')
 const { goals } = require('mineflayer-pathfinder')
 const { bindSkills } = require('../../../../programs/skills')
 
-async function withSkills (setting, body) {
+async function withSkills ({ signal, ...setting }, body) {
   await plugins.inWorld(setting, async world => {
     const emitted = []
     const skills = Object.fromEntries(Object.entries(world.bots).map(([name, bot]) => [name, bindSkills({
-      bot, goals, Vec3: plugins.Vec3, emit: event => emitted.push({ actor: name, ...event })
+      bot, goals, Vec3: plugins.Vec3, signal, emit: event => emitted.push({ actor: name, ...event })
     })]))
     await body({ ...world, skills, emitted })
   })

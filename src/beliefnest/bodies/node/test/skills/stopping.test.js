@@ -1,0 +1,26 @@
+'use strict'
+const test = require('node:test')
+const assert = require('node:assert/strict')
+const { stopBot } = require('../../src/bots/bot')
+const { agent, withSkills, FLOOR, Vec3 } = require('./harness')
+
+const FURNACE = [3, FLOOR, 3]
+
+test('a skill does nothing more once its program has ended', async () => {
+  const abort = new AbortController()
+  await withSkills({
+    signal: abort.signal,
+    agents: { sally: agent([0.5, FLOOR, 0.5], { inventory: { raw_iron: 2, coal: 2 } }) },
+    blocks: [[...FURNACE, 'furnace']]
+  }, async world => {
+    const { bots: { sally }, skills: { sally: own } } = world
+    const smelting = own.smeltItem(sally, 'raw_iron', 'coal', new Vec3(...FURNACE), 2)
+    await world.until(() => world.block(...FURNACE).properties.lit)
+    abort.abort()
+    stopBot(sally)
+    await assert.rejects(world.during(smelting), { skill: 'smeltItem', message: /program that called it has ended/ })
+    await world.ticks(500)
+    assert.deepEqual(world.container(...FURNACE), { iron_ingot: 2 })
+    assert.deepEqual([world.has('sally'), world.emitted, sally.currentWindow], [{ coal: 1 }, [], null])
+  })
+})
