@@ -221,6 +221,7 @@ function numberToGuest (value) {
 }
 
 function vectorToGuest ({ x, y, z }) {
+  if (![x, y, z].every(part => typeof part === 'number')) throw new TypeError('the value is no position')
   return { $: 'v', c: [x, y, z].map(numberToGuest) }
 }
 
