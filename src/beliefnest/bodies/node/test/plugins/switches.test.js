@@ -62,3 +62,33 @@ test('trapdoors and gates open; a gate opens away from who opens it', async () =
     assert.deepEqual([world.block(0, FLOOR, -2).properties.open, world.block(0, FLOOR, -2).properties.facing], [true, 'north'])
   })
 })
+
+test('a lever opens an iron door beside its wall and lights a lamp, and shuts them again', async () => {
+  const door = ['lower', 'upper'].map((half, up) => [3, FLOOR + up, 2, 'iron_door', { half, open: false }])
+  await inWorld({
+    blocks: [[2, FLOOR, 2, 'stone'], [2, FLOOR, 1, 'lever', { face: 'wall', facing: 'north', powered: false }],
+      [2, FLOOR, 3, 'redstone_lamp', { lit: false }], [4, FLOOR, 6, 'redstone_lamp', { lit: false }], ...door]
+  }, async world => {
+    const state = () => [world.block(3, FLOOR, 2).properties.open, world.block(3, FLOOR + 1, 2).properties.open,
+      world.block(2, FLOOR, 3).properties.lit, world.block(4, FLOOR, 6).properties.lit]
+    await world.during(use(world, [2, FLOOR, 1]))
+    await world.ticks(1)
+    assert.deepEqual(state(), [true, true, true, false])
+    await world.during(use(world, [2, FLOOR, 1]))
+    await world.ticks(1)
+    assert.deepEqual(state(), [false, false, false, false])
+    await world.during(use(world, [2, FLOOR, 1]))
+    world.serv.mine(world.players.sally, world.at(2, FLOOR, 1))
+    await world.ticks(1)
+    assert.deepEqual(state(), [false, false, false, false])
+  })
+})
+
+test('a wooden door opened by hand is not shut by a lever elsewhere', async () => {
+  const door = ['lower', 'upper'].map((half, up) => [3, FLOOR + up, 2, 'oak_door', { half, open: true, powered: false }])
+  await inWorld({ blocks: [...door, [-2, FLOOR, 0, 'lever', { face: 'floor', powered: false }]] }, async world => {
+    await world.during(use(world, [-2, FLOOR, 0]))
+    await world.ticks(1)
+    assert.equal(world.block(3, FLOOR, 2).properties.open, true)
+  })
+})

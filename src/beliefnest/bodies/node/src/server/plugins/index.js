@@ -23,6 +23,7 @@ module.exports = [
   named('crafting', require('./crafting')),
   named('levers', require('./levers')),
   named('doors', require('./doors')),
+  named('power', require('./power')),
   named('placement', require('./placement')),
   named('digging', require('./digging')),
   named('beds', require('./beds')),
