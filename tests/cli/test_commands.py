@@ -81,13 +81,13 @@ def test_run_writes_a_folder_and_prints_the_report(
     folder = tmp_path / run["run_dir"]
     assert json.loads((folder / "result.json").read_text()) == run
     assert json.loads(Path("r/run.json").read_text()) == report
-    assert probe["program"] == (folder / "probes" / "prediction" / "program.js").read_text()
-    assert "Get a diamond" in (folder / "probes" / "prediction" / "prompt.txt").read_text()
+    assert probe["program"] == (folder / "probe-1" / "program.js").read_text()
+    assert "Get a diamond" in (folder / "probe-1" / "prompt.txt").read_text()
     with Image.open(folder / "picture.png") as picture:
         assert picture.size == (1280, 880)
     with SqliteJournal.read(folder / "run.bn") as journal:
         branches = {(info.key.path, info.key.branch) for info in journal.timelines()}
-    assert (("observer",), "prediction") in branches
+    assert (("observer",), "probe 1") in branches
 
 
 def test_run_prints_a_table(capsys: pytest.CaptureFixture[str]) -> None:

@@ -7,6 +7,7 @@ from datetime import datetime
 from pathlib import Path
 
 from beliefnest.errors import InputError
+from beliefnest.scenarios.outcome import ProbeOutcome
 
 __all__ = ["PICTURE", "STORE", "ConditionFolder", "RunFolder", "store_in"]
 
@@ -36,13 +37,13 @@ class ConditionFolder:
         """Write what came of the condition."""
         _write(self.path / _RESULT, _json(result))
 
-    def write_probe(self, name: str, prompt: str, answer: str, program: str) -> None:
+    def write_probe(self, outcome: ProbeOutcome) -> None:
         """Write what a model was asked, what it answered, and the program in it."""
-        folder = self.path / "probes" / "".join(c if c.isalnum() else "-" for c in name)
-        folder.mkdir(parents=True, exist_ok=True)
-        _write(folder / "prompt.txt", prompt)
-        _write(folder / "answer.txt", answer)
-        _write(folder / "program.js", program)
+        folder = self.path / outcome.branch.replace(" ", "-")
+        folder.mkdir(exist_ok=True)
+        _write(folder / "prompt.txt", outcome.prompt)
+        _write(folder / "answer.txt", outcome.answer)
+        _write(folder / "program.js", outcome.program)
 
 
 @dataclass(frozen=True, slots=True)

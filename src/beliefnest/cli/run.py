@@ -105,9 +105,8 @@ def _run(
         Nest.open(scenario, world=options.world, store=place.store, seed=options.seed) as nest,
     ):
         outcome = run_scenario(nest, scenario, model, options.seed, started, on_progress)
-        for number, probe in enumerate(outcome.probes):
-            name = probe.probe.label or f"probe-{number + 1}"
-            place.write_probe(name, probe.prompt, probe.answer, probe.program)
+        for probe in outcome.probes:
+            place.write_probe(probe)
         with SqliteJournal.read(place.store) as journal:
             scene = read_outcome_scene(nest, journal, outcome)
         save(draw_scene(scene), place.picture)

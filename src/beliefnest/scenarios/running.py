@@ -45,7 +45,7 @@ def run_scenario(
     probes = []
     for number, probe in enumerate(scenario.probes):
         on_progress(f"asking: {probe.task}", number, len(scenario.probes))
-        probes.append(_run_probe(nest, probe, probe.label or f"probe {number + 1}", model))
+        probes.append(_run_probe(nest, probe, f"probe {number + 1}", model))
     return Outcome(
         scenario=scenario,
         seed=seed,
