@@ -106,3 +106,18 @@ def test_an_initial_belief_that_is_seen_in_the_belief_is_handed_on_as_stale():
     assert not handed.current((9, 0, 5))
     assert handed.basis((9, 0, 5)).source is Source.PRIOR
     assert nest["/c"].state.blocks[9, 0, 5] == "air"
+
+
+def test_what_only_the_deeper_belief_knows_is_kept_where_the_shallower_one_sees_nothing():
+    """b sees the place in a's belief, where it is unknown: that is no perception of it."""
+    place = (9, 0, 8)
+    _, nest = nest_of(
+        {"a": (0.5, 0, 8.5), "b": (5.5, 0, 8.5)},
+        max_visible_distance=6,
+        initial_beliefs=[bn.InitialBelief(("a", "b"), blocks={place: STONE})],
+    )
+    assert nest["/a"].state.blocks[place] is None
+    believed = nest["/a/b"].state.blocks
+    assert believed[place] == "stone"
+    assert believed.basis(place).source is Source.PRIOR
+    assert not believed.current(place)

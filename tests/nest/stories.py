@@ -5,18 +5,21 @@ turn comes is left out, so that a story shrinks to any part of itself.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from math import pi
 from typing import Any
 
 from hypothesis import strategies as st
 
 import beliefnest as bn
+from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Point, Position
 
 LOW, HIGH = (0, 0, 0), (7, 3, 7)
 NAMES = ("ann", "bob", "cat")
+REGISTRY = Registry.load()
 CONTAINERS = ((2, 0, 3), (5, 0, 4))
 
 Act = tuple[Any, ...]
@@ -32,7 +35,10 @@ class Story:
     options: Mapping[str, Any]
     acts: tuple[Act, ...] = ()
     static: tuple[str, ...] = ()
-    contents: Items | None = None
+    contents: Mapping[Position, Items] = field(
+        default_factory=lambda: {place: {"emerald": 2} for place in CONTAINERS}
+    )
+    initial: tuple[bn.InitialBelief, ...] = ()
 
     def world(self) -> bn.ScriptedWorld:
         """The world at the start; everybody owns an apple and two diamonds."""
@@ -41,7 +47,7 @@ class Story:
             self.blocks,
             self.agents,
             inventories={name: {"apple": 1, "diamond": 2} for name in self.agents},
-            containers={place: self.contents or {"emerald": 2} for place in CONTAINERS},
+            containers=self.contents,
         )
 
     def perception(self) -> bn.Perception:
@@ -61,7 +67,12 @@ class Stage:
     def __init__(self, story: Story) -> None:
         self.story = story
         self.world = story.world()
-        self.nest = bn.Nest(self.world, story.perception(), static_blocks=story.static)
+        self.nest = bn.Nest(
+            self.world,
+            story.perception(),
+            static_blocks=story.static,
+            initial_beliefs=story.initial,
+        )
 
     def do(self, act: Act) -> bool:
         """Do one act of the story; false if it was impossible."""
@@ -107,6 +118,8 @@ class Stories:
         options: Options of perception that differ from the default, and their values.
         max_acts: Greatest number of acts.
         forks: Whether beliefs are forked, acted in and edited as well.
+        ticks: Whether several acts may happen in one tick.
+        priors: Whether there are static blocks and initial beliefs.
     """
 
     def __init__(
@@ -116,11 +129,15 @@ class Stories:
         max_acts: int = 15,
         *,
         forks: bool = False,
+        ticks: bool = True,
+        priors: bool = True,
     ) -> None:
         self._blocks = st.sampled_from(blocks)
         self._options = options
         self._max_acts = max_acts
         self._forks = forks
+        self._ticks = ticks
+        self._priors = priors
 
     @cached_property
     def story(self) -> st.SearchStrategy[Story]:
@@ -129,19 +146,42 @@ class Stories:
         if self._forks:
             acts = [act] * 6 + [self._edit, self._switch, self._inside, self._inside]
             act = st.one_of(*acts)
+        static, priors = [(), ("stone",), ("stone", "chest")], 2
+        if not self._priors:
+            static, priors = [()], 0
+        initial = st.lists(self._initial, max_size=priors, unique_by=lambda belief: belief.path)
         return st.builds(
             Story,
             blocks=self._walls,
             agents=st.fixed_dictionaries(dict.fromkeys(NAMES, self._feet)),
             options=self._perception,
             acts=st.lists(act, max_size=self._max_acts).map(tuple),
-            static=st.sampled_from([(), ("stone",), ("stone", "chest")]),
+            static=st.sampled_from(static),
+            initial=initial.map(tuple),
+        )
+
+    @cached_property
+    def _initial(self) -> st.SearchStrategy[bn.InitialBelief]:
+        """A prior of a node of depth 1 to 3."""
+        paths = st.lists(st.sampled_from(NAMES), min_size=1, max_size=3).filter(
+            lambda names: all(a != b for a, b in pairwise(names))
+        )
+        states = st.sampled_from([-1, *map(REGISTRY.state_id, ("air", "stone", "chest"))])
+        contents = st.tuples(st.just({"emerald": 1}), st.booleans())
+        return st.builds(
+            bn.InitialBelief,
+            path=paths.map(tuple),
+            containers=st.dictionaries(st.sampled_from(CONTAINERS), contents, max_size=1),
+            blocks=st.dictionaries(self._cell(range(2)), states, max_size=3),
+            agents=st.dictionaries(st.sampled_from(NAMES), self._feet, max_size=1),
         )
 
     @cached_property
     def act(self) -> st.SearchStrategy[Act]:
         """One act in a world."""
         single = self._single
+        if not self._ticks:
+            return single
         ticks = st.lists(single, min_size=2, max_size=3).map(lambda acts: ("tick", *acts))
         return st.one_of(single, single, single, ticks, st.just(("step", 1)))
 

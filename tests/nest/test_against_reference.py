@@ -3,12 +3,9 @@
 from hypothesis import given
 from tests.nest.comparing import everything
 from tests.nest.reference import Path, Reference, paths_to
-from tests.nest.stories import NAMES, Act, Stage, Stories, Story
-
-from beliefnest.world.registry import Registry
+from tests.nest.stories import NAMES, REGISTRY, Act, Stage, Stories, Story
 
 DEPTH = 3
-REGISTRY = Registry.load()
 PATHS = list(paths_to(NAMES, DEPTH))
 
 
@@ -19,7 +16,9 @@ class Double:
         self.stage = Stage(story)
         start = self.stage.world.snapshot()
         options = story.perception()
-        self.reference = Reference(start, options, frozenset(story.static), depth=DEPTH)
+        self.reference = Reference(
+            start, options, frozenset(story.static), story.initial, depth=DEPTH
+        )
         self._bodies = {(): self.stage.world}
         self.stage.world.listen(lambda frame: self.reference.frame((), frame))
 

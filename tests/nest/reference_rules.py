@@ -1,0 +1,238 @@
+"""Perception and update written from the text of the semantics alone; slow, block by block."""
+
+from dataclasses import dataclass, field, replace
+from math import dist
+
+import numpy as np
+
+import beliefnest as bn
+from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
+from beliefnest.perception.sight import Sight
+from beliefnest.world.frames import Snapshot
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Event, EventKind, Items, Point, Position
+
+MOVES = {EventKind.DEPOSIT_ITEM_INTO_CHEST: 1, EventKind.GET_ITEM_FROM_CHEST: -1}
+HANDS = {
+    EventKind.DEPOSIT_ITEM_INTO_CHEST: -1,
+    EventKind.GET_ITEM_FROM_CHEST: 1,
+    EventKind.GIVE_ITEM_TO_OTHER: -1,
+    EventKind.RECEIVE_ITEM_FROM_OTHER: 1,
+}
+TOUCHES = (*MOVES, EventKind.OPEN_CONTAINER)
+UNKNOWN = -1
+
+
+@dataclass(frozen=True)
+class Block:
+    """A known block: state id, what it rests on, whether that is a perception of this tick."""
+
+    state: int
+    basis: Basis
+    current: bool
+
+
+@dataclass
+class Node:
+    """The state of one simulator. A block that is not in `blocks` is unknown."""
+
+    tick: int
+    blocks: dict[Position, Block]
+    containers: dict[Position, ContainerBelief]
+    agents: dict[str, AgentBelief]
+    log: list[PerceivedEvent] = field(default_factory=list)
+    news: tuple[Event, ...] = ()
+
+    def copy(self) -> "Node":
+        return Node(
+            self.tick,
+            dict(self.blocks),
+            dict(self.containers),
+            dict(self.agents),
+            list(self.log),
+            self.news,
+        )
+
+
+class Rules:
+    """Perception and update: sections 3 to 5 of the semantics."""
+
+    def __init__(self, start: Snapshot, options: bn.Perception) -> None:
+        self.registry = Registry.load()
+        self.box = start.box
+        self.options = options
+        self.sight = Sight(
+            self.registry,
+            options.max_visible_distance,
+            options.field_of_view,
+            options.transparent_blocks,
+        )
+
+    def container_name(self, block: Block | None) -> str | None:
+        """Name of the container block; None if it is none, or unknown."""
+        if block is None:
+            return None
+        name = self.registry.name(block.state)
+        return name if self.registry.is_container(name) else None
+
+    def perceive(self, around: Node, before: Node, me: str) -> Node:
+        """The belief of `me`, who lives in `around`, after the tick (4, 5)."""
+        after = before.copy()
+        after.tick = around.tick
+        self._age(after)
+        present = around.agents[me].position is not None and around.agents[me].current
+        view = View(self, around, me) if present else None
+        after.news = tuple(e for e in around.news if self._perceived(e, around, me, view))
+        after.log += [PerceivedEvent(around.tick, e.kind, e.actor, e.detail) for e in after.news]
+        if view is not None:
+            self._see_blocks(after, around, view)
+            self._see_agents(after, before, around, me, view)
+            self._see_contents(after, before, around, me, view)
+        return after
+
+    def _age(self, node: Node) -> None:
+        """Nothing is current that is not perceived anew (4)."""
+        node.blocks = {p: replace(b, current=False) for p, b in node.blocks.items()}
+        node.containers = {p: replace(c, current=False) for p, c in node.containers.items()}
+        node.agents = {n: replace(a, current=False) for n, a in node.agents.items()}
+
+    def _perceived(self, event: Event, around: Node, me: str, view: "View | None") -> bool:
+        """Whether an event of `around` is perceived (3, 5.2, 5.5)."""
+        if event.kind is EventKind.CHAT and self.options.hearing == "global":
+            return True
+        if view is None or event.kind is EventKind.THINK:
+            return view is not None and event.actor == me
+        if event.kind is EventKind.CHAT and isinstance(self.options.hearing, bn.Radius):
+            speaker, listener = around.agents[event.actor or ""], around.agents[me]
+            return (
+                speaker.position is not None
+                and dist(speaker.position, listener.position) <= self.options.hearing.blocks
+            )
+        if event.kind is EventKind.BLOCK_UPDATE and event.actor != me:
+            return view.sees(event.detail["position"])
+        return event.actor in view.agents
+
+    def _see_blocks(self, after: Node, around: Node, view: "View") -> None:
+        """What is seen replaces what was believed; unknown blocks are not handed on (4, 5.4)."""
+        for position, block in around.blocks.items():
+            if view.sees(position):
+                after.blocks[position] = block
+
+    def _see_agents(self, after: Node, before: Node, around: Node, me: str, view: "View") -> None:
+        """Poses, possessions, and places seen empty (4)."""
+        for name, old in after.agents.items():
+            there = around.agents[name]
+            if name == me:
+                after.agents[name] = there
+                continue
+            new = old
+            if name in view.agents:
+                worn = old.equipment if there.equipment is None else there.equipment
+                new = replace(
+                    old,
+                    position=there.position,
+                    yaw=there.yaw,
+                    pitch=there.pitch,
+                    on_ground=there.on_ground,
+                    equipment=worn,
+                    basis=there.basis,
+                    current=there.current,
+                )
+            elif (
+                self.options.negative_evidence
+                and before.agents[name].position is not None
+                and view.would_see(before.agents[name].position)
+            ):
+                new = replace(old, position=None, yaw=0.0, pitch=0.0, on_ground=True, basis=None)
+            for event in after.news:
+                if event.actor == name and event.kind in HANDS:
+                    held = changed(new.inventory, event.detail["items"], HANDS[event.kind])
+                    new = replace(new, inventory=held)
+            after.agents[name] = new
+
+    def _see_contents(self, after: Node, before: Node, around: Node, me: str, view: "View") -> None:
+        """Containers found and forgotten, items seen to move, contents looked into (4)."""
+        self._find_and_forget(after, before, around, view)
+        own = [e for e in after.news if e.kind in TOUCHES and e.actor == me]
+        looked_into = {e.detail["position"] for e in own} & around.containers.keys()
+        if self.options.containers == "transparent":
+            looked_into |= {place for place in around.containers if view.sees(place)}
+        for event in after.news:
+            if event.kind not in MOVES or event.detail["position"] in looked_into:
+                continue
+            place = event.detail["position"]
+            if not self._is_gone(place, around, view):
+                old = after.containers.get(place)
+                known = {} if old is None else old.items
+                after.containers[place] = ContainerBelief(
+                    changed(known, event.detail["items"], MOVES[event.kind]),
+                    complete=old is not None and old.complete,
+                    basis=Basis(around.tick, Source.WITNESSED, event.kind),
+                    current=True,
+                )
+        for place in looked_into:
+            after.containers[place] = around.containers[place]
+            acts = [e.kind for e in own if e.detail["position"] == place]
+            if acts and after.containers[place].current:
+                basis = Basis(around.tick, Source.WITNESSED, acts[-1])
+                after.containers[place] = replace(after.containers[place], basis=basis)
+
+    def _find_and_forget(self, after: Node, before: Node, around: Node, view: "View") -> None:
+        for place in around.blocks:
+            if not view.sees(place):
+                continue
+            old, new = before.blocks.get(place), after.blocks[place]
+            name = self.container_name(new)
+            is_replaced = old is not None and old.state != new.state
+            if is_replaced and (name is None or name != self.container_name(old)):
+                after.containers.pop(place, None)
+            if name is None and (old is None or self._is_gone(place, around, view)):
+                after.containers.pop(place, None)
+            is_news = old is None or old.state != new.state
+            if name is not None and is_news and place not in after.containers:
+                after.containers[place] = ContainerBelief({}, False, new.basis, current=False)
+
+    def _is_gone(self, place: Position, around: Node, view: "View") -> bool:
+        """Whether the place is seen to hold no container, by a perception of this tick."""
+        block = around.blocks.get(place)
+        return (
+            block is not None
+            and block.current
+            and view.sees(place)
+            and self.container_name(block) is None
+        )
+
+
+class View:
+    """What an agent who is present in a simulator sees of it (3, 5.3)."""
+
+    def __init__(self, rules: Rules, around: Node, me: str) -> None:
+        self._box = rules.box
+        self._sight = rules.sight
+        agent = around.agents[me]
+        assert agent.position is not None
+        x, y, z = agent.position
+        self._looking = ((x, y + 1.62, z), agent.yaw, agent.pitch)
+        self._grid = np.full(self._box.shape, UNKNOWN, dtype=np.int32)
+        for position, block in around.blocks.items():
+            self._grid[self._box.index(position)] = block.state
+        self._visible = self._sight.visible_blocks(self._grid, self._box.low, *self._looking)
+        self.agents = {me} | {
+            name
+            for name, other in around.agents.items()
+            if name != me and other.position is not None and self.would_see(other.position)
+        }
+
+    def sees(self, position: Position) -> bool:
+        """Whether sight reaches the position."""
+        return bool(self._visible[self._box.index(position)])
+
+    def would_see(self, feet: Point) -> bool:
+        """Whether an agent that stood there would be seen."""
+        return bool(self._sight.sees_agents(self._grid, self._box.low, *self._looking, [feet])[0])
+
+
+def changed(items: Items, change: Items, sign: int) -> dict[str, int]:
+    """Items with others added or taken away, none below 0."""
+    counts = {name: items.get(name, 0) + sign * change.get(name, 0) for name in {*items, *change}}
+    return {name: count for name, count in counts.items() if count > 0}
