@@ -246,11 +246,12 @@ class Guest {
   }
 }
 
+// What nothing caught came from the guest's side of the border, which the program has broken.
 function uncaught ({ name, message, stack }) {
   if (message === 'interrupted') return ['fuel', message, stack]
   if (message === 'out of memory') return ['memory', message, stack]
   if (message === 'stack overflow') return ['stack', message, stack]
-  return [name === 'SyntaxError' ? 'syntax' : 'internal', `${name}: ${message}`, stack]
+  return [name === 'SyntaxError' ? 'syntax' : 'error', `${name}: ${message}`, stack]
 }
 
 module.exports = { Engine, GuestEnded }

@@ -85,6 +85,8 @@ const HARM = [
   ['a symbol as an argument', 'await echo(bot, Symbol("x"))', 'error', /symbol cannot be handed out/],
   ['a proxy as an argument', 'await goToPosition(bot, new Proxy({}, { get: (_, key) => key === "x" ? 1 : undefined }))', null, /offset|must be|y/],
   ['a throwing toJSON everywhere', 'Object.prototype.toJSON = () => { throw new Error("mine") }; await echo(bot, {})', 'error', /broke what would have said how/],
+  ['a broken library', 'delete Array.prototype[Symbol.iterator]; await echo(bot, [1])', 'error', /not iterable/],
+  ['a library broken for later', 'setTimeout(() => { delete Array.prototype[Symbol.iterator] }, 0); await bot.waitForTicks(2)', 'error', /not iterable/],
   ['a promise that nothing settles', 'await new Promise(() => {})', 'stuck', /nothing will settle/],
   ['an object made like the bot', 'Object.create(Object.getPrototypeOf(bot)).chat("x")', 'error', /no object of the game/],
   ['a method of the bot on something else', 'bot.chat.call({}, "x")', 'error', /no object of the game/]
