@@ -39,16 +39,21 @@ class Story:
         default_factory=lambda: {place: {"emerald": 2} for place in CONTAINERS}
     )
     initial: tuple[bn.InitialBelief, ...] = ()
+    yaws: Mapping[str, float] = field(default_factory=dict)
 
     def world(self) -> bn.ScriptedWorld:
         """The world at the start; everybody owns an apple and two diamonds."""
-        return bn.ScriptedWorld(
+        world = bn.ScriptedWorld(
             (LOW, HIGH),
             self.blocks,
             self.agents,
             inventories={name: {"apple": 1, "diamond": 2} for name in self.agents},
             containers=self.contents,
         )
+        with world.tick():
+            for name, yaw in self.yaws.items():
+                world.place_agent(name, self.agents[name], yaw)
+        return world
 
     def perception(self) -> bn.Perception:
         """What the agents can perceive."""
@@ -62,11 +67,13 @@ class Stage:
         story: The story.
         world: The real world.
         nest: Its nest.
+        start: The nest's first tick.
     """
 
     def __init__(self, story: Story) -> None:
         self.story = story
         self.world = story.world()
+        self.start = self.world.now
         self.nest = bn.Nest(
             self.world,
             story.perception(),
@@ -158,6 +165,7 @@ class Stories:
             acts=st.lists(act, max_size=self._max_acts).map(tuple),
             static=st.sampled_from(static),
             initial=initial.map(tuple),
+            yaws=st.fixed_dictionaries(dict.fromkeys(NAMES, self._yaw)),
         )
 
     @cached_property
