@@ -8,6 +8,7 @@ from typing import Any
 from beliefnest.world.values import EventKind, Items, Point, Position
 
 __all__ = [
+    "SOURCES",
     "AgentBelief",
     "Basis",
     "ContainerBelief",
@@ -25,6 +26,10 @@ class Source(StrEnum):
     WITNESSED = "witnessed"
     HEARD = "heard"
     EDITED = "edited"
+
+
+SOURCES = tuple(Source)
+"""Source of each code that arrays hold."""
 
 
 @dataclass(frozen=True, slots=True)

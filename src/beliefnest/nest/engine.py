@@ -9,13 +9,13 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import Self
 
-from beliefnest.belief import control
-from beliefnest.belief.state import BeliefState
+from beliefnest.belief.reading import Reading
 from beliefnest.bodies.protocol import Body, ProgramResult, World
 from beliefnest.errors import BranchError, TickError
-from beliefnest.nest.fold import History
+from beliefnest.nest.history import History
 from beliefnest.nest.paths import path_text
-from beliefnest.nest.rules import Rules
+from beliefnest.nest.setting import Setting
+from beliefnest.nest.views import Blocks, LiveState
 from beliefnest.timeline.journal import (
     FOLLOW,
     Edit,
@@ -24,7 +24,7 @@ from beliefnest.timeline.journal import (
     TimelineInfo,
     TimelineKey,
 )
-from beliefnest.world.frames import Frame
+from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.values import Items, Position
 
 __all__ = ["MAIN", "Engine"]
@@ -68,12 +68,12 @@ class _Recorder:
 class Engine:
     """Timelines, bodies and states of one nest. `Nest` and `Simulator` are its face."""
 
-    def __init__(self, rules: Rules, journal: Journal, world: World, seed: int) -> None:
-        self.rules = rules
+    def __init__(self, setting: Setting, journal: Journal, world: World, seed: int) -> None:
+        self.setting = setting
         self.journal = journal
         self.world = world
         self.seed = seed
-        self.history = History(journal, rules)
+        self.history = History(journal, setting)
         self.selected: dict[Path, TimelineKey] = {}
         self._bodies: dict[Path, Body] = {}
         self._recorders: dict[Path, _Recorder] = {}
@@ -81,8 +81,8 @@ class Engine:
     def begin(self) -> Self:
         """Start the real world's timeline and give it its body."""
         key = TimelineKey((), MAIN)
-        self.journal.create(key, None, self.rules.setting.snapshot.tick)
-        self._open_body(key, self.rules.reality(), self.rules.setting.snapshot.tick)
+        self.journal.create(key, None, self.setting.snapshot.tick)
+        self._open_body(key, self.setting.snapshot)
         self.selected[()] = key
         return self
 
@@ -97,21 +97,35 @@ class Engine:
         """The timeline that a node's state comes from."""
         return self.journal.info(self.controller(path))
 
-    def state(self, path: Path) -> BeliefState:
-        """A node's state now."""
-        return self.history.state(self.controller(path), path)
+    @property
+    def agents(self) -> tuple[str, ...]:
+        """All agents, sorted."""
+        return self.history.ground.agents
 
-    def state_at(self, path: Path, tick: int) -> BeliefState:
-        """A node's state at a past tick of the timeline it is on.
+    def reading(self, path: Path, tick: int | None = None) -> Reading:
+        """A node's state now, or at a past tick of the timeline it is on."""
+        key, position = self._when(path, tick)
+        return self.history.reading(key, path, position)
+
+    def state(self, path: Path, tick: int | None = None) -> LiveState:
+        """The view of a node's state now, or at a past tick of the timeline it is on.
 
         Raises:
             TickError: The tick is in the future, or before the start of everything.
         """
+        key, position = self._when(path, tick)
+        reading = self.history.reading(key, path, position)
+        blocks = Blocks(self.history, key, position, reading)
+        shown = self.journal.info(key).head if tick is None else tick
+        return LiveState(reading, blocks, self.setting.snapshot.box, shown)
+
+    def _when(self, path: Path, tick: int | None) -> tuple[TimelineKey, int]:
         info = self.info(path)
+        if tick is None:
+            return info.key, info.entries
         if tick > info.head:
             raise TickError(f"tick {tick} is in the future; {path_text(path)} is at {info.head}")
-        key, position = self.place_of(info.key, tick)
-        return self.history.state(key, path, position)
+        return self.place_of(info.key, tick)
 
     def place_of(self, key: TimelineKey, tick: int) -> tuple[TimelineKey, int]:
         """Timeline and number of entries that hold a tick, back through the bases.
@@ -138,8 +152,8 @@ class Engine:
             place, entries = self.place_of(source.key, tick)
             base = ForkPoint(place, entries, tick)
         key = TimelineKey(path, name)
-        state = self.history.state(base.timeline, path, base.entries)
-        self._embody(key, control.forked(state), base.tick)
+        reading = self.history.reading(base.timeline, path, base.entries)
+        self._embody(key, replace(reading.snapshot(), tick=base.tick))
         self.journal.create(key, base, base.tick)
         self.selected[path] = key
 
@@ -147,8 +161,8 @@ class Engine:
         """Put a simulator on a timeline it has, in the world too."""
         if self.selected.get(key.path) == key:
             return
-        info = self.journal.info(key)
-        self._embody(key, self.history.state(key, key.path), info.head)
+        reading = self.history.reading(key, key.path)
+        self._embody(key, replace(reading.snapshot(), tick=self.journal.info(key).head))
         self.selected[key.path] = key
 
     def follow(self, path: Path) -> None:
@@ -196,8 +210,7 @@ class Engine:
         info = self.info(path)
         edit = Edit(info.head, path, blocks, containers)
         if path in self._bodies:
-            state = self.rules.after(self.state(path), edit, path)
-            self._bodies[path].become(control.snapshot_of(state))
+            self._bodies[path].become(_edited(self.reading(path).snapshot(), edit))
         self.journal.append(info.key, [edit], info.head)
 
     def close(self) -> None:
@@ -208,22 +221,20 @@ class Engine:
         finally:
             self.journal.close()
 
-    def _embody(self, key: TimelineKey, state: BeliefState, tick: int) -> None:
+    def _embody(self, key: TimelineKey, snapshot: Snapshot) -> None:
         """Give the simulator's body a state, making the body if there is none."""
         body = self._bodies.get(key.path)
         if body is None:
-            self._open_body(key, state, tick)
+            self._open_body(key, snapshot)
             return
-        body.become(replace(control.snapshot_of(state), tick=tick))
+        body.become(snapshot)
         self._recorders[key.path].key = key
 
-    def _open_body(self, key: TimelineKey, state: BeliefState, tick: int) -> None:
+    def _open_body(self, key: TimelineKey, snapshot: Snapshot) -> None:
         recorder = _Recorder(self.journal, key)
         name = path_text(key.path)
-        snapshot = replace(control.snapshot_of(state), tick=tick)
-        self._bodies[key.path] = self.world.open_body(
-            name, f"{self.seed} {name}", snapshot, recorder
-        )
+        seed = f"{self.seed} {name}"
+        self._bodies[key.path] = self.world.open_body(name, seed, snapshot, recorder)
         self._recorders[key.path] = recorder
 
     @contextmanager
@@ -236,3 +247,14 @@ class Engine:
         finally:
             recorder.batched = False
             recorder.flush(body.tick)
+
+
+def _edited(snapshot: Snapshot, edit: Edit) -> Snapshot:
+    """A body's state after an edit; unknown blocks are air there."""
+    blocks = snapshot.blocks.copy()
+    for place, state in edit.blocks.items():
+        blocks[snapshot.box.index(place)] = max(state, 0)
+    contents = {p: i for p, i in snapshot.containers.items() if p not in edit.blocks}
+    return replace(
+        snapshot, tick=edit.tick, blocks=blocks, containers={**contents, **edit.containers}
+    )

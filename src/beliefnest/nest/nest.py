@@ -12,7 +12,6 @@ from beliefnest.bodies.worlds import open_world
 from beliefnest.errors import ProgramError
 from beliefnest.nest.engine import Engine
 from beliefnest.nest.paths import parse_path
-from beliefnest.nest.rules import Rules
 from beliefnest.nest.setting import Setting, Step
 from beliefnest.nest.simulator import PastSimulator, Simulator
 from beliefnest.perception.options import Perception
@@ -112,12 +111,12 @@ class Nest:
     @property
     def setting(self) -> Setting:
         """What the nest started from."""
-        return self._engine.rules.setting
+        return self._engine.setting
 
     @property
     def agents(self) -> tuple[str, ...]:
         """Names of all agents, sorted."""
-        return self._engine.rules.agents
+        return self._engine.agents
 
     @property
     def tick(self) -> int:
@@ -138,7 +137,7 @@ class Nest:
         Raises:
             TickError: The tick is in the future or before the start.
         """
-        self._engine.state_at((), tick)
+        self._engine.reading((), tick)
         return Past(self._engine, tick)
 
     def play(self, on_progress: Progress | None = None) -> None:
@@ -177,12 +176,12 @@ class Past:
 
     def __getitem__(self, path: str) -> PastSimulator:
         """The simulator of a belief path as it was."""
-        return PastSimulator(self._engine, parse_path(path, self._engine.rules.agents), self._tick)
+        return PastSimulator(self._engine, parse_path(path, self._engine.agents), self._tick)
 
 
 def _engine(setting: Setting, world: World, store: str | Path | None, seed: int) -> Engine:
     journal: Journal = MemoryJournal() if store is None else _store(store)
-    return Engine(Rules.of(setting), journal, world, seed).begin()
+    return Engine(setting, journal, world, seed).begin()
 
 
 def _store(path: str | Path) -> Journal:

@@ -7,15 +7,13 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.state import BeliefState
+from beliefnest.belief.reading import Reading
 from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.bodies.scripted import ScriptedBody
 from beliefnest.errors import BranchError, InputError, PathError, PositionError, WorldError
 from beliefnest.nest.engine import Engine
 from beliefnest.nest.paths import normalised, path_text
-from beliefnest.nest.views import view
-from beliefnest.perception.observe import Pose, eye_of
 from beliefnest.prompts import Template, render
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
 from beliefnest.world.scripted import ScriptedWorld
@@ -48,13 +46,13 @@ class _Seen:
         """The tick it shows."""
         raise NotImplementedError
 
-    def _belief(self) -> BeliefState:
-        raise NotImplementedError
-
     @property
     def state(self) -> State:
         """What the simulator holds, read-only."""
-        return view(self._path, self._belief(), self.tick, self._engine.rules.registry)
+        raise NotImplementedError
+
+    def _reading(self) -> Reading:
+        raise NotImplementedError
 
     def render(self, template: Template | Path | str, **variables: object) -> str:
         """The text of a prompt template, filled from this simulator.
@@ -81,17 +79,11 @@ class _Seen:
         Raises:
             PathError: There is no such agent.
         """
-        belief = self._belief()
-        if agent not in belief.agents:
-            raise PathError(f"no agent {agent!r}; there are {', '.join(belief.agents)}")
-        there = belief.agents[agent]
-        if there.position is None:
-            return np.zeros(belief.terrain.box.shape, dtype=np.bool_)
-        eye = eye_of(Pose(there.position, there.yaw, there.pitch))
-        return belief.terrain.visible(eye, there.yaw, there.pitch)
+        self._child_path(agent)
+        return self._reading().visible_from(agent)
 
     def _child_path(self, agent: str) -> tuple[str, ...]:
-        agents = self._engine.rules.agents
+        agents = self._engine.agents
         if agent not in agents:
             raise PathError(f"no agent {agent!r}; there are {', '.join(agents)}")
         return normalised((*self._path, agent))
@@ -113,8 +105,13 @@ class PastSimulator(_Seen):
         """The simulator of what `agent` believed in this one."""
         return PastSimulator(self._engine, self._child_path(agent), self._tick)
 
-    def _belief(self) -> BeliefState:
-        return self._engine.state_at(self._path, self._tick)
+    @property
+    def state(self) -> State:
+        """What the simulator held, read-only."""
+        return self._engine.state(self._path, self._tick)
+
+    def _reading(self) -> Reading:
+        return self._engine.reading(self._path, self._tick)
 
 
 class Simulator(_Seen):
@@ -225,8 +222,8 @@ class Simulator(_Seen):
             PositionError: A position is outside the box.
             UnknownNameError: There is no such block or item.
         """
-        registry = self._engine.rules.registry
-        box = self._engine.rules.setting.snapshot.box
+        registry = self._engine.history.ground.registry
+        box = self._engine.setting.snapshot.box
         for position in (*(blocks or {}), *(containers or {})):
             if position not in box:
                 raise PositionError(f"position {position} is outside the box {box.low}..{box.high}")
@@ -241,8 +238,13 @@ class Simulator(_Seen):
                     raise InputError(f"{count} {name} cannot be held; give a count above 0")
         self._engine.edit(self._path, states, {p: dict(i) for p, i in (containers or {}).items()})
 
-    def _belief(self) -> BeliefState:
+    @property
+    def state(self) -> State:
+        """What the simulator holds, read-only."""
         return self._engine.state(self._path)
+
+    def _reading(self) -> Reading:
+        return self._engine.reading(self._path)
 
 
 def _check_branch_name(name: object) -> None:

@@ -1,83 +1,146 @@
-"""Read-only views of belief states, as users, prompts and pictures get them."""
+"""Read-only views of nodes, as users, prompts and pictures get them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from functools import cached_property
 
 import numpy as np
 
-from beliefnest.belief.entries import Basis, PerceivedEvent
-from beliefnest.belief.state import BeliefState
-from beliefnest.belief.view import State
+from beliefnest.belief.columns import cell_of
+from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent
+from beliefnest.belief.reading import Reading
+from beliefnest.belief.view import BlockView, State
 from beliefnest.errors import PositionError
-from beliefnest.world.registry import Registry
-from beliefnest.world.values import EventKind, Position
+from beliefnest.nest.history import History
+from beliefnest.timeline.journal import TimelineKey
+from beliefnest.world.frames import BlockGrid
+from beliefnest.world.values import Box, DroppedItem, EventKind, Position
 
-__all__ = ["view"]
+__all__ = ["Blocks", "LiveState"]
+
+_FEW = 4
 
 _SPEECH = (EventKind.CHAT, EventKind.THINK)
 
 
-class _Blocks:
-    """The blocks of a belief state, by position."""
+class Blocks:
+    """The blocks of a node at one entry of a timeline, by position."""
 
-    def __init__(self, state: BeliefState, registry: Registry) -> None:
-        self._state = state
-        self._registry = registry
+    def __init__(self, history: History, key: TimelineKey, position: int, reading: Reading) -> None:
+        self._history = history
+        self._key = key
+        self._position = position
+        self._reading = reading
+        self._bases: dict[int, Basis | None] = {}
+
+    @property
+    def grid(self) -> BlockGrid:
+        """Block state ids, shape of the box, -1 unknown."""
+        return self._reading.blocks
 
     def __getitem__(self, position: Position) -> str | None:
-        state = int(self._state.terrain.blocks[self._index(position)])
-        return None if state < 0 else self._registry.text(state)
+        state = int(self.grid[self._index(position)])
+        return None if state < 0 else self._history.ground.registry.text(state)
 
     def __iter__(self) -> Iterator[Position]:
-        return self._state.terrain.box.positions()
+        return self._history.ground.box.positions()
 
     def __len__(self) -> int:
-        return int(self._state.terrain.blocks.size)
+        return int(self.grid.size)
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, _Blocks):
+        if not isinstance(other, Blocks):
             return NotImplemented
-        return bool(np.array_equal(self._state.terrain.blocks, other._state.terrain.blocks))
+        return bool(np.array_equal(self.grid, other.grid))
 
     __hash__ = None  # type: ignore[assignment]  # compared by value, and values are large
 
     def named(self, names: frozenset[str]) -> dict[Position, str]:
-        states = [s for name in sorted(names) for s in self._registry.state_ids(name)]
-        blocks = self._state.terrain.blocks
-        low = self._state.terrain.box.low
+        """Known blocks of some names."""
+        registry = self._history.ground.registry
+        states = [s for name in sorted(names) for s in registry.state_ids(name)]
+        x, y, z = self._history.ground.box.low
         return {
-            (low[0] + i, low[1] + j, low[2] + k): self._registry.text(int(blocks[i, j, k]))
-            for i, j, k in np.argwhere(np.isin(blocks, states)).tolist()
+            (x + i, y + j, z + k): registry.text(int(self.grid[i, j, k]))
+            for i, j, k in np.argwhere(np.isin(self.grid, states)).tolist()
         }
 
     def current(self, position: Position) -> bool:
-        return bool(self._state.grounds.current[self._index(position)])
+        """Whether the block is backed by a perception in this tick."""
+        self._index(position)
+        path = self._reading.path
+        return self._history.block_is_current(self._key, path, self._position, position)
 
     def basis(self, position: Position) -> Basis | None:
-        return self._state.grounds.basis(self._index(position))
+        """What the block rests on; None where it is unknown."""
+        self._index(position)
+        cell = cell_of(self._history.ground.box, position)
+        if cell not in self._bases:
+            # Who asks for a few will ask for all.
+            every = len(self._bases) >= _FEW
+            cells = range(self._history.ground.cells) if every else [cell]
+            self._bases.update(
+                self._history.block_bases(self._key, self._reading.path, self._position, cells)
+            )
+        return self._bases[cell]
 
     def _index(self, position: Position) -> tuple[int, int, int]:
-        box = self._state.terrain.box
+        box = self._history.ground.box
         if position not in box:
             raise PositionError(f"position {position} lies outside the box {box.low}..{box.high}")
         return box.index(position)
 
 
-def view(path: tuple[str, ...], state: BeliefState, tick: int, registry: Registry) -> State:
-    """The view of a state at a tick (a quiet one, perhaps, after the state's own)."""
-    events = state.events()
-    return State(
-        path=path,
-        tick=tick,
-        box=state.terrain.box,
-        blocks=_Blocks(state, registry),
-        containers=dict(sorted(state.containers.items())),
-        agents=dict(state.agents),
-        items={number: belief.item for number, belief in state.items.items()},
-        events=tuple(event for event in events if event.kind not in _SPEECH),
-        chat=_said(events, EventKind.CHAT),
-        thoughts=_said(events, EventKind.THINK),
-    )
+class LiveState(State):
+    """A node's state, read part by part when it is asked for."""
 
+    def __init__(self, reading: Reading, blocks: Blocks, box: Box, tick: int) -> None:
+        for name, value in (("path", reading.path), ("tick", tick), ("box", box)):
+            object.__setattr__(self, name, value)
+        object.__setattr__(self, "_reading", reading)
+        object.__setattr__(self, "_blocks", blocks)
 
-def _said(events: tuple[PerceivedEvent, ...], kind: EventKind) -> tuple[tuple[int, str, str], ...]:
-    return tuple((e.tick, e.actor or "", e.detail["text"]) for e in events if e.kind is kind)
+    _reading: Reading
+    _blocks: Blocks
+
+    @property
+    def blocks(self) -> BlockView:
+        """Believed blocks."""
+        return self._blocks
+
+    @cached_property
+    def containers(self) -> Mapping[Position, ContainerBelief]:
+        """Known containers by position."""
+        return self._reading.containers
+
+    @cached_property
+    def agents(self) -> Mapping[str, AgentBelief]:
+        """Every agent of the scenario by name."""
+        return self._reading.agents
+
+    @cached_property
+    def items(self) -> Mapping[int, DroppedItem]:
+        """Dropped items last seen."""
+        return self._reading.items
+
+    @cached_property
+    def events(self) -> tuple[PerceivedEvent, ...]:
+        """Perceived events other than speech and thought."""
+        return tuple(event for event in self._perceived if event.kind not in _SPEECH)
+
+    @cached_property
+    def chat(self) -> tuple[tuple[int, str, str], ...]:
+        """What was heard."""
+        return self._said(EventKind.CHAT)
+
+    @cached_property
+    def thoughts(self) -> tuple[tuple[int, str, str], ...]:
+        """What the owner thought."""
+        return self._said(EventKind.THINK)
+
+    @cached_property
+    def _perceived(self) -> tuple[PerceivedEvent, ...]:
+        return self._reading.events()
+
+    def _said(self, kind: EventKind) -> tuple[tuple[int, str, str], ...]:
+        events = (event for event in self._perceived if event.kind is kind)
+        return tuple((e.tick, e.actor or "", e.detail["text"]) for e in events)

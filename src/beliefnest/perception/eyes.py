@@ -9,7 +9,6 @@ import numpy.typing as npt
 from beliefnest.perception.beams import Eye, in_field, in_reach, sees_block
 from beliefnest.perception.codes import INTRUDED, OWN
 from beliefnest.perception.rays import (
-    NOWHERE,
     Boxes,
     Cell,
     Codes,
@@ -57,7 +56,9 @@ def _sees_sample(
 ) -> bool:
     if not in_field(eye, d[0], d[1], d[2]):
         return False
-    return hidden_by(codes, sizes, starts, boxes, NOWHERE, eye[0], d)[0] < 0
+    # Not the constant: a tuple of literals would have the ray compiled a second time.
+    nowhere = (-len(_HEIGHTS), -len(_HEIGHTS), -len(_HEIGHTS))
+    return hidden_by(codes, sizes, starts, boxes, nowhere, eye[0], d)[0] < 0
 
 
 @inlined

@@ -1,0 +1,189 @@
+"""The arrays that the belief kernel works on.
+
+Cells are indices into a flat array over the box (x slowest, z fastest). A version is a
+row of the pose table: one agent's pose as it was from some tick on. Nodes are the
+simulators below one timeline, shallower ones first; node 0 is the timeline's own.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = [
+    "HEAR_ALL",
+    "HEAR_NEAR",
+    "HEAR_SEEN",
+    "KIND_ACT",
+    "KIND_CHAT",
+    "KIND_THINK",
+    "KIND_UPDATE",
+    "NOBODY",
+    "SOURCE_SEEN",
+    "UNKNOWN",
+    "Changes",
+    "Facts",
+    "Nodes",
+    "Poses",
+    "Senses",
+    "Space",
+]
+
+Ints = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
+
+UNKNOWN = -1
+"""A block state, a version or a cell that is not known, or none."""
+
+NOBODY = -1
+"""Index of no agent."""
+
+SOURCE_SEEN = 1
+"""Row of `Source.SEEN` in `belief.entries.SOURCES`."""
+
+KIND_CHAT, KIND_THINK, KIND_UPDATE, KIND_ACT = range(4)
+"""How an event is perceived: heard, not at all by others, by its place, by its actor."""
+
+HEAR_ALL, HEAR_SEEN, HEAR_NEAR = range(3)
+"""Hearing modes: global, sight, radius."""
+
+
+class Space(NamedTuple):
+    """The box and its shapes, as the ray kernels want them.
+
+    Attributes:
+        sizes: Cells along x, y, z, with a margin of one on every side.
+        starts: int32, rows of each shape (see `perception.rays`).
+        boxes: float64 (n, 6), shapes' boxes.
+        reaches: uint8 by code, sides a shape reaches out of.
+        codes: uint16 by block state, and at the end that of unknown.
+        holds: bool by block state, and at the end that of unknown: is it a container.
+        origin: float64 (3,), added to scenario coordinates to get the grid's.
+        slopes, opens, counts, suspects: Room to work in, from `beams.new_beam` and
+            `shadows.nothing_noted`.
+    """
+
+    sizes: tuple[int, int, int]
+    starts: Ints
+    boxes: Floats
+    reaches: npt.NDArray[np.uint8]
+    codes: npt.NDArray[np.uint16]
+    holds: Flags
+    origin: Floats
+    slopes: Floats
+    opens: npt.NDArray[np.int64]
+    counts: npt.NDArray[np.uint8]
+    suspects: Ints
+
+
+class Senses(NamedTuple):
+    """What agents can perceive.
+
+    Attributes:
+        far: Greatest visible distance, blocks, infinite if there is no limit.
+        cos_half: Cosine of half the field of view; -2 sees all around.
+        hearing: One of `HEAR_ALL`, `HEAR_SEEN`, `HEAR_NEAR`.
+        radius: Greatest distance of hearing, blocks, for `HEAR_NEAR`.
+        negative: Whether a pose becomes unknown when its place is seen empty.
+    """
+
+    far: float
+    cos_half: float
+    hearing: int
+    radius: float
+    negative: bool
+
+
+class Poses(NamedTuple):
+    """Pose table: by version, feet (x, y, z) in scenario coordinates, and (yaw, pitch)."""
+
+    feet: Floats
+    angles: Floats
+
+
+class Facts(NamedTuple):
+    """Entries of a timeline in columns; `x_at[e]` to `x_at[e + 1] - 1` are entry e's rows.
+
+    Attributes:
+        tick: By entry.
+        pose_at, pose_agent, pose_version: Agents that moved, and their new versions.
+        block_at, block_cell, block_state: Blocks that changed.
+        event_at, event_kind, event_actor, event_cell: What happened; kinds as `KIND_...`.
+    """
+
+    tick: Ints
+    pose_at: Ints
+    pose_agent: Ints
+    pose_version: Ints
+    block_at: Ints
+    block_cell: Ints
+    block_state: Ints
+    event_at: Ints
+    event_kind: Ints
+    event_actor: Ints
+    event_cell: Ints
+
+
+class Nodes(NamedTuple):
+    """States of N nodes, A agents and C cells.
+
+    Attributes:
+        parent: (N,), index of the shallower node; -1 for node 0.
+        agent: (N,), whose belief it is; -1 for node 0.
+        child_at, child: Node n's children are child[child_at[n]:child_at[n + 1]].
+        version: (N, A), version of each agent's believed pose; -1 unknown.
+        looks: (N, A), version of each agent's believed equipment; -1 unknown.
+        seen_at: (N, A), tick of the perception that the pose rests on.
+        current: (N, A), whether the pose is backed by a perception in this tick.
+        blocks: (N, C), believed block states; -1 unknown.
+        codes: (N, cells with margin), geometry of the blocks.
+        geometry: (N,), counts changes of the geometry.
+        pending: (N, words), bit set of cells that the parent knows otherwise.
+        fresh: (N,), whether a bit of pending was set since they were last tried.
+        eye: (N,), version the owner last looked from; -1: it was not present.
+        scene: (N,), the parent's geometry it last looked at.
+        tried: (N, A), version of each agent that `sees` is about.
+        sees: (N, A), whether the owner sees the agent in the parent.
+        tracked: (T,), cells whose basis is tracked: those that ever hold a container.
+        watched: (N, T), whether the owner sees the tracked cell in the parent.
+        basis_at: (N, T), tick that the tracked cell rests on; -1 unknown.
+        basis_source: (N, T), its source, a row of `belief.entries.SOURCES`.
+    """
+
+    parent: Ints
+    agent: Ints
+    child_at: Ints
+    child: Ints
+    version: Ints
+    looks: Ints
+    seen_at: Ints
+    current: Flags
+    blocks: Ints
+    codes: npt.NDArray[np.uint16]
+    geometry: Ints
+    pending: npt.NDArray[np.uint64]
+    fresh: Flags
+    eye: Ints
+    scene: Ints
+    tried: Ints
+    sees: Flags
+    tracked: Ints
+    watched: Flags
+    basis_at: Ints
+    basis_source: npt.NDArray[np.uint8]
+
+
+class Changes(NamedTuple):
+    """What a pass of the kernel leaves for the rules that are not about rays.
+
+    Attributes:
+        perceived: bool (events, N), by event of the pass: who perceived it.
+        rows: (M, 7), changes at cells that held or hold a container: entry, node, cell,
+            old state, new state, and the tick and source the new one rests on.
+        used: (1,), rows in use.
+    """
+
+    perceived: Flags
+    rows: Ints
+    used: Ints

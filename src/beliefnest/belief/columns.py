@@ -1,0 +1,267 @@
+"""Timelines in columns, and the table of poses, as the belief kernel reads them."""
+
+from bisect import bisect_left
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.arrays import (
+    KIND_ACT,
+    KIND_CHAT,
+    KIND_THINK,
+    KIND_UPDATE,
+    NOBODY,
+    UNKNOWN,
+    Facts,
+    Poses,
+)
+from beliefnest.world.frames import Frame
+from beliefnest.world.values import AgentState, Box, Event, EventKind, Items, Point, Position
+
+__all__ = ["Columns", "Looks", "Versions", "cell_of", "place_of"]
+
+_KINDS = {
+    EventKind.CHAT: KIND_CHAT,
+    EventKind.THINK: KIND_THINK,
+    EventKind.BLOCK_UPDATE: KIND_UPDATE,
+}
+
+
+def cell_of(box: Box, place: Position) -> int:
+    """Flat cell of a block position of a box."""
+    _, ny, nz = box.shape
+    i, j, k = box.index(place)
+    return (i * ny + j) * nz + k
+
+
+def place_of(box: Box, cell: int) -> Position:
+    """Block position of a flat cell of a box."""
+    _, ny, nz = box.shape
+    x, y, z = box.low
+    return (x + cell // (ny * nz), y + cell // nz % ny, z + cell % nz)
+
+
+class _Column:
+    """A growing array of rows."""
+
+    def __init__(self, dtype: npt.DTypeLike, width: int = 0) -> None:
+        self._shape = (width,) if width else ()
+        self._rows: npt.NDArray[Any] = np.zeros((64, *self._shape), dtype=dtype)
+        self.count = 0
+
+    def append(self, row: Any) -> None:
+        if self.count == len(self._rows):
+            grown = np.zeros((2 * self.count, *self._shape), dtype=self._rows.dtype)
+            grown[: self.count] = self._rows
+            self._rows = grown
+        self._rows[self.count] = row
+        self.count += 1
+
+    def view(self) -> npt.NDArray[Any]:
+        """The rows so far."""
+        return self._rows[: self.count]
+
+
+@dataclass(frozen=True, slots=True)
+class Looks:
+    """What goes with a pose: footing, equipment, and what only the agent itself perceives."""
+
+    on_ground: bool
+    equipment: Mapping[str, str]
+    inventory: Items
+    health: float
+    food: float
+
+
+class Versions:
+    """All poses that agents ever had, in any timeline of a nest, numbered as they came."""
+
+    def __init__(self) -> None:
+        self._feet = _Column(np.float64, 3)
+        self._angles = _Column(np.float64, 2)
+        self._looks = _Column(np.int32)
+        self._table: list[Looks | None] = [None]
+        self._last: dict[str, int] = {}
+
+    def __len__(self) -> int:
+        return self._feet.count
+
+    def add(self, name: str, agent: AgentState) -> int:
+        """Number of a new version of an agent."""
+        looks = Looks(agent.on_ground, agent.equipment, agent.inventory, agent.health, agent.food)
+        last = self._last.get(name, 0)
+        if self._table[last] != looks:
+            self._table.append(looks)
+            last = self._last[name] = len(self._table) - 1
+        return self._add(agent.position, agent.yaw, agent.pitch, last)
+
+    def add_pose(self, position: Point, yaw: float, pitch: float) -> int:
+        """Number of a pose that nobody was seen in."""
+        return self._add(position, yaw, pitch, 0)
+
+    def position(self, version: int) -> Point:
+        """Feet of a version."""
+        x, y, z = self._feet.view()[version].tolist()
+        return (x, y, z)
+
+    def angles(self, version: int) -> tuple[float, float]:
+        """Yaw and pitch of a version."""
+        yaw, pitch = self._angles.view()[version].tolist()
+        return yaw, pitch
+
+    def looks(self, version: int) -> Looks | None:
+        """What goes with a version; None for a pose that nobody was seen in."""
+        return self._table[int(self._looks.view()[version])]
+
+    def poses(self) -> Poses:
+        """The table for the kernel."""
+        return Poses(self._feet.view(), self._angles.view())
+
+    def _add(self, position: Point, yaw: float, pitch: float, looks: int) -> int:
+        self._feet.append(position)
+        self._angles.append((yaw, pitch))
+        self._looks.append(looks)
+        return self._feet.count - 1
+
+
+class Columns:
+    """The entries of one timeline in columns.
+
+    Attributes:
+        frames: By entry, the frames that carry contents, dropped items or arrivals that
+            the kernel knows nothing of.
+        events: All events, in order.
+        acts: By entry, the numbers of its events that are deeds.
+        floor: Versions from this number on are facts of this timeline.
+        held: Cells where a container came or went, in order, possibly again.
+        item_entries: Entries with dropped items, rising.
+    """
+
+    def __init__(
+        self,
+        box: Box,
+        agents: Sequence[str],
+        versions: Versions,
+        holds: npt.NDArray[np.bool_],
+    ) -> None:
+        self._box = box
+        self._holds = holds
+        self.floor = len(versions)
+        self.held: list[int] = []
+        self.item_entries: list[int] = []
+        self._effects: list[int] = []
+        self._firsts: dict[str, int] = {}
+        self._first_poses: dict[tuple[str, ...], int] = {}
+        self._numbers = {name: number for number, name in enumerate(agents)}
+        self._versions = versions
+        self.frames: dict[int, Frame] = {}
+        self.events: list[Event] = []
+        self.acts: dict[int, list[int]] = {}
+        self._tick = _Column(np.int32)
+        self._pose_at, self._block_at, self._event_at = (_Column(np.int32) for _ in range(3))
+        self._pose = [_Column(np.int32) for _ in range(2)]
+        self._block = [_Column(np.int32) for _ in range(2)]
+        self._event = [_Column(np.int32) for _ in range(3)]
+        self._close_entry()
+
+    def __len__(self) -> int:
+        return self._tick.count
+
+    def extend(self, frames: Iterable[Frame]) -> None:
+        """Add frames."""
+        for frame in frames:
+            self._add(frame)
+
+    def first_version(self, name: str, agent: AgentState) -> int:
+        """Version of an agent at the timeline's beginning, the same whenever it is asked for."""
+        if name not in self._firsts:
+            self._firsts[name] = self._versions.add(name, agent)
+        return self._firsts[name]
+
+    def first_pose(self, key: tuple[str, ...], position: Point) -> int:
+        """Version of a pose that a prior tells, the same whenever it is asked for."""
+        if key not in self._first_poses:
+            self._first_poses[key] = self._versions.add_pose(position, 0.0, 0.0)
+        return self._first_poses[key]
+
+    def add_quiet(self, tick: int) -> None:
+        """Add an entry in which nothing happens by itself."""
+        self._tick.append(tick)
+        self._close_entry()
+
+    def tick(self, entry: int) -> int:
+        """Tick of an entry."""
+        return int(self._tick.view()[entry])
+
+    def events_until(self, entry: int) -> int:
+        """How many events lie before an entry."""
+        return int(self._event_at.view()[entry])
+
+    def with_effects(self, start: int, stop: int) -> set[int]:
+        """Entries start to stop - 1 that change contents, possessions or dropped items."""
+        if stop - start == 1:
+            return {start} if start in self.frames or start in self.acts else set()
+        low, high = bisect_left(self._effects, start), bisect_left(self._effects, stop)
+        return set(self._effects[low:high])
+
+    def facts(self) -> Facts:
+        """The columns for the kernel."""
+        agent, version = (column.view() for column in self._pose)
+        block_cell, state = (column.view() for column in self._block)
+        kind, actor, event_cell = (column.view() for column in self._event)
+        return Facts(
+            self._tick.view(),
+            self._pose_at.view(),
+            agent,
+            version,
+            self._block_at.view(),
+            block_cell,
+            state,
+            self._event_at.view(),
+            kind,
+            actor,
+            event_cell,
+        )
+
+    def _add(self, frame: Frame) -> None:
+        entry = len(self)
+        if frame.containers or frame.items:
+            self.frames[entry] = frame
+        if frame.items:
+            self.item_entries.append(entry)
+        for name, agent in frame.agents.items():
+            version = UNKNOWN if agent is None else self._versions.add(name, agent)
+            self._pose[0].append(self._numbers[name])
+            self._pose[1].append(version)
+        for place, state in frame.blocks.items():
+            cell = cell_of(self._box, place)
+            self._block[0].append(cell)
+            self._block[1].append(state)
+            if self._holds[state]:
+                self.held.append(cell)
+        for event in frame.events:
+            self._add_event(entry, event)
+        if entry in self.frames or entry in self.acts:
+            self._effects.append(entry)
+        self._tick.append(frame.tick)
+        self._close_entry()
+
+    def _add_event(self, entry: int, event: Event) -> None:
+        kind = _KINDS.get(event.kind, KIND_ACT)
+        place = event.detail.get("position")
+        if kind == KIND_ACT:
+            self.acts.setdefault(entry, []).append(len(self.events))
+        self._event[0].append(kind)
+        self._event[1].append(NOBODY if event.actor is None else self._numbers[event.actor])
+        self._event[2].append(
+            cell_of(self._box, place) if kind == KIND_UPDATE and place is not None else UNKNOWN
+        )
+        self.events.append(event)
+
+    def _close_entry(self) -> None:
+        self._pose_at.append(self._pose[0].count)
+        self._block_at.append(self._block[0].count)
+        self._event_at.append(self._event[0].count)

@@ -1,0 +1,404 @@
+"""Perception and belief update of all nodes below one timeline, compiled.
+
+The rules of semantics, sections 3 to 5, as far as they are about poses, blocks and who
+perceives which event. Contents, possessions and dropped items follow in `belief.effects`,
+from what this leaves in `Changes`. Cost grows with what changed: who looks from the same
+place at the same blocks as before is not asked again, and a block is looked for only
+where the believer's belief differs from what there is.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.arrays import (
+    HEAR_ALL,
+    HEAR_SEEN,
+    KIND_CHAT,
+    KIND_THINK,
+    KIND_UPDATE,
+    SOURCE_SEEN,
+    UNKNOWN,
+    Changes,
+    Facts,
+    Nodes,
+    Poses,
+    Senses,
+    Space,
+)
+from beliefnest.perception.eyes import (
+    Eye,
+    eye_sees_agent,
+    eye_sees_block,
+    eye_sees_point,
+    set_code,
+)
+from beliefnest.perception.rays import Cell, compiled, inlined
+from beliefnest.world.values import EYE_HEIGHT
+
+__all__ = ["fold", "put", "refresh_pending", "sees_cell", "sees_point"]
+
+_WORD = 64
+
+_Number = int | np.signedinteger[Any]
+
+
+@inlined
+def _whole(number: _Number) -> int:
+    """The number as int64, so that kernels are compiled for one kind of integer only."""
+    return np.int64(number)  # type: ignore[return-value]  # Python's int, once compiled
+
+
+F = TypeVar("F", bound=Callable[..., object])
+
+
+def inner(function: F) -> F:
+    """Compile a kernel that only kernels of this module call; all integers are int64."""
+    options: dict[str, Any] = {"no_cpython_wrapper": True, "nogil": True}
+    return cast(F, numba.njit(error_model="numpy", **options)(function))
+
+
+@inlined
+def _grid_cell(space: Space, cell: int) -> Cell:
+    """Grid coordinates (with margin) of a flat cell."""
+    ny, nz = space.sizes[1] - 2, space.sizes[2] - 2
+    return cell // (ny * nz) + 1, cell // nz % ny + 1, cell % nz + 1
+
+
+@inlined
+def _eye(space: Space, senses: Senses, poses: Poses, version: int) -> Eye:
+    x, y, z = poses.feet[version]
+    yaw, pitch = poses.angles[version]
+    level = math.cos(pitch)
+    place = (
+        x + space.origin[0],
+        y + EYE_HEIGHT + space.origin[1],
+        z + space.origin[2],
+    )
+    look = (-math.sin(yaw) * level, math.sin(pitch), -math.cos(yaw) * level)
+    return place, look, senses.cos_half, senses.far
+
+
+@inner
+def _sees_agent(space: Space, nodes: Nodes, node: int, eye: Eye, poses: Poses, other: int) -> bool:
+    x, y, z = poses.feet[other]
+    feet = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
+    codes = nodes.codes[node]
+    return eye_sees_agent(codes, space.sizes, space.starts, space.boxes, eye, feet)
+
+
+@inner
+def _sees_cell(space: Space, nodes: Nodes, node: int, eye: Eye, cell: int) -> bool:
+    codes = nodes.codes[node]
+    room = space.slopes, space.opens, space.counts, space.suspects
+    place = _grid_cell(space, cell)
+    return eye_sees_block(codes, space.sizes, space.starts, space.boxes, eye, place, *room)
+
+
+@inner
+def _mark(nodes: Nodes, node: int, cell: int) -> None:
+    """Set or clear the pending bit of a cell in a node below node 0."""
+    there = nodes.blocks[nodes.parent[node], cell]
+    word, bit = cell // _WORD, np.uint64(1) << np.uint64(cell % _WORD)
+    if there != UNKNOWN and there != nodes.blocks[node, cell]:
+        nodes.pending[node, word] |= bit
+        nodes.fresh[node] = True
+    else:
+        nodes.pending[node, word] &= ~bit
+
+
+@compiled
+def put(space: Space, nodes: Nodes, node: int, cell: int, state: int) -> None:
+    """Let a node hold a block state at a cell, with all that hangs on it."""
+    old = nodes.blocks[node, cell]
+    if old == state:
+        return
+    nodes.blocks[node, cell] = state
+    if space.codes[old] != space.codes[state]:
+        place = _grid_cell(space, cell)
+        set_code(nodes.codes[node], space.sizes, space.reaches, place, space.codes[state])
+        nodes.geometry[node] += 1
+    if node > 0:
+        _mark(nodes, node, cell)
+    for n in range(nodes.child_at[node], nodes.child_at[node + 1]):
+        _mark(nodes, _whole(nodes.child[n]), cell)
+
+
+@inner
+def _put(
+    space: Space, nodes: Nodes, changes: Changes, entry: int, node: int, cell: int, state: int
+) -> None:
+    """`put`, and note it where a container is or was."""
+    old = nodes.blocks[node, cell]
+    if old == state:
+        return
+    if space.holds[old] or space.holds[state]:
+        row = changes.used[0]
+        changes.rows[row, 0] = entry
+        changes.rows[row, 1] = node
+        changes.rows[row, 2] = cell
+        changes.rows[row, 3] = old
+        changes.rows[row, 4] = state
+        for spot in range(len(nodes.tracked)):
+            if nodes.tracked[spot] == cell:
+                around = max(nodes.parent[node], 0)
+                changes.rows[row, 5] = nodes.basis_at[around, spot]
+                changes.rows[row, 6] = nodes.basis_source[around, spot]
+        changes.used[0] = row + 1
+    put(space, nodes, node, cell, state)
+
+
+@compiled
+def refresh_pending(nodes: Nodes, node: int) -> None:
+    """Compute a node's pending bits anew."""
+    nodes.pending[node, :] = 0
+    for cell in range(nodes.blocks.shape[1]):
+        _mark(nodes, node, cell)
+
+
+@inner
+def _happens(space: Space, facts: Facts, nodes: Nodes, changes: Changes, entry: int) -> None:
+    """An entry in node 0, where everything known is current."""
+    for row in range(facts.pose_at[entry], facts.pose_at[entry + 1]):
+        who, version = facts.pose_agent[row], facts.pose_version[row]
+        nodes.version[0, who] = version
+        nodes.looks[0, who] = version
+    for who in range(nodes.version.shape[1]):
+        known = nodes.version[0, who] != UNKNOWN
+        nodes.current[0, who] = known
+        if known:
+            nodes.seen_at[0, who] = facts.tick[entry]
+    for row in range(facts.block_at[entry], facts.block_at[entry + 1]):
+        cell, state = _whole(facts.block_cell[row]), _whole(facts.block_state[row])
+        _put(space, nodes, changes, entry, _whole(0), cell, state)
+    for spot in range(len(nodes.tracked)):
+        if nodes.blocks[0, nodes.tracked[spot]] != UNKNOWN:
+            nodes.basis_at[0, spot] = facts.tick[entry]
+            nodes.basis_source[0, spot] = SOURCE_SEEN
+
+
+@inner
+def _watch(space: Space, nodes: Nodes, node: int, eye: Eye, moved: bool) -> None:
+    """Hand on what tracked cells rest on, where the owner of a node sees them."""
+    around = _whole(nodes.parent[node])
+    for spot in range(len(nodes.tracked)):
+        if moved:
+            cell = _whole(nodes.tracked[spot])
+            nodes.watched[node, spot] = _sees_cell(space, nodes, around, eye, cell)
+        if nodes.watched[node, spot] and nodes.blocks[around, nodes.tracked[spot]] != UNKNOWN:
+            nodes.basis_at[node, spot] = nodes.basis_at[around, spot]
+            nodes.basis_source[node, spot] = nodes.basis_source[around, spot]
+
+
+@inner
+def _meet(
+    space: Space, senses: Senses, poses: Poses, nodes: Nodes, node: int, eye: Eye, moved: bool
+) -> None:
+    """What the owner of a node learns of the agents around it."""
+    around, me = _whole(nodes.parent[node]), _whole(nodes.agent[node])
+    for who in range(nodes.version.shape[1]):
+        version = _whole(nodes.version[around, who])
+        seen = who == me
+        if not seen and version != UNKNOWN:
+            if moved or nodes.tried[node, who] != version:
+                nodes.sees[node, who] = _sees_agent(space, nodes, around, eye, poses, version)
+                nodes.tried[node, who] = version
+            seen = nodes.sees[node, who]
+        if seen:
+            nodes.version[node, who] = version
+            if nodes.looks[around, who] != UNKNOWN:
+                nodes.looks[node, who] = nodes.looks[around, who]
+            nodes.seen_at[node, who] = nodes.seen_at[around, who]
+            nodes.current[node, who] = nodes.current[around, who]
+            continue
+        nodes.current[node, who] = False
+        believed = _whole(nodes.version[node, who])
+        if (
+            senses.negative
+            and believed != UNKNOWN
+            and _sees_agent(space, nodes, around, eye, poses, believed)
+        ):
+            nodes.version[node, who] = UNKNOWN
+
+
+@inner
+def _look(space: Space, nodes: Nodes, changes: Changes, entry: int, node: int, eye: Eye) -> None:
+    """Take over what the owner of a node sees of the blocks it knew otherwise."""
+    around = _whole(nodes.parent[node])
+    for word in range(nodes.pending.shape[1]):
+        bits = nodes.pending[node, word]
+        if bits == 0:
+            continue
+        for place in range(_WORD):
+            if (bits >> np.uint64(place)) & np.uint64(1):
+                cell = word * _WORD + place
+                if _sees_cell(space, nodes, around, eye, cell):
+                    there = _whole(nodes.blocks[around, cell])
+                    _put(space, nodes, changes, entry, node, cell, there)
+    nodes.fresh[node] = False
+
+
+@inlined
+def _hears(senses: Senses, poses: Poses, nodes: Nodes, node: int, speaker: int) -> bool:
+    """Whether the present owner of a node hears somebody else."""
+    if senses.hearing == HEAR_ALL:
+        return True
+    if senses.hearing == HEAR_SEEN:
+        known = nodes.version[nodes.parent[node], speaker] != UNKNOWN
+        return bool(nodes.sees[node, speaker] and known)
+    around = _whole(nodes.parent[node])
+    there = _whole(nodes.version[around, speaker])
+    if there == UNKNOWN:
+        return False
+    here = _whole(nodes.version[around, nodes.agent[node]])
+    x = poses.feet[here, 0] - poses.feet[there, 0]
+    y = poses.feet[here, 1] - poses.feet[there, 1]
+    z = poses.feet[here, 2] - poses.feet[there, 2]
+    return math.sqrt(x * x + z * z + y * y) <= senses.radius
+
+
+@inner
+def _attend(
+    space: Space,
+    senses: Senses,
+    poses: Poses,
+    facts: Facts,
+    nodes: Nodes,
+    changes: Changes,
+    entry: int,
+    first_event: int,
+    node: int,
+    eye: Eye,
+) -> None:
+    """Which events of an entry the present owner of a node perceives."""
+    around, me = _whole(nodes.parent[node]), _whole(nodes.agent[node])
+    for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
+        if not changes.perceived[event - first_event, around]:
+            continue
+        kind, actor = facts.event_kind[event], _whole(facts.event_actor[event])
+        if actor == me:
+            got = True
+        elif kind == KIND_THINK:
+            got = False
+        elif kind == KIND_CHAT:
+            got = _hears(senses, poses, nodes, node, actor)
+        elif kind == KIND_UPDATE:
+            cell = _whole(facts.event_cell[event])
+            got = _sees_cell(space, nodes, around, eye, cell)
+        else:
+            got = actor >= 0 and nodes.version[around, actor] != UNKNOWN and nodes.sees[node, actor]
+        changes.perceived[event - first_event, node] = got
+
+
+@inner
+def _absent(
+    senses: Senses,
+    facts: Facts,
+    nodes: Nodes,
+    changes: Changes,
+    entry: int,
+    first_event: int,
+    node: int,
+) -> None:
+    """An owner that is not present is credited with common ground alone (5.2, 5.5)."""
+    nodes.current[node, :] = False
+    nodes.eye[node] = UNKNOWN
+    nodes.watched[node, :] = False
+    if senses.hearing != HEAR_ALL:
+        return
+    for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
+        if facts.event_kind[event] == KIND_CHAT:
+            heard = changes.perceived[event - first_event, nodes.parent[node]]
+            changes.perceived[event - first_event, node] = heard
+
+
+@inner
+def _believe(
+    space: Space,
+    senses: Senses,
+    poses: Poses,
+    facts: Facts,
+    nodes: Nodes,
+    changes: Changes,
+    entry: int,
+    first_event: int,
+    node: int,
+) -> None:
+    """Fold an entry into one node, after its parent."""
+    around, me = _whole(nodes.parent[node]), _whole(nodes.agent[node])
+    if not nodes.current[around, me]:
+        _absent(senses, facts, nodes, changes, entry, first_event, node)
+        return
+    version = _whole(nodes.version[around, me])
+    eye = _eye(space, senses, poses, version)
+    moved = nodes.eye[node] != version or nodes.scene[node] != nodes.geometry[around]
+    nodes.eye[node] = version
+    nodes.scene[node] = nodes.geometry[around]
+    _meet(space, senses, poses, nodes, node, eye, moved)
+    if moved or nodes.fresh[node]:
+        _look(space, nodes, changes, entry, node, eye)
+    _attend(space, senses, poses, facts, nodes, changes, entry, first_event, node, eye)
+    _watch(space, nodes, node, eye, moved)
+
+
+@compiled
+def fold(
+    space: Space,
+    senses: Senses,
+    poses: Poses,
+    facts: Facts,
+    nodes: Nodes,
+    changes: Changes,
+    start: int,
+    stop: int,
+    which: npt.NDArray[np.bool_],
+) -> int:
+    """Fold entries start to stop - 1 into the nodes that `which` marks.
+
+    Where node 0 is not marked, nothing happens in it, and the others look at what there
+    is. Returns the entry it got to: it stops early when `changes.rows` might not hold what
+    the next entry adds.
+    """
+    first_event = _whole(facts.event_at[start])
+    room = changes.rows.shape[0]
+    for entry in range(start, stop):
+        if changes.used[0] > 0 and changes.used[0] > room // 2:
+            return entry
+        if which[0]:
+            _happens(space, facts, nodes, changes, entry)
+            for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
+                changes.perceived[event - first_event, 0] = True
+        for node in range(1, len(nodes.parent)):
+            if which[node]:
+                _believe(space, senses, poses, facts, nodes, changes, entry, first_event, node)
+    return stop
+
+
+@compiled
+def sees_cell(
+    space: Space, senses: Senses, poses: Poses, nodes: Nodes, node: int, version: int, cell: int
+) -> bool:
+    """Whether an eye at a version's pose sees a cell in a node."""
+    return _sees_cell(space, nodes, node, _eye(space, senses, poses, version), cell)
+
+
+@compiled
+def sees_point(
+    space: Space,
+    senses: Senses,
+    poses: Poses,
+    nodes: Nodes,
+    node: int,
+    version: int,
+    point: tuple[float, float, float],
+) -> bool:
+    """Whether an eye at a version's pose sees a point (scenario coordinates) in a node."""
+    eye = _eye(space, senses, poses, version)
+    x, y, z = point
+    there = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
+    codes = nodes.codes[node]
+    return eye_sees_point(codes, space.sizes, space.starts, space.boxes, eye, there)

@@ -1,0 +1,165 @@
+"""Where forests begin: in the real world with its priors, or forked from another forest."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.arrays import UNKNOWN
+from beliefnest.belief.columns import Columns, cell_of
+from beliefnest.belief.entries import Basis, InitialBelief, Source
+from beliefnest.belief.forest import Forest
+from beliefnest.belief.ground import Ground
+from beliefnest.belief.holdings import NEVER, Content, Holdings, Lying
+from beliefnest.world.frames import Snapshot
+
+__all__ = ["forked", "planted"]
+
+Path = tuple[str, ...]
+
+
+def planted(
+    ground: Ground,
+    columns: Columns,
+    snapshot: Snapshot,
+    static_blocks: frozenset[str],
+    initial: Sequence[InitialBelief],
+    path: Path,
+    extra: Sequence[int] = (),
+) -> Forest:
+    """A forest of the real world, a node and those between, after the first perception.
+
+    Args:
+        ground: What the nest stands on.
+        columns: The real world's timeline.
+        snapshot: The real world at its first tick.
+        static_blocks: Names of blocks that everybody knows from the start.
+        initial: Further priors, at any depth.
+        path: The deepest node.
+        extra: Further cells whose basis is to be tracked.
+    """
+    forest = Forest(ground, columns, snapshot.tick, extra)
+    known = _states_of(ground, static_blocks)
+    prior = np.where(known[snapshot.blocks], snapshot.blocks, UNKNOWN).astype(np.int32)
+    ground.track(np.flatnonzero(ground.holds[snapshot.blocks.ravel()]).tolist())
+    for belief in initial:
+        ground.track(cell_of(ground.box, place) for place in belief.containers)
+        ground.track(
+            cell_of(ground.box, place)
+            for place, state in belief.blocks.items()
+            if ground.container_name(state)
+        )
+    forest.plots.track()
+    _plant_world(forest, snapshot)
+    for depth in range(1, len(path) + 1):
+        node = path[:depth]
+        mine = next((belief for belief in initial if belief.path == node), InitialBelief(node))
+        _plant_prior(forest, node, prior, mine, snapshot.tick)
+    forest.plots.link()
+    forest.perceive_at_first()
+    return forest
+
+
+def _states_of(ground: Ground, names: frozenset[str]) -> npt.NDArray[np.bool_]:
+    known = np.zeros(ground.registry.states, dtype=np.bool_)
+    for name in names:
+        ids = ground.registry.state_ids(name)
+        known[ids.start : ids.stop] = True
+    return known
+
+
+def _plant_world(forest: Forest, snapshot: Snapshot) -> None:
+    ground, plots = forest.ground, forest.plots
+    node = plots.add((), UNKNOWN)
+    plots.set_blocks(node, snapshot.blocks)
+    basis = Basis(snapshot.tick, Source.SEEN)
+    plots.set_known_bases(node, basis)
+    for name, agent in snapshot.agents.items():
+        version = forest.columns.first_version(name, agent)
+        number = ground.numbers[name]
+        plots.set_pose(node, number, version, snapshot.tick, current=True)
+        plots.set_looks(node, number, version)
+    holdings = Holdings()
+    for place, items in snapshot.containers.items():
+        holdings.containers[cell_of(ground.box, place)] = Content(dict(items), True, basis, -1)
+    for key, item in snapshot.items.items():
+        holdings.items[key] = Lying(item, basis, -1)
+    forest.holdings.append(holdings)
+    forest.before.append(())
+
+
+def _plant_prior(
+    forest: Forest, path: Path, prior: npt.NDArray[np.int32], mine: InitialBelief, tick: int
+) -> None:
+    ground, plots = forest.ground, forest.plots
+    basis = Basis(tick, Source.PRIOR)
+    node = plots.add(path, plots.index[path[:-1]])
+    blocks = prior.copy()
+    for place, state in mine.blocks.items():
+        blocks[ground.box.index(place)] = state
+    plots.set_blocks(node, blocks)
+    for name, position in mine.agents.items():
+        version = forest.columns.first_pose((*path, name), position)
+        plots.set_pose(node, ground.numbers[name], version, tick, current=False)
+    holdings = Holdings()
+    for place, (items, complete) in mine.containers.items():
+        holdings.containers[cell_of(ground.box, place)] = Content(dict(items), complete, basis)
+    plots.set_known_bases(node, basis)
+    for cell in ground.tracked:
+        if ground.container_name(plots.block(node, cell)):
+            holdings.containers.setdefault(cell, Content({}, False, basis))
+    forest.holdings.append(holdings)
+    forest.before.append(())
+
+
+def forked(
+    source: Forest,
+    columns: Columns,
+    root: Path,
+    path: Path,
+    tick: int,
+    extra: Sequence[int] = (),
+) -> Forest:
+    """A forest that begins with what nodes of another hold: `root`, `path` and those between.
+
+    In node 0 all that is known is current from now on; what the others believed stays as
+    it was (semantics, section 6).
+
+    Args:
+        source: The other forest, at the fork.
+        columns: The new timeline.
+        root: The simulator that gets a timeline of its own.
+        path: The deepest node.
+        tick: Tick of the fork.
+        extra: Further cells whose basis is to be tracked; the source tracks them too.
+    """
+    forest = Forest(source.ground, columns, tick, extra)
+    source.plots.track()
+    for depth in range(len(root), len(path) + 1):
+        old = source.plots.index[path[:depth]]
+        node = forest.plots.copy_node(source.plots, old, is_root=depth == len(root))
+        forest.holdings.append(_forked_holdings(source, old, is_root=node == 0))
+        count = source.columns.events_until(source.position)
+        forest.before.append(tuple(source.heard(old, count)))
+    forest.plots.link()
+    return forest
+
+
+def _forked_holdings(source: Forest, node: int, *, is_root: bool) -> Holdings:
+    """Holdings at a fork; what was current there is so until the new timeline's first entry."""
+    copied = source.holdings[node].copy()
+    last = source.position - 1
+    for cell in copied.containers:
+        there = source.content(node, cell)
+        entry = -1 if is_root or there.entry == last else NEVER
+        copied.containers[cell] = Content(there.items, there.complete, there.basis, entry)
+    for number, lying in copied.items.items():
+        entry = -1 if is_root or lying.entry == last else NEVER
+        copied.items[number] = Lying(lying.item, lying.basis, entry)
+    if is_root:
+        for agent in range(len(source.ground.agents)):
+            items, complete = source.inventory(node, agent)
+            copied.inventories.pop(agent, None)
+            if not complete:
+                copied.inventories[agent] = items
+    return copied

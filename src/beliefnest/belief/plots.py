@@ -1,0 +1,258 @@
+"""The kernel's arrays of the nodes of one forest, growing with the nodes that are asked for."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief import kernel
+from beliefnest.belief.arrays import UNKNOWN, Nodes
+from beliefnest.belief.columns import Looks
+from beliefnest.belief.entries import SOURCES, Basis
+from beliefnest.belief.ground import Ground
+from beliefnest.perception.codes import mark_intruded
+from beliefnest.world.frames import BlockGrid
+
+__all__ = ["Plots"]
+
+Path = tuple[str, ...]
+Row = npt.NDArray[Any]
+
+_BY_SPOT = {"watched": 0, "basis_at": UNKNOWN, "basis_source": 0}
+"""Rows with a column for each tracked cell, and what stands where nothing is known."""
+
+
+class Plots:
+    """Arrays of nodes; see `arrays.Nodes` for what each holds.
+
+    Attributes:
+        index: Number of each node by path; a node's number is above its parent's.
+        count: How many nodes there are.
+    """
+
+    def __init__(self, ground: Ground, extra: Sequence[int] = ()) -> None:
+        self._ground = ground
+        self.index: dict[Path, int] = {}
+        self.count = 0
+        known = set(ground.tracked)
+        others = [cell for cell in extra if cell not in known]
+        tracked = self._tracked = np.array([*ground.tracked, *others], dtype=np.int32)
+        agents, cells, spots = len(ground.agents), ground.cells, len(tracked)
+        margin = int(np.prod(ground.space.sizes))
+        self._rows: dict[str, Row] = {
+            "parent": np.full(2, UNKNOWN, dtype=np.int32),
+            "agent": np.full(2, UNKNOWN, dtype=np.int32),
+            "version": np.full((2, agents), UNKNOWN, dtype=np.int32),
+            "looks": np.full((2, agents), UNKNOWN, dtype=np.int32),
+            "seen_at": np.full((2, agents), UNKNOWN, dtype=np.int32),
+            "current": np.zeros((2, agents), dtype=np.bool_),
+            "blocks": np.full((2, cells), UNKNOWN, dtype=np.int32),
+            "codes": np.zeros((2, margin), dtype=np.uint16),
+            "geometry": np.zeros(2, dtype=np.int32),
+            "pending": np.zeros((2, -(-cells // 64)), dtype=np.uint64),
+            "fresh": np.zeros(2, dtype=np.bool_),
+            "eye": np.full(2, UNKNOWN, dtype=np.int32),
+            "scene": np.full(2, UNKNOWN, dtype=np.int32),
+            "tried": np.full((2, agents), UNKNOWN, dtype=np.int32),
+            "sees": np.zeros((2, agents), dtype=np.bool_),
+            "watched": np.zeros((2, spots), dtype=np.bool_),
+            "basis_at": np.full((2, spots), UNKNOWN, dtype=np.int32),
+            "basis_source": np.zeros((2, spots), dtype=np.uint8),
+        }
+        self._child_at = np.zeros(1, dtype=np.int32)
+        self._child = np.zeros(0, dtype=np.int32)
+
+    def nodes(self) -> Nodes:
+        """The arrays for the kernel."""
+        rows = {name: row[: self.count] for name, row in self._rows.items()}
+        return Nodes(child_at=self._child_at, child=self._child, tracked=self._tracked, **rows)
+
+    def add(self, path: Path, parent: int) -> int:
+        """A new node that knows nothing; `link` has to follow once its blocks are set."""
+        node = self._grow()
+        self.index[path] = node
+        self._rows["parent"][node] = parent
+        if parent >= 0:
+            self._rows["agent"][node] = self._ground.numbers[path[-1]]
+        return node
+
+    def copy_node(self, other: "Plots", source: int, *, is_root: bool) -> int:
+        """A node of other plots as node of these; as node 0 all that it knows is current."""
+        path = other.path(source)
+        node = self._grow()
+        spots = {cell: spot for spot, cell in enumerate(other.tracked.tolist())}
+        theirs = [spots.get(cell, -1) for cell in self._tracked.tolist()]
+        for name, row in self._rows.items():
+            if name in _BY_SPOT:
+                wide = np.append(other._rows[name][source], _BY_SPOT[name])
+                row[node] = wide[theirs]
+            else:
+                row[node] = other._rows[name][source]
+        for name in ("eye", "scene", "tried"):
+            self._rows[name][node] = UNKNOWN
+        self._rows["geometry"][node] = 0
+        self.index[path] = node
+        if is_root:
+            self._rows["parent"][node] = self._rows["agent"][node] = UNKNOWN
+            self._rows["current"][node] = self._rows["version"][node] >= 0
+        else:
+            self._rows["parent"][node] = self.index[path[:-1]]
+        return node
+
+    def path(self, node: int) -> Path:
+        """Path of a node."""
+        return next(path for path, number in self.index.items() if number == node)
+
+    def link(self) -> None:
+        """Connect the nodes and compare each with its parent, after some were added."""
+        parent = self._rows["parent"][: self.count]
+        order = np.argsort(parent, kind="stable").astype(np.int32)
+        self._child = order[np.searchsorted(parent[order], 0) :]
+        self._child_at = np.searchsorted(parent[self._child], np.arange(self.count + 1)).astype(
+            np.int32
+        )
+        nodes = self.nodes()
+        for node in range(1, self.count):
+            kernel.refresh_pending(nodes, node)
+
+    def set_blocks(self, node: int, blocks: npt.NDArray[np.int32]) -> None:
+        """Set all blocks of a node, and its geometry."""
+        space = self._ground.space
+        self._rows["blocks"][node] = blocks.ravel()
+        codes = np.zeros(space.sizes, dtype=np.uint16)
+        codes[1:-1, 1:-1, 1:-1] = space.codes[blocks]
+        mark_intruded(codes, space.reaches)
+        self._rows["codes"][node] = codes.ravel()
+
+    def set_pose(self, node: int, agent: int, version: int, seen_at: int, *, current: bool) -> None:
+        """Set the believed pose of an agent."""
+        self._rows["version"][node, agent] = version
+        self._rows["seen_at"][node, agent] = seen_at
+        self._rows["current"][node, agent] = current
+
+    def set_looks(self, node: int, agent: int, version: int) -> None:
+        """Set the believed equipment of an agent to that of a version."""
+        self._rows["looks"][node, agent] = version
+
+    def set_basis(self, node: int, cell: int, basis: Basis | None) -> None:
+        """Set what a cell rests on, if it is tracked."""
+        for spot in np.flatnonzero(self._tracked == cell):
+            self._rows["basis_at"][node, spot] = UNKNOWN if basis is None else basis.observed_at
+            if basis is not None:
+                self._rows["basis_source"][node, spot] = SOURCES.index(basis.source)
+
+    def set_known_bases(self, node: int, basis: Basis) -> None:
+        """Set what all tracked cells that a node knows rest on."""
+        known = self._rows["blocks"][node][self._tracked] >= 0
+        self._rows["basis_at"][node][known] = basis.observed_at
+        self._rows["basis_source"][node][known] = SOURCES.index(basis.source)
+
+    def bases(self, node: int, cells: Sequence[int]) -> dict[int, Basis | None]:
+        """What tracked cells rest on in a node; None where a block is unknown."""
+        spots = {cell: spot for spot, cell in enumerate(self._tracked.tolist())}
+        ticks = self._rows["basis_at"][node].tolist()
+        sources = self._rows["basis_source"][node].tolist()
+        known = self._rows["blocks"][node] >= 0
+        return {
+            cell: Basis(ticks[spots[cell]], SOURCES[sources[spots[cell]]]) if known[cell] else None
+            for cell in cells
+        }
+
+    def watches(self, node: int, cell: int) -> bool:
+        """Whether the owner of a node sees a tracked cell in the simulator around it."""
+        spot = int(np.flatnonzero(self._tracked == cell)[0])
+        return bool(self._rows["watched"][node, spot])
+
+    def put(self, node: int, cell: int, state: int, basis: Basis) -> None:
+        """Let a node hold a block state by hand."""
+        kernel.put(self._ground.space, self.nodes(), node, cell, state)
+        self.set_basis(node, cell, basis if state >= 0 else None)
+
+    def track(self) -> None:
+        """Track the cells that the ground tracks by now."""
+        known = set(self._tracked.tolist())
+        new = [cell for cell in self._ground.tracked if cell not in known]
+        if not new:
+            return
+        self._tracked = np.array([*self._tracked.tolist(), *new], dtype=np.int32)
+        size = len(self._rows["parent"])
+        for name, filler in _BY_SPOT.items():
+            row = self._rows[name]
+            wide = np.full((size, len(new)), filler, dtype=row.dtype)
+            self._rows[name] = np.concatenate([row, wide], axis=1)
+        # Whoever looks next looks at the new cells too.
+        self._rows["eye"][:] = UNKNOWN
+
+    @property
+    def tracked(self) -> npt.NDArray[np.int32]:
+        """Cells whose basis is tracked."""
+        return self._tracked
+
+    def parent(self, node: int) -> int:
+        """Number of the node around a node; -1 for node 0."""
+        return int(self._rows["parent"][node])
+
+    def owner(self, node: int) -> int:
+        """Number of the agent whose belief a node is; -1 for node 0."""
+        return int(self._rows["agent"][node])
+
+    def block(self, node: int, cell: int) -> int:
+        """State of a node's block; -1: unknown."""
+        return int(self._rows["blocks"][node, cell])
+
+    def blocks(self, node: int) -> BlockGrid:
+        """A copy of a node's blocks, of the box's shape."""
+        blocks: BlockGrid = self._rows["blocks"][node].reshape(self._ground.box.shape).copy()
+        return blocks
+
+    def version(self, node: int, agent: int) -> int:
+        """Version of an agent's believed pose; -1: unknown."""
+        return int(self._rows["version"][node, agent])
+
+    def looks(self, node: int, agent: int) -> int:
+        """Version of an agent's believed equipment; -1: unknown."""
+        return int(self._rows["looks"][node, agent])
+
+    def looks_of(self, node: int, agent: int) -> Looks | None:
+        """What goes with an agent's believed pose; None if it is unknown or nobody was seen."""
+        version = self.version(node, agent)
+        return None if version < 0 else self._ground.versions.looks(version)
+
+    def seen_at(self, node: int, agent: int) -> int:
+        """Tick that an agent's believed pose rests on."""
+        return int(self._rows["seen_at"][node, agent])
+
+    def is_current(self, node: int, agent: int) -> bool:
+        """Whether an agent's pose is current in a node."""
+        return bool(self._rows["current"][node, agent])
+
+    def is_present(self, node: int) -> bool:
+        """Whether the owner of a node is present in the simulator around it (5.1)."""
+        return node == 0 or self.is_current(self.parent(node), self.owner(node))
+
+    def below(self, node: int) -> npt.NDArray[np.bool_]:
+        """Which nodes lie below a node."""
+        below = np.zeros(self.count, dtype=np.bool_)
+        for other in range(node + 1, self.count):
+            parent = self.parent(other)
+            below[other] = parent == node or below[parent]
+        return below
+
+    def _grow(self) -> int:
+        node = self.count
+        size = len(self._rows["parent"])
+        if node == size:
+            for name, row in self._rows.items():
+                self._rows[name] = np.concatenate([row, row[:1].repeat(size, axis=0)])
+        self._reset(node)
+        self.count += 1
+        return node
+
+    def _reset(self, node: int) -> None:
+        for row in self._rows.values():
+            if row.dtype == np.int32:
+                row[node] = UNKNOWN
+            else:
+                row[node] = 0
+        self._rows["geometry"][node] = 0

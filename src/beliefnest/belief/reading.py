@@ -1,0 +1,165 @@
+"""What one node holds at one entry of a timeline, read from its forest when asked for."""
+
+from collections import Counter
+from collections.abc import Mapping
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.columns import place_of
+from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
+from beliefnest.belief.forest import Forest
+from beliefnest.perception.sight import Geometry
+from beliefnest.world.frames import BlockGrid, Snapshot
+from beliefnest.world.values import EYE_HEIGHT, AgentState, DroppedItem, Position
+
+__all__ = ["Reading"]
+
+Path = tuple[str, ...]
+
+FULL = 20.0
+"""Health and food of an agent of whom no more is known."""
+
+
+class Reading:
+    """A node's state; stays as it is when the forest goes on.
+
+    Attributes:
+        path: The node.
+        tick: Tick of the last entry it rests on.
+    """
+
+    def __init__(self, forest: Forest, path: Path) -> None:
+        self.path = path
+        self.tick = forest.tick
+        self._forest = forest
+        self._node = forest.plots.index[path]
+        self._position = forest.position
+        forest.read_by(self)
+
+    def keep(self) -> None:
+        """Read what the forest will not know any more once it goes on."""
+        self.blocks, self.agents, self.containers, self.items  # noqa: B018 - cached when read
+        self.count_of_events  # noqa: B018
+
+    @cached_property
+    def blocks(self) -> BlockGrid:
+        """Believed block states, shape of the box, -1 unknown."""
+        return self._forest.plots.blocks(self._node)
+
+    @cached_property
+    def geometry(self) -> Geometry:
+        """The believed blocks prepared for looks."""
+        ground = self._forest.ground
+        return ground.sight.geometry(self.blocks, ground.box.low)
+
+    @cached_property
+    def containers(self) -> Mapping[Position, ContainerBelief]:
+        """Known contents, in order of position."""
+        forest = self._forest
+        found = {}
+        for cell in sorted(forest.holdings[self._node].containers):
+            content = forest.content(self._node, cell)
+            found[place_of(forest.ground.box, cell)] = ContainerBelief(
+                content.items,
+                content.complete,
+                content.basis,
+                current=self._node == 0 or content.entry == self._position - 1,
+            )
+        return found
+
+    @cached_property
+    def agents(self) -> Mapping[str, AgentBelief]:
+        """What is believed of every agent."""
+        names = self._forest.ground.agents
+        return {name: self._agent(number) for number, name in enumerate(names)}
+
+    @cached_property
+    def items(self) -> Mapping[int, DroppedItem]:
+        """Dropped items last seen."""
+        return {n: lying.item for n, lying in self._forest.holdings[self._node].items.items()}
+
+    @cached_property
+    def count_of_events(self) -> int:
+        """How many events lie before this reading."""
+        return self._forest.columns.events_until(self._position)
+
+    def events(self) -> tuple[PerceivedEvent, ...]:
+        """All perceived events, oldest first."""
+        return tuple(self._forest.heard(self._node, self.count_of_events))
+
+    def visible_from(self, agent: str) -> npt.NDArray[np.bool_]:
+        """Which blocks an agent sees from its believed pose; none if that is unknown."""
+        there = self.agents[agent]
+        if there.position is None:
+            return np.zeros(self.blocks.shape, dtype=np.bool_)
+        x, y, z = there.position
+        return self.geometry.visible_blocks((x, y + EYE_HEIGHT, z), there.yaw, there.pitch)
+
+    def snapshot(self) -> Snapshot:
+        """What a body of the state is filled with.
+
+        Unknown blocks are air, agents of unknown pose are absent, and who was seen to wear
+        or hold something has it.
+        """
+        agents = {
+            name: AgentState(
+                position=agent.position,
+                yaw=agent.yaw,
+                pitch=agent.pitch,
+                on_ground=agent.on_ground,
+                equipment=dict(agent.equipment or {}),
+                inventory=_with_equipment(agent),
+                health=FULL if agent.health is None else agent.health,
+                food=FULL if agent.food is None else agent.food,
+            )
+            for name, agent in self.agents.items()
+            if agent.position is not None
+        }
+        return Snapshot(
+            tick=self.tick,
+            box=self._forest.ground.box,
+            blocks=np.maximum(self.blocks, 0),
+            containers={place: dict(c.items) for place, c in self.containers.items()},
+            agents=agents,
+            items=dict(self.items),
+        )
+
+    def _agent(self, number: int) -> AgentBelief:
+        forest, node = self._forest, self._node
+        plots, versions = forest.plots, forest.ground.versions
+        inventory, complete = forest.inventory(node, number)
+        looks = (
+            versions.looks(plots.looks(node, number)) if plots.looks(node, number) >= 0 else None
+        )
+        health, food = forest.vitals(node, number)
+        version = plots.version(node, number)
+        if version < 0:
+            return AgentBelief(
+                equipment=None if looks is None else looks.equipment,
+                inventory=inventory,
+                inventory_complete=complete,
+            )
+        posed = versions.looks(version)
+        yaw, pitch = versions.angles(version)
+        source = Source.PRIOR if posed is None else Source.SEEN
+        return AgentBelief(
+            position=versions.position(version),
+            yaw=yaw,
+            pitch=pitch,
+            on_ground=posed is None or posed.on_ground,
+            equipment=None if looks is None else looks.equipment,
+            inventory=inventory,
+            inventory_complete=complete,
+            health=health,
+            food=food,
+            basis=Basis(plots.seen_at(node, number), source),
+            current=plots.is_current(node, number),
+        )
+
+
+def _with_equipment(agent: AgentBelief) -> dict[str, int]:
+    worn = Counter((agent.equipment or {}).values())
+    names = [*agent.inventory, *(worn.keys() - agent.inventory.keys())]
+    return {name: max(agent.inventory.get(name, 0), worn[name]) for name in names}

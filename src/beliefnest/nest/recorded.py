@@ -1,0 +1,59 @@
+"""A recorded run, read-only: any simulator of it, on any branch, at any tick."""
+
+from beliefnest.bodies.scripted import ScriptedBodies
+from beliefnest.nest.engine import MAIN, Engine
+from beliefnest.nest.nest import Past
+from beliefnest.nest.paths import parse_path
+from beliefnest.nest.setting import Setting
+from beliefnest.nest.simulator import PastSimulator
+from beliefnest.timeline.journal import FOLLOW, Journal, TimelineKey
+
+__all__ = ["RecordedNest"]
+
+
+class RecordedNest:
+    """Simulators of a run as they were; nothing in it can act.
+
+    Args:
+        setting: What the run started from.
+        journal: What it recorded; the caller closes it.
+    """
+
+    def __init__(self, setting: Setting, journal: Journal) -> None:
+        self._engine = Engine(setting, journal, ScriptedBodies(), 0)
+        self._engine.selected[()] = TimelineKey((), MAIN)
+
+    def select(self, path: str, branch: str) -> None:
+        """Read a simulator, and those below it, on one of its branches.
+
+        Raises:
+            PathError: The path is malformed or names an unknown agent.
+            BranchError: The simulator has no such branch.
+        """
+        names = parse_path(path, self._engine.agents)
+        if branch == FOLLOW and names:
+            self._engine.selected.pop(names, None)
+            return
+        key = TimelineKey(names, branch)
+        self._engine.journal.info(key)
+        self._engine.selected[names] = key
+
+    def head(self, path: str) -> int:
+        """The latest tick of the timeline that a simulator is on."""
+        return self._engine.info(parse_path(path, self._engine.agents)).head
+
+    def branches(self) -> tuple[TimelineKey, ...]:
+        """All timelines there are, in order of creation."""
+        return tuple(info.key for info in self._engine.journal.timelines())
+
+    def at(self, tick: int) -> Past:
+        """All simulators at a tick.
+
+        Raises:
+            TickError: The tick is in the future or before the start, when a state is read.
+        """
+        return Past(self._engine, tick)
+
+    def simulator(self, path: str, tick: int | None = None) -> PastSimulator:
+        """A simulator at a tick; None: at the latest one of its timeline."""
+        return self.at(self.head(path) if tick is None else tick)[path]
