@@ -175,6 +175,7 @@ FAULTS = [
     ("items: {diamond: 2}}\ncond", "items: {dimond: 2}}\ncond", 25, "expectations[0]", "diamond"),
     ("at: [4, 1, 0]", "at: [4, 1, 0], fill: [[0, 0, 0], [1, 1, 1]]", 6, "blocks[2]", "exactly one"),
     ("name: small", "nmae: small", 1, "nmae", "name"),
+    ("name: small", "name: ../small", 1, "name", "letters"),
     ("box: [[0", "box: [[0.5", 2, "box[0][0]", "int"),
     ("[8, 4, 8]]\nblocks", "[80000, 4, 80000]]\nblocks", 2, "box", "smaller"),
 ]

@@ -1,5 +1,6 @@
 """What a document of the right form means: the setting, the probes, the expectations."""
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -43,6 +44,8 @@ from beliefnest.world.values import Position
 
 __all__ = ["build_scenario"]
 
+_NAME = re.compile(r"[A-Za-z0-9_-]{1,64}", re.ASCII)
+
 
 def build_scenario(
     document: Document,
@@ -55,6 +58,10 @@ def build_scenario(
     Raises:
         ScenarioError: Something in it makes no sense; the message names file, line and key.
     """
+    if not _NAME.fullmatch(file.name):
+        raise document.fault(
+            ("name",), f"{file.name!r} names no folder; use letters, digits, - and _"
+        )
     builder = _Builder(document, file, Registry.load())
     descriptions = {
         number: str(conditions[number].get("description", "")) for number in sorted(conditions)
