@@ -76,6 +76,34 @@ def run(
     return run_scenarios(options)
 
 
+@app.command()
+def show(
+    run: Annotated[Path, typer.Argument(help="A run folder, or one condition's in it.")],
+    path: Annotated[str, typer.Option(help="Belief path; / is the real world.")] = "/",
+    tick: Annotated[int | None, typer.Option(help="Tick; the latest if not given.")] = None,
+    branch: Annotated[str | None, typer.Option(help="Branch of the simulator.")] = None,
+    png: Annotated[Path | None, typer.Option(help="Draw the world at that tick.")] = None,
+    json: Json = False,
+) -> None:
+    """Show what a simulator of a recorded run held."""
+    from beliefnest.cli.show import ShowOptions, show_run
+
+    show_run(ShowOptions(run, path, tick, branch, png, json))
+
+
+@app.command()
+def prompt(
+    run: Annotated[Path, typer.Argument(help="A run folder, or one condition's in it.")],
+    path: Annotated[str, typer.Option(help="The belief to render.")],
+    template: Annotated[Path | None, typer.Option(help="Template; the paper's if none.")] = None,
+    var: Annotated[list[str] | None, typer.Option(help="A variable, as key=value.")] = None,
+) -> None:
+    """Render a prompt template from a belief of a recorded run."""
+    from beliefnest.cli.show import print_prompt
+
+    print_prompt(run, path, template, var or [])
+
+
 @app.command("list")
 def list_installed(json: Json = False) -> None:
     """List the scenarios, worlds and models that are installed."""

@@ -8,13 +8,16 @@ from pathlib import Path
 
 from beliefnest.errors import InputError
 from beliefnest.scenarios.outcome import ProbeOutcome
+from beliefnest.scenarios.scenario import Scenario
 
-__all__ = ["PICTURE", "STORE", "ConditionFolder", "RunFolder", "store_in"]
+__all__ = ["PICTURE", "STORE", "ConditionFolder", "RunFolder", "recorded_scenario", "store_in"]
 
 STORE = "run.bn"
 PICTURE = "picture.png"
 _REPORT = "run.json"
 _RESULT = "result.json"
+_SCENARIO = "scenario.yaml"
+_CONDITION = "condition-"
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +81,7 @@ class RunFolder:
 
     def condition(self, number: int | None) -> ConditionFolder:
         """Make the folder of a condition; None: of a scenario that has none."""
-        path = self.path / ("run" if number is None else f"condition-{number}")
+        path = self.path / ("run" if number is None else f"{_CONDITION}{number}")
         path.mkdir()
         return ConditionFolder(path)
 
@@ -93,7 +96,7 @@ class RunFolder:
 
     def write_scenario(self, text: str) -> None:
         """Keep the scenario as it was run."""
-        _write(self.path / "scenario.yaml", text)
+        _write(self.path / _SCENARIO, text)
 
     def write_summary(self, text: str) -> None:
         """Write the table as text."""
@@ -106,6 +109,7 @@ def store_in(run: Path) -> Path:
     Raises:
         InputError: There is none, or there are several.
     """
+    run = run.absolute()
     if run.is_file():
         return run
     if (run / STORE).is_file():
@@ -117,6 +121,20 @@ def store_in(run: Path) -> Path:
         names = ", ".join(str(store.parent) for store in found)
         raise InputError(f"{run} holds several runs; name one of {names}")
     raise InputError(f"there is no run at {run}: it is no run folder and no {STORE} file")
+
+
+def recorded_scenario(store: Path) -> Scenario:
+    """The scenario that a store in a run folder was recorded from, under its condition.
+
+    Raises:
+        InputError: The store does not lie in a run folder.
+        ScenarioError: The scenario kept there is not readable by this version.
+    """
+    file = store.parents[1] / _SCENARIO
+    if not file.is_file():
+        raise InputError(f"{store} does not lie in a run folder: there is no {file}")
+    _, sign, number = store.parent.name.partition(_CONDITION)
+    return Scenario.load(str(file), int(number) if sign and number.isdecimal() else None)
 
 
 def _unused(parent: Path, name: str) -> Path:

@@ -5,14 +5,14 @@ from collections.abc import Mapping
 from beliefnest.belief.entries import PerceivedEvent
 from beliefnest.belief.view import State
 from beliefnest.nest.nest import Nest
-from beliefnest.nest.paths import parse_path
+from beliefnest.nest.paths import parse_path, path_text
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Arrives, Scenario
 from beliefnest.timeline.journal import Journal
 from beliefnest.viewer.scene import Caption, Row, Scene, decisive_tick, read_scene, read_trails
 from beliefnest.world.values import EventKind, Position
 
-__all__ = ["container_name", "point_text", "read_outcome_scene"]
+__all__ = ["container_name", "point_text", "read_outcome_scene", "state_row", "titled"]
 
 _DEEDS: Mapping[EventKind, str] = {
     EventKind.DEPOSIT_ITEM_INTO_CHEST: "puts {items} into {place}",
@@ -46,8 +46,10 @@ def read_outcome_scene(nest: Nest, journal: Journal, outcome: Outcome) -> Scene:
         verdicts=tuple(_verdict(probe, scenario) for probe in outcome.probes),
         story=tuple(step.label for step in scenario.setting.script),
     )
-    rows = [_row((), outcome.reality, outcome)]
-    rows += [_row(state.path, state, outcome) for state in outcome.beliefs.values()]
+    rows = [
+        state_row(state.path, state, _held(state, outcome))
+        for state in (outcome.reality, *outcome.beliefs.values())
+    ]
     trails = read_trails(journal, scenario.setting.snapshot, tick)
     return read_scene(nest, tick, caption, scenario.labels, _viewers(scenario), rows, trails)
 
@@ -60,6 +62,11 @@ def container_name(place: Position, scenario: Scenario) -> str:
 def point_text(point: tuple[float, float, float]) -> str:
     """A place for people."""
     return f"({', '.join(f'{value:.1f}' for value in point)})"
+
+
+def titled(name: str) -> str:
+    """An agent's name at the start of a sentence."""
+    return name[:1].upper() + name[1:]
 
 
 def _viewers(scenario: Scenario) -> tuple[str, ...]:
@@ -87,24 +94,30 @@ def _deed(event: PerceivedEvent, scenario: Scenario) -> str:
         f"{count} {name.replace('_', ' ')}" for name, count in detail.get("items", {}).items()
     )
     words = _DEEDS[event.kind].format(items=items, place=place, other=detail.get("other", ""))
-    return f"{_titled(event.actor or 'somebody')} {words}"
+    return f"{titled(event.actor or 'somebody')} {words}"
 
 
-def _row(path: tuple[str, ...], state: State, outcome: Outcome) -> Row:
-    verdicts = [
-        each.ok for each in outcome.expectations if outcome.state(each.expectation.path) is state
-    ]
+def state_row(path: tuple[str, ...], state: State, ok: bool | None) -> Row:
+    """The row of a simulator: what it holds of the containers."""
     return Row(
-        label=" that ".join(f"{_titled(name)} believes" for name in path) or "In reality",
-        path="/" + "/".join(path),
+        label=" that ".join(f"{titled(name)} believes" for name in path) or "In reality",
+        path=path_text(path),
         contents={place: held.items for place, held in state.containers.items()},
         complete=frozenset(place for place, held in state.containers.items() if held.complete),
-        ok=all(verdicts) if verdicts else None,
+        ok=ok,
     )
 
 
+def _held(state: State, outcome: Outcome) -> bool | None:
+    """Whether a simulator holds all that is expected of it; None: nothing is."""
+    verdicts = [
+        each.ok for each in outcome.expectations if outcome.state(each.expectation.path) is state
+    ]
+    return all(verdicts) if verdicts else None
+
+
 def _verdict(outcome: ProbeOutcome, scenario: Scenario) -> tuple[str, bool | None]:
-    agent = _titled(outcome.probe.agent)
+    agent = titled(outcome.probe.agent)
     if isinstance(outcome.probe.expect, Arrives):
         where = "nowhere" if outcome.arrived is None else point_text(outcome.arrived)
         deed = f"{agent} goes to {where}"
@@ -115,7 +128,3 @@ def _verdict(outcome: ProbeOutcome, scenario: Scenario) -> tuple[str, bool | Non
     reported = f"{scenario.reported_by} reports" if scenario.reported_by else "expected"
     judged = {True: f", as {reported}", False: f", not as {reported}", None: ""}[outcome.ok]
     return f"Predicted: {deed}{judged}", outcome.ok
-
-
-def _titled(name: str) -> str:
-    return name[:1].upper() + name[1:]

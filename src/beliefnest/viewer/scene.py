@@ -2,12 +2,13 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.view import State
-from beliefnest.nest.nest import Nest
+from beliefnest.nest.nest import Nest, Past
 from beliefnest.timeline.journal import Journal
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
@@ -17,6 +18,7 @@ __all__ = [
     "Caption",
     "Floor",
     "Ghost",
+    "HasPast",
     "Person",
     "Row",
     "Scene",
@@ -158,8 +160,15 @@ def decisive_tick(nest: Nest) -> int:
     return deeds[-1] if deeds else nest.tick
 
 
+class HasPast(Protocol):
+    """A nest, live or recorded."""
+
+    def at(self, tick: int) -> Past:
+        """All simulators at a tick."""
+
+
 def read_scene(
-    nest: Nest,
+    nest: HasPast,
     tick: int,
     caption: Caption,
     labels: Mapping[Position, str],
@@ -249,7 +258,7 @@ def _people(state: State, trails: Mapping[str, tuple[Point, ...]], tick: int) ->
     return tuple(people)
 
 
-def _ghosts(nest: Nest, tick: int, state: State, viewers: list[str]) -> tuple[Ghost, ...]:
+def _ghosts(nest: HasPast, tick: int, state: State, viewers: list[str]) -> tuple[Ghost, ...]:
     """Where the first viewer believes the other viewers to be, if they are elsewhere."""
     if not viewers:
         return ()

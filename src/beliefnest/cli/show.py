@@ -1,0 +1,122 @@
+"""`beliefnest show` and `beliefnest prompt`: reading a recorded run."""
+
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich import box
+from rich.table import Table
+
+from beliefnest.belief.view import State
+from beliefnest.cli.console import stdout
+from beliefnest.cli.folder import recorded_scenario, store_in
+from beliefnest.cli.pictures import container_name, point_text, state_row, titled
+from beliefnest.cli.report import state_json
+from beliefnest.errors import InputError
+from beliefnest.nest.recorded import RecordedNest
+from beliefnest.prompts.templates import built_in_template, load_template
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.timeline.journal import FOLLOW
+from beliefnest.timeline.store import SqliteJournal
+from beliefnest.viewer.picture import draw_scene, save
+from beliefnest.viewer.scene import Caption, read_scene, read_trails
+
+__all__ = ["ShowOptions", "print_prompt", "show_run"]
+
+
+@dataclass(frozen=True, slots=True)
+class ShowOptions:
+    """What was asked for.
+
+    Attributes:
+        run: Run folder, or its store.
+        path: Belief path.
+        tick: Tick; None: the latest.
+        branch: Branch of the simulator; None: the one it ended on, or `follow`.
+        png: File for a picture; None: none.
+        as_json: Whether to print JSON.
+    """
+
+    run: Path
+    path: str
+    tick: int | None
+    branch: str | None
+    png: Path | None
+    as_json: bool
+
+
+def show_run(options: ShowOptions) -> None:
+    """Print what a simulator of a run held, or draw the world at that tick.
+
+    Raises:
+        BeliefNestError: There is no such run, simulator, branch or tick.
+    """
+    with _opened(options.run) as (scenario, nest, journal):
+        if options.branch is not None:
+            nest.select(options.path, options.branch)
+        simulator = nest.simulator(options.path, options.tick)
+        state = simulator.state
+        if options.png is not None:
+            tick = min(state.tick, nest.head("/"))
+            caption = Caption(scenario.name, f"{simulator.path} at tick {tick}")
+            trails = read_trails(journal, scenario.setting.snapshot, tick)
+            rows = [state_row(state.path, state, None)]
+            scene = read_scene(nest, tick, caption, scenario.labels, state.path, rows, trails)
+            save(draw_scene(scene), options.png)
+        if options.as_json:
+            place = {"path": simulator.path, "branch": options.branch or FOLLOW, "tick": state.tick}
+            sys.stdout.write(json.dumps({**place, **state_json(state)}, indent=2) + "\n")
+        elif options.png is None:
+            _print_state(state, simulator.path, scenario)
+
+
+def print_prompt(run: Path, path: str, template: Path | None, variables: list[str]) -> None:
+    """Print a prompt rendered from a belief at the end of a run.
+
+    Args:
+        run: Run folder, or its store.
+        path: Belief path.
+        template: Template file; None: the paper's.
+        variables: `key=value`, each a variable of the template.
+
+    Raises:
+        BeliefNestError: There is no such run or simulator, or the template is wrong.
+    """
+    values = {}
+    for text in variables:
+        key, sign, value = text.partition("=")
+        if not sign or not key.isidentifier():
+            raise InputError(f"{text!r} is no variable; write --var key=value")
+        values[key] = value
+    source = built_in_template("paper") if template is None else load_template(template)
+    with _opened(run) as (_, nest, _):
+        sys.stdout.write(nest.simulator(path).render(source, **values) + "\n")
+
+
+@contextmanager
+def _opened(run: Path) -> Iterator[tuple[Scenario, RecordedNest, SqliteJournal]]:
+    store = store_in(run)
+    scenario = recorded_scenario(store)
+    with SqliteJournal.read(store) as journal:
+        yield scenario, RecordedNest(scenario.setting, journal), journal
+
+
+def _print_state(state: State, path: str, scenario: Scenario) -> None:
+    console = stdout()
+    console.print(f"{path} at tick {state.tick}", highlight=False)
+    containers = Table("container", "known items", "all of them", box=box.SIMPLE_HEAVY)
+    for place, held in sorted(state.containers.items()):
+        items = ", ".join(f"{count} {name}" for name, count in sorted(held.items.items()))
+        name = container_name(place, scenario)
+        containers.add_row(name, items or "-", "yes" if held.complete else "not known")
+    agents = Table("agent", "position", "seen now", "holds", box=box.SIMPLE_HEAVY)
+    for name, agent in state.agents.items():
+        where = "unknown" if agent.position is None else point_text(agent.position)
+        holds = (agent.equipment or {}).get("main_hand", "-")
+        agents.add_row(titled(name), where, "yes" if agent.current else "no", holds)
+    console.print(containers, agents)
+    for tick, speaker, text in state.chat:
+        console.print(f"{tick} {speaker}: {text}", highlight=False, markup=False)

@@ -1,0 +1,96 @@
+"""Reading a recorded run: any simulator, branch and tick; prompts; pictures."""
+
+import json
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from beliefnest.cli.app import run_command_line
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("runs") / "run"
+    assert run_command_line(["run", "sally-anne", "--condition", "3", "--out", str(folder)]) == 0
+    return folder
+
+
+def shown(run: Path, capsys: pytest.CaptureFixture[str], *options: str) -> dict[str, object]:
+    assert run_command_line(["show", str(run), "--json", *options]) == 0
+    state = json.loads(capsys.readouterr().out)
+    assert isinstance(state, dict)
+    return state
+
+
+@pytest.mark.parametrize("path", ["/observer", "/sally", "/observer/sally"])
+def test_a_recorded_belief_is_what_it_was_live(
+    run: Path, path: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    live = json.loads((run / "run.json").read_text())["runs"][0]["beliefs"][path]
+    recorded = shown(run, capsys, "--path", path)
+    assert {key: recorded[key] for key in live} == live
+
+
+def test_a_deeper_belief_than_was_asked_for_live_is_there(
+    run: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert shown(run, capsys, "--path", "/sally/anne/observer")["path"] == "/sally/anne/observer"
+
+
+def test_the_past_is_shown_as_it_was(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    first = shown(run, capsys, "--tick", "0")
+    assert first["containers"] == {
+        "-2,-51,-4": {"items": {}, "complete": True},
+        "2,-51,-4": {"items": {}, "complete": True},
+    }
+
+
+def test_the_branch_of_a_probe_is_shown(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    follow = shown(run, capsys, "--path", "/observer")
+    probe = shown(run, capsys, "--path", "/observer", "--branch", "probe 1")
+    assert isinstance(follow["tick"], int)
+    assert isinstance(probe["tick"], int)
+    assert probe["tick"] > follow["tick"]
+
+
+def test_a_table_names_the_containers(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_command_line(["show", str(run), "--path", "/observer/sally"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert any("left chest" in line and "1 diamond" in line for line in lines)
+
+
+def test_a_picture_of_a_past_tick(run: Path, tmp_path: Path) -> None:
+    file = tmp_path / "then.png"
+    assert run_command_line(["show", str(run), "--tick", "30", "--png", str(file)]) == 0
+    with Image.open(file) as picture:
+        assert picture.size == (1280, 880)
+
+
+def test_the_prompt_of_the_probe_is_rendered_again(
+    run: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked = (run / "condition-3" / "probe-1" / "prompt.txt").read_text()
+    task = "task=Get a diamond from a chest."
+    assert run_command_line(["prompt", str(run), "--path", "/observer/sally", "--var", task]) == 0
+    assert capsys.readouterr().out.strip() == asked.strip()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "hint"),
+    [
+        (["show", "RUN", "--path", "/bob"], "bob"),
+        (["show", "RUN", "--tick", "9999"], "future"),
+        (["show", "RUN", "--path", "/observer", "--branch", "nothing"], "probe 1"),
+        (["show", "nowhere"], "no run at"),
+        (["prompt", "RUN", "--path", "/sally"], "task"),
+        (["prompt", "RUN", "--path", "/sally", "--var", "task"], "key=value"),
+        (["prompt", "RUN", "--path", "/sally", "--template", "nowhere.txt"], "nowhere.txt"),
+    ],
+)
+def test_wrong_questions_are_one_line_and_2(
+    run: Path, arguments: list[str], hint: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_command_line([str(run) if each == "RUN" else each for each in arguments]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert hint in line
