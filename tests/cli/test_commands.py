@@ -232,26 +232,23 @@ def test_an_interrupt_ends_everything_and_leaves_a_readable_folder(whole_group: 
         "await getItemFromChest(bot, new Vec3(3, 1, 3), {apple: 1});",
         "while (true) await bot.waitForTicks(1);",
     ).replace("    agent: ann\n", "    agent: ann\n    timeout_ticks: 100000000\n")
-    process = subprocess.Popen(
-        [sys.executable, "-m", "beliefnest", "run", scenario(endless), "--out", "r"],
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
-    try:
-        assert process.stderr is not None
-        assert "ann takes the apple" in process.stderr.readline()
-        (os.killpg if whole_group else os.kill)(process.pid, signal.SIGINT)
-        _, errors = process.communicate(timeout=SECONDS)
-        assert process.returncode == 130
-        assert errors.splitlines()[-1] == "beliefnest: interrupted"
-        assert "Traceback" not in errors
-        assert json.loads(Path("r/run.json").read_text())["status"] == "interrupted"
-        with SqliteJournal.read(Path("r/run/run.bn")) as journal:
-            assert journal.timelines()
-        with pytest.raises(ProcessLookupError):
-            os.killpg(process.pid, 0)
-    finally:
-        if process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
+    command = [sys.executable, "-m", "beliefnest", "run", scenario(endless), "--out", "r"]
+    with subprocess.Popen(
+        command, stderr=subprocess.PIPE, text=True, start_new_session=True
+    ) as process:
+        try:
+            assert process.stderr is not None
+            assert "ann takes the apple" in process.stderr.readline()
+            (os.killpg if whole_group else os.kill)(process.pid, signal.SIGINT)
+            _, errors = process.communicate(timeout=SECONDS)
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+    assert process.returncode == 130
+    assert errors.splitlines()[-1] == "beliefnest: interrupted"
+    assert "Traceback" not in errors
+    assert json.loads(Path("r/run.json").read_text())["status"] == "interrupted"
+    with SqliteJournal.read(Path("r/run/run.bn")) as journal:
+        assert journal.timelines()
+    with pytest.raises(ProcessLookupError):
+        os.killpg(process.pid, 0)
