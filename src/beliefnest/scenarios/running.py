@@ -36,6 +36,8 @@ def run_scenario(
     """
     nest.play(on_progress)
     ticks = nest.tick
+    steps = len(scenario.setting.script)
+    on_progress("working out beliefs (the very first time this compiles code)", steps, steps)
     reality = nest["/"].state
     beliefs = {path: nest[path].state for path in _paths(scenario)}
     expectations = tuple(
