@@ -10,7 +10,7 @@ from beliefnest.belief.view import State
 from beliefnest.cli.pictures import container_name, point_text
 from beliefnest.scenarios.judging import places_of
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome, ProbeOutcome
-from beliefnest.scenarios.scenario import Arrives, Holds, Opens, Scenario
+from beliefnest.scenarios.scenario import Arrives, Hears, Holds, Opens, Scenario
 from beliefnest.world.values import Point
 
 __all__ = ["outcome_json", "outcome_table", "report_json", "state_json"]
@@ -100,6 +100,8 @@ def _cells(outcome: Outcome) -> dict[str, str]:
         cells.setdefault(heading, []).append(text)
     for probe in outcome.probes:
         heading, text = _acted(probe, outcome.scenario)
+        if len(outcome.probes) > 1 and probe.probe.label:
+            text = f"{probe.probe.label}: {text}"
         cells.setdefault(heading, []).append(text)
     return {heading: "\n".join(lines) for heading, lines in cells.items()}
 
@@ -114,6 +116,9 @@ def _found(outcome: ExpectationOutcome, state: State, scenario: Scenario) -> tup
         what, found = container_name(content.container, scenario), "nothing"
         if held is not None and held.items:
             found = ", ".join(f"{count} {name}" for name, count in sorted(held.items.items()))
+    elif isinstance(content, Hears):
+        heard = any(content.text in text for _, _, text in state.chat)
+        what, found = f"{content.text!r}", "heard" if heard else "not heard"
     else:
         position = state.agents[content.agent].position
         what, found = content.agent, "unknown" if position is None else point_text(position)
@@ -147,6 +152,8 @@ def _expectation_json(outcome: ExpectationOutcome) -> dict[str, object]:
     expected: dict[str, object]
     if isinstance(content, Holds):
         expected = {"container": list(content.container), "items": dict(content.items)}
+    elif isinstance(content, Hears):
+        expected = {"heard" if content.ever else "not_heard": content.text}
     else:
         expected = {"agent": content.agent, "position": _list(content.place)}
     return {

@@ -3,6 +3,7 @@
 from beliefnest.scenarios.scenario import (
     Arrives,
     Expectation,
+    Hears,
     Holds,
     Opens,
     Probe,
@@ -10,4 +11,4 @@ from beliefnest.scenarios.scenario import (
     Stands,
 )
 
-__all__ = ["Arrives", "Expectation", "Holds", "Opens", "Probe", "Scenario", "Stands"]
+__all__ = ["Arrives", "Expectation", "Hears", "Holds", "Opens", "Probe", "Scenario", "Stands"]

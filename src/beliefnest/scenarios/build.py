@@ -24,6 +24,7 @@ from beliefnest.scenarios.people import build_agents
 from beliefnest.scenarios.scenario import (
     Arrives,
     Expectation,
+    Hears,
     Holds,
     Opens,
     Probe,
@@ -146,19 +147,25 @@ class _Builder:
         """One expectation."""
         path = ("expectations", number)
         self._check_belief_path((*path, "path"), entry.path)
-        content: Holds | Stands
-        if entry.container is not None and entry.agent is None and entry.items is not None:
+        return Expectation(entry.path, self._expected(path, entry), entry.label)
+
+    def _expected(self, path: KeyPath, entry: ExpectationEntry) -> Holds | Stands | Hears:
+        kinds = (entry.container, entry.agent, entry.heard, entry.not_heard)
+        alone = sum(kind is not None for kind in kinds) == 1
+        if alone and entry.container is not None and entry.items is not None:
             self._check_container((*path, "container"), entry.container)
             check_items(self._document, (*path, "items"), entry.items, self._registry)
-            content = Holds(entry.container, dict(entry.items))
-        elif entry.agent is not None and entry.container is None and entry.items is None:
+            return Holds(entry.container, dict(entry.items))
+        if alone and entry.agent is not None and entry.items is None:
             self._check_agent((*path, "agent"), entry.agent)
-            content = Stands(entry.agent, entry.position, entry.within)
-        else:
-            raise self._document.fault(
-                path, "give either 'container' and 'items', or 'agent' and 'position'"
-            )
-        return Expectation(entry.path, content, entry.label)
+            return Stands(entry.agent, entry.position, entry.within)
+        spoken = entry.heard or entry.not_heard
+        if alone and spoken and entry.items is None:
+            return Hears(spoken, ever=entry.heard is not None)
+        raise self._document.fault(
+            path,
+            "give one of 'container' and 'items', 'agent' and 'position', 'heard', 'not_heard'",
+        )
 
     def _step(self, number: int, entry: StepEntry) -> Step:
         path = ("script", number)

@@ -175,13 +175,15 @@ class ProbeEntry(_Entry, frozen=True):
 
 
 class ExpectationEntry(_Entry, frozen=True):
-    """What a belief should hold in the end; exactly one of `container` and `agent`."""
+    """What a belief should hold in the end; one of `container`, `agent` and (`not_`)`heard`."""
 
     path: Annotated[str, _note("The belief; / is the real world.")]
     label: Annotated[str, _note("A name for tables and overrides.")] = ""
     container: Annotated[Position | None, _note("A container that holds `items`.")] = None
     items: Annotated[dict[str, int] | None, _note("Exactly the items known to be in it.")] = None
     agent: Annotated[str | None, _note("An agent that stands at `position`.")] = None
+    heard: Annotated[str | None, _note("Part of an utterance that is known of.")] = None
+    not_heard: Annotated[str | None, _note("Part of no utterance that is known of.")] = None
     position: Annotated[Point | None, _note("Middle of the feet.")] = None
     within: Annotated[
         float, msgspec.Meta(gt=0, description="Greatest distance from `position`, in blocks.")

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 
 from beliefnest.belief.view import State
-from beliefnest.scenarios.scenario import Arrives, Holds, Opens, Stands
+from beliefnest.scenarios.scenario import Arrives, Hears, Holds, Opens, Stands
 from beliefnest.world.values import Event, EventKind, Items, Point, Position
 
 __all__ = ["arrives", "is_held", "opened_by", "opens", "places_of"]
@@ -29,12 +29,14 @@ def arrives(expect: Arrives, arrived: Point | None) -> bool:
     return arrived is not None and math.dist(expect.place, arrived) <= expect.within
 
 
-def is_held(content: Holds | Stands, state: State) -> bool:
+def is_held(content: Holds | Stands | Hears, state: State) -> bool:
     """Whether a simulator holds what was expected of it."""
     if isinstance(content, Holds):
         # A container that was never perceived is known to hold nothing in particular.
         container = state.containers.get(content.container)
         return (dict(container.items) if container else {}) == dict(content.items)
+    if isinstance(content, Hears):
+        return content.ever is any(content.text in text for _, _, text in state.chat)
     position = state.agents[content.agent].position
     if content.place is None or position is None:
         return content.place is None and position is None

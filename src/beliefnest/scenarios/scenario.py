@@ -7,7 +7,7 @@ from typing import Any
 from beliefnest.nest.setting import Setting
 from beliefnest.world.values import Items, Point, Position
 
-__all__ = ["Arrives", "Expectation", "Holds", "Opens", "Probe", "Scenario", "Stands"]
+__all__ = ["Arrives", "Expectation", "Hears", "Holds", "Opens", "Probe", "Scenario", "Stands"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +79,19 @@ class Stands:
 
 
 @dataclass(frozen=True, slots=True)
+class Hears:
+    """Something is to have been said as far as a simulator knows, or not.
+
+    Attributes:
+        text: Part of an utterance.
+        ever: Whether an utterance with this part is to be known; False: none is.
+    """
+
+    text: str
+    ever: bool = True
+
+
+@dataclass(frozen=True, slots=True)
 class Expectation:
     """What a simulator is to hold after the script.
 
@@ -89,7 +102,7 @@ class Expectation:
     """
 
     path: str
-    content: Holds | Stands
+    content: Holds | Stands | Hears
     label: str = ""
 
 
