@@ -217,6 +217,11 @@ class Registry:
         """Whether there is a block of that name (a name without properties)."""
         return _bare(name) in self._blocks
 
+    @property
+    def item_names(self) -> tuple[str, ...]:
+        """Names of all items, in the game's order."""
+        return tuple(self._items)
+
     def has_item(self, name: str) -> bool:
         """Whether there is an item of that name."""
         return _bare(name) in self._items
