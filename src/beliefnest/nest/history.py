@@ -5,7 +5,7 @@ the head of every timeline one forest is kept, with the nodes that someone asked
 node asked for late, or for the past, is folded from the timeline's beginning.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from beliefnest.belief.columns import Columns, Versions, cell_of
 from beliefnest.belief.entries import Basis
@@ -61,6 +61,20 @@ class History:
         """
         count = self._journal.info(key).entries
         return Reading(self._forest(key, path, count if position is None else position), path)
+
+    def steps(
+        self, key: TimelineKey, path: Path, first: int, last: int, extra: Sequence[int] = ()
+    ) -> Iterator[Forest]:
+        """One forest with a node, after `first` entries of a timeline, then one more, to `last`.
+
+        It is the caller's own, and the same object each time. What blocks rest on is known
+        in it for cells that hold containers and for those of `extra`.
+        """
+        forest = self._walk(key, path, first, extra)
+        yield forest
+        for position in range(first + 1, last + 1):
+            self._advance(key, forest, position)
+            yield forest
 
     def advance(self, key: TimelineKey) -> None:
         """Bring all nodes that were asked for up to a timeline's head."""
