@@ -1,0 +1,21 @@
+"""Text stories of the ToMi and Hi-ToM kind: read, laid out, played, and asked about.
+
+What is asked is read from the nest after the story was played; nothing is concluded from
+the text.
+"""
+
+from beliefnest.scenarios.stories.plan import FloorPlan, lay_out
+from beliefnest.scenarios.stories.playing import Answer, PlayedStory
+from beliefnest.scenarios.stories.questions import Question, parse_question
+from beliefnest.scenarios.stories.story import Story, read_story
+
+__all__ = [
+    "Answer",
+    "FloorPlan",
+    "PlayedStory",
+    "Question",
+    "Story",
+    "lay_out",
+    "parse_question",
+    "read_story",
+]

@@ -1,0 +1,166 @@
+"""The sentences of text stories of the ToMi and Hi-ToM kind.
+
+Sources: Le et al. 2019 (ToMi), He et al. 2023 (Hi-ToM). A line may begin with its number;
+a name is one word, or several joined by `_` or blanks.
+"""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from beliefnest.errors import InputError
+
+__all__ = [
+    "Entered",
+    "Exited",
+    "Line",
+    "Located",
+    "Moved",
+    "Remark",
+    "Sentence",
+    "Stayed",
+    "parse_lines",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Entered:
+    """Agents come into a room, together."""
+
+    agents: tuple[str, ...]
+    room: str
+
+
+@dataclass(frozen=True, slots=True)
+class Exited:
+    """Agents leave a room, together."""
+
+    agents: tuple[str, ...]
+    room: str
+
+
+@dataclass(frozen=True, slots=True)
+class Stayed:
+    """Agents stay in a room and do nothing."""
+
+    agents: tuple[str, ...]
+    room: str
+
+
+@dataclass(frozen=True, slots=True)
+class Located:
+    """A thing is in a container, or a container in a room: the names tell which."""
+
+    thing: str
+    place: str
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """An agent takes a thing out of its container and puts it into another."""
+
+    agent: str
+    thing: str
+    container: str
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """Something that changes neither the world nor what anyone knows of it."""
+
+
+Sentence = Entered | Exited | Stayed | Located | Moved | Remark
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A sentence and where it stands.
+
+    Attributes:
+        number: Line of the story's text, from 1.
+        text: The line as it is written.
+        sentence: What it says.
+    """
+
+    number: int
+    text: str
+    sentence: Sentence
+
+    def fault(self, what: str) -> InputError:
+        """The error to raise for this line."""
+        return InputError(f"line {self.number}: {self.text!r}: {what}")
+
+
+_AGENT = r"[A-Za-z0-9_]{1,16}"
+_AND = r"(?:,\s*(?:and\s+)?|\s+and\s+)"
+_AGENTS = rf"(?P<agents>{_AGENT}(?:{_AND}{_AGENT})*)"
+_NAME = r"[A-Za-z0-9][\w'-]*(?: [\w'-]+)*?"
+_NUMBER = re.compile(r"\d+[.:)]?\s+")
+_JOINT = re.compile(_AND)
+_A = r"(?:the|a|an|his|her|their)"
+_ALL = r"(?:(?:both|all|together)\s+)?"
+
+
+def _agents(match: re.Match[str]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(_JOINT.split(match["agents"])))
+
+
+def _remark(_: re.Match[str]) -> Remark:
+    return Remark()
+
+
+_FORMS: tuple[tuple[str, Callable[[re.Match[str]], Sentence]], ...] = (
+    (
+        rf"{_AGENTS} {_ALL}(?:re-?)?entered (?:the )?(?P<room>{_NAME})",
+        lambda match: Entered(_agents(match), match["room"]),
+    ),
+    (
+        rf"{_AGENTS} {_ALL}(?:exited|left) (?:the )?(?P<room>{_NAME})",
+        lambda match: Exited(_agents(match), match["room"]),
+    ),
+    (
+        rf"{_AGENTS} made no movements and stayed in (?:the )?(?P<room>{_NAME})"
+        r"(?: for \d+ minutes?)?",
+        lambda match: Stayed(_agents(match), match["room"]),
+    ),
+    (
+        rf"(?P<agent>{_AGENT}) moved (?:the )?(?P<thing>{_NAME}) (?:in)?to (?:the )?"
+        rf"(?P<container>{_NAME})",
+        lambda match: Moved(match["agent"], match["thing"], match["container"]),
+    ),
+    (
+        rf"(?:The |the )?(?P<thing>{_NAME}) (?:is|was) in (?:the )?(?P<place>{_NAME})",
+        lambda match: Located(match["thing"], match["place"]),
+    ),
+    (rf"{_AGENTS} (?:dis)?likes? (?:{_A} )?{_NAME}", _remark),
+    (rf"{_AGENTS} (?:hate|love)s? (?:{_A} )?{_NAME}", _remark),
+    (rf"{_AGENTS} (?:saw|lost) {_A} {_NAME}", _remark),
+    (r"(?:The )?[Pp]hone rang", _remark),
+)
+_KINDS = tuple((re.compile(form), make) for form, make in _FORMS)
+
+
+def parse_lines(text: str) -> tuple[Line, ...]:
+    """The sentences of a story, one for every line that is not blank.
+
+    Raises:
+        InputError: A line is none of the sentences known; the message gives its number.
+    """
+    return tuple(
+        Line(number, line.strip(), _parse(number, line.strip()))
+        for number, line in enumerate(text.splitlines(), 1)
+        if line.strip()
+    )
+
+
+def _parse(number: int, line: str) -> Sentence:
+    words = " ".join(_NUMBER.sub("", line, count=1).split()).removesuffix(".")
+    for form, make in _KINDS:
+        match = form.fullmatch(words)
+        if match is not None:
+            return make(match)
+    raise InputError(
+        f"line {number}: {line!r} is no sentence of a story; write that someone entered, exited "
+        "or stayed in a room, moved a thing to a container, likes or dislikes something, or "
+        "that a thing is in a container"
+    )

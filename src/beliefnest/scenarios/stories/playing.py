@@ -1,0 +1,245 @@
+"""A story played in a world, and the nest that follows it."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Self
+
+from beliefnest.belief.entries import Basis
+from beliefnest.errors import InputError, ProgramError
+from beliefnest.nest.nest import Nest
+from beliefnest.nest.setting import Setting
+from beliefnest.nest.simulator import PastSimulator, Simulator
+from beliefnest.perception.options import Perception
+from beliefnest.scenarios.stories.plan import WALL, FloorPlan, feet, lay_out
+from beliefnest.scenarios.stories.questions import Question
+from beliefnest.scenarios.stories.story import Act, Come, Go, Move, Place, Story, Wait
+from beliefnest.world.scripted import ScriptedWorld
+from beliefnest.world.values import Position
+
+__all__ = ["Answer", "PlayedStory"]
+
+_TIMEOUT_TICKS = 2400
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """Where a simulator of the nest holds a thing.
+
+    Attributes:
+        path: The simulator.
+        tick: The tick it was asked at.
+        thing: What was asked for.
+        place: The container that holds it there; None: none does.
+        basis: What that rests on; None: nothing.
+    """
+
+    path: str
+    tick: int
+    thing: str
+    place: Place | None
+    basis: Basis | None
+
+    @property
+    def text(self) -> str | None:
+        """Name of the container; None: none holds the thing."""
+        return None if self.place is None else self.place.container
+
+
+class PlayedStory:
+    """A story that was played, and its nest; use it in a `with` block, or close it.
+
+    Attributes:
+        story: The story.
+        plan: Where everything is.
+        nest: Open until this is closed; at the story's end.
+        line_ends: The tick each line ended with, in order of `story.lines`.
+    """
+
+    def __init__(self, story: Story, plan: FloorPlan, nest: Nest, line_ends: Sequence[int]) -> None:
+        self.story = story
+        self.plan = plan
+        self.nest = nest
+        self.line_ends = tuple(line_ends)
+
+    @classmethod
+    def play(cls, story: Story, world: str = "scripted", seed: int = 0) -> Self:
+        """Open a nest in a world and act the story out there.
+
+        Args:
+            story: What happens.
+            world: `scripted`, where a line takes one tick, or `embedded`, where bots do it.
+            seed: Drives every random number.
+
+        Raises:
+            BodyError: The world could not be started, or died.
+            ProgramError: A bot could not do what a line says.
+            UnknownNameError: There is no such world.
+        """
+        plan = lay_out(story)
+        nest = Nest.open(story_setting(plan), world=world, seed=seed)
+        try:
+            ends = _play(story, plan, nest, world)
+        except BaseException:
+            nest.close()
+            raise
+        return cls(story, plan, nest, ends)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.nest.close()
+
+    def answer(self, question: Question) -> Answer:
+        """What the nest says.
+
+        Raises:
+            InputError: The question names an agent or a thing that is not in the story.
+        """
+        self.check(question)
+        start = self.plan.snapshot.tick
+        simulator = (
+            self.nest.at(start)[question.path]
+            if question.at_beginning
+            else self.nest[question.path]
+        )
+        return self._find(simulator, question.thing)
+
+    def answer_all(self, questions: Iterable[Question]) -> tuple[Answer, ...]:
+        """What the nest says to several questions, in their order.
+
+        Raises:
+            InputError: A question names an agent or a thing that is not in the story.
+        """
+        asked = tuple(questions)
+        # A deep node brings those above it along.
+        by_depth = sorted(range(len(asked)), key=lambda number: -asked[number].order)
+        found = {number: self.answer(asked[number]) for number in by_depth}
+        return tuple(found[number] for number in range(len(asked)))
+
+    def check(self, question: Question) -> None:
+        """Refuse a question about what is not in the story.
+
+        Raises:
+            InputError: It names an agent or a thing that is not there.
+        """
+        check_question(self.story, question)
+
+    def line_at(self, tick: int) -> int | None:
+        """Index of the line during which a tick passed; None: before the first."""
+        if tick <= self.plan.snapshot.tick:
+            return None
+        return next((n for n, end in enumerate(self.line_ends) if tick <= end), None)
+
+    def _find(self, simulator: Simulator | PastSimulator, thing: str) -> Answer:
+        item = self.plan.items[thing]
+        containers = simulator.state.containers
+        holding = [p for p, held in sorted(containers.items()) if held.items.get(item)]
+        if not holding:
+            return Answer(simulator.path, simulator.tick, thing, None, None)
+        latest = max(holding, key=lambda position: containers[position].basis.observed_at)
+        place, basis = self.plan.place_at(latest), containers[latest].basis
+        return Answer(simulator.path, simulator.tick, thing, place, basis)
+
+
+def check_question(story: Story, question: Question) -> None:
+    """Refuse a question about what is not in a story.
+
+    Raises:
+        InputError: It names an agent or a thing that is not there.
+    """
+    for agent in question.believers:
+        if agent not in story.agents:
+            there = ", ".join(story.agents)
+            raise InputError(f"{question.text!r}: {agent} is not in the story; there are {there}")
+    if question.thing not in story.things:
+        there = ", ".join(story.things)
+        raise InputError(
+            f"{question.text!r}: no line says where the {question.thing} is; there are {there}"
+        )
+
+
+def story_setting(plan: FloorPlan) -> Setting:
+    """What a nest of a story starts from.
+
+    Whoever is in a room knows where everything in it is; all know the building.
+    """
+    return Setting(
+        name="story",
+        snapshot=plan.snapshot,
+        perception=Perception(max_visible_distance=None, hearing="sight", containers="transparent"),
+        static_blocks=frozenset({WALL}),
+    )
+
+
+def _play(story: Story, plan: FloorPlan, nest: Nest, world: str) -> list[int]:
+    """Act every line out; the tick each ended with."""
+    ends = []
+    for line, act in zip(story.lines, story.acts, strict=True):
+        if world == "scripted":
+            _tell(nest["/"].scripted, plan, act)
+        else:
+            _perform(nest, programs_of(act, plan), f"line {line.number}: {line.text!r}")
+        ends.append(nest.tick)
+    return ends
+
+
+def _tell(world: ScriptedWorld, plan: FloorPlan, act: Act) -> None:
+    """One act, in one tick."""
+    with world.tick():
+        match act:
+            case Come(agents, room):
+                for agent in agents:
+                    world.place_agent(agent, feet(plan.stands[room, agent]))
+            case Go(agents):
+                for agent in agents:
+                    world.place_agent(agent, feet(plan.cells[agent]))
+            case Move(agent, thing, source, target):
+                item = {plan.items[thing]: 1}
+                world.withdraw(agent, plan.places[source], item)
+                world.deposit(agent, plan.places[target], item)
+            case Wait():
+                pass
+
+
+def _perform(nest: Nest, programs: Mapping[str, str], where: str) -> None:
+    """One act, by bots that do it together."""
+    if not programs:
+        nest["/"].step(1)
+        return
+    for agent, result in nest["/"].run_all(programs, _TIMEOUT_TICKS).items():
+        if not result.ok:
+            raise ProgramError(f"{where}: the program of {agent} failed: {result.error}")
+
+
+def programs_of(act: Act, plan: FloorPlan) -> dict[str, str]:
+    """The programs that bots act something out with, by agent; empty: nothing is done."""
+    match act:
+        case Come(agents, room):
+            return {agent: _walk(plan.stands[room, agent]) for agent in agents}
+        case Go(agents):
+            return {agent: _walk(plan.cells[agent]) for agent in agents}
+        case Move(agent, thing, source, target):
+            items = f"{{{plan.items[thing]}: 1}}"
+            # Back to the stand, where it is in nobody's way.
+            return {
+                agent: f"await getItemFromChest(bot, {_vec3(plan.places[source])}, {items})\n"
+                f"await depositItemIntoChest(bot, {_vec3(plan.places[target])}, {items})\n"
+                + _walk(plan.stands[source.room, agent])
+            }
+        case Wait():
+            return {}
+
+
+def _walk(block: Position) -> str:
+    return f"await goToPosition(bot, {_vec3(block)}, 0)"
+
+
+def _vec3(position: Position) -> str:
+    return f"new Vec3({', '.join(map(str, position))})"

@@ -1,0 +1,74 @@
+"""The questions that are asked about stories."""
+
+import re
+from dataclasses import dataclass
+
+from beliefnest.errors import InputError
+
+__all__ = ["Question", "parse_question"]
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """Where a thing is, or is believed to be.
+
+    Attributes:
+        believers: Agent names from the outermost believer inwards; empty: where it is.
+        thing: What is asked for.
+        at_beginning: Whether the beginning of the story is meant, and not its end.
+        text: The question as it is written.
+    """
+
+    believers: tuple[str, ...]
+    thing: str
+    at_beginning: bool
+    text: str
+
+    @property
+    def order(self) -> int:
+        """How deep the belief asked for is nested; 0 for reality."""
+        return len(self.believers)
+
+    @property
+    def path(self) -> str:
+        """The belief path asked for."""
+        return "/" + "/".join(self.believers)
+
+
+_AGENT = r"[A-Za-z0-9_]{1,16}"
+_THING = r"(?:the )?(?P<thing>[A-Za-z0-9][\w' -]*?)"
+_THINK = r"(?:really )?(?:thinks?|believes?)(?: that)?"
+_REALITY = re.compile(rf"Where is {_THING}(?: really| now)?")
+_BEGINNING = re.compile(rf"Where was {_THING} (?:at|in) the beginning")
+_SEARCH = re.compile(rf"Where will (?P<who>{_AGENT}) (?:look|search) for {_THING}")
+_BELIEF = re.compile(
+    rf"Where does (?P<chain>{_AGENT} {_THINK}(?: {_AGENT} {_THINK})*) "
+    rf"(?:{_THING} (?:really )?is|(?P<who>{_AGENT}) (?:searches|looks|will search|will look) for "
+    rf"{_THING.replace('thing', 'sought')})"
+)
+_BELIEVER = re.compile(rf"({_AGENT}) {_THINK}(?: |$)")
+
+
+def parse_question(text: str) -> Question:
+    """What a question asks for.
+
+    Raises:
+        InputError: It is none of the questions known.
+    """
+    words = " ".join(text.split()).removesuffix("?").rstrip()
+    if match := _REALITY.fullmatch(words):
+        return Question((), match["thing"], False, text)
+    if match := _BEGINNING.fullmatch(words):
+        return Question((), match["thing"], True, text)
+    if match := _SEARCH.fullmatch(words):
+        return Question((match["who"],), match["thing"], False, text)
+    if match := _BELIEF.fullmatch(words):
+        chain = tuple(_BELIEVER.findall(match["chain"]))
+        if match["who"] is None:
+            return Question(chain, match["thing"], False, text)
+        return Question((*chain, match["who"]), match["sought"], False, text)
+    raise InputError(
+        f"{text!r} is no question about a story; ask 'Where is the X really?', 'Where was the X "
+        "at the beginning?', 'Where will A look for the X?' or 'Where does A think B thinks the "
+        "X is?'"
+    )
