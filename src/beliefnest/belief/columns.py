@@ -138,6 +138,7 @@ class Columns:
         floor: Versions from this number on are facts of this timeline.
         held: Cells where a container came or went, in order, possibly again.
         item_entries: Entries with dropped items, rising.
+        act_entries: Entries with deeds, rising.
     """
 
     def __init__(
@@ -152,6 +153,7 @@ class Columns:
         self.floor = len(versions)
         self.held: list[int] = []
         self.item_entries: list[int] = []
+        self.act_entries: list[int] = []
         self._effects: list[int] = []
         self._firsts: dict[str, int] = {}
         self._first_poses: dict[tuple[str, ...], int] = {}
@@ -253,6 +255,8 @@ class Columns:
         kind = _KINDS.get(event.kind, KIND_ACT)
         place = event.detail.get("position")
         if kind == KIND_ACT:
+            if entry not in self.acts:
+                self.act_entries.append(entry)
             self.acts.setdefault(entry, []).append(len(self.events))
         self._event[0].append(kind)
         self._event[1].append(NOBODY if event.actor is None else self._numbers[event.actor])

@@ -2,6 +2,7 @@
 
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Protocol
 from weakref import WeakSet
 
@@ -50,6 +51,8 @@ class Forest:
         holdings: The nodes' contents, possessions and dropped items.
         before: What each node perceived before the timeline began.
         position: Entries folded.
+        first_vitals: Health and food of agents in node 0 as they were known at a fork.
+        facts_tick: Tick at which node 0 was last seen to be as it is; None: not since a fork.
         tick: Tick of the last of them, or of the beginning.
     """
 
@@ -63,6 +66,12 @@ class Forest:
         self.before: list[tuple[PerceivedEvent, ...]] = []
         self.position = 0
         self.tick = tick
+        self.facts_tick: int | None = None
+        self._edited: set[int] = set()
+        self._doubtful: dict[tuple[int, int], int] = {}
+        self.first_vitals: dict[int, tuple[float | None, float | None]] = {}
+        self._looked: dict[int, int] = {}
+        self._put_by_hand: set[tuple[int, int]] = set()
         self._heard = np.zeros((64, 1), dtype=np.uint8)
         self._readers: WeakSet[Reader] = WeakSet()
 
@@ -91,12 +100,16 @@ class Forest:
         """Tell a reader before the forest goes on."""
         self._readers.add(reader)
 
+    def last_look(self, node: int) -> int:
+        """Entry after which a node's owner last perceived what there is; -1: at first."""
+        return self._looked.get(node, -1)
+
     def block_is_current(self, node: int, cell: int) -> bool:
         """Whether a node's block is backed by a perception in the last entry (5.4)."""
         ground, nodes, poses = self.ground, self.plots.nodes(), self.ground.versions.poses()
         while node > 0:
             around = self.plots.parent(node)
-            if not self.plots.is_present(node):
+            if not self.plots.is_present(node) or (node, cell) in self._put_by_hand:
                 return False
             version = self.plots.version(around, self.plots.owner(node))
             if not kernel.sees_cell(
@@ -112,7 +125,7 @@ class Forest:
             node = self.plots.parent(node)
         looks = self.plots.looks_of(0, agent) if node == 0 else None
         if looks is None or self.plots.version(0, agent) < self.columns.floor:
-            return None, None
+            return self.first_vitals.get(agent, (None, None)) if node == 0 else (None, None)
         return looks.health, looks.food
 
     def adopt(self, other: "Forest", paths: Sequence[Path]) -> None:
@@ -125,6 +138,8 @@ class Forest:
             node = self.plots.copy_node(other.plots, source, is_root=False)
             self.holdings.append(other.holdings[source].copy())
             self.before.append(other.before[source])
+            self._looked[node] = other.last_look(source)
+            self.doubt_contents(node)
             self._widen(count)
             bits = other._heard[:count, source >> 3] >> np.uint8(7 - (source & 7)) & 1
             self._heard[:count, node >> 3] |= bits << np.uint8(7 - (node & 7))
@@ -166,17 +181,22 @@ class Forest:
                 holdings.containers[cell] = Content({}, complete=node == 0, basis=basis)
         for cell, items in contents.items():
             holdings.containers[cell] = Content(dict(items), complete=True, basis=basis)
+            self._doubt(node, cell)
+        if node == 0:
+            self._edited |= {*blocks, *contents}
+        self._put_by_hand |= {(node, cell) for cell in blocks}
         self.position += 1
         self.tick = tick
         self._look(self.plots.below(node))
 
     def content(self, node: int, cell: int) -> Content:
-        """A container's content in a node; in node 0 it is seen to be so now."""
+        """A container's content in a node; in node 0 it is seen to be so all the time."""
         content = self.holdings[node].containers[cell]
-        if node == 0:
-            basis = Basis(self.tick, Source.SEEN)
-            return Content(content.items, content.complete, basis, self.position - 1)
-        return content
+        if node > 0:
+            return content
+        seen = self.facts_tick is not None and cell not in self._edited
+        basis = Basis(self.facts_tick or 0, Source.SEEN) if seen else content.basis
+        return Content(content.items, content.complete, basis, self.position - 1)
 
     def inventory(self, node: int, agent: int) -> tuple[Items, bool]:
         """Believed possessions of an agent, and whether these are known to be all.
@@ -202,16 +222,17 @@ class Forest:
         start = self.position
         if self._has_things():
             return start + 1
-        item_entries = self.columns.item_entries
-        next_items = bisect_left(item_entries, start)
-        if next_items < len(item_entries):
-            stop = min(stop, max(item_entries[next_items], start + 1))
+        # Effects of deeds and items look at the arrays as they are after the very entry.
+        for entries, after in ((self.columns.item_entries, 0), (self.columns.act_entries, 1)):
+            number = bisect_left(entries, start)
+            if number < len(entries):
+                stop = min(stop, max(entries[number] + after, start + 1))
         return min(stop, start + _BATCH)
 
     def _has_things(self) -> bool:
-        """Whether there is something that is seen without being a block or an agent."""
+        """Whether there is something to be looked at that is no block and no agent."""
         transparent = self.ground.options.containers == "transparent"
-        return transparent or any(h.items for h in self.holdings)
+        return transparent or bool(self._doubtful) or any(h.items for h in self.holdings)
 
     def _changes(self, events: int) -> Changes:
         # In one entry every node can change every tracked cell once; see `kernel.fold`.
@@ -236,15 +257,23 @@ class Forest:
         self._hear(first, changes.perceived[:count])
         rows = _by_entry(changes)
         entries = self.columns.with_effects(start, reached) | rows.keys()
+        if self._has_things():
+            entries.add(start)
         for entry in sorted(entries):
             perceived = {
                 number: changes.perceived[number - first]
                 for number in self.columns.acts.get(entry, ())
             }
+            self.facts_tick = self.columns.tick(entry)
+            self._edited.clear()
             self._happens(entry)
-            self._follow(entry, self.columns.tick(entry), rows.get(entry, {}), perceived)
-        if reached == start + 1 and self._has_things():
-            self._see_things(start, self.columns.tick(start), everywhere)
+            self._follow(
+                entry, self.columns.tick(entry), rows.get(entry, {}), perceived, everywhere
+            )
+        self.facts_tick = self.columns.tick(reached - 1)
+        self._edited.clear()
+        self._looked = dict.fromkeys(range(self.plots.count), reached - 1)
+        self._put_by_hand.clear()
         return reached
 
     def _look(self, below: npt.NDArray[np.bool_]) -> None:
@@ -261,9 +290,9 @@ class Forest:
         poses = ground.versions.poses()
         kernel.fold(ground.space, ground.senses, poses, facts, nodes, changes, 0, 1, below)
         entry = self.position - 1
-        self._follow(entry, self.tick, _by_entry(changes).get(0, {}), {})
-        if self._has_things():
-            self._see_things(entry, self.tick, below)
+        self._looked.update(dict.fromkeys(np.flatnonzero(below).tolist(), entry))
+        self._put_by_hand = {(node, cell) for node, cell in self._put_by_hand if not below[node]}
+        self._follow(entry, self.tick, _by_entry(changes).get(0, {}), {}, below)
 
     def _hear(self, first: int, perceived: npt.NDArray[np.bool_]) -> None:
         self._widen(first + len(perceived))
@@ -303,6 +332,7 @@ class Forest:
         tick: int,
         rows: dict[int, list[Sequence[int]]],
         perceived: dict[int, npt.NDArray[np.bool_]],
+        which: npt.NDArray[np.bool_],
     ) -> None:
         """What an entry does to contents and possessions, after `_happens`."""
         for _, _, cell, _, new, _, _ in rows.get(0, ()):
@@ -311,39 +341,41 @@ class Forest:
             elif cell not in self.holdings[0].containers:
                 basis = Basis(tick, Source.SEEN)
                 self.holdings[0].containers[cell] = Content({}, True, basis, entry)
+        things = self._has_things()
         for node in range(1, self.plots.count):
             for _, _, cell, old, new, observed_at, source in rows.get(node, ()):
                 names = self.ground.block_name(old), self.ground.container_name(new)
                 basis = Basis(observed_at, SOURCES[source])
                 replaced_block(self.holdings[node], cell, *names, basis)
             acts = [self.columns.events[n] for n, heard in perceived.items() if heard[node]]
+            if not which[node] or not (acts or things) or not self.plots.is_present(node):
+                continue
+            self._forget(node)
+            into = self._see_into(node, tick, entry)
             if acts:
-                gone = {row[2] for row in rows.get(node, ()) if not self.ground.holds[row[4]]}
-                self._follow_acts(node, acts, gone, tick, entry)
+                self._follow_acts(node, acts, into, tick, entry)
+            self._see_items(node, self.plots.parent(node), tick, entry)
 
     def _follow_acts(
-        self, node: int, acts: list[Event], gone: set[int], tick: int, entry: int
+        self, node: int, acts: list[Event], into: set[int], tick: int, entry: int
     ) -> None:
-        """What perceived acts do to a node; `gone` are containers it sees are no more."""
+        """What perceived acts do to a node that sees into the containers of `into` anyway."""
         holdings, owner = self.holdings[node], self.ground.agents[self.plots.owner(node)]
         around = self.plots.parent(node)
-        touched = [
-            (cell_of(self.ground.box, a.detail["position"]), a) for a in acts if a.kind in TOUCHES
-        ]
-        own = {
-            cell
-            for cell, act in touched
-            if act.actor == owner and cell in self.holdings[around].containers
-        }
+        box, there = self.ground.box, self.holdings[around].containers
+        touched = [(cell_of(box, a.detail["position"]), a) for a in acts if a.kind in TOUCHES]
+        own = {cell for cell, act in touched if act.actor == owner and cell in there}
         for cell, act in touched:
-            if cell not in own:
-                if cell not in gone:
-                    witness(holdings, cell, act, tick, entry)
-            elif act.actor == owner:
-                there = self._there(around, cell, tick, entry)
+            if cell not in own | into and not self._is_gone(node, cell):
+                witness(holdings, cell, act, tick, entry)
+                self._doubt(node, cell)
+        for cell, act in touched:
+            if cell in own and act.actor == owner:
+                content = self._there(around, cell, entry)
                 # What the simulator around holds by hearsay of its own is no perception now.
-                kind = act.kind if there.entry == entry else None
-                learn(holdings, cell, there, kind, tick)
+                kind = act.kind if content.entry == entry else None
+                learn(holdings, cell, content, kind, tick)
+                self._doubt(node, cell)
         for name in {act.actor for act in acts if act.actor not in (None, owner)}:
             number = self.ground.numbers[str(name)]
             before = holdings.inventories.get(number, {})
@@ -351,31 +383,76 @@ class Forest:
             if after is not before:
                 holdings.inventories[number] = after
 
-    def _there(self, node: int, cell: int, tick: int, entry: int) -> Content:
-        """Content of a container around somebody who learns it; facts are seen now."""
-        content = self.holdings[node].containers[cell]
-        if node > 0:
-            return content
-        return Content(content.items, content.complete, Basis(tick, Source.SEEN), entry)
+    def doubt_contents(self, node: int) -> None:
+        """Note contents of a new node that lie where it knows no container."""
+        for cell in self.holdings[node].containers:
+            self._doubt(node, cell)
 
-    def _see_things(self, entry: int, tick: int, which: npt.NDArray[np.bool_]) -> None:
-        """Let nodes see into transparent containers, and see dropped items."""
-        transparent = self.ground.options.containers == "transparent"
-        for node in range(1, self.plots.count):
-            if not which[node] or not self.plots.is_present(node):
+    def _doubt(self, node: int, cell: int) -> None:
+        """Note a content at a place where a node knows no container."""
+        state = self.plots.block(node, cell)
+        if node > 0 and cell in self.holdings[node].containers and not self.ground.holds[state]:
+            self._doubtful[node, cell] = state
+
+    def _forget(self, node: int) -> None:
+        """Forget contents at places that are seen to hold no container."""
+        for (doubter, cell), before in list(self._doubtful.items()):
+            if doubter != node:
                 continue
-            around = self.plots.parent(node)
-            if transparent:
-                for cell in self.holdings[around].containers:
-                    if self.plots.watches(node, cell):
-                        there = self._there(around, cell, tick, entry)
-                        learn(self.holdings[node], cell, there, None, tick)
-            if self.holdings[node].items or self.holdings[around].items:
-                self._see_items(node, around, tick, entry)
+            state = self.plots.block(node, cell)
+            around = self.plots.block(self.plots.parent(node), cell)
+            if self.ground.holds[state] or cell not in self.holdings[node].containers:
+                del self._doubtful[node, cell]
+            elif self._is_gone(node, cell) or (
+                before < 0
+                and around >= 0
+                and not self.ground.holds[around]
+                and self._sees_cell(node, cell)
+            ):
+                del self.holdings[node].containers[cell]
+                del self._doubtful[node, cell]
+            else:
+                self._doubtful[node, cell] = state
+
+    def _is_gone(self, node: int, cell: int) -> bool:
+        """Whether the owner of a node perceives now that a cell holds no container."""
+        around = self.plots.parent(node)
+        state = self.plots.block(around, cell)
+        return (
+            state >= 0
+            and not self.ground.holds[state]
+            and self._sees_cell(node, cell)
+            and self.block_is_current(around, cell)
+        )
+
+    def _sees_cell(self, node: int, cell: int) -> bool:
+        """Whether the present owner of a node sees a cell of the simulator around."""
+        ground, around = self.ground, self.plots.parent(node)
+        version = self.plots.version(around, self.plots.owner(node))
+        nodes, poses = self.plots.nodes(), ground.versions.poses()
+        return kernel.sees_cell(ground.space, ground.senses, poses, nodes, around, version, cell)
+
+    def _see_into(self, node: int, tick: int, entry: int) -> set[int]:
+        """Look into transparent containers; returns the cells looked into."""
+        if self.ground.options.containers != "transparent":
+            return set()
+        around = self.plots.parent(node)
+        into = {cell for cell in self.holdings[around].containers if self._sees_cell(node, cell)}
+        for cell in into:
+            learn(self.holdings[node], cell, self._there(around, cell, entry), None, tick)
+            self._doubt(node, cell)
+        return into
+
+    def _there(self, node: int, cell: int, entry: int) -> Content:
+        """Content of a container around somebody who learns it in an entry."""
+        content = self.content(node, cell)
+        return replace(content, entry=entry) if node == 0 else content
 
     def _see_items(self, node: int, around: int, tick: int, entry: int) -> None:
         """Seen items are taken over; one whose believed place is seen empty is dropped."""
         known = self.holdings[node].items
+        if not known and not self.holdings[around].items:
+            return
         there = {
             number: Lying(lying.item, Basis(tick, Source.SEEN), entry) if around == 0 else lying
             for number, lying in self.holdings[around].items.items()

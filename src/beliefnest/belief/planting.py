@@ -39,6 +39,7 @@ def planted(
         extra: Further cells whose basis is to be tracked.
     """
     forest = Forest(ground, columns, snapshot.tick, extra)
+    forest.facts_tick = snapshot.tick
     known = _states_of(ground, static_blocks)
     prior = np.where(known[snapshot.blocks], snapshot.blocks, UNKNOWN).astype(np.int32)
     ground.track(np.flatnonzero(ground.holds[snapshot.blocks.ravel()]).tolist())
@@ -110,6 +111,7 @@ def _plant_prior(
             holdings.containers.setdefault(cell, Content({}, False, basis))
     forest.holdings.append(holdings)
     forest.before.append(())
+    forest.doubt_contents(node)
 
 
 def forked(
@@ -141,6 +143,10 @@ def forked(
         forest.holdings.append(_forked_holdings(source, old, is_root=node == 0))
         count = source.columns.events_until(source.position)
         forest.before.append(tuple(source.heard(old, count)))
+        forest.doubt_contents(node)
+    node = source.plots.index[root]
+    for agent in range(len(source.ground.agents)):
+        forest.first_vitals[agent] = source.vitals(node, agent)
     forest.plots.link()
     return forest
 
@@ -148,7 +154,7 @@ def forked(
 def _forked_holdings(source: Forest, node: int, *, is_root: bool) -> Holdings:
     """Holdings at a fork; what was current there is so until the new timeline's first entry."""
     copied = source.holdings[node].copy()
-    last = source.position - 1
+    last = source.last_look(node)
     for cell in copied.containers:
         there = source.content(node, cell)
         entry = -1 if is_root or there.entry == last else NEVER

@@ -36,6 +36,7 @@ class Reading:
         self._forest = forest
         self._node = forest.plots.index[path]
         self._position = forest.position
+        self._last_look = forest.last_look(self._node)
         forest.read_by(self)
 
     def keep(self) -> None:
@@ -65,7 +66,7 @@ class Reading:
                 content.items,
                 content.complete,
                 content.basis,
-                current=self._node == 0 or content.entry == self._position - 1,
+                current=self._node == 0 or content.entry == self._last_look,
             )
         return found
 
