@@ -175,10 +175,9 @@ class Sight:
         """Code (see `codes`) of each state, and at the end that of unknown."""
         shape_codes = np.arange(len(self.registry.shape_start) - 1) + FIRST_SHAPE
         sizes = np.diff(self.registry.shape_start)
-        for shape in np.flatnonzero(sizes == 1):
-            box = self.registry.shape_boxes[self.registry.shape_start[shape]]
-            if (box == (0, 0, 0, 1, 1, 1)).all():
-                shape_codes[shape] = FULL
+        single = np.flatnonzero(sizes == 1)
+        boxes = self.registry.shape_boxes[self.registry.shape_start[single]]
+        shape_codes[single[(boxes == (0, 0, 0, 1, 1, 1)).all(axis=1)]] = FULL
         codes = shape_codes[self.registry.state_shape]
         codes[self._transparent] = EMPTY
         return np.append(codes, EMPTY).astype(np.uint16)
@@ -188,12 +187,10 @@ class Sight:
         """By code, the sides at which its shape reaches out of the cell, one bit for each."""
         starts, boxes = self.registry.shape_start, self.registry.shape_boxes
         reaches = np.zeros(len(starts) - 1 + FIRST_SHAPE, dtype=np.uint8)
-        for shape in range(len(starts) - 1):
-            rows = boxes[starts[shape] : starts[shape + 1]]
-            for axis in range(3):
-                low, high = (rows[:, axis] < 0).any(), (rows[:, axis + 3] > 1).any()
-                reaches[shape + FIRST_SHAPE] |= int(low) << 2 * axis
-                reaches[shape + FIRST_SHAPE] |= int(high) << 2 * axis + 1
+        owners = np.repeat(np.arange(len(starts) - 1), np.diff(starts)) + FIRST_SHAPE
+        for axis in range(3):
+            for side, out in enumerate((boxes[:, axis] < 0, boxes[:, axis + 3] > 1)):
+                reaches[owners[out]] |= 1 << 2 * axis + side
         return reaches
 
 
