@@ -26,6 +26,8 @@ if TYPE_CHECKING:
         UnknownNameError,
         WorldError,
     )
+    from beliefnest.nest.compare import Difference, Pose
+    from beliefnest.nest.explanation import Contents, Explanation
     from beliefnest.nest.nest import Nest
     from beliefnest.nest.simulator import Simulator
     from beliefnest.perception.options import Perception, Radius
@@ -38,12 +40,16 @@ __all__ = [
     "BeliefNestError",
     "BodyError",
     "BranchError",
+    "Contents",
+    "Difference",
+    "Explanation",
     "InitialBelief",
     "InputError",
     "ModelError",
     "Nest",
     "PathError",
     "Perception",
+    "Pose",
     "PositionError",
     "ProgramError",
     "ProgramResult",
@@ -61,9 +67,13 @@ __all__ = [
 ]
 
 _HOMES = {
+    "Contents": "beliefnest.nest.explanation",
+    "Difference": "beliefnest.nest.compare",
+    "Explanation": "beliefnest.nest.explanation",
     "InitialBelief": "beliefnest.belief.entries",
     "Nest": "beliefnest.nest.nest",
     "Perception": "beliefnest.perception.options",
+    "Pose": "beliefnest.nest.compare",
     "ProgramResult": "beliefnest.bodies.protocol",
     "Radius": "beliefnest.perception.options",
     "Scenario": "beliefnest.scenarios",

@@ -10,6 +10,7 @@ from beliefnest.bodies.protocol import World
 from beliefnest.bodies.scripted import ScriptedBodies
 from beliefnest.bodies.worlds import open_world
 from beliefnest.errors import ProgramError
+from beliefnest.nest.compare import Difference, compare, false_beliefs
 from beliefnest.nest.engine import Engine
 from beliefnest.nest.paths import parse_path
 from beliefnest.nest.setting import Setting, Step
@@ -140,6 +141,31 @@ class Nest:
         self._engine.reading((), tick)
         return Past(self._engine, tick)
 
+    def compare(self, a: str, b: str, *, unknown: bool = True) -> list[Difference]:
+        """Where two simulators differ: blocks, containers, agents' poses, inventories.
+
+        Args:
+            a: Belief path of one.
+            b: Belief path of the other.
+            unknown: Whether to tell of what is unknown, or not there, in one of them.
+
+        Raises:
+            PathError: A path is malformed or names an unknown agent.
+        """
+        one, other = parse_path(a, self.agents), parse_path(b, self.agents)
+        return compare(self._engine, one, other, None, unknown=unknown)
+
+    def false_beliefs(self, path: str) -> list[Difference]:
+        """What a simulator holds otherwise than reality (`a`) does; unknown is not false.
+
+        Contents are false if they claim items that are not there, or claim to be complete
+        and miss some.
+
+        Raises:
+            PathError: The path is malformed or names an unknown agent.
+        """
+        return false_beliefs(self._engine, parse_path(path, self.agents), None)
+
     def play(self, on_progress: Progress | None = None) -> None:
         """Play the scenario's script in the real world.
 
@@ -177,6 +203,31 @@ class Past:
     def __getitem__(self, path: str) -> PastSimulator:
         """The simulator of a belief path as it was."""
         return PastSimulator(self._engine, parse_path(path, self._engine.agents), self._tick)
+
+    def compare(self, a: str, b: str, *, unknown: bool = True) -> list[Difference]:
+        """Where two simulators differ: blocks, containers, agents' poses, inventories.
+
+        Args:
+            a: Belief path of one.
+            b: Belief path of the other.
+            unknown: Whether to tell of what is unknown, or not there, in one of them.
+
+        Raises:
+            PathError: A path is malformed or names an unknown agent.
+        """
+        one, other = parse_path(a, self._engine.agents), parse_path(b, self._engine.agents)
+        return compare(self._engine, one, other, self._tick, unknown=unknown)
+
+    def false_beliefs(self, path: str) -> list[Difference]:
+        """What a simulator holds otherwise than reality (`a`) does; unknown is not false.
+
+        Contents are false if they claim items that are not there, or claim to be complete
+        and miss some.
+
+        Raises:
+            PathError: The path is malformed or names an unknown agent.
+        """
+        return false_beliefs(self._engine, parse_path(path, self._engine.agents), self._tick)
 
 
 def _engine(setting: Setting, world: World, store: str | Path | None, seed: int) -> Engine:

@@ -13,6 +13,8 @@ from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.bodies.scripted import ScriptedBody
 from beliefnest.errors import BranchError, InputError, PathError, PositionError, WorldError
 from beliefnest.nest.engine import Engine
+from beliefnest.nest.explain import element_of, explain
+from beliefnest.nest.explanation import Explanation
 from beliefnest.nest.paths import normalised, path_text
 from beliefnest.prompts import Template, render
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
@@ -66,6 +68,31 @@ class _Seen:
         """
         return render(template, self, variables)
 
+    def explain(
+        self,
+        *,
+        container: Position | None = None,
+        agent: str | None = None,
+        block: Position | None = None,
+    ) -> Explanation:
+        """The chain of perceptions behind what it holds of one thing; `str()` puts it in words.
+
+        Args:
+            container: Position of a container, whose contents are explained.
+            agent: Name of an agent, whose place is explained.
+            block: Position of a block.
+
+        Raises:
+            InputError: None of the three was given, or several were.
+            PathError: There is no such agent.
+            PositionError: The position is outside the box.
+        """
+        element = element_of(self._engine, container, agent, block)
+        return explain(self._engine, self._path, self._explained_tick(), element)
+
+    def _explained_tick(self) -> int | None:
+        raise NotImplementedError
+
     def child(self, agent: str) -> "_Seen":
         """The simulator of what `agent` believes in this one."""
         raise NotImplementedError
@@ -112,6 +139,9 @@ class PastSimulator(_Seen):
 
     def _reading(self) -> Reading:
         return self._engine.reading(self._path, self._tick)
+
+    def _explained_tick(self) -> int:
+        return self._tick
 
 
 class Simulator(_Seen):
@@ -245,6 +275,9 @@ class Simulator(_Seen):
 
     def _reading(self) -> Reading:
         return self._engine.reading(self._path)
+
+    def _explained_tick(self) -> None:
+        return None
 
 
 def _check_branch_name(name: object) -> None:

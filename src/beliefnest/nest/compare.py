@@ -1,0 +1,150 @@
+"""Where two simulators differ, and what in a belief is false."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from beliefnest.belief.entries import AgentBelief, Source
+from beliefnest.belief.reading import Reading
+from beliefnest.nest.engine import Engine
+from beliefnest.nest.explanation import Contents
+from beliefnest.world.frames import BlockGrid
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Box, Point, Position
+
+__all__ = ["Difference", "Pose", "compare", "differences", "false_beliefs", "falsehoods"]
+
+Path = tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """Where an agent stands, and how it looks.
+
+    Attributes:
+        position: Middle of the feet, blocks.
+        yaw: Radians, Mineflayer's convention; None: unknown.
+        pitch: Radians, positive upwards; None: unknown.
+    """
+
+    position: Point
+    yaw: float | None
+    pitch: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """One thing that two simulators, `a` and `b`, hold differently.
+
+    Attributes:
+        kind: What it is.
+        where: Position of a block or container, or name of the agent whose pose or
+            inventory it is.
+        a: Block state text, `Pose` or `Contents` in `a`; None: unknown or not there.
+        b: The same in `b`.
+    """
+
+    kind: Literal["block", "container", "agent", "inventory"]
+    where: Position | str
+    a: str | Pose | Contents | None
+    b: str | Pose | Contents | None
+
+
+def compare(
+    engine: Engine, a: Path, b: Path, tick: int | None, *, unknown: bool
+) -> list[Difference]:
+    """`differences` of two nodes at a tick; None: now."""
+    one, other = engine.reading(a, tick), engine.reading(b, tick)
+    ground = engine.history.ground
+    return list(differences(one, other, ground.box, ground.registry, unknown=unknown))
+
+
+def false_beliefs(engine: Engine, path: Path, tick: int | None) -> list[Difference]:
+    """`falsehoods` of a node at a tick; None: now."""
+    real, belief = engine.reading((), tick), engine.reading(path, tick)
+    ground = engine.history.ground
+    return list(falsehoods(real, belief, ground.box, ground.registry))
+
+
+def differences(
+    a: Reading, b: Reading, box: Box, registry: Registry, *, unknown: bool = True
+) -> Iterator[Difference]:
+    """Where two states differ: blocks, containers, agents, inventories, each in order.
+
+    Args:
+        a: One state.
+        b: The other.
+        box: What both cover.
+        registry: Names of blocks.
+        unknown: Whether to tell of what is unknown, or not there, in one of them.
+    """
+    for found in _all_differences(a, b, box, registry):
+        if unknown or (found.a is not None and found.b is not None):
+            yield found
+
+
+def falsehoods(
+    real: Reading, belief: Reading, box: Box, registry: Registry
+) -> Iterator[Difference]:
+    """What a belief holds and reality does not: unknown is not false.
+
+    Contents are false if they claim items that are not there, or claim to be complete and
+    miss some.
+    """
+    for found in _all_differences(real, belief, box, registry):
+        if isinstance(found.b, Contents):
+            true = found.a.items if isinstance(found.a, Contents) else {}
+            claimed = found.b.items
+            too_much = any(count > true.get(name, 0) for name, count in claimed.items())
+            if too_much or (found.b.complete and dict(claimed) != dict(true)):
+                yield found
+        elif found.b is not None:
+            yield found
+
+
+def _all_differences(a: Reading, b: Reading, box: Box, registry: Registry) -> Iterator[Difference]:
+    x, y, z = box.low
+    for i, j, k in np.argwhere(a.blocks != b.blocks).tolist():
+        texts = (_block(grid, (i, j, k), registry) for grid in (a.blocks, b.blocks))
+        yield Difference("block", (x + i, y + j, z + k), *texts)
+    for place in sorted(a.containers.keys() | b.containers.keys()):
+        there = (reading.containers.get(place) for reading in (a, b))
+        held = [None if c is None else Contents(dict(c.items), c.complete) for c in there]
+        if held[0] != held[1]:
+            yield Difference("container", place, held[0], held[1])
+    for name in a.agents:
+        poses = _pose(a.agents[name]), _pose(b.agents[name])
+        if _apart(*poses):
+            yield Difference("agent", name, *poses)
+    for name in a.agents:
+        owned = [_owned(reading.agents[name]) for reading in (a, b)]
+        if owned[0] != owned[1]:
+            yield Difference("inventory", name, owned[0], owned[1])
+
+
+def _block(grid: BlockGrid, cell: tuple[int, int, int], registry: Registry) -> str | None:
+    state = int(grid[cell])
+    return None if state < 0 else registry.text(state)
+
+
+def _pose(agent: AgentBelief) -> Pose | None:
+    if agent.position is None:
+        return None
+    # A prior tells a place only; that its angles are 0 is nobody's belief.
+    if agent.basis is not None and agent.basis.source is Source.PRIOR:
+        return Pose(agent.position, None, None)
+    return Pose(agent.position, agent.yaw, agent.pitch)
+
+
+def _apart(a: Pose | None, b: Pose | None) -> bool:
+    if a is None or b is None:
+        return a is not b
+    if a.yaw is None or b.yaw is None:
+        return a.position != b.position
+    return a != b
+
+
+def _owned(agent: AgentBelief) -> Contents:
+    return Contents(dict(agent.inventory), agent.inventory_complete)

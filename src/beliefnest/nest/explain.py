@@ -1,0 +1,329 @@
+"""The chain of perceptions behind a belief, worked out from the log by the rules of sight."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from beliefnest.belief.columns import cell_of
+from beliefnest.belief.entries import Basis, PerceivedEvent
+from beliefnest.belief.forest import Forest
+from beliefnest.belief.reading import Reading
+from beliefnest.errors import InputError, PathError, PositionError
+from beliefnest.nest.engine import Engine
+from beliefnest.nest.explanation import (
+    Absence,
+    Element,
+    Explanation,
+    Fact,
+    Level,
+    Missed,
+    Sighting,
+    Value,
+)
+from beliefnest.nest.looks import look_at_agent, look_at_block
+from beliefnest.nest.tracing import (
+    Place,
+    Step,
+    cells_of,
+    grounded_at,
+    last_change,
+    steps_since,
+    touches,
+    value_in,
+)
+from beliefnest.timeline.journal import Edit
+from beliefnest.world.values import Point, Position
+
+__all__ = ["element_of", "explain"]
+
+Path = tuple[str, ...]
+
+
+def element_of(
+    engine: Engine,
+    container: Position | None,
+    agent: str | None,
+    block: Position | None,
+) -> Element:
+    """The one element that is asked for.
+
+    Raises:
+        InputError: None was given, or several were.
+        PathError: There is no such agent.
+        PositionError: The position is outside the box.
+    """
+    given = [name for name in (container, agent, block) if name is not None]
+    if len(given) != 1:
+        raise InputError(
+            f"explain() was given {len(given)} things; give one of container=(x, y, z), "
+            "agent='name' and block=(x, y, z)"
+        )
+    if agent is not None:
+        if agent not in engine.agents:
+            raise PathError(f"no agent {agent!r}; there are {', '.join(engine.agents)}")
+        return Element("agent", agent)
+    if container is not None:
+        return Element("container", _inside(engine, container))
+    return Element("block", _inside(engine, block))
+
+
+def _inside(engine: Engine, place: Position | None) -> Position:
+    box = engine.setting.snapshot.box
+    if not (
+        isinstance(place, tuple) and len(place) == 3 and all(isinstance(p, int) for p in place)
+    ):
+        raise InputError(f"{place!r} is no block position; give a tuple of three whole numbers")
+    if place not in box:
+        raise PositionError(f"position {place} is outside the box {box.low}..{box.high}")
+    return place
+
+
+def explain(engine: Engine, path: Path, tick: int | None, element: Element) -> Explanation:
+    """The chain of perceptions behind what a node holds of an element.
+
+    Args:
+        engine: The nest's.
+        path: The node.
+        tick: A past tick of the timeline it is on; None: now.
+        element: What to explain.
+
+    Raises:
+        TickError: The tick is in the future, or before the start of everything.
+    """
+    info = engine.info(path)
+    if tick is None:
+        place = Place(info.key, info.entries)
+    else:
+        engine.reading(path, tick)
+        place = Place(*engine.place_of(info.key, tick))
+    return _explained(engine, path, place, info.head if tick is None else tick, element)
+
+
+def _explained(
+    engine: Engine, path: Path, place: Place, tick: int, element: Element
+) -> Explanation:
+    root = place.key.path
+    paths = [path[:depth] for depth in range(len(root), len(path) + 1)]
+    now = _held_now(engine, path, place, element)
+    fact = _fact(engine, place, now[root], element)
+    traces = [_Trace(node, now[node]) for node in paths[1:]]
+    _follow(engine, path, place, element, traces)
+    before = None
+    base = engine.journal.info(place.key).base
+    if base is not None and fact.since is None:
+        earlier = Place(base.timeline, base.entries)
+        before = _explained(engine, root, earlier, base.tick, element)
+    levels = tuple(_level(trace, element) for trace in traces)
+    return Explanation(element, tick, fact, levels, before)
+
+
+@dataclass(frozen=True)
+class _Held:
+    """What a node holds of an element when it is explained, read as users read it."""
+
+    value: Value
+    block: str | None
+    basis: Basis | None
+    current: bool
+    events: tuple[PerceivedEvent, ...]
+
+
+@dataclass
+class _Trace:
+    """What comes to light of one belief while the log is gone through."""
+
+    path: Path
+    held: _Held
+    since: int | None = None
+    stood: Point | None = None
+    around: Value = None
+    was_known: bool = False
+    missed: Missed | None = None
+
+    @property
+    def observed_at(self) -> int | None:
+        """Tick of the perception the belief rests on."""
+        return None if self.held.basis is None else self.held.basis.observed_at
+
+
+def _held_now(engine: Engine, path: Path, place: Place, element: Element) -> dict[Path, _Held]:
+    root, history = place.key.path, engine.history
+    cells = cells_of(element, history.ground.box)
+    held = {}
+    (forest,) = history.steps(place.key, path, place.entries, place.entries, cells)
+    for depth in range(len(root), len(path) + 1):
+        node = path[:depth]
+        basis, current = _ground_of(engine, place, forest, node, element)
+        block = None
+        for cell in cells:
+            state = forest.plots.block(forest.plots.index[node], cell)
+            block = history.ground.block_name(state)
+        events = Reading(forest, node).events()
+        held[node] = _Held(value_in(forest, node, element), block, basis, current, events)
+    return held
+
+
+def _ground_of(
+    engine: Engine, place: Place, forest: Forest, node: Path, element: Element
+) -> tuple[Basis | None, bool]:
+    """What a node's value rests on, and whether it is current."""
+    reading = Reading(forest, node)
+    if isinstance(element.where, str):
+        agent = reading.agents[element.where]
+        return agent.basis, agent.current
+    if element.kind == "container":
+        content = reading.containers.get(element.where)
+        return (None, False) if content is None else (content.basis, content.current)
+    cell = cell_of(engine.history.ground.box, element.where)
+    basis = forest.plots.bases(forest.plots.index[node], [cell])[cell]
+    current = engine.history.block_is_current(place.key, node, place.entries, element.where)
+    return basis, current
+
+
+def _fact(engine: Engine, place: Place, held: _Held, element: Element) -> Fact:
+    change = last_change(engine.history, engine.journal, place, element)
+    base = engine.journal.info(place.key).base
+    return Fact(
+        path=place.key.path,
+        branch=place.key.branch,
+        value=held.value,
+        block=held.block,
+        since=None if change is None else change.tick,
+        acts=() if change is None else _acts(held.events, change.tick, element),
+        edited=change is not None and change.edited,
+        forked_at=None if base is None else base.tick,
+    )
+
+
+def _follow(
+    engine: Engine, path: Path, place: Place, element: Element, traces: list[_Trace]
+) -> None:
+    """Go through the log from the oldest basis on, and note in each trace what happened."""
+    if not traces:
+        return
+    first = engine.setting.snapshot.tick
+    forgets = element.kind == "agent" and engine.setting.perception.negative_evidence
+    ticks = [
+        trace.observed_at if trace.observed_at is not None else first
+        for trace in traces
+        if trace.observed_at is not None or forgets
+    ]
+    # Where nothing is known there is no basis to begin at, and the last entry is enough.
+    start = min(ticks, default=engine.journal.info(place.key).head + 1)
+    last = None
+    for step in steps_since(engine.history, engine.journal, path, place, start, element):
+        last = step
+        for trace in traces:
+            _take(engine, trace, step, element)
+    for trace in traces:
+        if last is not None and trace.held.basis is None:
+            around = value_in(last.forest, trace.path[:-1], element)
+            if around is not None:
+                trace.missed = _missed(engine, trace.path, last, element, around)
+
+
+def _take(engine: Engine, trace: _Trace, step: Step, element: Element) -> None:
+    """Note what one entry means for one belief."""
+    forest = step.forest
+    there = value_in(forest, trace.path[:-1], element)
+    mine = value_in(forest, trace.path, element), grounded_at(forest, trace.path, element)
+    if mine != (trace.held.value, trace.observed_at):
+        trace.was_known = True
+        trace.since, trace.missed = None, None
+        return
+    if trace.since is None:
+        if trace.observed_at is None and not trace.was_known:
+            return
+        trace.since, trace.around = forest.tick, there
+        trace.stood = _feet(forest, trace.path)
+    elif trace.missed is None and there != trace.around and trace.observed_at is not None:
+        trace.missed = _missed(engine, trace.path, step, element, trace.around)
+
+
+def _feet(forest: Forest, path: Path) -> Point | None:
+    """Where the owner of a node stands in the simulator around it."""
+    version = forest.plots.version(forest.plots.index[path[:-1]], forest.ground.numbers[path[-1]])
+    return None if version < 0 else forest.ground.versions.position(version)
+
+
+def _missed(engine: Engine, path: Path, step: Step, element: Element, before: Value) -> Missed:
+    """A change in the simulator around a node that did not reach it, and why not."""
+    forest, viewer = step.forest, path[-1]
+    around = Reading(forest, path[:-1])
+    edited = _is_edit(engine, step.place, path[:-1])
+    acts = () if edited else _acts(around.events(), forest.tick, element)
+    mine = Reading(forest, path).events()
+    present = forest.plots.is_present(forest.plots.index[path])
+    return Missed(
+        tick=forest.tick,
+        before=before,
+        after=value_in(forest, path[:-1], element),
+        acts=acts,
+        edited=edited,
+        stood=_feet(forest, path),
+        absence=None if present else _absence(engine, forest, path),
+        sightings=_sightings(engine, around, viewer, element, acts) if present else (),
+        saw_acts=bool(acts) and all(act in mine for act in acts),
+    )
+
+
+def _is_edit(engine: Engine, place: Place, path: Path) -> bool:
+    if place.entries == 0:
+        return False
+    (entry,) = engine.journal.entries(place.key, place.entries - 1, place.entries)
+    return isinstance(entry, Edit) and entry.path == path
+
+
+def _absence(engine: Engine, forest: Forest, path: Path) -> Absence:
+    """Why the simulator around a node does not know where its owner is."""
+    around, plots = path[:-1], forest.plots
+    node, number = plots.index[around], forest.ground.numbers[path[-1]]
+    last_seen = plots.seen_at(node, number) if plots.version(node, number) >= 0 else None
+    if node == 0 or not plots.is_present(node):
+        return Absence(last_seen, None)
+    outer = Reading(forest, around[:-1])
+    box = engine.history.ground.box
+    return Absence(last_seen, look_at_agent(outer, box, around[-1], path[-1]))
+
+
+def _sightings(
+    engine: Engine,
+    around: Reading,
+    viewer: str,
+    element: Element,
+    acts: Iterable[PerceivedEvent],
+) -> tuple[Sighting, ...]:
+    """The looks that would have told a change: at who did it, and at the element."""
+    box = engine.history.ground.box
+    if isinstance(element.where, str):
+        return (look_at_agent(around, box, viewer, element.where),)
+    actors: list[str] = []
+    if element.kind == "container":
+        doers = (act.actor for act in acts)
+        actors = sorted({actor for actor in doers if actor not in (None, viewer)})
+    return (
+        *(look_at_agent(around, box, viewer, actor) for actor in actors),
+        look_at_block(around, box, viewer, element.where),
+    )
+
+
+def _acts(
+    events: Iterable[PerceivedEvent], tick: int, element: Element
+) -> tuple[PerceivedEvent, ...]:
+    return tuple(event for event in events if event.tick == tick and touches(element, event))
+
+
+def _level(trace: _Trace, element: Element) -> Level:
+    held = trace.held
+    at = trace.observed_at
+    return Level(
+        path=trace.path,
+        holder=trace.path[-1],
+        value=held.value,
+        block=held.block,
+        basis=held.basis,
+        current=held.current,
+        acts=() if at is None else _acts(held.events, at, element),
+        since=trace.since,
+        stood=trace.stood,
+        missed=trace.missed,
+    )

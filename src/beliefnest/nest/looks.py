@@ -1,0 +1,96 @@
+"""Looks of an agent inside one simulator, and what stopped them."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from beliefnest.belief.entries import AgentBelief
+from beliefnest.belief.reading import Reading
+from beliefnest.nest.explanation import Sighting, View
+from beliefnest.perception.sight import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT, Geometry
+from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position
+
+__all__ = ["look_at_agent", "look_at_block"]
+
+_Sees = Callable[[Geometry], bool]
+
+
+def look_at_block(reading: Reading, box: Box, viewer: str, place: Position) -> Sighting:
+    """The look of an agent of known pose at a block, inside a simulator."""
+    here = reading.agents[viewer]
+    cells = np.array([place])
+
+    def sees(geometry: Geometry) -> bool:
+        return bool(geometry.sees_blocks(_eye(here), here.yaw, here.pitch, cells)[0])
+
+    name = _block_name(reading, box, place)
+    x, y, z = place
+    centre = (x + 0.5, y + 0.5, z + 0.5)
+    view = _view(reading.geometry, sees)
+    look = Sighting(name or "block", place, view, math.dist(_eye(here), centre))
+    return _with_blocker(look, reading, box, _eye(here), [centre], place)
+
+
+def look_at_agent(reading: Reading, box: Box, viewer: str, other: str) -> Sighting:
+    """The look of an agent of known pose at another, inside a simulator."""
+    here, there = reading.agents[viewer], reading.agents[other]
+    if there.position is None:
+        return Sighting(other, None, View.PLACE_UNKNOWN)
+    feet = np.array([there.position])
+
+    def sees(geometry: Geometry) -> bool:
+        return bool(geometry.sees_agents(_eye(here), here.yaw, here.pitch, feet)[0])
+
+    x, y, z = there.position
+    centre = (x, y + BODY_CENTRE_HEIGHT, z)
+    samples = [centre, *((x, y + height, z) for height in AGENT_SAMPLE_HEIGHTS)]
+    view = _view(reading.geometry, sees)
+    look = Sighting(other, there.position, view, math.dist(_eye(here), centre))
+    return _with_blocker(look, reading, box, _eye(here), samples, None)
+
+
+def _view(geometry: Geometry, sees: _Sees) -> View:
+    """What stops a look: the first limit without which it would succeed."""
+    sight = geometry.sight
+    if sees(geometry):
+        return View.SEEN
+    endless = replace(sight, max_visible_distance=None)
+    around = replace(sight, field_of_view=360.0)
+    if sees(replace(geometry, sight=endless)):
+        return View.TOO_FAR
+    if sees(replace(geometry, sight=around)):
+        return View.OUTSIDE_VIEW
+    if sees(replace(geometry, sight=replace(endless, field_of_view=360.0))):
+        return View.TOO_FAR
+    return View.BLOCKED
+
+
+def _with_blocker(
+    look: Sighting,
+    reading: Reading,
+    box: Box,
+    eye: Point,
+    samples: list[Point],
+    target: Position | None,
+) -> Sighting:
+    if look.view is not View.BLOCKED:
+        return look
+    for sample in samples:
+        place = reading.geometry.blocker(eye, sample)
+        if place is not None and place != target:
+            return replace(look, blocker=place, blocker_name=_block_name(reading, box, place))
+    return look
+
+
+def _eye(agent: AgentBelief) -> Point:
+    if agent.position is None:
+        raise AssertionError("a look needs a viewer of known pose")
+    x, y, z = agent.position
+    return (x, y + EYE_HEIGHT, z)
+
+
+def _block_name(reading: Reading, box: Box, place: Position) -> str | None:
+    state = int(reading.blocks[box.index(place)])
+    return None if state < 0 else reading.geometry.sight.registry.name(state)

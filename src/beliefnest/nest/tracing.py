@@ -1,0 +1,148 @@
+"""One element followed through the nodes of a path, entry by entry, up to what is explained."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from beliefnest.belief.columns import cell_of
+from beliefnest.belief.entries import PerceivedEvent
+from beliefnest.belief.forest import Forest
+from beliefnest.nest.explanation import Contents, Element, Value
+from beliefnest.nest.history import History
+from beliefnest.timeline.journal import Edit, Journal, TimelineKey
+from beliefnest.world.frames import Frame
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Box
+
+__all__ = [
+    "Change",
+    "Place",
+    "Step",
+    "cells_of",
+    "grounded_at",
+    "last_change",
+    "steps_since",
+    "touches",
+    "value_in",
+]
+
+Path = tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place in the log: after the first `entries` entries of a timeline."""
+
+    key: TimelineKey
+    entries: int
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """A change of an element: when, and whether it was made by hand."""
+
+    tick: int
+    edited: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A forest after one more entry of a timeline."""
+
+    place: Place
+    forest: Forest
+
+
+def cells_of(element: Element, box: Box) -> Sequence[int]:
+    """Cells whose basis has to be followed besides those of containers."""
+    return () if isinstance(element.where, str) else (cell_of(box, element.where),)
+
+
+def steps_since(
+    history: History, journal: Journal, path: Path, place: Place, tick: int, element: Element
+) -> Iterator[Step]:
+    """The forest of a node after each entry from just before `tick` to a place."""
+    info = journal.info(place.key)
+    if info.base is not None and tick <= info.start:
+        base = Place(info.base.timeline, info.base.entries)
+        yield from steps_since(history, journal, path, base, tick, element)
+    first = min(journal.entries_until(place.key, tick - 1), place.entries)
+    cells = cells_of(element, history.ground.box)
+    for forest in history.steps(place.key, path, first, place.entries, cells):
+        yield Step(Place(place.key, forest.position), forest)
+
+
+def value_in(forest: Forest, path: Path, element: Element) -> Value:
+    """What a node of a forest holds of an element."""
+    node, ground = forest.plots.index[path], forest.ground
+    if isinstance(element.where, str):
+        version = forest.plots.version(node, ground.numbers[element.where])
+        return None if version < 0 else ground.versions.position(version)
+    cell = cell_of(ground.box, element.where)
+    if element.kind == "block":
+        state = forest.plots.block(node, cell)
+        return None if state < 0 else ground.registry.text(state)
+    if cell not in forest.holdings[node].containers:
+        return None
+    content = forest.content(node, cell)
+    return Contents(dict(content.items), content.complete)
+
+
+def grounded_at(forest: Forest, path: Path, element: Element) -> int | None:
+    """Tick of the perception that a node's value of an element rests on; None: no value."""
+    node, ground = forest.plots.index[path], forest.ground
+    if isinstance(element.where, str):
+        number = ground.numbers[element.where]
+        known = forest.plots.version(node, number) >= 0
+        return forest.plots.seen_at(node, number) if known else None
+    cell = cell_of(ground.box, element.where)
+    if element.kind == "block":
+        basis = forest.plots.bases(node, [cell])[cell]
+        return None if basis is None else basis.observed_at
+    if cell not in forest.holdings[node].containers:
+        return None
+    return forest.content(node, cell).basis.observed_at
+
+
+def touches(element: Element, event: PerceivedEvent) -> bool:
+    """Whether an event is about an element's content or block; moves of agents are none."""
+    return element.kind != "agent" and event.detail.get("position") == element.where
+
+
+def last_change(
+    history: History, journal: Journal, place: Place, element: Element
+) -> Change | None:
+    """The last change of an element in the world of a timeline, on that timeline."""
+    path = place.key.path
+    held: object = _bare(value_in(next(history.steps(place.key, path, 0, 0)), path, element))
+    last = None
+    for entry in journal.entries(place.key, 0, place.entries):
+        if isinstance(entry, Edit) and entry.path != path:
+            continue
+        told = _told(entry, element, history.ground.registry, held)
+        if told != held:
+            held = told
+            last = Change(entry.tick, edited=isinstance(entry, Edit))
+    return last
+
+
+def _told(entry: Frame | Edit, element: Element, registry: Registry, held: object) -> object:
+    """What an element is after an entry, as bare as `_bare` makes it."""
+    if isinstance(element.where, str):
+        if isinstance(entry, Edit) or element.where not in entry.agents:
+            return held
+        agent = entry.agents[element.where]
+        return None if agent is None else agent.position
+    if element.kind == "container" and element.where in entry.containers:
+        items = entry.containers[element.where]
+        return None if items is None else dict(items)
+    state = entry.blocks.get(element.where)
+    if state is None:
+        return held
+    if element.kind == "block":
+        return None if state < 0 else registry.text(state)
+    holds = state >= 0 and registry.is_container(registry.name(state))
+    return (held or {}) if holds else None
+
+
+def _bare(value: Value) -> object:
+    return dict(value.items) if isinstance(value, Contents) else value

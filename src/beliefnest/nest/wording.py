@@ -1,0 +1,269 @@
+"""Explanations in words: one line for what is so, then one or two for each belief."""
+
+from collections.abc import Iterable
+
+from beliefnest.belief.entries import Basis, PerceivedEvent, Source
+from beliefnest.nest.explanation import (
+    Contents,
+    Element,
+    Explanation,
+    Fact,
+    Level,
+    Missed,
+    Sighting,
+    Value,
+    View,
+)
+from beliefnest.nest.paths import path_text
+from beliefnest.world.values import EventKind, Items
+
+__all__ = ["explanation_text"]
+
+
+def explanation_text(explanation: Explanation) -> str:
+    """An explanation in words, several lines of text."""
+    element = explanation.element
+    lines = [_fact_text(explanation.fact, element)]
+    for level in explanation.levels:
+        lines.append(_belief_text(level, element))
+        if level.missed is not None:
+            lines.append(_missed_text(level.missed, level, explanation.fact, element))
+    if explanation.before is not None:
+        lines.append(f"Before the fork at tick {explanation.before.tick}:")
+        lines.extend(f"  {line}" for line in str(explanation.before).splitlines())
+    return "\n".join(lines)
+
+
+def _fact_text(fact: Fact, element: Element) -> str:
+    where = f"In {path_text(fact.path)}" if fact.path else "In reality"
+    if fact.forked_at is not None:
+        where += f", on branch {fact.branch!r} since tick {fact.forked_at}"
+    state = _state_text(fact.value, fact.block, element)
+    if fact.since is None:
+        begin = "the start" if fact.forked_at is None else "the fork"
+        return f"{where}, {state}; that has not changed since {begin}."
+    how = _how(fact.acts, fact.edited)
+    return f"{where}, {state} since tick {fact.since}" + (f": {how}." if how else ".")
+
+
+def _belief_text(level: Level, element: Element) -> str:
+    outer = "".join(f"{name} believes that " for name in level.path[:-1])
+    holder, name = level.holder, _named(element, level.block)
+    if level.value is None and element.kind != "container":
+        given_up = "" if level.since is None else _given_up(level, name)
+        return f"{outer}{holder} knows nothing of {name}.{given_up}"
+    known = f"{holder} believes that {_state_text(level.value, level.block, element)}"
+    if isinstance(level.value, Contents) and not (level.value.items or level.value.complete):
+        known = f"{holder} does not know what {name} holds"
+    elif level.value is None and level.block is None:
+        known = f"{holder} knows nothing of a container at {_place(element)}"
+    if level.basis is None:
+        return f"{outer}{known}."
+    now = " This is perceived in this tick." if level.current else ""
+    return f"{outer}{known}: {_ground(level, level.basis, name)}.{now}"
+
+
+def _given_up(level: Level, name: str) -> str:
+    standing = _standing(level.holder, level.stood)
+    return f" At tick {level.since} {standing} saw {name} not to be where it was believed to be."
+
+
+def _ground(level: Level, basis: Basis, name: str) -> str:
+    """What a belief rests on."""
+    tick, holder = basis.observed_at, level.holder
+    late = level.since is not None and level.since > tick
+    match basis.source:
+        case Source.PRIOR:
+            text = f"a prior belief, held since tick {tick}"
+        case Source.EDITED:
+            text = f"edited by hand at tick {tick}"
+        case Source.HEARD:
+            text = f"{_knows(level)}{holder} heard so at tick {tick}"
+        case Source.WITNESSED:
+            place = "" if level.stood is None or late else f", at {_point(level.stood)},"
+            own = any(act.actor == holder for act in level.acts)
+            verb = "last perceived it at" if own else "saw what happened at"
+            acts = _acts_text(level.acts) or _kind_text(basis.event)
+            text = f"{_knows(level)}{holder}{place} {verb} tick {tick}: {acts}"
+        case _:
+            place = "" if level.stood is None or late else f", at {_point(level.stood)},"
+            text = f"{_knows(level)}{holder}{place} last saw {name} at tick {tick}"
+    if late:
+        text += f"; {holder} took it over at tick {level.since}"
+        text += "" if level.stood is None else f", at {_point(level.stood)}"
+    return text
+
+
+def _missed_text(missed: Missed, level: Level, fact: Fact, element: Element) -> str:
+    """Why a change did not reach a belief."""
+    never = level.basis is None
+    name, holder = _named(element, level.block or fact.block), level.holder
+    begin = f"At tick {missed.tick}"
+    if missed.absence is not None:
+        text = f"{begin} {_absence_text(missed, level)}"
+    elif missed.saw_acts:
+        text = (
+            f"{begin} {_teller(level)}{_standing(holder, missed.stood)} saw the act, "
+            "which does not show what else there is to know"
+        )
+    else:
+        looks = _looks_text(missed.sightings)
+        text = f"{begin} {_teller(level)}{_standing(holder, missed.stood)} {looks}"
+    if never:
+        return f"{text}."
+    return f"{text}. So {holder} missed this: {_change_text(missed, name)}."
+
+
+def _looks_text(looks: Iterable[Sighting]) -> str:
+    clauses = []
+    for look in looks:
+        if look.view is View.SEEN:
+            clauses.append(f"saw {_target(look)}, which does not show this")
+        else:
+            clauses.append(f"could not see {_look_text(look)}")
+    return "; and ".join(clauses)
+
+
+def _absence_text(missed: Missed, level: Level) -> str:
+    around = _holder_around(level) or "nobody"
+    absence = missed.absence
+    if absence is None:
+        raise AssertionError("there is no absence to tell of")
+    text = f"{around} could not tell what {level.holder} saw"
+    if absence.last_seen is None:
+        text += f": {around} has never known where {level.holder} is"
+    else:
+        place = "" if missed.stood is None else f", at {_point(missed.stood)}"
+        text += f": {around} last saw {level.holder} at tick {absence.last_seen}{place}"
+    if absence.sighting is not None:
+        text += f", and could not see {_look_text(absence.sighting)}"
+    return text
+
+
+def _look_text(look: Sighting) -> str:
+    """What was not to be seen, and why."""
+    if look.at is None:
+        return f"{look.target}, whose place is not known"
+    match look.view:
+        case View.TOO_FAR:
+            why = f"it is {look.distance:.1f} blocks away, which is too far"
+        case View.OUTSIDE_VIEW:
+            why = "that is outside the field of view"
+        case _ if look.blocker is None:
+            why = "it is hidden"
+        case _:
+            why = f"the {look.blocker_name or 'block'} at {_point(look.blocker)} blocks it"
+    return f"{_target(look)}: {why}"
+
+
+def _change_text(missed: Missed, name: str) -> str:
+    how = _how(missed.acts, missed.edited)
+    if how:
+        return how
+    if missed.after is None:
+        return f"{name} went out of knowledge"
+    if isinstance(missed.after, str):
+        return f"{name} became {missed.after}"
+    if isinstance(missed.after, tuple):
+        was = "" if missed.before is None else f" from {_value_point(missed.before)}"
+        return f"{name} moved{was} to {_point(missed.after)}"
+    return f"{name} came to hold {_contents(missed.after)}"
+
+
+def _how(acts: Iterable[PerceivedEvent], edited: bool) -> str:
+    if edited:
+        return "it was edited by hand"
+    return _acts_text(acts)
+
+
+def _acts_text(acts: Iterable[PerceivedEvent]) -> str:
+    return ", then ".join(_act_text(act) for act in acts)
+
+
+def _act_text(act: PerceivedEvent) -> str:
+    actor = act.actor or "something"
+    items = _items_text(act.detail.get("items", {}))
+    match act.kind:
+        case EventKind.DEPOSIT_ITEM_INTO_CHEST:
+            return f"{actor} put {items} in"
+        case EventKind.GET_ITEM_FROM_CHEST:
+            return f"{actor} took {items} out"
+        case EventKind.OPEN_CONTAINER:
+            return f"{actor} looked in"
+        case EventKind.BLOCK_UPDATE | EventKind.PLACE_BLOCK if "block" in act.detail:
+            return f"{actor} made it {act.detail['block']}"
+        case _:
+            return f"{actor} did {act.kind.value}"
+
+
+def _kind_text(kind: EventKind | None) -> str:
+    return "an act" if kind is None else kind.value
+
+
+def _state_text(value: Value, block: str | None, element: Element) -> str:
+    name = _named(element, block)
+    if isinstance(value, str):
+        return f"the block at {_place(element)} is {value}"
+    if isinstance(value, tuple):
+        return f"{name} is at {_point(value)}"
+    if value is not None:
+        return f"{name} holds {_contents(value)}"
+    if element.kind == "container":
+        there = "what is there is not known" if block is None else f"{block} is there"
+        return f"there is no container at {_place(element)} ({there})"
+    return f"{name} is not there"
+
+
+def _contents(value: Contents) -> str:
+    items = _items_text(value.items)
+    if value.complete:
+        return items or "nothing"
+    return f"{items}, and perhaps more" if items else "what is not known"
+
+
+def _items_text(items: Items) -> str:
+    return " and ".join(f"{count} {name}" for name, count in sorted(items.items()))
+
+
+def _named(element: Element, block: str | None) -> str:
+    if isinstance(element.where, str):
+        return element.where
+    name = (block if element.kind == "container" else None) or element.kind
+    return f"the {name} at {_place(element)}"
+
+
+def _place(element: Element) -> str:
+    return str(element.where) if isinstance(element.where, str) else _point(element.where)
+
+
+def _target(look: Sighting) -> str:
+    if look.at is not None and all(isinstance(number, int) for number in look.at):
+        return f"the {look.target} at {_point(look.at)}"
+    return look.target if look.at is None else f"{look.target}, at {_point(look.at)}"
+
+
+def _standing(holder: str, stood: tuple[float, ...] | None) -> str:
+    return holder if stood is None else f"{holder}, at {_point(stood)},"
+
+
+def _value_point(value: Value) -> str:
+    return _point(value) if isinstance(value, tuple) else str(value)
+
+
+def _point(point: Iterable[float]) -> str:
+    return "(" + ", ".join(f"{round(number, 3):.10g}" for number in point) + ")"
+
+
+def _holder_around(level: Level) -> str | None:
+    return level.path[-2] if len(level.path) > 1 else None
+
+
+def _knows(level: Level) -> str:
+    around = _holder_around(level)
+    return "" if around is None else f"as far as {around} knows, "
+
+
+def _teller(level: Level) -> str:
+    """`a saw that`, `a believes that b saw that`: by whom a look is told of."""
+    names = level.path[:-1]
+    return "" if not names else " believes that ".join(names) + " saw that "
