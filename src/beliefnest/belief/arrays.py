@@ -60,7 +60,7 @@ class Space(NamedTuple):
         codes: uint16 by block state, and at the end that of unknown.
         holds: bool by block state, and at the end that of unknown: is it a container.
         origin: float64 (3,), added to scenario coordinates to get the grid's.
-        slopes, opens, counts, suspects: Room to work in, from `beams.new_beam` and
+        slopes, opens, counts, suspects: Room to work in, from `beams.beam_room` and
             `shadows.nothing_noted`.
     """
 

@@ -45,24 +45,31 @@ def place_of(box: Box, cell: int) -> Position:
 
 
 class _Column:
-    """A growing array of rows."""
+    """A growing array of rows; new rows wait in a list until the array is looked at."""
 
     def __init__(self, dtype: npt.DTypeLike, width: int = 0) -> None:
-        self._shape = (width,) if width else ()
-        self._rows: npt.NDArray[Any] = np.zeros((64, *self._shape), dtype=dtype)
-        self.count = 0
+        shape = (64, width) if width else (64,)
+        self._rows: npt.NDArray[Any] = np.zeros(shape, dtype=dtype)
+        self._filled = 0
+        self._waiting: list[Any] = []
+        self.append = self._waiting.append
 
-    def append(self, row: Any) -> None:
-        if self.count == len(self._rows):
-            grown = np.zeros((2 * self.count, *self._shape), dtype=self._rows.dtype)
-            grown[: self.count] = self._rows
-            self._rows = grown
-        self._rows[self.count] = row
-        self.count += 1
+    def __len__(self) -> int:
+        return self._filled + len(self._waiting)
 
     def view(self) -> npt.NDArray[Any]:
         """The rows so far."""
-        return self._rows[: self.count]
+        count = len(self)
+        if count > self._filled:
+            if count > len(self._rows):
+                size = (max(count, 2 * len(self._rows)), *self._rows.shape[1:])
+                grown = np.zeros(size, dtype=self._rows.dtype)
+                grown[: self._filled] = self._rows[: self._filled]
+                self._rows = grown
+            self._rows[self._filled : count] = self._waiting
+            self._waiting.clear()
+            self._filled = count
+        return self._rows[:count]
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +94,7 @@ class Versions:
         self._last: dict[str, int] = {}
 
     def __len__(self) -> int:
-        return self._feet.count
+        return len(self._feet)
 
     def add(self, name: str, agent: AgentState) -> int:
         """Number of a new version of an agent."""
@@ -124,7 +131,7 @@ class Versions:
         self._feet.append(position)
         self._angles.append((yaw, pitch))
         self._looks.append(looks)
-        return self._feet.count - 1
+        return len(self._feet) - 1
 
 
 class Columns:
@@ -170,7 +177,7 @@ class Columns:
         self._close_entry()
 
     def __len__(self) -> int:
-        return self._tick.count
+        return len(self._tick)
 
     def extend(self, frames: Iterable[Frame]) -> None:
         """Add frames."""
@@ -266,6 +273,6 @@ class Columns:
         self.events.append(event)
 
     def _close_entry(self) -> None:
-        self._pose_at.append(self._pose[0].count)
-        self._block_at.append(self._block[0].count)
-        self._event_at.append(self._event[0].count)
+        self._pose_at.append(len(self._pose[0]))
+        self._block_at.append(len(self._block[0]))
+        self._event_at.append(len(self._event[0]))

@@ -84,7 +84,7 @@ class Ground:
             tables.codes,
             self.holds,
             1.0 - np.array(self.box.low, dtype=np.float64),
-            *beams.new_beam(),
+            *beams.beam_room(),
             *shadows.nothing_noted()[1:],
         )
 

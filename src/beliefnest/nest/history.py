@@ -76,12 +76,10 @@ class History:
             self._advance(key, forest, position)
             yield forest
 
-    def advance(self, key: TimelineKey) -> None:
-        """Bring all nodes that were asked for up to a timeline's head."""
-        head = self._heads.get(key)
-        if head is not None:
+    def note(self, key: TimelineKey) -> None:
+        """Read what came to a timeline that is in use, so that nobody has to wait for it."""
+        if key in self._columns:
             self._load(key)
-            self._advance(key, head, self._journal.info(key).entries)
 
     def block_bases(
         self, key: TimelineKey, path: Path, position: int, cells: Sequence[int]

@@ -31,7 +31,7 @@ from beliefnest.perception.rays import (
 )
 from beliefnest.perception.shadows import ROOM, Counts, Suspects
 
-__all__ = ["Eye", "in_field", "in_reach", "new_beam", "sees_block"]
+__all__ = ["Eye", "beam_room", "in_field", "in_reach", "new_beam", "sees_block"]
 
 Eye = tuple[Vector, Vector, float, float]
 """Place, unit vector it looks along, cosine of half its field of view (-2: it sees all
@@ -52,10 +52,13 @@ _STEEP = 1e300
 _SPARE = 1e-9
 
 
-@inlined
-def new_beam() -> tuple[Slopes, Open]:
+def beam_room() -> tuple[Slopes, Open]:
     """Room for the rays of one beam after the other."""
     return np.ones((4, _SAMPLES)), np.empty(_SAMPLES, dtype=np.int64)
+
+
+new_beam = inlined(beam_room)
+"""`beam_room` for kernels."""
 
 
 @inlined

@@ -43,7 +43,7 @@ def eye_sees_block(
     counts: Counts,
     suspects: Suspects,
 ) -> bool:
-    """Whether a block is seen; the arrays are room to work in, from `beams.new_beam`."""
+    """Whether a block is seen; the arrays are room to work in, from `beams.beam_room`."""
     x, y, z = eye[0]
     if not in_reach(eye, cell[0] + 0.5 - x, cell[1] + 0.5 - y, cell[2] + 0.5 - z):
         return False

@@ -14,6 +14,7 @@ BENCHES: Mapping[str, str] = {
     "body": "beliefnest.cli.bench.body",
     "size": "beliefnest.cli.bench.size",
     "timelines": "beliefnest.cli.bench.timelines",
+    "beliefs": "beliefnest.cli.bench.beliefs",
 }
 """Name to the module whose `measure()` it is; loaded when it is run."""
 
