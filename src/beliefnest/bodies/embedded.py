@@ -102,7 +102,7 @@ class EmbeddedWorld:
     def __init__(self, channel: Channel, versions: Mapping[str, str]) -> None:
         self._channel = channel
         self._names: set[str] = set()
-        self.versions = versions
+        self._versions = versions
 
     @classmethod
     def start(cls, seed: int) -> Self:
@@ -113,11 +113,16 @@ class EmbeddedWorld:
         """
         channel = Channel.start(node_command())
         try:
-            versions = channel.request("hello", protocol=PROTOCOL, seed=seed, minecraft=MINECRAFT)
+            told = channel.request("hello", protocol=PROTOCOL, seed=seed, minecraft=MINECRAFT)
         except BaseException:
             channel.close()
             raise
-        return cls(channel, versions)
+        return cls(channel, {program: str(version) for program, version in told.items()})
+
+    @property
+    def versions(self) -> Mapping[str, str]:
+        """Program to version, of what runs; the channel's protocol among them."""
+        return self._versions
 
     @property
     def pid(self) -> int:

@@ -84,6 +84,10 @@ class Body(Protocol):
 class World(Protocol):
     """Where bodies live."""
 
+    @property
+    def versions(self) -> Mapping[str, str]:
+        """Program to version, of what runs."""
+
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> Body:
         """Make a body and fill it.
 

@@ -57,6 +57,11 @@ class ScriptedBodies:
     def __init__(self, first: ScriptedWorld | None = None) -> None:
         self._first = first
 
+    @property
+    def versions(self) -> Mapping[str, str]:
+        """Nothing runs but this package."""
+        return {}
+
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> ScriptedBody:
         """Make a body; its name and seed play no part, nothing here is random."""
         world, self._first = self._first, None

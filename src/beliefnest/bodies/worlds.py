@@ -1,10 +1,13 @@
 """The worlds a nest can be opened in, by name."""
 
-from beliefnest.bodies.protocol import World
+from collections.abc import Mapping
+
+from beliefnest.bodies.protocol import Body, Sink, World
 from beliefnest.bodies.scripted import ScriptedBodies
 from beliefnest.errors import UnknownNameError
+from beliefnest.world.frames import Snapshot
 
-__all__ = ["WORLDS", "check_world", "open_world"]
+__all__ = ["WORLDS", "LateWorld", "check_world", "open_world"]
 
 WORLDS = ("embedded", "scripted")
 """Names of the worlds."""
@@ -37,3 +40,41 @@ def check_world(name: str) -> None:
     """
     if name not in WORLDS:
         raise UnknownNameError(f"there is no world {name!r}; there are {', '.join(WORLDS)}")
+
+
+class LateWorld:
+    """A world that is started when its first body is opened.
+
+    Args:
+        name: Name of the world.
+        seed: Drives every random number.
+
+    Raises:
+        UnknownNameError: There is no world of that name.
+    """
+
+    def __init__(self, name: str, seed: int) -> None:
+        check_world(name)
+        self._name = name
+        self._seed = seed
+        self._world: World | None = None
+
+    @property
+    def versions(self) -> Mapping[str, str]:
+        """Program to version, of what runs; nothing runs before the first body."""
+        return {} if self._world is None else self._world.versions
+
+    def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> Body:
+        """Make a body, in a world that is started if it is the first.
+
+        Raises:
+            BodyError: The world could not be started.
+        """
+        if self._world is None:
+            self._world = open_world(self._name, self._seed)
+        return self._world.open_body(name, seed, snapshot, sink)
+
+    def close(self) -> None:
+        """End the world if it was started."""
+        if self._world is not None:
+            self._world.close()

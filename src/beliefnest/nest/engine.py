@@ -4,16 +4,17 @@ A simulator is in control mode iff a timeline is selected for it; it then has a 
 the world and its frames are recorded there (semantics, sections 6 and 7).
 """
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from typing import Self
 
 from beliefnest.belief.reading import Reading
 from beliefnest.bodies.protocol import Body, ProgramResult, World
-from beliefnest.errors import BranchError, TickError
+from beliefnest.errors import BodyError, BranchError, StoreError, TickError
 from beliefnest.nest.history import History
 from beliefnest.nest.paths import path_text
+from beliefnest.nest.runlog import MemoryLog, RunLog
 from beliefnest.nest.setting import Setting
 from beliefnest.nest.views import Blocks, LiveState
 from beliefnest.timeline.journal import (
@@ -24,6 +25,7 @@ from beliefnest.timeline.journal import (
     TimelineInfo,
     TimelineKey,
 )
+from beliefnest.timeline.records import ProgramRecord
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.values import Items, Position
 
@@ -64,15 +66,35 @@ class _Recorder:
             frames, self._frames, self._tick = self._frames, [], None
             self._journal.append(self.key, frames, head)
 
+    def drop(self) -> None:
+        """Forget what was taken and could not be written."""
+        self._frames, self._tick = [], None
+
 
 class Engine:
-    """Timelines, bodies and states of one nest. `Nest` and `Simulator` are its face."""
+    """Timelines, bodies and states of one nest. `Nest` and `Simulator` are its face.
 
-    def __init__(self, setting: Setting, journal: Journal, world: World, seed: int) -> None:
+    Args:
+        setting: What the nest started from.
+        journal: The timelines.
+        world: Where bodies live; a body is made when it is first needed.
+        seed: Drives every random number.
+        log: Notes beside the timelines, kept together with them; None: in memory.
+    """
+
+    def __init__(
+        self,
+        setting: Setting,
+        journal: Journal,
+        world: World,
+        seed: int,
+        log: RunLog | None = None,
+    ) -> None:
         self.setting = setting
         self.journal = journal
         self.world = world
         self.seed = seed
+        self.log: RunLog = MemoryLog() if log is None else log
         self.history = History(journal, setting)
         self.selected: dict[Path, TimelineKey] = {}
         self._bodies: dict[Path, Body] = {}
@@ -81,9 +103,24 @@ class Engine:
     def begin(self) -> Self:
         """Start the real world's timeline and give it its body."""
         key = TimelineKey((), MAIN)
-        self.journal.create(key, None, self.setting.snapshot.tick)
-        self._open_body(key, self.setting.snapshot)
+        with self.log.together():
+            self.journal.create(key, None, self.setting.snapshot.tick)
+            self.log.select(key.path, key.branch)
         self.selected[()] = key
+        self._open_body(key, self.setting.snapshot)
+        return self
+
+    def resume(self) -> Self:
+        """Take up the selections that were noted; bodies are made when they are needed.
+
+        Raises:
+            StoreError: The run was stopped before it had begun.
+        """
+        for path, branch in self.log.selected().items():
+            if branch != FOLLOW:
+                self.selected[path] = self.journal.info(TimelineKey(path, branch)).key
+        if () not in self.selected:
+            raise StoreError("the run was stopped while it began; start it again")
         return self
 
     def controller(self, path: Path) -> TimelineKey:
@@ -153,47 +190,110 @@ class Engine:
             base = ForkPoint(place, entries, tick)
         key = TimelineKey(path, name)
         reading = self.history.reading(base.timeline, path, base.entries)
-        self._embody(key, replace(reading.snapshot(), tick=base.tick))
-        self.journal.create(key, base, base.tick)
-        self.selected[path] = key
+        snapshot = replace(reading.snapshot(), tick=base.tick)
+        with self._embodied(key, snapshot), self.log.together():
+            self.journal.create(key, base, base.tick)
+            self.log.select(path, name)
 
     def select(self, key: TimelineKey) -> None:
         """Put a simulator on a timeline it has, in the world too."""
         if self.selected.get(key.path) == key:
             return
-        reading = self.history.reading(key, key.path)
-        self._embody(key, replace(reading.snapshot(), tick=self.journal.info(key).head))
-        self.selected[key.path] = key
+        with self._embodied(key, self._recorded(key)):
+            self.log.select(key.path, key.branch)
 
     def follow(self, path: Path) -> None:
         """Put a simulator into follow mode; its body is given up."""
         if path == ():
             raise BranchError(f"the real world follows nothing; {FOLLOW!r} is for beliefs")
-        self.selected.pop(path, None)
-        self._recorders.pop(path, None)
-        body = self._bodies.pop(path, None)
-        if body is not None:
-            body.close()
+        if path in self.selected:
+            self.log.select(path, FOLLOW)
+            del self.selected[path]
+        self._give_up(path)
+
+    def rename(self, key: TimelineKey, name: str) -> None:
+        """Give a branch another name; who is on it stays on it."""
+        with self.log.together():
+            self.journal.rename(key, name)
+            self.log.renamed(key.path, key.branch, name)
+        # What is remembered of timelines based on it names it as well.
+        for info in self.journal.timelines():
+            self.history.forget(info.key)
+        self.history.forget(key)
+        if self.selected.get(key.path) == key:
+            new = self.selected[key.path] = TimelineKey(key.path, name)
+            if key.path in self._recorders:
+                self._recorders[key.path].key = new
+
+    def delete(self, keys: Sequence[TimelineKey]) -> None:
+        """Remove timelines, those based on others first, all of them or none.
+
+        Raises:
+            BranchError: A simulator is on one of them, or another one is based on it.
+        """
+        for key in keys:
+            if self.selected.get(key.path) == key:
+                raise BranchError(
+                    f"{path_text(key.path)} is on branch {key.branch!r}; "
+                    "switch it to another one before deleting that"
+                )
+        with self.log.together():
+            for key in keys:
+                self.journal.delete(key)
+                self.log.forgotten(key.path, key.branch)
+        for key in keys:
+            self.history.forget(key)
 
     def body(self, path: Path) -> Body:
-        """The body of a simulator in control mode.
+        """The body of a simulator in control mode, made if there is none yet.
 
         Raises:
             BranchError: The simulator is in follow mode.
+            BodyError: The world could not be started.
         """
-        if path not in self._bodies:
+        if path not in self.selected:
             raise BranchError(
                 f"{path_text(path)} is in follow mode and has no body to act in; "
                 "switch it to a branch first: simulator.switch('my-branch')"
             )
+        if path not in self._bodies:
+            key = self.selected[path]
+            self._open_body(key, self._recorded(key))
         return self._bodies[path]
 
     def run(
-        self, path: Path, programs: Mapping[str, str], timeout_ticks: int
+        self,
+        path: Path,
+        programs: Mapping[str, str],
+        timeout_ticks: int,
+        detail: Mapping[str, str] | None = None,
     ) -> Mapping[str, ProgramResult]:
-        """Run programs in a body and record what happens."""
+        """Run programs in a body, record what happens, and note them with their results."""
         with self._recording(path) as body:
-            return body.run(programs, timeout_ticks)
+            before = self.info(path)
+            results = body.run(programs, timeout_ticks)
+            noted = {
+                **(detail or {}),
+                "timeout_ticks": str(timeout_ticks),
+                "entries": str(before.entries),
+            }
+            group = 1 + max((program.group for program in self.log.programs()), default=0)
+            for agent, result in results.items():
+                self.log.add_program(
+                    ProgramRecord(
+                        path=path,
+                        branch=before.key.branch,
+                        agent=agent,
+                        code=programs[agent],
+                        tick=before.head,
+                        ok=result.ok,
+                        error=None if result.error is None else str(result.error),
+                        ticks=result.ticks,
+                        group=group,
+                        detail=noted,
+                    )
+                )
+        return results
 
     def step(self, path: Path, ticks: int) -> None:
         """Let ticks pass in a body."""
@@ -209,9 +309,11 @@ class Engine:
         """Record a change by hand, in the body too where there is one."""
         info = self.info(path)
         edit = Edit(info.head, path, blocks, containers)
-        if path in self._bodies:
-            self._bodies[path].become(_edited(self.reading(path).snapshot(), edit))
-        self.journal.append(info.key, [edit], info.head)
+        if path not in self._bodies:
+            self.journal.append(info.key, [edit], info.head)
+            return
+        with self._embodied(info.key, _edited(self.reading(path).snapshot(), edit)):
+            self.journal.append(info.key, [edit], info.head)
 
     def close(self) -> None:
         """Give up all bodies, the world and the journal."""
@@ -221,14 +323,49 @@ class Engine:
         finally:
             self.journal.close()
 
-    def _embody(self, key: TimelineKey, snapshot: Snapshot) -> None:
-        """Give the simulator's body a state, making the body if there is none."""
+    def _recorded(self, key: TimelineKey) -> Snapshot:
+        """What a body on that timeline has to be like now."""
+        reading = self.history.reading(key, key.path)
+        return replace(reading.snapshot(), tick=self.journal.info(key).head)
+
+    @contextmanager
+    def _embodied(self, key: TimelineKey, snapshot: Snapshot) -> Iterator[None]:
+        """Give a simulator's body a state and, if the body of the block records that, select it.
+
+        If the world or the journal refuses, the simulator is where it was before.
+        """
         body = self._bodies.get(key.path)
-        if body is None:
-            self._open_body(key, snapshot)
-            return
-        body.become(snapshot)
+        try:
+            if body is None:
+                self._open_body(key, snapshot)
+            else:
+                body.become(snapshot)
+            yield
+        except BaseException:
+            self._restore(key.path)
+            raise
+        self.selected[key.path] = key
         self._recorders[key.path].key = key
+
+    def _restore(self, path: Path) -> None:
+        """Make a simulator's body, after a fault, what its timeline says."""
+        key, body = self.selected.get(path), self._bodies.get(path)
+        if body is None:
+            return
+        if key is None:
+            self._give_up(path)
+            return
+        try:
+            body.become(self._recorded(key))
+        except BodyError:
+            # It died; another one is made when it is needed.
+            del self._bodies[path], self._recorders[path]
+
+    def _give_up(self, path: Path) -> None:
+        self._recorders.pop(path, None)
+        body = self._bodies.pop(path, None)
+        if body is not None:
+            body.close()
 
     def _open_body(self, key: TimelineKey, snapshot: Snapshot) -> None:
         recorder = _Recorder(self.journal, key)
@@ -239,14 +376,26 @@ class Engine:
 
     @contextmanager
     def _recording(self, path: Path) -> Iterator[Body]:
-        """A call on a body; its frames are written in batches, all of them by the end."""
+        """A call on a body; what happens and what is noted is kept once it ends, as a whole."""
         body, recorder = self.body(path), self._recorders[path]
+        kept = ExitStack()
+        kept.enter_context(self.log.together())
         recorder.batched = True
         try:
             yield body
         finally:
             recorder.batched = False
-            recorder.flush(body.tick)
+            self._keep(path, body, recorder, kept)
+
+    def _keep(self, path: Path, body: Body, recorder: _Recorder, kept: ExitStack) -> None:
+        # What happened before a fault has happened, so it is kept whatever the call came to.
+        try:
+            with kept:
+                recorder.flush(body.tick)
+        except BaseException:
+            recorder.drop()
+            self._restore(path)
+            raise
 
 
 def _edited(snapshot: Snapshot, edit: Edit) -> Snapshot:

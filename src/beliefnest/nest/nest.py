@@ -1,23 +1,33 @@
 """The nest: the real world and all beliefs in it."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Protocol, Self
+from typing import TYPE_CHECKING, Protocol, Self
 
+from beliefnest import __version__
 from beliefnest.belief.entries import InitialBelief
 from beliefnest.bodies.protocol import World
 from beliefnest.bodies.scripted import ScriptedBodies
-from beliefnest.bodies.worlds import open_world
+from beliefnest.bodies.worlds import LateWorld, open_world
 from beliefnest.errors import ProgramError
 from beliefnest.nest.compare import Difference, compare, false_beliefs
 from beliefnest.nest.engine import Engine
 from beliefnest.nest.paths import parse_path
+from beliefnest.nest.runlog import FileLog
+from beliefnest.nest.saved import decode_start, encode_start
+from beliefnest.nest.script import STEP, steps_played
 from beliefnest.nest.setting import Setting, Step
 from beliefnest.nest.simulator import PastSimulator, Simulator
 from beliefnest.perception.options import Perception
-from beliefnest.timeline.journal import Journal, MemoryJournal
+from beliefnest.timeline.journal import MemoryJournal
+from beliefnest.timeline.records import RunRecord
+from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.scripted import ScriptedWorld
+
+if TYPE_CHECKING:
+    from beliefnest.nest.recorded import RecordedNest
 
 __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 
@@ -31,6 +41,14 @@ class HasSetting(Protocol):
     @property
     def setting(self) -> Setting:
         """What the nest starts from."""
+
+    @property
+    def text(self) -> str:
+        """The text of the scenario's file, for the record; empty if there is none."""
+
+    @property
+    def condition(self) -> int | None:
+        """Number of the chosen condition; None if there is none."""
 
 
 class Nest:
@@ -62,7 +80,8 @@ class Nest:
             static_blocks=frozenset(static_blocks),
             initial_beliefs=tuple(initial_beliefs),
         )
-        self._engine = _engine(setting, ScriptedBodies(world), store, 0)
+        start = _Start(setting, "scripted", 0)
+        self._engine = _begun(start, ScriptedBodies(world), store)
 
     @classmethod
     def open(
@@ -83,15 +102,54 @@ class Nest:
         Raises:
             BodyError: The world could not be started.
             UnknownNameError: There is no such world.
+            StoreError: The store exists already, or cannot be written.
         """
-        setting = scenario if isinstance(scenario, Setting) else scenario.setting
-        nest = cls.__new__(cls)
+        if isinstance(scenario, Setting):
+            start = _Start(scenario, world, seed)
+        else:
+            start = _Start(scenario.setting, world, seed, scenario.text, scenario.condition)
         opened = open_world(world, seed)
         try:
-            nest._engine = _engine(setting, opened, store, seed)
+            return cls._of(_begun(start, opened, store))
         except BaseException:
             opened.close()
             raise
+
+    @classmethod
+    def resume(cls, store: str | Path) -> Self:
+        """Go on with a recorded run where it was, on every branch, with its seed.
+
+        The world is started, and bodies are made, when they are first needed.
+
+        Raises:
+            StoreError: There is no such run, it cannot be read or written, or has another
+                writer.
+        """
+        journal = SqliteJournal.open(store)
+        try:
+            run = journal.records.run()
+            setting, world = decode_start(run.setting)
+            late = LateWorld(world, run.seed)
+            return cls._of(Engine(setting, journal, late, run.seed, FileLog(journal)).resume())
+        except BaseException:
+            journal.close()
+            raise
+
+    @staticmethod
+    def read(store: str | Path) -> "RecordedNest":
+        """Look at a recorded run, also while another process writes it; nothing can act in it.
+
+        Raises:
+            StoreError: There is no such run, or it cannot be read.
+        """
+        from beliefnest.nest.recorded import RecordedNest
+
+        return RecordedNest.read(store)
+
+    @classmethod
+    def _of(cls, engine: Engine) -> Self:
+        nest = cls.__new__(cls)
+        nest._engine = engine
         return nest
 
     def __enter__(self) -> Self:
@@ -113,6 +171,20 @@ class Nest:
     def setting(self) -> Setting:
         """What the nest started from."""
         return self._engine.setting
+
+    @property
+    def seed(self) -> int:
+        """Drives every random number."""
+        return self._engine.seed
+
+    @property
+    def scripted_world(self) -> ScriptedWorld:
+        """The scripted world that is the real one.
+
+        Raises:
+            WorldError: The real world is a Minecraft one.
+        """
+        return self["/"].scripted
 
     @property
     def agents(self) -> tuple[str, ...]:
@@ -167,14 +239,16 @@ class Nest:
         return false_beliefs(self._engine, parse_path(path, self.agents), None)
 
     def play(self, on_progress: Progress | None = None) -> None:
-        """Play the scenario's script in the real world.
+        """Play the scenario's script in the real world, from the first step not played there.
 
         Raises:
             ProgramError: A program failed; the message says which step, where it is
                 written, and the program's line.
         """
         script = self.setting.script
-        for number, step in enumerate(script):
+        programs = self._engine.log.programs()
+        played = steps_played(self._engine.journal, self._engine.controller(()), programs)
+        for number, step in enumerate(script[played:], start=played):
             if on_progress is not None:
                 on_progress(step.label or f"step {number + 1}", number, len(script))
             self._play_step(number, step)
@@ -182,7 +256,7 @@ class Nest:
             on_progress("script played", len(script), len(script))
 
     def _play_step(self, number: int, step: Step) -> None:
-        results = self["/"].run_all(step.programs, step.timeout_ticks)
+        results = self._engine.run((), step.programs, step.timeout_ticks, {STEP: str(number)})
         for agent, result in results.items():
             if not result.ok:
                 label = f" ({step.label})" if step.label else ""
@@ -230,12 +304,36 @@ class Past:
         return false_beliefs(self._engine, parse_path(path, self._engine.agents), self._tick)
 
 
-def _engine(setting: Setting, world: World, store: str | Path | None, seed: int) -> Engine:
-    journal: Journal = MemoryJournal() if store is None else _store(store)
-    return Engine(setting, journal, world, seed).begin()
+@dataclass(frozen=True, slots=True)
+class _Start:
+    """What a run is started with."""
+
+    setting: Setting
+    world: str
+    seed: int
+    text: str = ""
+    condition: int | None = None
+
+    def record(self, world: World) -> RunRecord:
+        """What the run file keeps of it."""
+        return RunRecord(
+            scenario=self.setting.name,
+            text=self.text,
+            condition="" if self.condition is None else str(self.condition),
+            seed=self.seed,
+            versions={"beliefnest": __version__, **world.versions},
+            setting=encode_start(self.setting, self.world),
+        )
 
 
-def _store(path: str | Path) -> Journal:
-    from beliefnest.timeline.store import SqliteJournal
-
-    return SqliteJournal.create_file(Path(path))
+def _begun(start: _Start, world: World, store: str | Path | None) -> Engine:
+    if store is None:
+        return Engine(start.setting, MemoryJournal(), world, start.seed).begin()
+    journal = SqliteJournal.create_file(store)
+    try:
+        with journal.together():
+            journal.records.set_run(start.record(world))
+            return Engine(start.setting, journal, world, start.seed, FileLog(journal)).begin()
+    except BaseException:
+        journal.close()
+        raise

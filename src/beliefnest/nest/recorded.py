@@ -1,12 +1,18 @@
 """A recorded run, read-only: any simulator of it, on any branch, at any tick."""
 
+from pathlib import Path
+from typing import Self
+
 from beliefnest.bodies.scripted import ScriptedBodies
 from beliefnest.nest.engine import MAIN, Engine
 from beliefnest.nest.nest import Past
 from beliefnest.nest.paths import parse_path
+from beliefnest.nest.runlog import FileLog
+from beliefnest.nest.saved import decode_start
 from beliefnest.nest.setting import Setting
 from beliefnest.nest.simulator import PastSimulator
 from beliefnest.timeline.journal import FOLLOW, Journal, TimelineKey
+from beliefnest.timeline.store import SqliteJournal
 
 __all__ = ["RecordedNest"]
 
@@ -22,6 +28,55 @@ class RecordedNest:
     def __init__(self, setting: Setting, journal: Journal) -> None:
         self._engine = Engine(setting, journal, ScriptedBodies(), 0)
         self._engine.selected[()] = TimelineKey((), MAIN)
+
+    @classmethod
+    def read(cls, store: str | Path) -> Self:
+        """A run file as it was left, or as another process writes it, on its branches.
+
+        Close it, or use it in a `with` block.
+
+        Raises:
+            StoreError: There is no such run, or it cannot be read.
+        """
+        journal = SqliteJournal.read(store)
+        try:
+            run = journal.records.run()
+            setting, _ = decode_start(run.setting)
+            log = FileLog(journal)
+            nest = cls.__new__(cls)
+            nest._engine = Engine(setting, journal, ScriptedBodies(), run.seed, log).resume()
+        except BaseException:
+            journal.close()
+            raise
+        return nest
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the run file."""
+        self._engine.close()
+
+    @property
+    def setting(self) -> Setting:
+        """What the run started from."""
+        return self._engine.setting
+
+    @property
+    def agents(self) -> tuple[str, ...]:
+        """Names of all agents, sorted."""
+        return self._engine.agents
+
+    def __getitem__(self, path: str) -> PastSimulator:
+        """A simulator at the latest tick of its timeline.
+
+        Raises:
+            PathError: The path is malformed or names an unknown agent.
+        """
+        return self.simulator(path)
 
     def select(self, path: str, branch: str) -> None:
         """Read a simulator, and those below it, on one of its branches.

@@ -1,6 +1,6 @@
 """One simulator of the nest, as its users hold it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
@@ -208,6 +208,36 @@ class Simulator(_Seen):
         timelines = self._engine.journal.timelines()
         return tuple(info for info in timelines if info.key.path == self._path)
 
+    def rename(self, old: str, new: str) -> None:
+        """Give a branch another name.
+
+        Raises:
+            BranchError: There is no branch `old`, or one `new`, or the name is not allowed.
+        """
+        _check_branch_name(new)
+        if new == FOLLOW:
+            raise BranchError(f"{FOLLOW!r} is the name of no branch; choose another one")
+        self._engine.rename(TimelineKey(self._path, old), new)
+
+    def delete(self, name: str, recursive: bool = False) -> None:
+        """Delete a branch, for good.
+
+        Args:
+            name: The branch.
+            recursive: Whether to delete what is based on it as well, beliefs' branches too.
+
+        Raises:
+            BranchError: There is no such branch, a simulator is on it, or others are based
+                on it and `recursive` is not set.
+        """
+        journal = self._engine.journal
+        key = journal.info(TimelineKey(self._path, name)).key
+        self._engine.delete([*(_based_on(key, journal.timelines()) if recursive else ()), key])
+
+    def describe(self, name: str, text: str) -> None:
+        """Say what a branch is for; BranchError if there is none of that name."""
+        self._engine.journal.describe(TimelineKey(self._path, name), text)
+
     def run(self, agent: str, code: str, timeout_ticks: int = 1200) -> ProgramResult:
         """Run a program as an agent of this simulator, which must be in control mode.
 
@@ -278,6 +308,15 @@ class Simulator(_Seen):
 
     def _explained_tick(self) -> None:
         return None
+
+
+def _based_on(key: TimelineKey, infos: Sequence[TimelineInfo]) -> list[TimelineKey]:
+    """All timelines that rest on one, each after those that rest on it."""
+    resting = {key}
+    for info in infos:
+        if info.base is not None and info.base.timeline in resting:
+            resting.add(info.key)
+    return [info.key for info in reversed(infos) if info.key in resting and info.key != key]
 
 
 def _check_branch_name(name: object) -> None:

@@ -285,14 +285,17 @@ class ScriptedWorld:
     @contextmanager
     def _new_tick(self) -> Iterator[_Pending]:
         pending = self._pending = _Pending(self._facts)
+        before = self._tick
         try:
             yield pending
+            self._pending = None
+            self._finish(pending)
         except BaseException:
-            self._facts = pending.saved
+            # A tick that a listener cannot take has not happened either.
+            self._facts, self._tick = pending.saved, before
             raise
         finally:
             self._pending = None
-        self._finish(pending)
 
     def _finish(self, pending: _Pending) -> None:
         self._tick += 1

@@ -1,0 +1,113 @@
+"""The bytes a run file keeps of what its nest started from."""
+
+from typing import Literal
+
+import msgspec
+
+from beliefnest.belief.entries import InitialBelief
+from beliefnest.errors import StoreError
+from beliefnest.nest.setting import Setting, Step
+from beliefnest.perception.options import ContainerMode, Perception, Radius
+from beliefnest.timeline import codec
+
+__all__ = ["decode_start", "encode_start"]
+
+_FORM = 1
+
+
+class _Form(msgspec.Struct):
+    form: int
+
+
+class _Perception(msgspec.Struct, forbid_unknown_fields=True):
+    max_visible_distance: float | None
+    field_of_view: float
+    hearing: Literal["global", "sight"] | float
+    containers: ContainerMode
+    transparent_blocks: tuple[str, ...]
+    negative_evidence: bool
+
+
+class _Start(msgspec.Struct, forbid_unknown_fields=True):
+    form: int
+    world: str
+    name: str
+    snapshot: bytes
+    perception: _Perception
+    static_blocks: tuple[str, ...]
+    initial_beliefs: tuple[InitialBelief, ...]
+    script: tuple[Step, ...]
+
+
+def encode_start(setting: Setting, world: str) -> bytes:
+    """Bytes of a setting and the name of the world it was opened in.
+
+    Raises:
+        StoreError: Something in it is no value of a world.
+    """
+    return codec.encode(
+        _Start(
+            form=_FORM,
+            world=world,
+            name=setting.name,
+            snapshot=codec.encode_snapshot(setting.snapshot),
+            perception=_perception_to(setting.perception),
+            static_blocks=tuple(sorted(setting.static_blocks)),
+            initial_beliefs=setting.initial_beliefs,
+            script=setting.script,
+        )
+    )
+
+
+def decode_start(data: bytes) -> tuple[Setting, str]:
+    """Setting and name of the world from the bytes of `encode_start`.
+
+    Raises:
+        StoreError: The bytes hold none, or in another form.
+    """
+    form = codec.decode(data, _Form).form
+    if form != _FORM:
+        raise StoreError(
+            f"the run keeps its setting in form {form} and this program reads {_FORM}; "
+            "use the version of beliefnest that recorded it"
+        )
+    start = codec.decode(data, _Start)
+    setting = Setting(
+        name=start.name,
+        snapshot=codec.decode_snapshot(start.snapshot),
+        perception=_perception_from(start.perception),
+        static_blocks=frozenset(start.static_blocks),
+        initial_beliefs=start.initial_beliefs,
+        script=start.script,
+    )
+    return setting, start.world
+
+
+def _perception_to(options: Perception) -> _Perception:
+    match options.hearing:
+        case Radius(blocks):
+            hearing: Literal["global", "sight"] | float = blocks
+        case "global" | "sight":
+            hearing = options.hearing
+        case other:
+            raise StoreError(f"hearing {other!r} cannot be stored")
+    return _Perception(
+        max_visible_distance=options.max_visible_distance,
+        field_of_view=options.field_of_view,
+        hearing=hearing,
+        containers=options.containers,
+        transparent_blocks=tuple(options.transparent_blocks),
+        negative_evidence=options.negative_evidence,
+    )
+
+
+def _perception_from(stored: _Perception) -> Perception:
+    hearing = stored.hearing
+    return Perception(
+        max_visible_distance=stored.max_visible_distance,
+        field_of_view=stored.field_of_view,
+        hearing=hearing if isinstance(hearing, str) else Radius(hearing),
+        containers=stored.containers,
+        transparent_blocks=stored.transparent_blocks,
+        negative_evidence=stored.negative_evidence,
+    )

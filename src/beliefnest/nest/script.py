@@ -1,0 +1,29 @@
+"""How far a script has been played on a timeline."""
+
+from collections.abc import Iterable
+
+from beliefnest.timeline.journal import Journal, TimelineKey
+from beliefnest.timeline.records import ProgramRecord
+
+__all__ = ["STEP", "steps_played"]
+
+STEP = "step"
+"""The detail of a noted program that says which step of the script it is, from 0."""
+
+
+def steps_played(journal: Journal, key: TimelineKey, programs: Iterable[ProgramRecord]) -> int:
+    """How many steps of the script lie in the past of a timeline's head.
+
+    A step whose program failed counts: it has happened.
+    """
+    noted = [program for program in programs if STEP in program.detail]
+    played = 0
+    place: TimelineKey | None = key
+    until = journal.info(key).head
+    while place is not None:
+        here = [p for p in noted if (p.path, p.branch) == (place.path, place.branch)]
+        ended = [int(p.detail[STEP]) + 1 for p in here if p.tick + p.ticks <= until]
+        played = max([played, *ended])
+        base = journal.info(place).base
+        place, until = (None, 0) if base is None else (base.timeline, base.tick)
+    return played
