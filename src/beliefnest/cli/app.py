@@ -3,7 +3,7 @@
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -26,6 +26,7 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 
+Cache = Literal["read", "write", "off"]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 
 
@@ -63,17 +64,50 @@ def run(
     ] = None,
     world: Annotated[str, typer.Option(help="Where it plays.")] = "embedded",
     model: Annotated[
-        str, typer.Option(help="Who answers: offline, or PROVIDER:MODEL.")
+        str, typer.Option(help="Who answers: offline, PROVIDER:MODEL, replay: or scripted:FILE.")
     ] = "offline",
-    out: Annotated[Path | None, typer.Option(help="Folder for what is recorded.")] = None,
-    seed: Annotated[int, typer.Option(help="Drives every random number.")] = 0,
+    models: Annotated[
+        str | None, typer.Option(help="Several models, with commas, in place of --model.")
+    ] = None,
+    repeat: Annotated[int, typer.Option(help="Runs of each condition with each model.")] = 1,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for what is recorded; an interrupted run goes on in it."),
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Drives every random number; repeats count up.")] = 0,
+    cache: Annotated[
+        Cache, typer.Option(help="Use kept answers of providers' models, only keep, or neither.")
+    ] = "read",
+    answers: Annotated[
+        Path | None, typer.Option(help="Folder of kept answers; OUT/answers if none.")
+    ] = None,
+    max_tokens: Annotated[int, typer.Option(help="What the run may use in all.")] = 1_000_000,
+    max_cost: Annotated[float, typer.Option(help="US dollars the run may cost in all.")] = 5.0,
+    temperature: Annotated[float, typer.Option(help="0 for the likeliest answer.")] = 0.0,
+    attempts: Annotated[
+        int,
+        typer.Option(help="Answers asked for at most; one without a working program is sent back."),
+    ] = 3,
     json: Json = False,
 ) -> int:
     """Play a scenario, follow the beliefs, ask the model, and say whether all is as expected."""
-    from beliefnest.cli.run import RunOptions, run_scenarios
+    from beliefnest.cli.run import ModelOptions, RunOptions, run_scenarios
+    from beliefnest.llm.budget import RunLimits
 
-    options = RunOptions(scenario, tuple(condition or ()), world, model, out, seed, json)
-    return run_scenarios(options)
+    limits = RunLimits(max_tokens, max_cost)
+    return run_scenarios(
+        RunOptions(
+            scenario=scenario,
+            conditions=tuple(condition or ()),
+            world=world,
+            models=tuple(models.split(",")) if models is not None else (model,),
+            repeat=repeat,
+            out=out,
+            seed=seed,
+            as_json=json,
+            asking=ModelOptions(cache, answers, limits, attempts, temperature),
+        )
+    )
 
 
 @app.command()
@@ -110,6 +144,21 @@ def list_installed(json: Json = False) -> None:
     from beliefnest.cli.listing import print_installed
 
     print_installed(as_json=json)
+
+
+@app.command()
+def suite(
+    name: Annotated[str, typer.Argument(help="Name of the suite: hi-tom.")],
+    data: Annotated[Path, typer.Option(help="JSON file of stories, questions and answers.")],
+    world: Annotated[str, typer.Option(help="Where they play.")] = "scripted",
+    limit: Annotated[int | None, typer.Option(help="Play no more stories than this.")] = None,
+    seed: Annotated[int, typer.Option(help="Drives every random number.")] = 0,
+    json: Json = False,
+) -> int:
+    """Answer a file of questions about stories from nests; say how many answers are right."""
+    from beliefnest.cli.suite import SuiteOptions, run_suite
+
+    return run_suite(SuiteOptions(name, data, world, limit, seed, json))
 
 
 @app.command()

@@ -1,10 +1,12 @@
 """The folder of a run: what is in it, and how it is written so that it is always readable."""
 
 import json
+import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 from beliefnest.errors import InputError
 from beliefnest.scenarios.outcome import ProbeOutcome
@@ -36,13 +38,24 @@ class ConditionFolder:
         """The picture of the decisive moment."""
         return self.path / PICTURE
 
+    def result(self) -> dict[str, Any] | None:
+        """What came of the condition in an earlier part of the run; None: it has not ended."""
+        file = self.path / _RESULT
+        return _read(file) if file.is_file() else None
+
+    def begin(self) -> None:
+        """Make the folder, without what an interrupted run left in it."""
+        if self.path.exists():
+            shutil.rmtree(self.path)
+        self.path.mkdir(parents=True)
+
     def write_result(self, result: Mapping[str, object]) -> None:
         """Write what came of the condition."""
         _write(self.path / _RESULT, _json(result))
 
-    def write_probe(self, outcome: ProbeOutcome) -> None:
+    def write_probe(self, number: int, outcome: ProbeOutcome) -> None:
         """Write what a model was asked, what it answered, and the program in it."""
-        folder = self.path / outcome.branch.replace(" ", "-")
+        folder = self.path / f"probe-{number}"
         folder.mkdir(exist_ok=True)
         _write(folder / "prompt.txt", outcome.prompt)
         _write(folder / "answer.txt", outcome.answer)
@@ -56,16 +69,20 @@ class RunFolder:
     path: Path
 
     @staticmethod
-    def create(wanted: Path | None, name: str, now: datetime) -> "RunFolder":
-        """Make the folder of a run.
+    def open(
+        wanted: Path | None, name: str, now: datetime, settings: Mapping[str, object], text: str
+    ) -> "RunFolder":
+        """Make the folder of a run, or go on in that of a run that has not ended.
 
         Args:
             wanted: The folder; None: `runs/NAME-DATE-TIME` in the current one.
             name: Name of the scenario.
             now: The time, for the name.
+            settings: What was asked for; a run goes on only with the same.
+            text: The scenario as written, which is kept and must be the same as well.
 
         Raises:
-            InputError: It cannot be made, or holds something already.
+            InputError: It cannot be made, or holds something else already.
         """
         path = (
             wanted if wanted is not None else _unused(Path("runs"), f"{name}-{now:%Y%m%d-%H%M%S}")
@@ -73,17 +90,28 @@ class RunFolder:
         try:
             path.mkdir(parents=True, exist_ok=True)
             if any(path.iterdir()):
-                raise InputError(f"{path} is not empty; name another folder with --out")
-            _write(path / _REPORT, _json({"scenario": name, "status": "running", "runs": []}))
+                _check_same(path, settings, text)
+            else:
+                report = {"scenario": name, "status": "running", "settings": settings, "runs": []}
+                _write(path / _REPORT, _json(report))
+                _write(path / _SCENARIO, text)
         except OSError as error:
             raise InputError(f"the run folder {path} cannot be written: {error.strerror}") from None
         return RunFolder(path)
 
-    def condition(self, number: int | None) -> ConditionFolder:
-        """Make the folder of a condition; None: of a scenario that has none."""
-        path = self.path / ("run" if number is None else f"{_CONDITION}{number}")
-        path.mkdir()
-        return ConditionFolder(path)
+    def cell(self, folder: Path) -> ConditionFolder:
+        """The part of one condition; `folder` is relative to this one."""
+        return ConditionFolder(self.path / folder)
+
+    @property
+    def answers(self) -> Path:
+        """Where the answers of models are kept."""
+        return self.path / "answers"
+
+    @property
+    def exchanges(self) -> Path:
+        """The file of all that models were asked and answered."""
+        return self.path / "model.jsonl"
 
     @property
     def picture(self) -> Path:
@@ -93,10 +121,6 @@ class RunFolder:
     def write_report(self, report: Mapping[str, object]) -> None:
         """Write the whole report anew."""
         _write(self.path / _REPORT, _json(report))
-
-    def write_scenario(self, text: str) -> None:
-        """Keep the scenario as it was run."""
-        _write(self.path / _SCENARIO, text)
 
     def write_summary(self, text: str) -> None:
         """Write the table as text."""
@@ -114,7 +138,7 @@ def store_in(run: Path) -> Path:
         return run
     if (run / STORE).is_file():
         return run / STORE
-    found = sorted(run.glob(f"*/{STORE}"))
+    found = sorted(run.rglob(STORE))
     if len(found) == 1:
         return found[0]
     if found:
@@ -130,9 +154,10 @@ def recorded_scenario(store: Path) -> Scenario:
         InputError: The store does not lie in a run folder.
         ScenarioError: The scenario kept there is not readable by this version.
     """
-    file = store.parents[1] / _SCENARIO
-    if not file.is_file():
-        raise InputError(f"{store} does not lie in a run folder: there is no {file}")
+    files = [folder / _SCENARIO for folder in store.parents[1:4]]
+    file = next((file for file in files if file.is_file()), None)
+    if file is None:
+        raise InputError(f"{store} does not lie in a run folder: there is no {files[0]}")
     _, sign, number = store.parent.name.partition(_CONDITION)
     return Scenario.load(str(file), int(number) if sign and number.isdecimal() else None)
 
@@ -140,6 +165,37 @@ def recorded_scenario(store: Path) -> Scenario:
 def _unused(parent: Path, name: str) -> Path:
     candidates = [parent / name, *(parent / f"{name}-{number}" for number in range(2, 100))]
     return next((path for path in candidates if not path.exists()), candidates[-1])
+
+
+def _check_same(path: Path, settings: Mapping[str, object], text: str) -> None:
+    """Refuse a folder that is not that of the same run, or of one that has ended."""
+    file = path / _REPORT
+    found = _read(file) if file.is_file() else {}
+    if "settings" not in found:
+        raise InputError(f"{path} is not empty; name another folder with --out")
+    if found.get("status") == "done":
+        raise InputError(f"{path} holds a run that has ended; name another folder with --out")
+    kept = path / _SCENARIO
+    # As JSON knows them: a tuple is a list there.
+    asked = json.loads(json.dumps(settings))
+    differing = [key for key in asked if found["settings"].get(key) != asked[key]]
+    if not kept.is_file() or kept.read_text(encoding="utf-8") != text:
+        differing.append("scenario")
+    if differing:
+        raise InputError(
+            f"{path} holds a run with another {' and '.join(differing)}; "
+            "go on with the same, or name another folder with --out"
+        )
+
+
+def _read(file: Path) -> dict[str, Any]:
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise InputError(f"{file} cannot be read: {error}; name another folder") from None
+    if not isinstance(content, dict):
+        raise InputError(f"{file} is not the report of a run; name another folder")
+    return content
 
 
 def _json(value: Mapping[str, object]) -> str:

@@ -8,12 +8,20 @@ from rich.table import Table
 
 from beliefnest.belief.view import State
 from beliefnest.cli.pictures import container_name, point_text
+from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.judging import places_of
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Arrives, Hears, Holds, Opens, Scenario
 from beliefnest.world.values import Point
 
-__all__ = ["outcome_json", "outcome_table", "report_json", "state_json"]
+__all__ = [
+    "cost_text",
+    "outcome_json",
+    "outcome_table",
+    "report_json",
+    "state_json",
+    "usage_json",
+]
 
 
 def state_json(state: State) -> dict[str, object]:
@@ -34,10 +42,11 @@ def state_json(state: State) -> dict[str, object]:
     }
 
 
-def outcome_json(outcome: Outcome, run_dir: Path) -> dict[str, object]:
+def outcome_json(outcome: Outcome, model: str, run_dir: Path) -> dict[str, object]:
     """What came of one condition."""
     return {
         "condition": outcome.scenario.condition,
+        "model": model,
         "seed": outcome.seed,
         "ok": outcome.ok,
         "ticks": outcome.ticks,
@@ -46,20 +55,47 @@ def outcome_json(outcome: Outcome, run_dir: Path) -> dict[str, object]:
         "beliefs": {path: state_json(state) for path, state in outcome.beliefs.items()},
         "expectations": [_expectation_json(each) for each in outcome.expectations],
         "probes": [_probe_json(each) for each in outcome.probes],
+        "usage": usage_json(outcome.usage),
         "run_dir": str(run_dir),
     }
 
 
+def usage_json(usage: Usage) -> dict[str, object]:
+    """What answers took."""
+    return {
+        "requests": usage.requests,
+        "input_tokens": usage.input_tokens,
+        "output_tokens": usage.output_tokens,
+        "cost": usage.cost,
+    }
+
+
 def report_json(
-    scenario: str, world: str, model: str, status: str, runs: Iterable[Mapping[str, object]]
+    scenario: str,
+    settings: Mapping[str, object],
+    status: str,
+    runs: Iterable[Mapping[str, object]],
+    failures: Iterable[Mapping[str, object]],
 ) -> dict[str, object]:
-    """The whole report."""
+    """The whole report.
+
+    Args:
+        scenario: Its name.
+        settings: What was asked for, `world` and `models` among it.
+        status: `running`, `done`, `failed` or `interrupted`.
+        runs: What came of each condition, as `outcome_json`.
+        failures: What has no result because a model failed, and why.
+    """
+    models = settings["models"]
+    assert isinstance(models, Sequence)
     return {
         "scenario": scenario,
-        "world": world,
-        "model": model,
+        "world": settings["world"],
+        "model": ",".join(models),
         "status": status,
+        "settings": settings,
         "runs": list(runs),
+        "failures": list(failures),
     }
 
 
@@ -72,6 +108,9 @@ def outcome_table(outcomes: Sequence[Outcome]) -> Table:
     for heading in _headings(outcomes):
         table.add_column(heading)
     table.add_column(f"as {scenario.reported_by or 'expected'}{_verb(scenario)}")
+    asked = any(outcome.usage.requests for outcome in outcomes)
+    for heading in ("tokens", "cost") if asked else ():
+        table.add_column(heading, justify="right")
     table.add_column("ticks", justify="right")
     table.add_column("seconds", justify="right")
     for outcome in outcomes:
@@ -79,8 +118,14 @@ def outcome_table(outcomes: Sequence[Outcome]) -> Table:
         cells = _cells(outcome)
         row += [cells.get(heading, "") for heading in _headings(outcomes)]
         verdict = "[green]yes[/green]" if outcome.ok else "[bold red]NO[/bold red]"
-        table.add_row(*row, verdict, str(outcome.ticks), f"{outcome.seconds:.2f}")
+        spent = [f"{outcome.usage.tokens:,}", cost_text(outcome.usage.cost)] if asked else []
+        table.add_row(*row, verdict, *spent, str(outcome.ticks), f"{outcome.seconds:.2f}")
     return table
+
+
+def cost_text(cost: float | None) -> str:
+    """US dollars for people."""
+    return "not known" if cost is None else f"${cost:.4f}"
 
 
 def _verb(scenario: Scenario) -> str:
@@ -178,6 +223,8 @@ def _probe_json(outcome: ProbeOutcome) -> dict[str, object]:
         "agent": probe.agent,
         "task": probe.task,
         "program": outcome.program,
+        "attempts": outcome.attempts,
+        "usage": usage_json(outcome.usage),
         "error": outcome.error,
         "branch": outcome.branch,
         "opened": [list(place) for place in outcome.opened],

@@ -4,26 +4,56 @@ import json
 import os
 import sys
 import time
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
+from typing import Any, Literal
+
+from rich.table import Table
 
 from beliefnest.bodies.worlds import check_world
 from beliefnest.cli.console import progress_on, stdout
 from beliefnest.cli.folder import ConditionFolder, RunFolder
+from beliefnest.cli.matrix import score_runs, score_table, scores_json
 from beliefnest.cli.pictures import read_outcome_scene
+from beliefnest.cli.plan import Cell, plan_cells
 from beliefnest.cli.report import outcome_json, outcome_table, report_json
-from beliefnest.llm.messages import Model
-from beliefnest.llm.resolve import Connection, open_model
+from beliefnest.errors import InputError, ModelError
+from beliefnest.llm.budget import Budget, RunLimits
+from beliefnest.llm.cache import CacheMode
+from beliefnest.llm.messages import Model, Sampling, Usage
+from beliefnest.llm.resolve import Connection, open_model, resolve_model
 from beliefnest.nest.nest import Nest
 from beliefnest.scenarios.outcome import Outcome
-from beliefnest.scenarios.running import run_scenario
+from beliefnest.scenarios.running import Asking, run_scenario
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.viewer.picture import draw_overview, draw_scene, save
 from beliefnest.viewer.scene import Scene
 
-__all__ = ["RunOptions", "run_scenarios"]
+__all__ = ["ModelOptions", "RunOptions", "run_scenarios"]
+
+Status = Literal["running", "done", "failed", "interrupted"]
+
+
+@dataclass(frozen=True, slots=True)
+class ModelOptions:
+    """How models are asked.
+
+    Attributes:
+        cache: How kept answers are used.
+        answers: Folder of kept answers; None: the run folder's own.
+        limits: What the whole run may spend.
+        attempts: How often a model is asked for one probe.
+        temperature: How answers are drawn; None leaves it to the provider.
+    """
+
+    cache: CacheMode = "read"
+    answers: Path | None = None
+    limits: RunLimits = field(default_factory=RunLimits)
+    attempts: int = 3
+    temperature: float | None = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,56 +64,122 @@ class RunOptions:
         scenario: Name or path.
         conditions: Numbers of the conditions to run; empty: all.
         world: Name of the world.
-        model: Name of the model.
+        models: Names of the models.
+        repeat: How often each condition is run with each model.
         out: Run folder; None: a new one in `runs`.
-        seed: Drives every random number.
+        seed: Drives every random number; the second repeat has the next one.
         as_json: Whether to print the report as JSON instead of a table.
+        asking: How models are asked.
     """
 
     scenario: str
     conditions: tuple[int, ...]
     world: str
-    model: str
+    models: tuple[str, ...]
+    repeat: int
     out: Path | None
     seed: int
     as_json: bool
+    asking: ModelOptions
+
+    @property
+    def settings(self) -> dict[str, object]:
+        """What decides about the results, for the record."""
+        return {
+            "conditions": list(dict.fromkeys(self.conditions)),
+            "world": self.world,
+            "models": list(self.models),
+            "repeat": self.repeat,
+            "seed": self.seed,
+            "attempts": self.asking.attempts,
+            "temperature": self.asking.temperature,
+        }
 
 
 def run_scenarios(options: RunOptions) -> int:
     """Run, record, and print; the exit status says whether all was as expected.
 
     Raises:
-        BeliefNestError: The input is wrong, or a world or model failed.
+        BeliefNestError: The input is wrong, or a world or model failed. A model that failed
+            ends only the condition it was asked in; the error is raised when all have been run.
     """
     scenarios = _scenarios(options)
     check_world(options.world)
-    model = open_model(options.model, os.environ, Connection())
-    folder = RunFolder.create(options.out, scenarios[0].name, datetime.now())
-    folder.write_scenario(scenarios[0].text)
-    outcomes: list[Outcome] = []
-    scenes: list[Scene] = []
-    runs: list[dict[str, object]] = []
-    status = "failed"
+    _check_numbers(options)
+    for name in options.models:
+        resolve_model(name, os.environ)
+    first = scenarios[0]
+    settings = options.settings
+    folder = RunFolder.open(options.out, first.name, datetime.now(), settings, first.text)
+    run = _Run(options, folder)
+    cells = plan_cells(scenarios, options.models, options.repeat, options.seed)
+    status: Status = "failed"
     try:
-        for scenario in scenarios:
-            place = folder.condition(scenario.condition)
-            outcome, scene = _run(scenario, place, model, options)
-            outcomes.append(outcome)
-            scenes.append(scene)
-            runs.append(outcome_json(outcome, place.path))
-            place.write_result(runs[-1])
-        if len(scenes) > 1:
-            title = scenarios[0].description or scenarios[0].name
-            save(draw_overview(scenes, title), folder.picture)
-        status = "done"
+        for cell in cells:
+            run.do(cell)
+        if len(run.scenes) == len(cells) > 1:
+            save(
+                draw_overview(run.scenes[: len(scenarios)], first.description or first.name),
+                folder.picture,
+            )
+        status = "failed" if run.failures else "done"
     except KeyboardInterrupt:
         status = "interrupted"
         raise
     finally:
-        report = report_json(scenarios[0].name, options.world, options.model, status, runs)
+        report = report_json(first.name, settings, status, run.results, run.failures)
+        report["scores"] = scores_json(score_runs(run.results, run.failures))
         folder.write_report(report)
-    _print(outcomes, folder, report, as_json=options.as_json)
-    return 0 if all(outcome.ok for outcome in outcomes) else 1
+    _print(run, cells, report, as_json=options.as_json)
+    if run.failures:
+        raise ModelError(_failures_text(run.failures, len(cells), folder))
+    return 0 if all(result["ok"] for result in run.results) else 1
+
+
+class _Run:
+    """A run under way: its folder, its models, and what has come of it so far."""
+
+    def __init__(self, options: RunOptions, folder: RunFolder) -> None:
+        self._options = options
+        self.folder = folder
+        self.budget = Budget(options.asking.limits)
+        connection = Connection(
+            budget=self.budget,
+            cache=options.asking.answers or folder.answers,
+            cache_mode=options.asking.cache,
+            record=folder.exchanges,
+        )
+        self._models = {name: open_model(name, os.environ, connection) for name in options.models}
+        self.outcomes: list[Outcome] = []
+        self.scenes: list[Scene] = []
+        self.results: list[dict[str, Any]] = []
+        self.failures: list[dict[str, object]] = []
+
+    def do(self, cell: Cell) -> None:
+        """Run a cell, unless an earlier part of the run has; keep what came of it."""
+        place = self.folder.cell(cell.folder)
+        known = place.result()
+        if known is not None:
+            self.budget.add(Usage(**known["usage"]))
+            self.results.append(known)
+            return
+        place.begin()
+        try:
+            outcome, scene = _run(cell, place, self._models[cell.model], self._options)
+        except ModelError as error:
+            self.failures.append(
+                {
+                    "condition": cell.scenario.condition,
+                    "model": cell.model,
+                    "seed": cell.seed,
+                    "error": str(error),
+                }
+            )
+            return
+        self.outcomes.append(outcome)
+        self.scenes.append(scene)
+        self.results.append(outcome_json(outcome, cell.model, place.path))
+        place.write_result(self.results[-1])
 
 
 def _scenarios(options: RunOptions) -> tuple[Scenario, ...]:
@@ -93,38 +189,61 @@ def _scenarios(options: RunOptions) -> tuple[Scenario, ...]:
     return tuple(Scenario.load(options.scenario, number) for number in numbers)
 
 
+def _check_numbers(options: RunOptions) -> None:
+    for name, number in (("--repeat", options.repeat), ("--attempts", options.asking.attempts)):
+        if number < 1:
+            raise InputError(f"{name} is {number}; it must be at least 1")
+    twice = [name for name in options.models if options.models.count(name) > 1]
+    if twice:
+        raise InputError(f"the model {twice[0]} is named twice; use --repeat to ask it again")
+
+
 def _run(
-    scenario: Scenario, place: ConditionFolder, model: Model, options: RunOptions
+    cell: Cell, place: ConditionFolder, model: Model, options: RunOptions
 ) -> tuple[Outcome, Scene]:
-    title = scenario.name
-    if scenario.condition is not None:
-        title += f", condition {scenario.condition}"
+    scenario = cell.scenario
+    asking = Asking(options.asking.attempts, Sampling(options.asking.temperature, cell.seed))
     started = time.perf_counter()
     with (
-        progress_on(title) as on_progress,
-        Nest.open(scenario, world=options.world, store=place.store, seed=options.seed) as nest,
+        progress_on(cell.title) as on_progress,
+        Nest.open(scenario, world=options.world, store=place.store, seed=cell.seed) as nest,
     ):
-        outcome = run_scenario(nest, scenario, model, options.seed, started, on_progress)
-        for probe in outcome.probes:
-            place.write_probe(probe)
+        outcome = run_scenario(nest, scenario, model, cell.seed, started, on_progress, asking)
+        for number, probe in enumerate(outcome.probes, start=1):
+            place.write_probe(number, probe)
         with SqliteJournal.read(place.store) as journal:
             scene = read_outcome_scene(nest, journal, outcome)
         save(draw_scene(scene), place.picture)
     return outcome, scene
 
 
+def _failures_text(failures: Sequence[Mapping[str, object]], total: int, folder: RunFolder) -> str:
+    if total == 1:
+        return str(failures[0]["error"])
+    return (
+        f"{len(failures)} of {total} have no result, run again with --out {folder.path} to go on; "
+        f"the first: {failures[0]['error']}"
+    )
+
+
 def _print(
-    outcomes: list[Outcome], folder: RunFolder, report: dict[str, object], *, as_json: bool
+    run: _Run, cells: Sequence[Cell], report: Mapping[str, object], *, as_json: bool
 ) -> None:
     console = stdout()
-    table = outcome_table(outcomes)
     with console.capture() as captured:
-        for outcome in outcomes:
-            if outcome.scenario.condition is not None:
-                number, about = outcome.scenario.condition, outcome.scenario.condition_description
+        for number, about in cells[0].scenario.conditions.items():
+            if any(cell.scenario.condition == number for cell in cells):
                 console.print(f"condition {number}: {about}", highlight=False)
-        console.print(table)
-        console.print(f"recorded in {folder.path}", highlight=False, soft_wrap=True)
+        console.print(_table(run, cells))
+        console.print(f"recorded in {run.folder.path}", highlight=False, soft_wrap=True)
     text = captured.get()
-    folder.write_summary(text)
+    run.folder.write_summary(text)
     sys.stdout.write(json.dumps(report, indent=2) + "\n" if as_json else text)
+
+
+def _table(run: _Run, cells: Sequence[Cell]) -> Table:
+    """Of one round what was found in each condition, of several how often it was as expected."""
+    flat = len(cells[0].folder.parts) == 1
+    if flat and run.outcomes and len(run.outcomes) == len(cells):
+        return outcome_table(run.outcomes)
+    return score_table(cells[0].scenario.name, score_runs(run.results, run.failures))

@@ -1,6 +1,13 @@
 """Language models: one protocol, adapters to providers, and what a run puts around them."""
 
-from beliefnest.llm.asking import Attempt, Check, ProgramAnswer, Prompt, ask_for_program
+from beliefnest.llm.asking import (
+    Attempt,
+    Check,
+    NoUsableProgramError,
+    ProgramAnswer,
+    Prompt,
+    ask_for_program,
+)
 from beliefnest.llm.budget import Budget, RunLimits
 from beliefnest.llm.cache import CacheMode
 from beliefnest.llm.clock import Clock, SystemClock
@@ -22,6 +29,7 @@ __all__ = [
     "Message",
     "Model",
     "NoProgramError",
+    "NoUsableProgramError",
     "ProgramAnswer",
     "Prompt",
     "RetryPolicy",

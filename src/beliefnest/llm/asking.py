@@ -8,7 +8,14 @@ from beliefnest.llm.extract import NoProgramError, extract_program
 from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 
-__all__ = ["Attempt", "Check", "ProgramAnswer", "Prompt", "ask_for_program"]
+__all__ = [
+    "Attempt",
+    "Check",
+    "NoUsableProgramError",
+    "ProgramAnswer",
+    "Prompt",
+    "ask_for_program",
+]
 
 Check = Callable[[str], str | None]
 """Given a program, what is wrong with it, for the model to read; None: nothing."""
@@ -52,6 +59,18 @@ class ProgramAnswer:
         return sum((attempt.answer.usage for attempt in self.attempts), Usage())
 
 
+class NoUsableProgramError(ModelError):
+    """No round gave a program that passed.
+
+    Attributes:
+        attempts: All rounds.
+    """
+
+    def __init__(self, message: str, attempts: tuple[Attempt, ...]) -> None:
+        super().__init__(message)
+        self.attempts = attempts
+
+
 def ask_for_program(
     model: Model,
     prompt: Prompt,
@@ -75,7 +94,8 @@ def ask_for_program(
 
     Raises:
         InputError: `attempts` is below 1.
-        ModelError: The model failed, or no round gave a program that passed.
+        ModelError: The model failed.
+        NoUsableProgramError: No round gave a program that passed.
     """
     if attempts < 1:
         raise InputError(f"attempts is {attempts}; it must be at least 1")
@@ -87,8 +107,9 @@ def ask_for_program(
         rounds.append(Attempt(messages, answer, program, complaint))
         if program is not None and complaint is None:
             return ProgramAnswer(program, tuple(rounds))
-    raise ModelError(
-        f"{model.name} gave no usable program in {_times(attempts)}: {rounds[-1].complaint}"
+    raise NoUsableProgramError(
+        f"{model.name} gave no usable program in {_times(attempts)}: {rounds[-1].complaint}",
+        tuple(rounds),
     )
 
 

@@ -23,12 +23,15 @@ from beliefnest.prompts.templates import (
 from beliefnest.prompts.text import nearest
 from beliefnest.prompts.view import BranchView
 
-__all__ = ["NO_CODE", "NO_ERROR", "render"]
+__all__ = ["LAST_CODE", "LAST_ERROR", "NO_CODE", "NO_ERROR", "render"]
 
 NO_CODE = "No code was executed"
 NO_ERROR = "No error"
 
-_MARKERS = {"$$LAST_CODE$$": "{{ last_code }}", "$$LAST_ERROR$$": "{{ last_error }}"}
+LAST_CODE = "$$LAST_CODE$$"
+LAST_ERROR = "$$LAST_ERROR$$"
+
+_MARKERS = {LAST_CODE: "{{ last_code }}", LAST_ERROR: "{{ last_error }}"}
 _PLAIN_TYPES = (str, bytes, int, float, list, tuple, dict, set, frozenset)
 
 

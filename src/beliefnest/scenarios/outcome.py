@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from beliefnest.belief.view import State
+from beliefnest.llm.messages import Usage
 from beliefnest.nest.paths import parse_path, path_text
 from beliefnest.scenarios.scenario import Expectation, Probe, Scenario
 from beliefnest.world.values import Point, Position
@@ -21,6 +22,8 @@ class ProbeOutcome:
         answer: The whole answer.
         program: The program in it.
         branch: The branch that it ran on.
+        attempts: How often the model was asked; faults were sent back in between.
+        usage: What all its answers took.
         ok_run: Whether the program ended without an error.
         error: Why it failed; None if it did not.
         opened: The containers that the agent opened, in order.
@@ -33,6 +36,8 @@ class ProbeOutcome:
     answer: str
     program: str
     branch: str
+    attempts: int
+    usage: Usage
     ok_run: bool
     error: str | None
     opened: tuple[Position, ...]
@@ -76,6 +81,11 @@ class Outcome:
         """The state of a simulator that the scenario names, after the script."""
         names = parse_path(path, self.scenario.setting.snapshot.agents)
         return self.beliefs[path_text(names)] if names else self.reality
+
+    @property
+    def usage(self) -> Usage:
+        """What all answers of the model took."""
+        return sum((probe.usage for probe in self.probes), Usage())
 
     @property
     def ok(self) -> bool:

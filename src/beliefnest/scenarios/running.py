@@ -1,23 +1,47 @@
 """Running a scenario in an open nest: its script, its expectations, its probes."""
 
 import time
+from dataclasses import dataclass, field
 
 from beliefnest.belief.view import State
-from beliefnest.llm.asking import ask_for_program
-from beliefnest.llm.messages import Model
+from beliefnest.bodies.protocol import ProgramResult
+from beliefnest.llm.asking import NoUsableProgramError, Prompt, ask_for_program
+from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.nest.nest import Nest, Progress
 from beliefnest.nest.paths import parse_path, path_text
+from beliefnest.nest.simulator import Simulator
+from beliefnest.programs import skills
 from beliefnest.prompts import Template, built_in_template
+from beliefnest.prompts.rendering import LAST_ERROR
 from beliefnest.scenarios.judging import arrives, is_held, opened_by, opens
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Arrives, Opens, Probe, Scenario
 from beliefnest.world.values import Point, Position
 
-__all__ = ["run_scenario"]
+__all__ = ["Asking", "run_scenario"]
+
+
+@dataclass(frozen=True, slots=True)
+class Asking:
+    """How a model is asked.
+
+    Attributes:
+        attempts: How often at most, for one probe: a program that does not work is sent back.
+        sampling: How answers are drawn.
+    """
+
+    attempts: int = 3
+    sampling: Sampling = field(default_factory=Sampling)
 
 
 def run_scenario(
-    nest: Nest, scenario: Scenario, model: Model, seed: int, started: float, on_progress: Progress
+    nest: Nest,
+    scenario: Scenario,
+    model: Model,
+    seed: int,
+    started: float,
+    on_progress: Progress,
+    asking: Asking | None = None,
 ) -> Outcome:
     """Play the script, hold the expectations against the nest, and run the probes.
 
@@ -28,6 +52,7 @@ def run_scenario(
         seed: What the nest was opened with, for the record.
         started: `time.perf_counter()` before the nest was opened.
         on_progress: Takes what is being done.
+        asking: How the model is asked; None: as `Asking()` says.
 
     Raises:
         ProgramError: A program of the script failed.
@@ -47,7 +72,7 @@ def run_scenario(
     probes = []
     for number, probe in enumerate(scenario.probes):
         on_progress(f"asking: {probe.task}", number, len(scenario.probes))
-        probes.append(_run_probe(nest, probe, f"probe {number + 1}", model))
+        probes.append(_run_probe(nest, number + 1, probe, model, asking or Asking()))
     return Outcome(
         scenario=scenario,
         seed=seed,
@@ -69,41 +94,104 @@ def _paths(scenario: Scenario) -> list[str]:
     return [path_text(path) for path in sorted(paths, key=lambda p: (len(p), p)) if path]
 
 
-def _run_probe(nest: Nest, probe: Probe, branch: str, model: Model) -> ProbeOutcome:
-    template = (
-        built_in_template("paper")
-        if probe.template is None
-        else Template("template of the probe", probe.template)
-    )
-    believer = nest[probe.path]
-    prompt = believer.render(template, task=probe.task)
-    instructions = believer.render(built_in_template("instructions"))
-    answer = ask_for_program(model, prompt, _accept, system=instructions)
-    simulator = nest[probe.acts_in]
-    before = simulator.branch
-    simulator.switch(branch)
+def _run_probe(nest: Nest, number: int, probe: Probe, model: Model, asking: Asking) -> ProbeOutcome:
+    trials = _Trials(nest, probe, f"probe {number}")
+    prompts = _Prompts(nest[probe.path], probe)
     try:
-        result = simulator.run(probe.agent, answer.program, probe.timeout_ticks)
-        opened = opened_by(probe.agent, result.events)
-        arrived = _standing(simulator.state, probe.agent)
-    finally:
-        simulator.switch(before)
+        attempts = ask_for_program(
+            model,
+            prompts.prompt,
+            trials.complaint,
+            asking.attempts,
+            system=prompts.system,
+            sampling=asking.sampling,
+        ).attempts
+    except NoUsableProgramError as error:
+        if not trials.done:
+            raise
+        # It did give programs: what the last of them did is the result.
+        attempts = error.attempts
+    last = trials.done[-1]
+    answer = next(each for each in reversed(attempts) if each.program is not None)
     return ProbeOutcome(
         probe=probe,
-        prompt=prompt,
-        answer=answer.attempts[-1].answer.text,
-        program=answer.program,
-        branch=branch,
-        ok_run=result.ok,
-        error=None if result.error is None else str(result.error),
-        opened=opened,
-        arrived=arrived,
-        ok=_judge(probe.expect, opened, arrived),
+        prompt=answer.messages[-1].text,
+        answer=answer.answer.text,
+        program=last.program,
+        branch=last.branch,
+        attempts=len(attempts),
+        usage=sum((each.answer.usage for each in attempts), Usage()),
+        ok_run=last.result.ok,
+        error=None if last.result.error is None else str(last.result.error),
+        opened=last.opened,
+        arrived=last.arrived,
+        ok=_judge(probe.expect, last.opened, last.arrived),
     )
 
 
-def _accept(program: str) -> None:
-    """No program is sent back: what it does in the simulator is what is judged."""
+class _Prompts:
+    """What a model is told: how to answer, and what the belief holds."""
+
+    def __init__(self, believer: Simulator, probe: Probe) -> None:
+        self._believer = believer
+        self._task = probe.task
+        if probe.template is None:
+            self._template = built_in_template("paper")
+        else:
+            self._template = Template("template of the probe", probe.template)
+        self.system = believer.render(built_in_template("instructions"), skills=skills())
+
+    @property
+    def prompt(self) -> Prompt:
+        """Rendered anew in each round if the template shows the last error, else one text."""
+        return self._render if LAST_ERROR in self._template.text else self._render(None, None)
+
+    def _render(self, code: str | None, error: str | None) -> str:
+        return self._believer.render(
+            self._template, task=self._task, last_code=code, last_error=error
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Trial:
+    """A program that was run, and what it did."""
+
+    program: str
+    branch: str
+    result: ProgramResult
+    opened: tuple[Position, ...]
+    arrived: Point | None
+
+
+class _Trials:
+    """Runs programs of a probe, each from the same moment, on a branch of its own."""
+
+    def __init__(self, nest: Nest, probe: Probe, name: str) -> None:
+        self._simulator = nest[probe.acts_in]
+        self._probe = probe
+        self._name = name
+        self.done: list[_Trial] = []
+
+    def complaint(self, program: str) -> str | None:
+        """Run a program; why it does not work, for the model to read.
+
+        A program that has acted is never sent back, however it ended: what it did is the
+        answer, and its error tells of a world that the believer may not know.
+        """
+        probe, simulator = self._probe, self._simulator
+        branch = self._name if not self.done else f"{self._name} attempt {len(self.done) + 1}"
+        before = simulator.branch
+        simulator.switch(branch)
+        try:
+            result = simulator.run(probe.agent, program, probe.timeout_ticks)
+            opened = opened_by(probe.agent, result.events)
+            arrived = _standing(simulator.state, probe.agent)
+        finally:
+            simulator.switch(before)
+        self.done.append(_Trial(program, branch, result, opened, arrived))
+        error = result.error
+        acted = any(event.actor == probe.agent for event in result.events)
+        return None if error is None or error.skill is not None or acted else str(error)
 
 
 def _standing(state: State, agent: str) -> Point | None:

@@ -1,0 +1,121 @@
+"""The table of a run with several models or repeats: condition by model."""
+
+import statistics
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rich import box
+from rich.table import Table
+
+from beliefnest.cli.report import cost_text
+from beliefnest.scenarios.scoring import wilson_interval
+
+__all__ = ["Score", "score_runs", "score_table", "scores_json"]
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """What came of all repeats of one condition with one model.
+
+    Attributes:
+        condition: Number of the condition; None: the scenario has none.
+        model: Name of the model.
+        passed: Repeats in which all was as expected.
+        total: Repeats with a result.
+        failed: Repeats without, because the model failed.
+        tokens: Sent and received, in all.
+        cost: US dollars in all; None: not known.
+        seconds: Mean wall time of a repeat.
+    """
+
+    condition: int | None
+    model: str
+    passed: int
+    total: int
+    failed: int
+    tokens: int
+    cost: float | None
+    seconds: float
+
+    @property
+    def interval(self) -> tuple[float, float] | None:
+        """The 95 % interval of the pass rate; None without a result."""
+        return wilson_interval(self.passed, self.total) if self.total else None
+
+
+def score_runs(
+    runs: Sequence[Mapping[str, Any]], failures: Sequence[Mapping[str, Any]]
+) -> list[Score]:
+    """The scores of runs as they are reported, in order of condition, then as they come."""
+    keys = list(dict.fromkeys((each["condition"], each["model"]) for each in (*runs, *failures)))
+    keys.sort(key=lambda key: -1 if key[0] is None else key[0])
+    return [
+        _score(
+            condition,
+            model,
+            [run for run in runs if (run["condition"], run["model"]) == (condition, model)],
+            sum((f["condition"], f["model"]) == (condition, model) for f in failures),
+        )
+        for condition, model in keys
+    ]
+
+
+def _score(
+    condition: int | None, model: str, runs: Sequence[Mapping[str, Any]], failed: int
+) -> Score:
+    used = [run["usage"] for run in runs]
+    costs = [usage["cost"] for usage in used]
+    return Score(
+        condition=condition,
+        model=model,
+        passed=sum(run["ok"] for run in runs),
+        total=len(runs),
+        failed=failed,
+        tokens=sum(usage["input_tokens"] + usage["output_tokens"] for usage in used),
+        cost=None if None in costs else sum(costs),
+        seconds=statistics.mean(run["seconds"] for run in runs) if runs else 0.0,
+    )
+
+
+def scores_json(scores: Sequence[Score]) -> list[dict[str, object]]:
+    """Scores for the report."""
+    return [
+        {
+            "condition": score.condition,
+            "model": score.model,
+            "passed": score.passed,
+            "total": score.total,
+            "failed": score.failed,
+            "rate": score.passed / score.total if score.total else None,
+            "interval": None if score.interval is None else list(score.interval),
+            "tokens": score.tokens,
+            "cost": score.cost,
+            "seconds": round(score.seconds, 3),
+        }
+        for score in scores
+    ]
+
+
+def score_table(name: str, scores: Sequence[Score]) -> Table:
+    """One row for each condition and model."""
+    table = Table(title=name, title_justify="left", box=box.SIMPLE_HEAVY)
+    table.add_column("condition", justify="right")
+    table.add_column("model")
+    for heading in ("passed", "rate", "95 % interval", "no result", "tokens", "cost", "seconds"):
+        table.add_column(heading, justify="right")
+    for score in scores:
+        rate = f"{score.passed / score.total:.0%}" if score.total else "-"
+        low, high = score.interval or (0.0, 1.0)
+        table.add_row(
+            "-" if score.condition is None else str(score.condition),
+            score.model,
+            f"{score.passed} of {score.total}",
+            rate,
+            f"{low:.0%} to {high:.0%}",
+            str(score.failed) if score.failed else "",
+            f"{score.tokens:,}",
+            cost_text(score.cost),
+            f"{score.seconds:.2f}",
+        )
+    return table

@@ -1,0 +1,64 @@
+"""What a run consists of: one cell for each model, repeat and condition."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from beliefnest.scenarios.scenario import Scenario
+
+__all__ = ["Cell", "plan_cells"]
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """One scenario under one condition with one model, once.
+
+    Attributes:
+        scenario: Under its condition.
+        model: Name of the model.
+        seed: Drives every random number; repeats have different ones.
+        folder: In the run folder.
+    """
+
+    scenario: Scenario
+    model: str
+    seed: int
+    folder: Path
+
+    @property
+    def title(self) -> str:
+        """What it is, for progress and messages."""
+        parts = [self.scenario.name]
+        if self.scenario.condition is not None:
+            parts.append(f"condition {self.scenario.condition}")
+        if len(self.folder.parts) > 1:
+            parts += [self.model, f"seed {self.seed}"]
+        return ", ".join(parts)
+
+
+def plan_cells(
+    scenarios: Sequence[Scenario], models: Sequence[str], repeat: int, seed: int
+) -> list[Cell]:
+    """All cells in the order in which they are run; a single round lies flat in its folder."""
+    flat = len(models) == 1 and repeat == 1
+    return [
+        Cell(
+            scenario=scenario,
+            model=model,
+            seed=seed + number,
+            folder=_folder(number, model, models) / condition if not flat else Path(condition),
+        )
+        for number in range(repeat)
+        for model in models
+        for scenario in scenarios
+        for condition in [
+            "run" if scenario.condition is None else f"condition-{scenario.condition}"
+        ]
+    ]
+
+
+def _folder(number: int, model: str, models: Sequence[str]) -> Path:
+    """The number in front keeps models apart whose names differ only in special signs."""
+    name = re.sub(r"[^A-Za-z0-9.]+", "-", model)
+    return Path(f"model-{models.index(model) + 1}-{name}", f"repeat-{number + 1}")
