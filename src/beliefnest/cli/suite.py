@@ -1,0 +1,156 @@
+"""`beliefnest suite`: all questions of a file answered from nests, and how many are right."""
+
+import json
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich import box
+from rich.table import Table
+
+from beliefnest.bodies.worlds import check_world
+from beliefnest.cli.console import progress_on, stdout
+from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.scenarios.stories.data import StoryItems, read_items
+from beliefnest.scenarios.stories.suite import (
+    Judged,
+    Score,
+    answer_story,
+    score,
+    scores_by_order,
+)
+
+__all__ = ["SUITES", "SuiteOptions", "run_suite"]
+
+SUITES = ("hi-tom",)
+"""Names of the suites."""
+
+_REPORTS = 20
+"""Lines of progress where there is no terminal."""
+
+
+@dataclass(frozen=True, slots=True)
+class SuiteOptions:
+    """What was asked for on the command line.
+
+    Attributes:
+        name: Name of the suite.
+        data: File of stories, questions and answers.
+        world: Name of the world.
+        limit: Play no more stories than this; None: all.
+        seed: Drives every random number.
+        as_json: Whether to print one JSON object instead of a table.
+    """
+
+    name: str
+    data: Path
+    world: str
+    limit: int | None
+    seed: int
+    as_json: bool
+
+
+def run_suite(options: SuiteOptions) -> int:
+    """Play, answer, and print; the exit status says whether every answer is right.
+
+    Raises:
+        BeliefNestError: The input is wrong, or a world failed.
+    """
+    if options.name not in SUITES:
+        raise UnknownNameError(f"no suite {options.name!r}; there are {', '.join(SUITES)}")
+    if options.limit is not None and options.limit < 1:
+        raise InputError(f"--limit is {options.limit}; give 1 or more stories")
+    check_world(options.world)
+    stories = read_items(options.data)[: options.limit]
+    if not stories:
+        raise InputError(f"{options.data} holds no rows; there is nothing to ask")
+    started = time.perf_counter()
+    judged = _answer(stories, options)
+    report = _report(options, len(stories), judged, time.perf_counter() - started)
+    if options.as_json:
+        sys.stdout.write(json.dumps(report, indent=2) + "\n")
+    else:
+        _print(options, stories, judged)
+    return 0 if all(each.ok for each in judged) else 1
+
+
+def _answer(stories: Sequence[StoryItems], options: SuiteOptions) -> list[Judged]:
+    judged: list[Judged] = []
+    step = max(1, len(stories) // _REPORTS)
+    with progress_on(f"{options.name} ({options.world})") as on_progress:
+        for number, asked in enumerate(stories):
+            if number % step == 0:
+                on_progress(f"story {number + 1}", number, len(stories))
+            judged += answer_story(asked, options.world, options.seed)
+        on_progress("all stories played", len(stories), len(stories))
+    return judged
+
+
+def _needs_first(judged: Sequence[Judged]) -> dict[int, Score]:
+    scores = scores_by_order(judged, lambda each: each.needs_first)
+    return {order: found for order, found in scores.items() if order > 0}
+
+
+def _report(
+    options: SuiteOptions, stories: int, judged: Sequence[Judged], seconds: float
+) -> dict[str, object]:
+    return {
+        "suite": options.name,
+        "data": str(options.data),
+        "world": options.world,
+        "seed": options.seed,
+        "stories": stories,
+        "seconds": round(seconds, 3),
+        "ok": all(each.ok for each in judged),
+        "all": _score_json(score(judged)),
+        "orders": _scores_json(scores_by_order(judged)),
+        "first_believer_matters": _scores_json(_needs_first(judged)),
+        "misses": [_miss_json(each) for each in judged if not each.ok],
+    }
+
+
+def _scores_json(scores: Mapping[int, Score]) -> dict[str, object]:
+    return {str(order): _score_json(found) for order, found in scores.items()}
+
+
+def _score_json(found: Score) -> dict[str, object]:
+    return {"questions": found.questions, "right": found.right, "accuracy": found.accuracy}
+
+
+def _miss_json(judged: Judged) -> dict[str, object]:
+    return {
+        "row": judged.item.row,
+        "order": judged.item.question.order,
+        "question": judged.item.question.text,
+        "path": judged.answer.path,
+        "answer": judged.answer.text,
+        "expected": judged.item.expected,
+        "explanation": list(judged.explanation),
+    }
+
+
+def _print(options: SuiteOptions, stories: Sequence[StoryItems], judged: Sequence[Judged]) -> None:
+    title = f"{options.name}: {len(stories)} stories in the {options.world} world"
+    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAVY)
+    for heading in ("order", "questions", "right", "first believer matters", "right"):
+        table.add_column(heading, justify="right")
+    matters = _needs_first(judged)
+    for order, found in scores_by_order(judged).items():
+        table.add_row(str(order), *_cells(found), *_cells(matters.get(order, Score(0, 0))))
+    total = score(each for each in judged if each.needs_first)
+    table.add_row("all", *_cells(score(judged)), *_cells(total))
+    console = stdout()
+    console.print(table)
+    for each in judged:
+        if not each.ok:
+            console.print(f"row {each.item.row}: {each.item.question.text}", markup=False)
+            for line in each.explanation:
+                console.print(f"    {line}", markup=False, highlight=False, soft_wrap=True)
+
+
+def _cells(found: Score) -> tuple[str, str]:
+    if found.accuracy is None:
+        return "", ""
+    return str(found.questions), f"{found.accuracy:.1%}"

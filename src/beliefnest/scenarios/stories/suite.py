@@ -1,0 +1,93 @@
+"""Answering all questions of a file of stories, and how many answers are right."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+
+from beliefnest.scenarios.stories.data import Item, StoryItems
+from beliefnest.scenarios.stories.explaining import explain_answer
+from beliefnest.scenarios.stories.playing import Answer, PlayedStory
+
+__all__ = ["Judged", "Score", "answer_story", "score", "scores_by_order"]
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """A question that was answered.
+
+    Attributes:
+        item: The question and what is expected.
+        answer: What the nest says.
+        needs_first: Whether the answer expected differs from what the nest says with the
+            first believer dropped; False where there is none.
+        explanation: Why the nest says it, for a wrong answer; else empty.
+    """
+
+    item: Item
+    answer: Answer
+    needs_first: bool
+    explanation: tuple[str, ...] = ()
+
+    @property
+    def ok(self) -> bool:
+        """Whether the answer is the one expected."""
+        return self.answer.text == self.item.expected
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """How many answers are right.
+
+    Attributes:
+        questions: How many there are.
+        right: How many are right.
+    """
+
+    questions: int
+    right: int
+
+    @property
+    def accuracy(self) -> float | None:
+        """Share of right answers, 0 to 1; None: nothing was asked."""
+        return self.right / self.questions if self.questions else None
+
+
+def answer_story(asked: StoryItems, world: str = "scripted", seed: int = 0) -> tuple[Judged, ...]:
+    """Play a story once and answer all its questions from one nest.
+
+    Raises:
+        BodyError: The world could not be started, or died.
+        ProgramError: A bot could not do what a line says.
+        UnknownNameError: There is no such world.
+    """
+    with PlayedStory.play(asked.story, world, seed) as played:
+        questions = [item.question for item in asked.items]
+        nested = [q for q in questions if q.believers]
+        dropped = [replace(q, believers=q.believers[1:]) for q in nested]
+        answers = played.answer_all([*questions, *dropped])
+        without = dict(zip(nested, answers[len(questions) :], strict=True))
+        judged = []
+        for item, answer in zip(asked.items, answers, strict=False):
+            other = without.get(item.question)
+            each = Judged(item, answer, other is not None and other.text != item.expected)
+            if not each.ok:
+                why = explain_answer(played, item.question, answer, item.expected)
+                each = replace(each, explanation=why)
+            judged.append(each)
+    return tuple(judged)
+
+
+def score(judged: Iterable[Judged]) -> Score:
+    """The score of some answers."""
+    verdicts = [each.ok for each in judged]
+    return Score(len(verdicts), sum(verdicts))
+
+
+def scores_by_order(
+    judged: Sequence[Judged], of: Callable[[Judged], bool] = lambda _: True
+) -> dict[int, Score]:
+    """The score of each order that is asked for, among those answers that `of` selects."""
+    orders = sorted({each.item.question.order for each in judged})
+    return {
+        order: score(each for each in judged if each.item.question.order == order and of(each))
+        for order in orders
+    }
