@@ -129,7 +129,7 @@ _FORMS: tuple[tuple[str, Callable[[re.Match[str]], Sentence]], ...] = (
         lambda match: Moved(match["agent"], match["thing"], match["container"]),
     ),
     (
-        rf"(?:The |the )?(?P<thing>{_NAME}) (?:is|was) in (?:the )?(?P<place>{_NAME})",
+        rf"[Tt]he (?P<thing>{_NAME}) (?:is|was) in (?:the )?(?P<place>{_NAME})",
         lambda match: Located(match["thing"], match["place"]),
     ),
     (rf"{_AGENTS} (?:dis)?likes? (?:{_A} )?{_NAME}", _remark),
