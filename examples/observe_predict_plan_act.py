@@ -1,0 +1,90 @@
+"""Observe, predict, plan, act: Anne helps Sally, round by round, until Sally has her diamond.
+
+Run it with `python examples/observe_predict_plan_act.py [MODEL]`. In each round
+
+* observe: Anne's belief follows what she perceives, by itself;
+* predict: inside her belief, Sally's next program is asked for from what Anne believes that Sally
+  believes, and run on a branch of the belief;
+* plan: if that does not give Sally what she wants, Anne's own program is asked for from what Anne
+  believes, and tried out on another branch of the belief;
+* act: only a plan that works there is run in the real world.
+"""
+
+import os
+import sys
+from dataclasses import dataclass
+
+import beliefnest as bn
+from beliefnest.llm import Connection, Model, Sampling, ask_for_program, open_model
+from beliefnest.programs import skills
+from beliefnest.prompts import built_in_template
+
+WISH = "Get a diamond from a chest."
+ROUNDS = 3
+
+
+@dataclass(frozen=True)
+class Round:
+    """What Anne foresaw, what she planned and whether it would work, and what came of it."""
+
+    predicted: str
+    sally_would_succeed: bool
+    planned: str | None
+    would_help: bool
+    helped: bool
+
+
+def ask(model: Model, belief: bn.Simulator, task: str) -> str:
+    """The program that a model gives for a task, from one belief alone."""
+    return ask_for_program(
+        model,
+        belief.render(built_in_template("paper"), task=task),
+        check=lambda program: None,
+        system=belief.render(built_in_template("instructions"), skills=skills()),
+        sampling=Sampling(seed=0),
+    ).program
+
+
+def imagine(belief: bn.Simulator, agent: str, program: str, branch: str) -> bool:
+    """Run a program on a branch of a belief: would Sally have a diamond then?"""
+    belief.switch(branch)
+    try:
+        belief.run(agent, program)
+        return has_diamond(belief)
+    finally:
+        belief.switch("follow")
+
+
+def has_diamond(simulator: bn.Simulator) -> bool:
+    """Whether Sally has a diamond as far as a simulator knows."""
+    return simulator.state.agents["sally"].inventory.get("diamond", 0) > 0
+
+
+def play_round(nest: bn.Nest, model: Model, number: int) -> Round:
+    """Predict, plan, act, once; observing happens by itself."""
+    anne = nest["/anne"]
+    predicted = ask(model, nest["/anne/sally"], WISH)
+    if imagine(anne, "sally", predicted, f"prediction {number}"):
+        return Round(predicted, True, None, False, has_diamond(nest["/"]))
+    planned = ask(model, anne, "Help Sally.")
+    would_help = imagine(anne, "anne", planned, f"plan {number}")
+    if would_help:
+        nest["/"].run("anne", planned)
+    return Round(predicted, False, planned, would_help, has_diamond(nest["/"]))
+
+
+def play(model: Model, store: str | None = None) -> list[Round]:
+    """All rounds, until Sally has her diamond."""
+    rounds: list[Round] = []
+    with bn.Nest.open(bn.Scenario.load("help-sally"), store=store) as nest:
+        nest.play()
+        while len(rounds) < ROUNDS and not has_diamond(nest["/"]):
+            rounds.append(play_round(nest, model, len(rounds) + 1))
+    return rounds
+
+
+if __name__ == "__main__":
+    name = sys.argv[1] if len(sys.argv) > 1 else "offline"
+    for each in play(open_model(name, os.environ, Connection())):
+        print(f"Sally would succeed: {each.sally_would_succeed}")
+        print(f"Anne's plan would help: {each.would_help}; it did: {each.helped}")
