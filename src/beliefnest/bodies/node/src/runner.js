@@ -28,7 +28,7 @@ class Runner {
     const bodies = Object.keys(programs).map(agent => region.body(agent))
     const first = region.tick
     const runs = []
-    await this.regions.inside(region, async () => {
+    await this.regions.resumed(region, async () => {
       Object.values(programs).forEach((code, index) => runs.push(this.start(region, bodies[index], code)))
       try {
         await this.untilEnded(region, runs, first + timeoutTicks)

@@ -3,6 +3,7 @@
 const { connect } = require('../net/transport')
 const { BadRequest } = require('../channel/errors')
 const { orBadRequest } = require('./changes')
+const { agentState } = require('./facts')
 const { agentUuid, INJECTION_MS, startBot } = require('../bots/bot')
 
 // What gravity leaves of the vertical speed of one who stands: (0 - 0.08) * 0.98 a tick.
@@ -90,6 +91,18 @@ class Bodies {
     if (Object.keys(joining).length > 0) await this.add(region, joining)
     await this.clock.advance(0)
     for (const { bot, player, state } of staying) ground(bot, player, state)
+  }
+
+  /** Puts standing agents exactly where the channel says they are; their bots stop gliding. */
+  async settle (region) {
+    const standing = [...region.bodies.values()]
+      .filter(({ player }) => player.onGround)
+      .map(({ bot, player }) => ({ bot, player, state: agentState(region, player) }))
+    for (const { player, state } of standing) {
+      player.place(region.toServer(state.position), state.yaw, state.pitch)
+    }
+    await this.clock.advance(0)
+    for (const { bot, player, state } of standing) ground(bot, player, state)
   }
 
   /** Takes an agent out of the active region. */

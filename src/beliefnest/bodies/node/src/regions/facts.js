@@ -58,4 +58,4 @@ function itemStates (serv, region) {
   return items
 }
 
-module.exports = { agentStates, changedContainers, containerStates, itemStates }
+module.exports = { agentState, agentStates, changedContainers, containerStates, itemStates }

@@ -4,9 +4,12 @@ const { Vec3 } = require('vec3')
 const { Context } = require('../time/clock')
 const { Mail } = require('../net/transport')
 const { BadRequest } = require('../channel/errors')
+const { Random } = require('../time/random')
 const { Translator } = require('../net/translate')
 const { regionalState } = require('../server/regional')
 const { columnsOf } = require('./columns')
+
+const TICK_MS = 50
 
 class Region {
   /**
@@ -19,6 +22,7 @@ class Region {
    */
   constructor ({ name, seed, box, origin, tick }) {
     this.name = name
+    this.seed = seed
     this.box = box
     this.origin = origin
     this.tick = tick
@@ -27,6 +31,7 @@ class Region {
     this.faults = []
     const report = fault => this.faults.push(fault)
     this.context = new Context(seed, report)
+    this.context.time = tick * TICK_MS
     this.mail = new Mail(report)
     this.translator = new Translator(origin)
     this.bodies = new Map()
@@ -66,6 +71,11 @@ class Region {
       Math.floor(x) - this.origin.x, Math.floor(y), Math.floor(z) - this.origin.z)
   }
 
+  /** Lets random numbers depend on seed and tick alone, not on what was drawn before. */
+  reseed () {
+    this.context.random = new Random(`${this.seed} ${this.tick}`)
+  }
+
   /** @throws {Error} the first fault of the server side since the last call */
   raiseFaults () {
     if (this.faults.length === 0) return
@@ -75,4 +85,4 @@ class Region {
   }
 }
 
-module.exports = { Region }
+module.exports = { Region, TICK_MS }

@@ -7,10 +7,8 @@ const { buildColumns, dropColumns, readStates } = require('./columns')
 const { applyBlocks, applyContainers, applyItems } = require('./changes')
 const { agentStates, containerStates, itemStates } = require('./facts')
 const { Recorder } = require('./recorder')
-const { Region } = require('./region')
+const { Region, TICK_MS } = require('./region')
 const { BadRequest } = require('../channel/errors')
-
-const TICK_MS = 50
 
 class Regions {
   /**
@@ -100,6 +98,18 @@ class Regions {
     this.byName.delete(name)
   }
 
+  /**
+   * Runs `action` in a region that goes on as one made anew from its snapshot would, so that
+   * neither an end of the process nor a visit to another branch can be seen in what follows.
+   */
+  async resumed (region, action) {
+    return this.inside(region, async () => {
+      region.reseed()
+      await this.bodies.settle(region)
+      return action()
+    })
+  }
+
   /** One tick of the active region; its frame is sent if anything changed. */
   async tick (region) {
     await this.clock.advance(TICK_MS)
@@ -110,12 +120,13 @@ class Regions {
     await this.clock.advance(0)
     const frame = region.recorder.frame()
     if (frame !== null) this.send(frame)
+    region.reseed()
     region.raiseFaults()
   }
 
   async step (name, ticks) {
     const region = this.get(name)
-    await this.inside(region, async () => {
+    await this.resumed(region, async () => {
       for (let count = 0; count < ticks; count++) await this.tick(region)
     })
     return { tick: region.tick }
