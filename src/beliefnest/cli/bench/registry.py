@@ -14,7 +14,9 @@ BENCHES: Mapping[str, str] = {
     "body": "beliefnest.cli.bench.body",
     "size": "beliefnest.cli.bench.size",
     "timelines": "beliefnest.cli.bench.timelines",
+    "prompts": "beliefnest.cli.bench.prompts",
     "beliefs": "beliefnest.cli.bench.beliefs",
+    "stories": "beliefnest.cli.bench.stories",
 }
 """Name to the module whose `measure()` it is; loaded when it is run."""
 
