@@ -63,6 +63,7 @@ class Session {
     const serv = createServer(registry)
     this.regions = new Regions(serv, this.clock, frame => this.send({ frame }))
     const sandbox = createSandbox()
+    await sandbox.warm()
     this.runner = new Runner(this.regions, request => sandbox.run(request), scopeOf)
     return { protocol: PROTOCOL, node: process.version, ...versions }
   }

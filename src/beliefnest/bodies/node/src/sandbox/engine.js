@@ -65,6 +65,12 @@ class Engine {
     this.memories.give(guest.memory, guest.limits.memory)
   }
 
+  /** Makes what every program starts from, so that the first one need not wait for it. */
+  async warm () {
+    this.template ??= this.makeTemplate()
+    await this.template
+  }
+
   // The state every guest starts in, made once: a fresh context with the guest's side of the border.
   async makeTemplate () {
     const interpreter = await QuickJS.open(this.module, this.memories.take(0), { call: () => 0, interrupt: () => false })
