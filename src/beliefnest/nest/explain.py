@@ -1,7 +1,7 @@
 """The chain of perceptions behind a belief, worked out from the log by the rules of sight."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.entries import Basis, PerceivedEvent
@@ -106,7 +106,7 @@ def _explained(
     now = _held_now(engine, path, place, element)
     fact = _fact(engine, place, now[root], element)
     traces = [_Trace(node, now[node]) for node in paths[1:]]
-    _follow(engine, path, place, element, traces)
+    _follow(engine, path, place, tick, element, traces)
     before = None
     base = engine.journal.info(place.key).base
     if base is not None and fact.since is None:
@@ -195,20 +195,14 @@ def _fact(engine: Engine, place: Place, held: _Held, element: Element) -> Fact:
 
 
 def _follow(
-    engine: Engine, path: Path, place: Place, element: Element, traces: list[_Trace]
+    engine: Engine, path: Path, place: Place, tick: int, element: Element, traces: list[_Trace]
 ) -> None:
     """Go through the log from the oldest basis on, and note in each trace what happened."""
     if not traces:
         return
+    # Whether something unknown was ever known only the whole log can tell.
     first = engine.setting.snapshot.tick
-    forgets = element.kind == "agent" and engine.setting.perception.negative_evidence
-    ticks = [
-        trace.observed_at if trace.observed_at is not None else first
-        for trace in traces
-        if trace.observed_at is not None or forgets
-    ]
-    # Where nothing is known there is no basis to begin at, and the last entry is enough.
-    start = min(ticks, default=engine.journal.info(place.key).head + 1)
+    start = min(first if trace.observed_at is None else trace.observed_at for trace in traces)
     last = None
     for step in steps_since(engine.history, engine.journal, path, place, start, element):
         last = step
@@ -218,7 +212,9 @@ def _follow(
         if last is not None and trace.held.basis is None:
             around = value_in(last.forest, trace.path[:-1], element)
             if around is not None:
-                trace.missed = _missed(engine, trace.path, last, element, around)
+                # Nothing happened to be missed; the looks are those of now.
+                missed = _missed(engine, trace.path, last, element, around, acts=())
+                trace.missed = replace(missed, tick=tick)
 
 
 def _take(engine: Engine, trace: _Trace, step: Step, element: Element) -> None:
@@ -236,7 +232,11 @@ def _take(engine: Engine, trace: _Trace, step: Step, element: Element) -> None:
         trace.since, trace.around = forest.tick, there
         trace.stood = _feet(forest, trace.path)
     elif trace.missed is None and there != trace.around and trace.observed_at is not None:
-        trace.missed = _missed(engine, trace.path, step, element, trace.around)
+        edited = _is_edit(engine, step.place, trace.path[:-1])
+        events = Reading(forest, trace.path[:-1]).events()
+        acts = () if edited else _acts(events, forest.tick, element)
+        missed = _missed(engine, trace.path, step, element, trace.around, acts)
+        trace.missed = replace(missed, edited=edited)
 
 
 def _feet(forest: Forest, path: Path) -> Point | None:
@@ -245,23 +245,28 @@ def _feet(forest: Forest, path: Path) -> Point | None:
     return None if version < 0 else forest.ground.versions.position(version)
 
 
-def _missed(engine: Engine, path: Path, step: Step, element: Element, before: Value) -> Missed:
-    """A change in the simulator around a node that did not reach it, and why not."""
-    forest, viewer = step.forest, path[-1]
-    around = Reading(forest, path[:-1])
-    edited = _is_edit(engine, step.place, path[:-1])
-    acts = () if edited else _acts(around.events(), forest.tick, element)
-    mine = Reading(forest, path).events()
+def _missed(
+    engine: Engine,
+    path: Path,
+    step: Step,
+    element: Element,
+    before: Value,
+    acts: tuple[PerceivedEvent, ...],
+) -> Missed:
+    """Why acts in the simulator around a node, or what there is, did not reach it."""
+    forest = step.forest
+    mine = Reading(forest, path).events() if acts else ()
     present = forest.plots.is_present(forest.plots.index[path])
+    around = Reading(forest, path[:-1])
     return Missed(
         tick=forest.tick,
         before=before,
         after=value_in(forest, path[:-1], element),
         acts=acts,
-        edited=edited,
+        edited=False,
         stood=_feet(forest, path),
         absence=None if present else _absence(engine, forest, path),
-        sightings=_sightings(engine, around, viewer, element, acts) if present else (),
+        sightings=_sightings(engine, around, path[-1], element, acts) if present else (),
         saw_acts=bool(acts) and all(act in mine for act in acts),
     )
 

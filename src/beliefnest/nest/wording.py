@@ -49,8 +49,8 @@ def _fact_text(fact: Fact, element: Element) -> str:
 def _belief_text(level: Level, element: Element) -> str:
     outer = "".join(f"{name} believes that " for name in level.path[:-1])
     holder, name = level.holder, _named(element, level.block)
+    given_up = "" if level.since is None else _given_up(level, element)
     if level.value is None and element.kind != "container":
-        given_up = "" if level.since is None else _given_up(level, name)
         return f"{outer}{holder} knows nothing of {name}.{given_up}"
     known = f"{holder} believes that {_state_text(level.value, level.block, element)}"
     if isinstance(level.value, Contents) and not (level.value.items or level.value.complete):
@@ -58,14 +58,16 @@ def _belief_text(level: Level, element: Element) -> str:
     elif level.value is None and level.block is None:
         known = f"{holder} knows nothing of a container at {_place(element)}"
     if level.basis is None:
-        return f"{outer}{known}."
-    now = " This is perceived in this tick." if level.current else ""
+        return f"{outer}{known}.{given_up}"
+    now = " That is current." if level.current else ""
     return f"{outer}{known}: {_ground(level, level.basis, name)}.{now}"
 
 
-def _given_up(level: Level, name: str) -> str:
-    standing = _standing(level.holder, level.stood)
-    return f" At tick {level.since} {standing} saw {name} not to be where it was believed to be."
+def _given_up(level: Level, element: Element) -> str:
+    begin = f" At tick {level.since} {_standing(level.holder, level.stood)}"
+    if element.kind == "agent":
+        return f"{begin} saw {element.where} not to be where it was believed to be."
+    return f"{begin} gave up what it had believed."
 
 
 def _ground(level: Level, basis: Basis, name: str) -> str:
