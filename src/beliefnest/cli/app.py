@@ -138,6 +138,52 @@ def prompt(
     print_prompt(run, path, template, var or [])
 
 
+@app.command()
+def new(
+    name: Annotated[str, typer.Argument(help="Name of the scenario, and of its file.")],
+) -> None:
+    """Write a commented scenario to start from."""
+    from beliefnest.cli.new import write_starter
+
+    write_starter(name)
+
+
+@app.command()
+def replay(
+    run: Annotated[Path, typer.Argument(help="A run folder, or a run file.")], json: Json = False
+) -> int:
+    """Run the recorded programs again; say which tick and field differ, if any."""
+    from beliefnest.cli.replay import replay_runs
+
+    return replay_runs(run, as_json=json)
+
+
+@app.command()
+def export(
+    run: Annotated[Path, typer.Argument(help="A run folder, or a run file.")],
+    out: Annotated[Path, typer.Option(help="Folder to write; it must not exist.")],
+    format: Annotated[str, typer.Option(help="jsonl, or parquet.")] = "jsonl",
+    path: Annotated[
+        list[str] | None, typer.Option(help="A belief to write over time; can be repeated.")
+    ] = None,
+) -> None:
+    """Write a run as tables that other programs read."""
+    from beliefnest.cli.exchange import ExportOptions, export_run
+
+    export_run(ExportOptions(run, format, tuple(path or ()), out))
+
+
+@app.command("import")
+def import_(
+    trace: Annotated[Path, typer.Argument(help="A JSONL trace of another program.")],
+    out: Annotated[Path, typer.Option(help="Run file to make; it must not exist.")],
+) -> None:
+    """Make a run of a trace, so that beliefs can be read from it."""
+    from beliefnest.cli.exchange import import_run
+
+    import_run(trace, out)
+
+
 @app.command("list")
 def list_installed(json: Json = False) -> None:
     """List the scenarios, worlds and models that are installed."""

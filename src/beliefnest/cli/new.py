@@ -1,0 +1,35 @@
+"""`beliefnest new`: a scenario to start from."""
+
+import re
+import sys
+from importlib.resources import files
+from pathlib import Path
+
+from beliefnest.errors import InputError
+from beliefnest.scenarios.loading import builtin_names
+
+__all__ = ["write_starter"]
+
+_NAME = re.compile(r"[A-Za-z0-9_-]{1,64}", re.ASCII)
+
+
+def write_starter(name: str) -> None:
+    """Write `NAME.yaml`, a commented scenario that runs, into the current folder.
+
+    Raises:
+        InputError: The name is that of no file or taken, or the file cannot be written.
+    """
+    if not _NAME.fullmatch(name):
+        raise InputError(f"{name!r} names no scenario; use up to 64 letters, digits, - and _")
+    if name in builtin_names():
+        raise InputError(f"{name!r} is the name of a built-in scenario; choose another")
+    text = (files("beliefnest.scenarios") / "starter" / "starter.yaml").read_text(encoding="utf-8")
+    path = Path(f"{name}.yaml")
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text.replace("{name}", name))
+    except FileExistsError:
+        raise InputError(f"{path} exists already; choose another name") from None
+    except OSError as error:
+        raise InputError(f"{path} cannot be written: {error.strerror}") from None
+    sys.stdout.write(f"{path} is written; run it with: beliefnest run {path}\n")
