@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     )
     from beliefnest.nest.compare import Difference, Pose
     from beliefnest.nest.explanation import Contents, Explanation
+    from beliefnest.nest.explore import Attempt
     from beliefnest.nest.nest import Nest
     from beliefnest.nest.simulator import Simulator
     from beliefnest.perception.options import Perception, Radius
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "Attempt",
     "BeliefNestError",
     "BodyError",
     "BranchError",
@@ -67,6 +69,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "Attempt": "beliefnest.nest.explore",
     "Contents": "beliefnest.nest.explanation",
     "Difference": "beliefnest.nest.compare",
     "Explanation": "beliefnest.nest.explanation",

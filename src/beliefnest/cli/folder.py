@@ -12,7 +12,15 @@ from beliefnest.errors import InputError
 from beliefnest.scenarios.outcome import ProbeOutcome
 from beliefnest.scenarios.scenario import Scenario
 
-__all__ = ["PICTURE", "STORE", "ConditionFolder", "RunFolder", "recorded_scenario", "store_in"]
+__all__ = [
+    "PICTURE",
+    "STORE",
+    "ConditionFolder",
+    "RunFolder",
+    "recorded_scenario",
+    "store_in",
+    "stores_in",
+]
 
 STORE = "run.bn"
 PICTURE = "picture.png"
@@ -145,6 +153,14 @@ def store_in(run: Path) -> Path:
         names = ", ".join(str(store.parent) for store in found)
         raise InputError(f"{run} holds several runs; name one of {names}")
     raise InputError(f"there is no run at {run}: it is no run folder and no {STORE} file")
+
+
+def stores_in(run: Path) -> tuple[Path, ...]:
+    """All stores of a run: itself, or those in its folder; InputError if there is none."""
+    found = (run,) if run.is_file() else tuple(sorted(run.rglob(STORE)))
+    if not found:
+        raise InputError(f"there is no run at {run}: it is no run folder and no {STORE} file")
+    return found
 
 
 def recorded_scenario(store: Path) -> Scenario:

@@ -16,6 +16,7 @@ from beliefnest.cli.folder import recorded_scenario, store_in
 from beliefnest.cli.pictures import container_name, point_text, state_row, titled
 from beliefnest.cli.report import state_json
 from beliefnest.errors import InputError
+from beliefnest.nest.nest import Nest
 from beliefnest.nest.recorded import RecordedNest
 from beliefnest.prompts.templates import built_in_template, load_template
 from beliefnest.scenarios.scenario import Scenario
@@ -99,9 +100,16 @@ def print_prompt(run: Path, path: str, template: Path | None, variables: list[st
 @contextmanager
 def _opened(run: Path) -> Iterator[tuple[Scenario, RecordedNest, SqliteJournal]]:
     store = store_in(run)
-    scenario = recorded_scenario(store)
-    with SqliteJournal.read(store) as journal:
-        yield scenario, RecordedNest(scenario.setting, journal), journal
+    with SqliteJournal.read(store) as journal, Nest.read(store) as nest:
+        yield _scenario(store, nest), nest, journal
+
+
+def _scenario(store: Path, nest: RecordedNest) -> Scenario:
+    """The scenario in the run folder; a store that lies in none has its setting and no names."""
+    try:
+        return recorded_scenario(store)
+    except InputError:
+        return Scenario(nest.setting)
 
 
 def _print_state(state: State, path: str, scenario: Scenario) -> None:

@@ -29,7 +29,7 @@ from beliefnest.timeline.records import ProgramRecord
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.values import Items, Position
 
-__all__ = ["MAIN", "Engine"]
+__all__ = ["MAIN", "Engine", "edited"]
 
 Path = tuple[str, ...]
 
@@ -312,7 +312,7 @@ class Engine:
         if path not in self._bodies:
             self.journal.append(info.key, [edit], info.head)
             return
-        with self._embodied(info.key, _edited(self.reading(path).snapshot(), edit)):
+        with self._embodied(info.key, edited(self.reading(path).snapshot(), edit)):
             self.journal.append(info.key, [edit], info.head)
 
     def close(self) -> None:
@@ -398,7 +398,7 @@ class Engine:
             raise
 
 
-def _edited(snapshot: Snapshot, edit: Edit) -> Snapshot:
+def edited(snapshot: Snapshot, edit: Edit) -> Snapshot:
     """A body's state after an edit; unknown blocks are air there."""
     blocks = snapshot.blocks.copy()
     for place, state in edit.blocks.items():

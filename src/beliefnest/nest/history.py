@@ -33,7 +33,7 @@ def ground_of(setting: Setting) -> Ground:
     sight = Sight(
         registry, options.max_visible_distance, options.field_of_view, options.transparent_blocks
     )
-    agents = tuple(sorted(setting.snapshot.agents))
+    agents = tuple(sorted({*setting.snapshot.agents, *setting.absent}))
     return Ground(setting.snapshot.box, agents, options, registry, sight, Versions())
 
 

@@ -1,6 +1,6 @@
 """The nest: the real world and all beliefs in it."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -14,6 +14,7 @@ from beliefnest.bodies.worlds import LateWorld, open_world
 from beliefnest.errors import ProgramError
 from beliefnest.nest.compare import Difference, compare, false_beliefs
 from beliefnest.nest.engine import Engine
+from beliefnest.nest.explore import Attempt, Score, explore
 from beliefnest.nest.paths import parse_path
 from beliefnest.nest.runlog import FileLog
 from beliefnest.nest.saved import decode_start, encode_start
@@ -237,6 +238,38 @@ class Nest:
             PathError: The path is malformed or names an unknown agent.
         """
         return false_beliefs(self._engine, parse_path(path, self.agents), None)
+
+    def explore(
+        self,
+        path: str,
+        agent: str,
+        programs: Sequence[str],
+        score: Score,
+        timeout_ticks: int = 1200,
+        name: str = "plan",
+    ) -> tuple[Attempt, ...]:
+        """Try programs in one simulator, each on a branch of its own, from its present.
+
+        Args:
+            path: Belief path of the simulator; it ends on the branch it is on.
+            agent: Whose bot runs them.
+            programs: What to try, one after the other.
+            score: Says how good it is what a program led to.
+            timeout_ticks: Ticks after which a program is stopped.
+            name: What the branches are called: `NAME 1`, `NAME 2` and so on.
+
+        Returns:
+            One attempt for each program, in order, with its branch, result and score.
+
+        Raises:
+            PathError: The path or the agent is not there.
+            BranchError: There is such a branch already; nothing was run.
+            WorldError: The agent's pose is not known there, or the world runs no programs.
+        """
+        self[path].child(agent)
+        return explore(
+            self._engine, parse_path(path, self.agents), agent, programs, score, timeout_ticks, name
+        )
 
     def play(self, on_progress: Progress | None = None) -> None:
         """Play the scenario's script in the real world, from the first step not played there.

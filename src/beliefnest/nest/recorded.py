@@ -97,6 +97,12 @@ class RecordedNest:
         """The latest tick of the timeline that a simulator is on."""
         return self._engine.info(parse_path(path, self._engine.agents)).head
 
+    def changes(self, path: str) -> tuple[int, ...]:
+        """The ticks with an entry on the timeline that a simulator is on, its own first one too."""
+        info = self._engine.info(parse_path(path, self._engine.agents))
+        entries = self._engine.journal.entries(info.key, 0, info.entries)
+        return tuple(sorted({info.start, *(entry.tick for entry in entries)}))
+
     def branches(self) -> tuple[TimelineKey, ...]:
         """All timelines there are, in order of creation."""
         return tuple(info.key for info in self._engine.journal.timelines())

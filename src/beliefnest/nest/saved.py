@@ -37,6 +37,7 @@ class _Start(msgspec.Struct, forbid_unknown_fields=True):
     static_blocks: tuple[str, ...]
     initial_beliefs: tuple[InitialBelief, ...]
     script: tuple[Step, ...]
+    absent: tuple[str, ...]
 
 
 def encode_start(setting: Setting, world: str) -> bytes:
@@ -55,6 +56,7 @@ def encode_start(setting: Setting, world: str) -> bytes:
             static_blocks=tuple(sorted(setting.static_blocks)),
             initial_beliefs=setting.initial_beliefs,
             script=setting.script,
+            absent=tuple(sorted(setting.absent)),
         )
     )
 
@@ -79,6 +81,7 @@ def decode_start(data: bytes) -> tuple[Setting, str]:
         static_blocks=frozenset(start.static_blocks),
         initial_beliefs=start.initial_beliefs,
         script=start.script,
+        absent=frozenset(start.absent),
     )
     return setting, start.world
 

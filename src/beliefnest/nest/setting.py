@@ -38,6 +38,7 @@ class Setting:
         static_blocks: Names of blocks that everybody knows from the start.
         initial_beliefs: Further priors, at any depth.
         script: What happens in the real world, in order.
+        absent: Agents who are not in the world at its first tick and may come later.
     """
 
     name: str
@@ -46,3 +47,4 @@ class Setting:
     static_blocks: frozenset[str] = frozenset()
     initial_beliefs: tuple[InitialBelief, ...] = ()
     script: tuple[Step, ...] = ()
+    absent: frozenset[str] = frozenset()

@@ -1,0 +1,83 @@
+"""`beliefnest export` and `beliefnest import`: runs as tables, traces as runs."""
+
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import cast, get_args
+
+from beliefnest.cli.folder import store_in
+from beliefnest.cli.report import state_json
+from beliefnest.errors import InputError
+from beliefnest.nest.nest import Nest
+from beliefnest.nest.paths import parse_path
+from beliefnest.nest.recorded import RecordedNest
+from beliefnest.nest.traced import import_trace
+from beliefnest.timeline.export import Format, export
+from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.tables import BeliefRow
+from beliefnest.timeline.trace import load_trace
+from beliefnest.world.registry import Registry
+
+__all__ = ["ExportOptions", "export_run", "import_run"]
+
+
+@dataclass(frozen=True, slots=True)
+class ExportOptions:
+    """What was asked for.
+
+    Attributes:
+        run: Run folder, or its store.
+        format: Name of the format.
+        paths: Belief paths whose states are written for every tick with a change.
+        out: The folder to write.
+    """
+
+    run: Path
+    format: str
+    paths: tuple[str, ...]
+    out: Path
+
+
+def export_run(options: ExportOptions) -> None:
+    """Write a run as tables, and say how many rows each has.
+
+    Raises:
+        BeliefNestError: There is no such run, path or format, or the folder cannot be written.
+    """
+    if options.format not in get_args(Format):
+        raise InputError(
+            f"there is no format {options.format!r}; there are {', '.join(get_args(Format))}"
+        )
+    store = store_in(options.run)
+    with SqliteJournal.read(store) as journal, Nest.read(store) as nest:
+        for path in options.paths:
+            parse_path(path, nest.agents)
+        counts = export(
+            journal,
+            cast(Format, options.format),
+            options.out,
+            registry=Registry.load(),
+            first=nest.setting.snapshot,
+            beliefs=_beliefs(nest, options.paths),
+        )
+    for table, count in counts.items():
+        sys.stdout.write(f"{table}: {count}\n")
+
+
+def _beliefs(nest: RecordedNest, paths: Sequence[str]) -> Iterator[BeliefRow]:
+    for path in paths:
+        names = parse_path(path, nest.agents)
+        for tick in nest.changes(path):
+            yield tick, names, state_json(nest.simulator(path, tick).state)
+
+
+def import_run(trace: Path, out: Path) -> None:
+    """Make a run file of a history that another program wrote.
+
+    Raises:
+        BeliefNestError: The trace has bad lines, or the file exists or cannot be written.
+    """
+    told = load_trace(trace, Registry.load())
+    import_trace(told, trace.stem, out)
+    sys.stdout.write(f"{out}: {len(told.entries)} ticks with changes, {len(told.agents)} agents\n")

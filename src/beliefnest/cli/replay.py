@@ -1,0 +1,78 @@
+"""`beliefnest replay`: the programs of recorded runs, run again and compared."""
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import msgspec
+
+from beliefnest.bodies.worlds import open_world
+from beliefnest.cli.folder import stores_in
+from beliefnest.errors import InputError
+from beliefnest.nest.paths import path_text
+from beliefnest.nest.replay import Replayed, replay
+from beliefnest.nest.saved import decode_start
+from beliefnest.timeline.store import SqliteJournal
+
+__all__ = ["replay_runs"]
+
+
+def replay_runs(run: Path, *, as_json: bool) -> int:
+    """Run everything in a run folder again, in a fresh world with the same seed.
+
+    Returns:
+        0 if every frame is as recorded, else 1.
+
+    Raises:
+        BeliefNestError: There is no such run, it ran no programs, or the world failed.
+    """
+    same = True
+    told = []
+    for store in stores_in(run):
+        for replayed in _replayed(store):
+            same = same and replayed.difference is None
+            row = _row(store, replayed)
+            told.append(row)
+            if not as_json:
+                sys.stdout.write(_line(row) + "\n")
+    if as_json:
+        sys.stdout.write(json.dumps({"same": same, "timelines": told}, indent=2) + "\n")
+    return 0 if same else 1
+
+
+def _replayed(store: Path) -> Iterator[Replayed]:
+    with SqliteJournal.read(store) as journal, journal.unchanging():
+        run = journal.records.run()
+        setting, name = decode_start(run.setting)
+        if name == "scripted":
+            raise InputError(
+                f"{store} was told by its user what happens, and ran no programs; "
+                "only runs in the embedded world can be replayed"
+            )
+        world = open_world(name, run.seed)
+        try:
+            yield from replay(setting, journal, journal.records.programs(), world, run.seed)
+        finally:
+            world.close()
+
+
+def _row(store: Path, replayed: Replayed) -> dict[str, object]:
+    found = replayed.difference
+    return {
+        "store": str(store),
+        "path": path_text(replayed.key.path),
+        "branch": replayed.key.branch,
+        "programs": replayed.programs,
+        "difference": None if found is None else msgspec.to_builtins(found, str_keys=True),
+    }
+
+
+def _line(row: dict[str, object]) -> str:
+    place = f"{row['store']}: {row['path']} {row['branch']!r}, {row['programs']} programs"
+    match row["difference"]:
+        case {"tick": tick, "entry": entry, "field": field, "recorded": old, "found": new}:
+            where = f"tick {tick}, {field or f'entry {entry}'}"
+            return f"{place}: differs at {where}: recorded {old!r}, now {new!r}"
+        case _:
+            return f"{place}: no difference"

@@ -1,0 +1,132 @@
+"""Running recorded programs again, each timeline in a fresh body, and comparing the frames."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+
+from beliefnest.bodies.protocol import Body, World
+from beliefnest.errors import StoreError
+from beliefnest.nest.engine import edited
+from beliefnest.nest.history import History
+from beliefnest.nest.paths import path_text
+from beliefnest.nest.setting import Setting
+from beliefnest.timeline.compare import Difference, first_difference
+from beliefnest.timeline.journal import Edit, Entry, Journal, TimelineInfo, TimelineKey
+from beliefnest.timeline.records import ProgramRecord
+from beliefnest.world.frames import Frame, Snapshot
+
+__all__ = ["Replayed", "replay"]
+
+
+@dataclass(frozen=True, slots=True)
+class Replayed:
+    """What became of one timeline when it was run again.
+
+    Attributes:
+        key: The timeline.
+        programs: How many programs were run.
+        difference: The first difference; None if there is none.
+    """
+
+    key: TimelineKey
+    programs: int
+    difference: Difference | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Call:
+    """Programs that ran together: at a tick, after some entries of the timeline."""
+
+    tick: int
+    entries: int
+    programs: Mapping[str, str]
+    timeout_ticks: int
+
+
+def replay(
+    setting: Setting,
+    journal: Journal,
+    programs: Sequence[ProgramRecord],
+    world: World,
+    seed: int,
+) -> Iterator[Replayed]:
+    """Run every timeline of a run again, in order of creation.
+
+    Each begins in the state that was recorded for its first tick, so that one that differs does not
+    make those based on it differ.
+
+    Args:
+        setting: What the run started from.
+        journal: Its timelines.
+        programs: Its programs.
+        world: A fresh world of the kind it ran in.
+        seed: Its seed.
+
+    Raises:
+        StoreError: A noted program lacks facts that are needed to run it again.
+        BodyError: The Minecraft side died.
+    """
+    history = History(journal, setting)
+    for info in journal.timelines():
+        mine = [p for p in programs if (p.path, p.branch) == (info.key.path, info.key.branch)]
+        reading = history.reading(info.key, info.key.path, 0)
+        first = replace(reading.snapshot(), tick=info.start)
+        recorded = list(journal.entries(info.key, 0, info.entries))
+        calls = [_call(list(group)) for _, group in groupby(mine, key=lambda p: p.group)]
+        found = _run_again(world, info, first, recorded, calls, seed)
+        yield Replayed(info.key, len(mine), first_difference(recorded, found))
+
+
+def _call(group: Sequence[ProgramRecord]) -> _Call:
+    first = group[0]
+    try:
+        return _Call(
+            first.tick,
+            int(first.detail["entries"]),
+            {program.agent: program.code for program in group},
+            int(first.detail["timeout_ticks"]),
+        )
+    except (KeyError, ValueError) as fault:
+        raise StoreError(
+            f"the program of {first.agent} at tick {first.tick} of branch {first.branch!r} of "
+            f"{path_text(first.path)} lacks {fault}, which is needed to run it again"
+        ) from fault
+
+
+def _run_again(
+    world: World,
+    info: TimelineInfo,
+    first: Snapshot,
+    recorded: Sequence[Entry],
+    calls: Sequence[_Call],
+    seed: int,
+) -> list[Entry]:
+    found: list[Entry] = []
+
+    def take(frame: Frame) -> None:
+        if not frame.is_empty:
+            found.append(frame)
+
+    name = path_text(info.key.path)
+    body = world.open_body(name, f"{seed} {name}", first, take)
+    try:
+        edits = [(n, e) for n, e in enumerate(recorded) if isinstance(e, Edit)]
+        acts: list[tuple[int, int, Edit | _Call]] = [(e.tick, n, e) for n, e in edits]
+        acts += [(call.tick, call.entries, call) for call in calls]
+        for tick, _, act in sorted(acts, key=lambda each: each[:2]):
+            _wait_until(body, tick)
+            if isinstance(act, _Call):
+                body.run(act.programs, act.timeout_ticks)
+                continue
+            if act.path == info.key.path:
+                body.become(edited(body.snapshot(), act))
+            found.append(act)
+        _wait_until(body, info.head)
+    finally:
+        body.close()
+    return found
+
+
+def _wait_until(body: Body, tick: int) -> None:
+    if tick > body.tick:
+        body.step(tick - body.tick)
