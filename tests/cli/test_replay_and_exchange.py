@@ -1,0 +1,94 @@
+"""`beliefnest replay`, `export` and `import`, and plans tried in branches."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+import beliefnest as bn
+from beliefnest.cli.app import run_command_line
+from beliefnest.timeline.journal import TimelineKey
+from beliefnest.timeline.store import SqliteJournal
+
+TRACE = """\
+{"tick": 0, "box": [[0,0,0],[9,3,9]], "fills": [[[0,0,0],[9,0,9],"stone"]], \
+"blocks": [[3,1,3,"chest"]], "containers": [[3,1,3,{"diamond":1}]], \
+"agents": {"sally": {"position": [2.5,1,2.5]}, "anne": null}}
+{"tick": 4, "agents": {"anne": {"position": [4.5,1,2.5], "yaw": 1.57}}}
+{"tick": 9, "events": [{"kind": "chat", "actor": "anne", "detail": {"text": "mine"}}]}
+"""
+WALKS = [f"await goToPosition(bot, new Vec3({x}, -51, 5), 0)" for x in (0, 4)]
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """A run with plans, an edit and quiet ticks."""
+    store = tmp_path_factory.mktemp("recorded") / "run.bn"
+    with bn.Nest.open(bn.Scenario.load("sally-anne", 3), store=store, seed=4) as nest:
+        nest.play()
+        nest["/"].step(7)
+        attempts = nest.explore(
+            "/observer", "sally", WALKS, lambda there, _: there.state.agents["sally"].position[0]
+        )
+        assert nest["/observer"].mode == "follow"
+        assert [attempt.branch for attempt in attempts] == ["plan 1", "plan 2"]
+        assert all(attempt.result.ok for attempt in attempts)
+        assert [int(attempt.score) for attempt in attempts] == [0, 4]
+        nest["/observer"].switch("plan 2")
+        nest["/observer"].edit(blocks={(0, -51, 0): "stone"}, containers={})
+        nest["/observer"].run("sally", WALKS[0])
+    return store
+
+
+def test_replaying_finds_no_difference(run, capsys):
+    assert run_command_line(["replay", str(run), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["same"]
+    assert [row["programs"] for row in told["timelines"]] == [3, 1, 2]
+
+
+def test_replaying_names_the_first_tick_and_field_that_differ(run, tmp_path, capsys):
+    other = tmp_path / "run.bn"
+    other.write_bytes(run.read_bytes())
+    key = TimelineKey(("observer",), "plan 1")
+    with SqliteJournal.open(other) as journal, journal.together():
+        info = journal.info(key)
+        entries = list(journal.entries(key, 0, info.entries))
+        programs = [p for p in journal.records.programs() if p.branch == "plan 1"]
+        journal.delete(key)
+        journal.create(key, info.base, info.start)
+        frame = entries[3]
+        x, y, z = frame.agents["sally"].position
+        moved = replace(frame.agents["sally"], position=(x + 1, y, z))
+        entries[3] = replace(frame, agents={**frame.agents, "sally": moved})
+        journal.append(key, entries, info.head)
+        for program in programs:
+            journal.records.add_program(program)
+    assert run_command_line(["replay", str(other)]) == 1
+    told = capsys.readouterr().out
+    assert f"differs at tick {frame.tick}, agents.sally.position.0" in told
+
+
+def test_a_run_is_exported_with_beliefs(run, tmp_path, capsys):
+    out = tmp_path / "tables"
+    command = ["export", str(run), "--path", "/observer/sally", "--out", str(out)]
+    assert run_command_line(command) == 0
+    assert "timelines: 3" in capsys.readouterr().out
+    last = json.loads((out / "beliefs.jsonl").read_text().splitlines()[-1])
+    assert last["state"]["containers"]["-2,-51,-4"]["items"] == {"diamond": 1}
+    assert run_command_line([*command, "--format", "csv"]) == 2
+
+
+def test_a_trace_becomes_a_run(tmp_path, capsys):
+    trace, store = tmp_path / "told.jsonl", tmp_path / "run.bn"
+    trace.write_text(TRACE)
+    assert run_command_line(["import", str(trace), "--out", str(store)]) == 0
+    capsys.readouterr()
+    assert run_command_line(["show", str(store), "--path", "/sally/anne", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["chat"] == [[9, "anne", "mine"]]
+    with bn.Nest.resume(store) as nest:
+        nest.scripted_world.open("sally", (3, 1, 3))
+        assert nest["/anne/sally"].state.containers[(3, 1, 3)].complete is False
+        assert nest["/sally"].state.containers[(3, 1, 3)].items == {"diamond": 1}
+    assert run_command_line(["replay", str(store)]) == 2
+    assert "told by its user" in capsys.readouterr().err
