@@ -226,7 +226,8 @@ def test_an_edit_and_who_is_not_told_of_it():
     nest["/observer"].edit(containers={CHEST: {"apple": 2}})
     told = nest["/observer/sally"].explain(container=CHEST)
     assert told.levels[1].missed.edited
-    assert lines(told)[1:] == [
+    assert lines(told) == [
+        "In reality, the chest at (5, 0, 9) holds 1 emerald; that has not changed since the start.",
         "observer believes that the chest at (5, 0, 9) holds 2 apple: edited by hand at tick 4.",
         "observer believes that sally does not know what the chest at (5, 0, 9) holds: as far as "
         "observer knows, sally, at (4.5, 0, 9.5), last saw the chest at (5, 0, 9) at tick 0.",
@@ -239,6 +240,28 @@ def test_an_edit_and_who_is_not_told_of_it():
         "In reality, the chest at (5, 0, 9) holds 3 apple since tick 4: it was edited by hand."
     ]
     assert (fact.levels, fact.fact.edited) == ((), True)
+
+
+def test_an_edit_in_the_tick_of_the_last_perception_is_missed():
+    world, nest = corner(inventories={"anne": {"diamond": 1}})
+    world.deposit("anne", CHEST, {"diamond": 1})
+    nest["/observer"].edit(containers={CHEST: {"apple": 2}})
+    level = nest["/observer/sally"].explain(container=CHEST).levels[1]
+    assert level.value == bn.Contents({"diamond": 1}, complete=False)
+    assert (level.since, level.missed.tick, level.missed.edited) == (1, 1, True)
+
+
+def test_what_somebody_sees_of_an_edit_further_up_is_no_edit_of_its_own():
+    """Sally sees what the observer's belief was edited to; of Anne she has lost sight."""
+    place = (2, 0, 3)
+    world, nest = nest_of(THREE | {"sally": (2.5, 0.0, 5.5)}, CORNER)
+    world.place_agent("anne", EAST_2)
+    nest["/observer"].edit(blocks={place: "bricks"})
+    told = nest["/observer/sally/anne"].explain(block=place)
+    assert [level.value for level in told.levels] == ["bricks", "bricks", "air"]
+    assert not told.levels[2].missed.edited
+    assert told.levels[2].missed.absence.last_seen == 0
+    assert lines(told)[-1].endswith("So anne missed this: the block at (2, 0, 3) became bricks.")
 
 
 def test_opening_tells_the_contents_to_who_opens_only():
@@ -285,6 +308,9 @@ def test_a_place_that_was_seen_empty():
         "a knows nothing of b. At tick 3 a, at (2.5, 0, 1.5), saw b not to be where it was "
         "believed to be."
     )
+    world.place_agent("b", GAP)
+    world.place_agent("b", EAST_2)
+    assert nest["/a"].explain(agent="b").levels[0].since == 6
     assert lines(told)[2].startswith("At tick 4 a, at (2.5, 0, 1.5), could not see b, at (8.5")
 
 

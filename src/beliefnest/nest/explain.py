@@ -303,8 +303,7 @@ def _sightings(
         return (look_at_agent(around, box, viewer, element.where),)
     actors: list[str] = []
     if element.kind == "container":
-        doers = (act.actor for act in acts)
-        actors = sorted({actor for actor in doers if actor not in (None, viewer)})
+        actors = sorted({act.actor for act in acts if act.actor is not None})
     return (
         *(look_at_agent(around, box, viewer, actor) for actor in actors),
         look_at_block(around, box, viewer, element.where),

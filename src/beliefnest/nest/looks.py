@@ -30,7 +30,9 @@ def look_at_block(reading: Reading, box: Box, viewer: str, place: Position) -> S
     centre = (x + 0.5, y + 0.5, z + 0.5)
     view = _view(reading.geometry, sees)
     look = Sighting(name or "block", place, view, math.dist(_eye(here), centre))
-    return _with_blocker(look, reading, box, _eye(here), [centre], place)
+    # What is looked at hides nothing of itself.
+    without = reading.geometry.with_blocks({place: reading.geometry.sight.registry.air})
+    return _with_blocker(look, reading, box, without, _eye(here), [centre])
 
 
 def look_at_agent(reading: Reading, box: Box, viewer: str, other: str) -> Sighting:
@@ -48,38 +50,29 @@ def look_at_agent(reading: Reading, box: Box, viewer: str, other: str) -> Sighti
     samples = [centre, *((x, y + height, z) for height in AGENT_SAMPLE_HEIGHTS)]
     view = _view(reading.geometry, sees)
     look = Sighting(other, there.position, view, math.dist(_eye(here), centre))
-    return _with_blocker(look, reading, box, _eye(here), samples, None)
+    return _with_blocker(look, reading, box, reading.geometry, _eye(here), samples)
 
 
 def _view(geometry: Geometry, sees: _Sees) -> View:
-    """What stops a look: the first limit without which it would succeed."""
-    sight = geometry.sight
+    """What stops a look, found by looking without limits; distance before direction."""
     if sees(geometry):
         return View.SEEN
-    endless = replace(sight, max_visible_distance=None)
-    around = replace(sight, field_of_view=360.0)
-    if sees(replace(geometry, sight=endless)):
-        return View.TOO_FAR
+    around = replace(geometry.sight, field_of_view=360.0)
     if sees(replace(geometry, sight=around)):
         return View.OUTSIDE_VIEW
-    if sees(replace(geometry, sight=replace(endless, field_of_view=360.0))):
+    if sees(replace(geometry, sight=replace(around, max_visible_distance=None))):
         return View.TOO_FAR
     return View.BLOCKED
 
 
 def _with_blocker(
-    look: Sighting,
-    reading: Reading,
-    box: Box,
-    eye: Point,
-    samples: list[Point],
-    target: Position | None,
+    look: Sighting, reading: Reading, box: Box, geometry: Geometry, eye: Point, samples: list[Point]
 ) -> Sighting:
     if look.view is not View.BLOCKED:
         return look
     for sample in samples:
-        place = reading.geometry.blocker(eye, sample)
-        if place is not None and place != target:
+        place = geometry.blocker(eye, sample)
+        if place is not None:
             return replace(look, blocker=place, blocker_name=_block_name(reading, box, place))
     return look
 
