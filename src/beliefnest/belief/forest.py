@@ -1,7 +1,7 @@
 """All nodes below one timeline, folded together: arrays for the kernel, holdings for the rest."""
 
 from bisect import bisect_left
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Protocol
 from weakref import WeakSet
@@ -427,17 +427,23 @@ class Forest:
 
     def _sees_cell(self, node: int, cell: int) -> bool:
         """Whether the present owner of a node sees a cell of the simulator around."""
+        return bool(self._seen_cells(node, (cell,)))
+
+    def _seen_cells(self, node: int, cells: Iterable[int]) -> set[int]:
+        """Those of some cells that the present owner of a node sees in the simulator around."""
         ground, around = self.ground, self.plots.parent(node)
         version = self.plots.version(around, self.plots.owner(node))
         nodes, poses = self.plots.nodes(), ground.versions.poses()
-        return kernel.sees_cell(ground.space, ground.senses, poses, nodes, around, version, cell)
+        wanted = np.array([*cells], dtype=np.int64)
+        seen = kernel.sees_cells(ground.space, ground.senses, poses, nodes, around, version, wanted)
+        return set(wanted[seen].tolist())
 
     def _see_into(self, node: int, tick: int, entry: int) -> set[int]:
         """Look into transparent containers; returns the cells looked into."""
         if self.ground.options.containers != "transparent":
             return set()
         around = self.plots.parent(node)
-        into = {cell for cell in self.holdings[around].containers if self._sees_cell(node, cell)}
+        into = self._seen_cells(node, self.holdings[around].containers)
         for cell in into:
             learn(self.holdings[node], cell, self._there(around, cell, entry), None, tick)
             self._doubt(node, cell)

@@ -40,7 +40,7 @@ from beliefnest.perception.eyes import (
 from beliefnest.perception.rays import Cell, compiled, inlined
 from beliefnest.world.values import EYE_HEIGHT
 
-__all__ = ["fold", "put", "refresh_pending", "sees_cell", "sees_point"]
+__all__ = ["fold", "put", "refresh_pending", "sees_cell", "sees_cells", "sees_point"]
 
 _WORD = 64
 
@@ -384,6 +384,24 @@ def sees_cell(
 ) -> bool:
     """Whether an eye at a version's pose sees a cell in a node."""
     return _sees_cell(space, nodes, node, _eye(space, senses, poses, version), cell)
+
+
+@compiled
+def sees_cells(
+    space: Space,
+    senses: Senses,
+    poses: Poses,
+    nodes: Nodes,
+    node: int,
+    version: int,
+    cells: npt.NDArray[np.int64],
+) -> npt.NDArray[np.bool_]:
+    """Which of some cells an eye at a version's pose sees in a node."""
+    eye = _eye(space, senses, poses, version)
+    seen = np.zeros(len(cells), dtype=np.bool_)
+    for number in range(len(cells)):
+        seen[number] = _sees_cell(space, nodes, node, eye, cells[number])
+    return seen
 
 
 @compiled
