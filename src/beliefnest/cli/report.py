@@ -23,6 +23,8 @@ __all__ = [
     "usage_json",
 ]
 
+_WIDEST = 6
+
 
 def state_json(state: State) -> dict[str, object]:
     """A state as the STATE object of the public surface."""
@@ -100,7 +102,12 @@ def report_json(
 
 
 def outcome_table(outcomes: Sequence[Outcome]) -> Table:
-    """One row for each condition: what is where, what was predicted, whether it is as expected."""
+    """What is where, what was predicted, whether it is as expected, in each condition.
+
+    One row for each condition, or one column where there is too much to tell for a row.
+    """
+    if len(_headings(outcomes)) > _WIDEST:
+        return _tall_table(outcomes)
     scenario = outcomes[0].scenario
     table = Table(title=scenario.name, title_justify="left", box=box.SIMPLE_HEAVY)
     if scenario.conditions:
@@ -120,6 +127,26 @@ def outcome_table(outcomes: Sequence[Outcome]) -> Table:
         verdict = "[green]yes[/green]" if outcome.ok else "[bold red]NO[/bold red]"
         spent = [f"{outcome.usage.tokens:,}", cost_text(outcome.usage.cost)] if asked else []
         table.add_row(*row, verdict, *spent, str(outcome.ticks), f"{outcome.seconds:.2f}")
+    return table
+
+
+def _tall_table(outcomes: Sequence[Outcome]) -> Table:
+    scenario = outcomes[0].scenario
+    table = Table(title=scenario.name, title_justify="left", box=box.SIMPLE_HEAVY)
+    table.add_column("condition" if scenario.conditions else "")
+    for outcome in outcomes:
+        number = outcome.scenario.condition
+        table.add_column("" if number is None else str(number))
+    cells = [_cells(outcome) for outcome in outcomes]
+    for heading in _headings(outcomes):
+        table.add_row(heading, *(each.get(heading, "") for each in cells))
+    verdicts = ["[green]yes[/green]" if each.ok else "[bold red]NO[/bold red]" for each in outcomes]
+    table.add_row(f"as {scenario.reported_by or 'expected'}{_verb(scenario)}", *verdicts)
+    if any(outcome.usage.requests for outcome in outcomes):
+        table.add_row("tokens", *(f"{each.usage.tokens:,}" for each in outcomes))
+        table.add_row("cost", *(cost_text(each.usage.cost) for each in outcomes))
+    table.add_row("ticks", *(str(each.ticks) for each in outcomes))
+    table.add_row("seconds", *(f"{each.seconds:.2f}" for each in outcomes))
     return table
 
 
