@@ -1,5 +1,6 @@
 """Timelines in a run file: recording, forking, reading the past, opening again."""
 
+import itertools
 import math
 import random
 import tempfile
@@ -10,9 +11,12 @@ from pathlib import Path
 
 from beliefnest.cli.bench.figures import Figure, median_seconds
 from beliefnest.errors import StoreError
+from beliefnest.nest.nest import Nest
+from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.frames import Frame
+from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.values import AgentState
 
 __all__ = ["measure"]
@@ -28,6 +32,14 @@ _WALK = 20_000
 """Ticks of the walk that is recorded over and over; longer than any piece that is packed."""
 
 _TRIES = 101
+_SWITCHES = 21
+_STROLL = {
+    "stone": "await goToPosition(bot, new Vec3(0, -51, 5))",
+    "glass": "await goToPosition(bot, new Vec3(4, -51, -8))",
+}
+"""Blocks that branches are built of and named after, and what everybody does there."""
+
+_FIELD = ((-100, 0, -100), (100, 2, 100))
 _MAIN = TimelineKey((), "main")
 _SINGLES = TimelineKey((), "single")
 
@@ -37,12 +49,13 @@ def measure() -> Sequence[Figure]:
     walk = list(_walk())
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "run.bn"
-        with SqliteJournal.create_file(path) as journal:
-            journal.create(_MAIN, None, 0)
+        agents = dict.fromkeys(walk[0].agents, (0.5, 1.0, 0.5))
+        Nest(ScriptedWorld(_FIELD, agents=agents), store=path).close()
+        with SqliteJournal.open(path) as journal:
             batched = _recorded(journal, walk)
         size = path.stat().st_size / 1e6
         with SqliteJournal.open(path) as journal:
-            return [
+            figures = [
                 Figure("ticks recorded, in batches", batched, "1/s", 20_000.0, at_least=True),
                 Figure("ticks recorded, one at a time", _one_by_one(journal, walk), "1/s"),
                 Figure("file of 10^6 ticks", size, "MB", 400.0),
@@ -50,6 +63,12 @@ def measure() -> Sequence[Figure]:
                 Figure("entries of a past tick of 10^6", _read(journal, walk) * 1e3, "ms", 20.0),
                 Figure("opening a file of 10^6 ticks", _open(path) * 1e3, "ms"),
             ]
+        switched = _switch(Path(folder) / "switched.bn")
+        return [
+            *figures,
+            Figure("switch of a body, 20 blocks, 3 agents", switched * 1e3, "ms", 150.0),
+            Figure("resume of 10^6 ticks, to reality's state", _resume(path), "s", 2.0),
+        ]
 
 
 def _walk() -> Iterator[Frame]:
@@ -118,3 +137,24 @@ def _read(journal: SqliteJournal, walk: Sequence[Frame]) -> float:
 
 def _open(path: Path) -> float:
     return median_seconds(lambda: SqliteJournal.read(path).close(), _TRIES)
+
+
+def _switch(store: Path) -> float:
+    """Seconds to go from one branch of the real world to another, in Minecraft."""
+    with Nest.open(Scenario.load("sally-anne", 3), store=store) as nest:
+        world = nest["/"]
+        for name, program in _STROLL.items():
+            world.switch(name, at=0)
+            world.edit(blocks={(x, -51, 9): name for x in range(-10, 10)})
+            world.run_all(dict.fromkeys(nest.agents, program))
+        names = itertools.cycle(_STROLL)
+        return median_seconds(lambda: world.switch(next(names)), _SWITCHES)
+
+
+def _resume(store: Path) -> float:
+    """Seconds from the file of a long run to the state of its real world."""
+    started = time.perf_counter()
+    with Nest.resume(store) as nest:
+        if nest["/"].state.agents["agent0"].position is None:
+            raise StoreError("an agent of the real world has no position")
+        return time.perf_counter() - started
