@@ -15,8 +15,10 @@ def parse_path(text: str, agents: Collection[str]) -> tuple[str, ...]:
     """
     if not isinstance(text, str) or not text.startswith("/"):
         raise PathError(f"{text!r} is no belief path; write '/' or '/agent/agent'")
-    names = text.strip("/").split("/") if text.strip("/") else []
-    if text not in (path_text(names), path_text(names) + "/"):
+    if text == "/":
+        return ()
+    names = text[1:].removesuffix("/").split("/")
+    if "" in names:
         raise PathError(f"{text!r} is no belief path: a name between slashes is empty")
     for name in names:
         if name not in agents:

@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from beliefnest.belief.entries import InitialBelief
+from beliefnest.errors import InputError, PathError
+from beliefnest.nest.paths import parse_path, path_text
 from beliefnest.perception.options import Perception
 from beliefnest.world.frames import Snapshot
 
@@ -48,3 +50,18 @@ class Setting:
     initial_beliefs: tuple[InitialBelief, ...] = ()
     script: tuple[Step, ...] = ()
     absent: frozenset[str] = frozenset()
+
+    def __post_init__(self) -> None:
+        agents = self.snapshot.agents.keys() | self.absent
+        seen: set[tuple[str, ...]] = set()
+        for belief in self.initial_beliefs:
+            text = path_text(belief.path)
+            if parse_path(text, agents) != belief.path:
+                raise PathError(f"initial belief {text!r} names an agent twice in a row")
+            if not belief.path:
+                raise InputError("an initial belief of '/' would be the real world; give agents")
+            if belief.path in seen:
+                raise InputError(f"there are two initial beliefs of {text!r}; put them into one")
+            seen.add(belief.path)
+            for name in belief.agents:
+                parse_path(path_text((name,)), agents)

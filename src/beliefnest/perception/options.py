@@ -1,5 +1,6 @@
 """What agents can perceive: the options of the observation function (semantics, section 3)."""
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Literal
@@ -25,12 +26,18 @@ class Radius:
 Hearing = Literal["global", "sight"] | Radius
 
 
+_SPELLED_RADIUS = re.compile(r"radius:\s*([0-9]+(?:\.[0-9]+)?)")
+"""The mapping as one writes it in a scenario file, given as text."""
+
+
 def _hearing(value: object) -> Hearing:
     match value:
         case "global" | "sight" | Radius():
             return value
         case {"radius": int() | float() as blocks} if blocks > 0:
             return Radius(float(blocks))
+        case str() if (spelled := _SPELLED_RADIUS.fullmatch(value)) and float(spelled[1]) > 0:
+            return Radius(float(spelled[1]))
         case _:
             raise InputError(
                 f"hearing is {value!r}; it must be 'global', 'sight' or {{'radius': BLOCKS}}"
@@ -47,7 +54,7 @@ class Perception:
         field_of_view: Full angle of the cone of sight around yaw and pitch, in degrees;
             360 sees all around.
         hearing: `global` (everyone hears everything), `sight` (an agent hears whom it
-            sees), or `Radius(r)`, also written `{"radius": r}`.
+            sees), or `Radius(r)`, also written `{"radius": r}` or `radius: r`.
         containers: `opaque` contents are known by opening or witnessing, `transparent`
             contents are perceived whenever the container's block is seen.
         transparent_blocks: Names of further blocks that do not block sight.
@@ -60,7 +67,7 @@ class Perception:
 
     max_visible_distance: float | None = 20.0
     field_of_view: float = 360.0
-    hearing: Hearing | Mapping[str, float] = "global"
+    hearing: Hearing | Mapping[str, float] | str = "global"
     containers: ContainerMode = "opaque"
     transparent_blocks: Iterable[str] = ()
     negative_evidence: bool = False
