@@ -29,6 +29,7 @@ from beliefnest.scenarios.stories.story import Come, Go, Move, Place, Wait
         ("Ann moved the pear to the red_box.", Moved("Ann", "pear", "red_box")),
         ("Ann moved the pear to the oak chest.", Moved("Ann", "pear", "oak chest")),
         ("The pear is in the box.", Located("pear", "box")),
+        ("7 The pear2 is in the box1.", Located("pear2", "box1")),
         ("9 Ann made no movements and stayed in the den for 1 minute.", Stayed(("Ann",), "den")),
         ("Ann likes the blue_jar.", Remark()),
         ("Ann dislikes the pear.", Remark()),

@@ -93,6 +93,9 @@ def test_a_miss_is_explained_by_what_each_simulator_holds_and_since_when(file):
     assert "expected the tin_box" in text
     assert "/Ida/Tom holds the lantern in the oak_cabinet of the attic" in text
     assert "at tick 6, during line 6" in text
+    assert "the oak_cabinet, a barrel at" in text
+    assert "the tin_box, a barrel at" in text
+    assert "So Tom missed this: Ida took 1 lantern out." in text
 
 
 def run(capsys, *arguments):

@@ -3,6 +3,7 @@
 from beliefnest.belief.entries import Basis
 from beliefnest.scenarios.stories.playing import Answer, PlayedStory
 from beliefnest.scenarios.stories.questions import Question
+from beliefnest.scenarios.stories.story import Place
 
 __all__ = ["explain_answer"]
 
@@ -10,7 +11,7 @@ __all__ = ["explain_answer"]
 def explain_answer(
     played: PlayedStory, question: Question, answer: Answer, expected: str
 ) -> tuple[str, ...]:
-    """What each simulator on the way to the belief asked for holds, and since when.
+    """What each simulator on the way to the belief asked for holds, since when, and why.
 
     Args:
         played: The story, played.
@@ -22,13 +23,32 @@ def explain_answer(
     lines = [f"the {question.thing} is {said} in {answer.path}, expected the {expected}"]
     for depth in range(question.order + 1):
         believers = question.believers[:depth]
-        if depth and believers[-1] == question.believers[depth - 2 : depth - 1]:
+        if depth > 1 and believers[-1] == believers[-2]:
             continue
         found = played.answer(
             Question(believers, question.thing, question.at_beginning, question.text)
         )
         lines.append(_holds(played, found))
-    return tuple(lines)
+    return (*lines, *_perceptions(played, question, answer, expected))
+
+
+def _perceptions(
+    played: PlayedStory, question: Question, answer: Answer, expected: str
+) -> list[str]:
+    """The nest's own account of the containers answered and expected."""
+    room = played.story.things[question.thing].room
+    wanted = Place(room, expected)
+    places = dict.fromkeys(p for p in (answer.place, wanted) if p in played.plan.places)
+    simulator = played.asked(question)
+    lines = []
+    for place in places:
+        position = played.plan.places[place]
+        item = played.plan.items[question.thing]
+        lines.append(
+            f"the {place.container}, a barrel at {position}; {item} is the {answer.thing}:"
+        )
+        lines += str(simulator.explain(container=position)).splitlines()
+    return lines
 
 
 def _holds(played: PlayedStory, found: Answer) -> str:

@@ -152,7 +152,7 @@ def item_names(things: Sequence[str], registry: Registry) -> dict[str, str]:
     """
     named = {thing: thing for thing in things if registry.has_item(thing) and thing != "air"}
     rest = [thing for thing in things if thing not in named]
-    free = (item for item in registry.item_names if item != "air" and item not in named)
+    free = (i for i in registry.item_names if i not in ("air", WALL) and i not in named)
     named.update(zip(rest, free, strict=False))
     if len(named) < len(things):
         raise InputError(

@@ -63,22 +63,36 @@ class PlayedStory:
         self.line_ends = tuple(line_ends)
 
     @classmethod
-    def play(cls, story: Story, world: str = "scripted", seed: int = 0) -> Self:
+    def play(
+        cls,
+        story: Story,
+        world: str = "scripted",
+        seed: int = 0,
+        asked: Iterable[Question] = (),
+    ) -> Self:
         """Open a nest in a world and act the story out there.
 
         Args:
             story: What happens.
             world: `scripted`, where a line takes one tick, or `embedded`, where bots do it.
             seed: Drives every random number.
+            asked: What will be asked: beliefs that are followed from the start cost less
+                than those made late. Other questions can be asked as well.
 
         Raises:
             BodyError: The world could not be started, or died.
+            InputError: A question names an agent or a thing that is not in the story.
             ProgramError: A bot could not do what a line says.
             UnknownNameError: There is no such world.
         """
         plan = lay_out(story)
+        asked = tuple(asked)
+        for question in asked:
+            check_question(story, question)
         nest = Nest.open(story_setting(plan), world=world, seed=seed)
         try:
+            for path in sorted({question.path for question in asked}, key=_deepest_first):
+                _ = nest[path].state
             ends = _play(story, plan, nest, world)
         except BaseException:
             nest.close()
@@ -102,14 +116,18 @@ class PlayedStory:
         Raises:
             InputError: The question names an agent or a thing that is not in the story.
         """
-        self.check(question)
-        start = self.plan.snapshot.tick
-        simulator = (
-            self.nest.at(start)[question.path]
-            if question.at_beginning
-            else self.nest[question.path]
-        )
-        return self._find(simulator, question.thing)
+        return self._find(self.asked(question), question.thing)
+
+    def asked(self, question: Question) -> Simulator | PastSimulator:
+        """The simulator that a question is about.
+
+        Raises:
+            InputError: The question names an agent or a thing that is not in the story.
+        """
+        check_question(self.story, question)
+        if question.at_beginning:
+            return self.nest.at(self.plan.snapshot.tick)[question.path]
+        return self.nest[question.path]
 
     def answer_all(self, questions: Iterable[Question]) -> tuple[Answer, ...]:
         """What the nest says to several questions, in their order.
@@ -118,18 +136,9 @@ class PlayedStory:
             InputError: A question names an agent or a thing that is not in the story.
         """
         asked = tuple(questions)
-        # A deep node brings those above it along.
-        by_depth = sorted(range(len(asked)), key=lambda number: -asked[number].order)
-        found = {number: self.answer(asked[number]) for number in by_depth}
-        return tuple(found[number] for number in range(len(asked)))
-
-    def check(self, question: Question) -> None:
-        """Refuse a question about what is not in the story.
-
-        Raises:
-            InputError: It names an agent or a thing that is not there.
-        """
-        check_question(self.story, question)
+        by_depth = sorted(set(asked), key=lambda question: _deepest_first(question.path))
+        found = {question: self.answer(question) for question in by_depth}
+        return tuple(found[question] for question in asked)
 
     def line_at(self, tick: int) -> int | None:
         """Index of the line during which a tick passed; None: before the first."""
@@ -146,6 +155,11 @@ class PlayedStory:
         latest = max(holding, key=lambda position: containers[position].basis.observed_at)
         place, basis = self.plan.place_at(latest), containers[latest].basis
         return Answer(simulator.path, simulator.tick, thing, place, basis)
+
+
+def _deepest_first(path: str) -> tuple[int, str]:
+    """A deep node brings those above it along."""
+    return (-path.count("/"), path)
 
 
 def check_question(story: Story, question: Question) -> None:

@@ -59,10 +59,10 @@ def answer_story(asked: StoryItems, world: str = "scripted", seed: int = 0) -> t
         ProgramError: A bot could not do what a line says.
         UnknownNameError: There is no such world.
     """
-    with PlayedStory.play(asked.story, world, seed) as played:
-        questions = [item.question for item in asked.items]
-        nested = [q for q in questions if q.believers]
-        dropped = [replace(q, believers=q.believers[1:]) for q in nested]
+    questions = [item.question for item in asked.items]
+    nested = [q for q in questions if q.believers]
+    dropped = [replace(q, believers=q.believers[1:]) for q in nested]
+    with PlayedStory.play(asked.story, world, seed, [*questions, *dropped]) as played:
         answers = played.answer_all([*questions, *dropped])
         without = dict(zip(nested, answers[len(questions) :], strict=True))
         judged = []
