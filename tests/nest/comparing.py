@@ -14,8 +14,8 @@ def everything(state: State) -> dict[str, Any]:
         "agents": dict(state.agents),
         "items": dict(state.items),
         "events": state.events,
-        "chat": state.chat,
-        "thoughts": state.thoughts,
+        "chat": tuple(state.chat),
+        "thoughts": tuple(state.thoughts),
     }
 
 
@@ -28,6 +28,6 @@ def values(state: State) -> dict[str, Any]:
             n: (a.position, a.yaw, a.pitch, dict(a.inventory)) for n, a in state.agents.items()
         },
         "events": state.events,
-        "chat": state.chat,
-        "thoughts": state.thoughts,
+        "chat": tuple(state.chat),
+        "thoughts": tuple(state.thoughts),
     }

@@ -5,7 +5,7 @@ from tests.nest.places import CLOSED, CORNER, EAST, GAP, MEETING, WEST, nest_of
 
 
 def chat(nest, path):
-    return nest[path].state.chat
+    return tuple(nest[path].state.chat)
 
 
 def test_5_5_global_everyone_hears_at_every_depth_present_or_not():
@@ -110,9 +110,9 @@ def test_3_who_speaks_hears_itself(hearing):
 def test_3_a_thought_is_perceived_by_the_thinker_alone(hearing):
     world, nest = nest_of({"a": WEST, "b": MEETING}, hearing=hearing)
     world.think("a", "hm")
-    assert nest["/"].state.thoughts == nest["/a"].state.thoughts == ((1, "a", "hm"),)
+    assert nest["/"].state.thoughts == nest["/a"].state.thoughts == [(1, "a", "hm")]
     for path in ("/b", "/a/b", "/b/a", "/a/b/a"):
-        assert nest[path].state.thoughts == ()
+        assert nest[path].state.thoughts == []
         assert nest[path].state.events == ()
         assert chat(nest, path) == ()
 

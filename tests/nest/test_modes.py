@@ -163,7 +163,7 @@ def test_a_known_name_restores_the_latest_state_of_the_branch_in_the_world_too()
     assert [everything(nest[path].state) for path in ("/observer", "/observer/anne")] == kept
     assert belief.scripted.snapshot().agents["anne"].position == WEST
     belief.scripted.say("anne", "on")
-    assert belief.state.chat == ((2, "anne", "on"),)
+    assert belief.state.chat == [(2, "anne", "on")]
 
 
 def test_a_branch_of_a_branch_goes_on_from_it():

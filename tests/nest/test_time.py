@@ -108,8 +108,8 @@ def test_a_world_may_begin_at_a_later_tick():
     world = ScriptedWorld(((0, 0, 0), (3, 2, 3)), agents={"a": (0.5, 0, 0.5)}, tick=40)
     nest = Nest(world)
     world.say("a", "hello")
-    assert nest["/a"].state.chat == ((41, "a", "hello"),)
-    assert nest.at(40)["/a"].state.chat == ()
+    assert nest["/a"].state.chat == [(41, "a", "hello")]
+    assert nest.at(40)["/a"].state.chat == []
     with pytest.raises(TickError, match="39"):
         nest.at(39)
 

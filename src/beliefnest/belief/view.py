@@ -1,6 +1,6 @@
 """The read-only view of one simulator's state that users, prompts and pictures get."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -62,8 +62,8 @@ class State:
     agents: Mapping[str, AgentBelief]
     items: Mapping[int, DroppedItem]
     events: tuple[PerceivedEvent, ...]
-    chat: tuple[tuple[int, str, str], ...]
-    thoughts: tuple[tuple[int, str, str], ...]
+    chat: Sequence[tuple[int, str, str]]
+    thoughts: Sequence[tuple[int, str, str]]
 
     @property
     def owner(self) -> str | None:

@@ -128,12 +128,12 @@ class LiveState(State):
         return tuple(event for event in self._perceived if event.kind not in _SPEECH)
 
     @cached_property
-    def chat(self) -> tuple[tuple[int, str, str], ...]:
+    def chat(self) -> list[tuple[int, str, str]]:
         """What was heard."""
         return self._said(EventKind.CHAT)
 
     @cached_property
-    def thoughts(self) -> tuple[tuple[int, str, str], ...]:
+    def thoughts(self) -> list[tuple[int, str, str]]:
         """What the owner thought."""
         return self._said(EventKind.THINK)
 
@@ -141,6 +141,6 @@ class LiveState(State):
     def _perceived(self) -> tuple[PerceivedEvent, ...]:
         return self._reading.events()
 
-    def _said(self, kind: EventKind) -> tuple[tuple[int, str, str], ...]:
+    def _said(self, kind: EventKind) -> list[tuple[int, str, str]]:
         events = (event for event in self._perceived if event.kind is kind)
-        return tuple((e.tick, e.actor or "", e.detail["text"]) for e in events)
+        return [(e.tick, e.actor or "", e.detail["text"]) for e in events]
