@@ -7,6 +7,8 @@ that `import beliefnest` stays fast.
 import importlib
 from typing import TYPE_CHECKING
 
+from beliefnest.version import VERSION
+
 if TYPE_CHECKING:
     from beliefnest.belief.entries import InitialBelief
     from beliefnest.bodies.protocol import ProgramResult
@@ -35,7 +37,7 @@ if TYPE_CHECKING:
     from beliefnest.scenarios import Scenario
     from beliefnest.world.scripted import ScriptedWorld
 
-__version__ = "0.1.0"
+__version__ = VERSION
 
 __all__ = [
     "Attempt",

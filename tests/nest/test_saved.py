@@ -36,7 +36,7 @@ def setting(**changes):
     world = ScriptedWorld(
         ((-1, -5, 0), (3, 2, 4)),
         {(0, -5, 0): "oak_stairs[facing=east]"},
-        {"ann": (0.1 + 0.2, -4.0, 1.5)},
+        {"ann": (0.1 + 0.2, -4.0, 1.5), "bob": (3.5, -4.0, 1.5)},
         {"ann": {"diamond": 3}},
         {(2, -4, 2): {"bread": 1}},
         tick=7,

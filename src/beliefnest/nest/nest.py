@@ -6,7 +6,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Protocol, Self
 
-from beliefnest import __version__
 from beliefnest.belief.entries import InitialBelief
 from beliefnest.bodies.protocol import World
 from beliefnest.bodies.scripted import ScriptedBodies
@@ -25,6 +24,7 @@ from beliefnest.perception.options import Perception
 from beliefnest.timeline.journal import MemoryJournal
 from beliefnest.timeline.records import RunRecord
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.version import VERSION
 from beliefnest.world.scripted import ScriptedWorld
 
 if TYPE_CHECKING:
@@ -354,7 +354,7 @@ class _Start:
             text=self.text,
             condition="" if self.condition is None else str(self.condition),
             seed=self.seed,
-            versions={"beliefnest": __version__, **world.versions},
+            versions={"beliefnest": VERSION, **world.versions},
             setting=encode_start(self.setting, self.world),
         )
 

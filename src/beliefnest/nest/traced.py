@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from beliefnest import __version__
 from beliefnest.nest.engine import MAIN
 from beliefnest.nest.saved import encode_start
 from beliefnest.nest.setting import Setting
@@ -11,6 +10,7 @@ from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.records import RunRecord
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.timeline.trace import Trace, record_trace
+from beliefnest.version import VERSION
 
 __all__ = ["import_trace"]
 
@@ -39,7 +39,7 @@ def import_trace(
                 text="",
                 condition="",
                 seed=0,
-                versions={"beliefnest": __version__},
+                versions={"beliefnest": VERSION},
                 setting=encode_start(setting, "scripted"),
             )
         )
