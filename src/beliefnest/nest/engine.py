@@ -45,10 +45,11 @@ class _Recorder:
     Each frame is written at once, but while a call is under way, when `batched` is set.
     """
 
-    def __init__(self, journal: Journal, key: TimelineKey) -> None:
+    def __init__(self, journal: Journal, history: History, key: TimelineKey) -> None:
         self.key = key
         self.batched = False
         self._journal = journal
+        self._history = history
         self._frames: list[Frame] = []
         self._tick: int | None = None
 
@@ -65,6 +66,7 @@ class _Recorder:
         if head is not None:
             frames, self._frames, self._tick = self._frames, [], None
             self._journal.append(self.key, frames, head)
+            self._history.note(self.key)
 
     def drop(self) -> None:
         """Forget what was taken and could not be written."""
@@ -368,7 +370,7 @@ class Engine:
             body.close()
 
     def _open_body(self, key: TimelineKey, snapshot: Snapshot) -> None:
-        recorder = _Recorder(self.journal, key)
+        recorder = _Recorder(self.journal, self.history, key)
         name = path_text(key.path)
         seed = f"{self.seed} {name}"
         self._bodies[key.path] = self.world.open_body(name, seed, snapshot, recorder)

@@ -77,9 +77,8 @@ class History:
             yield forest
 
     def note(self, key: TimelineKey) -> None:
-        """Read what came to a timeline that is in use, so that nobody has to wait for it."""
-        if key in self._columns:
-            self._load(key)
+        """Read what came to a timeline, so that who asks for a belief need not wait for it."""
+        self._load(key)
 
     def block_bases(
         self, key: TimelineKey, path: Path, position: int, cells: Sequence[int]
