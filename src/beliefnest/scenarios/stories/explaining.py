@@ -38,7 +38,8 @@ def _perceptions(
     """The nest's own account of the containers answered and expected."""
     room = played.story.things[question.thing].room
     wanted = Place(room, expected)
-    places = dict.fromkeys(p for p in (answer.place, wanted) if p in played.plan.places)
+    found = (answer.place, wanted)
+    places = dict.fromkeys(p for p in found if p is not None and p in played.plan.places)
     simulator = played.asked(question)
     lines = []
     for place in places:
