@@ -8,7 +8,7 @@ _SLOW_TO_MAKE = [HealthCheck.too_slow, HealthCheck.data_too_large]
 
 settings.register_profile(
     "default",
-    max_examples=15,
+    max_examples=8,
     deadline=None,
     derandomize=bool(os.environ.get("CI")),
     suppress_health_check=_SLOW_TO_MAKE,

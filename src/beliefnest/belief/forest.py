@@ -15,6 +15,7 @@ from beliefnest.belief.columns import Columns, cell_of
 from beliefnest.belief.entries import SOURCES, Basis, PerceivedEvent, Source
 from beliefnest.belief.ground import Ground
 from beliefnest.belief.holdings import (
+    NEVER,
     TOUCHES,
     Content,
     Holdings,
@@ -139,6 +140,7 @@ class Forest:
             self.holdings.append(other.holdings[source].copy())
             self.before.append(other.before[source])
             self._looked[node] = other.last_look(source)
+            self._put_by_hand |= {(node, c) for n, c in other._put_by_hand if n == source}
             self.doubt_contents(node)
             self._widen(count)
             bits = other._heard[:count, source >> 3] >> np.uint8(7 - (source & 7)) & 1
@@ -266,6 +268,7 @@ class Forest:
             }
             self.facts_tick = self.columns.tick(entry)
             self._edited.clear()
+            self._looked = dict.fromkeys(range(self.plots.count), entry)
             self._happens(entry)
             self._follow(
                 entry, self.columns.tick(entry), rows.get(entry, {}), perceived, everywhere
@@ -450,9 +453,10 @@ class Forest:
         return into
 
     def _there(self, node: int, cell: int, entry: int) -> Content:
-        """Content of a container around somebody who learns it in an entry."""
+        """Content of a container around somebody who learns it in an entry (5.4)."""
         content = self.content(node, cell)
-        return replace(content, entry=entry) if node == 0 else content
+        is_current = node == 0 or content.entry == self.last_look(node)
+        return replace(content, entry=entry if is_current else NEVER)
 
     def _see_items(self, node: int, around: int, tick: int, entry: int) -> None:
         """Seen items are taken over; one whose believed place is seen empty is dropped."""
