@@ -45,6 +45,7 @@ class Channel:
         self._lifeline: int | None = lifeline
         self._stderr = stderr
         self._number = 0
+        self._unanswered: str | None = None
 
     @classmethod
     def start(cls, command: list[str]) -> Self:
@@ -94,20 +95,43 @@ class Channel:
             WorldError: Node refused the request as impossible.
             BodyError: Node failed, or is gone; the message carries its last words.
         """
+        if self._unanswered is not None:
+            raise BodyError(
+                f"{self._unanswered!r} was interrupted before Node had answered; "
+                f"this world cannot be asked for {op!r} any more"
+            )
         self._number += 1
         message = msgspec.msgpack.encode({"id": self._number, "op": op, **arguments})
+        self._unanswered = op
         try:
             self._connection.sendall(_HEADER.pack(len(message)) + message)
-            while True:
-                answer = self._receive()
-                if "frame" in answer:
-                    if on_frame is None:
-                        raise BodyError(f"Node sent a frame during {op!r}, which makes none")
-                    on_frame(answer["frame"])
-                    continue
-                return self._result(op, answer)
+            answer, refused = self._answer(op, on_frame)
         except (OSError, EOFError) as error:
             raise BodyError(self._death_notice(op)) from error
+        self._unanswered = None
+        if refused is not None:
+            raise refused
+        return self._result(op, answer)
+
+    def _answer(
+        self, op: str, on_frame: FrameHandler | None
+    ) -> tuple[dict[str, Any], Exception | None]:
+        """The answer to a request, and why a frame before it could not be taken.
+
+        Frames are read to the end all the same, so that the next request finds its answer.
+        """
+        refused: Exception | None = None
+        while True:
+            answer = self._receive()
+            if "frame" not in answer:
+                return answer, refused
+            if on_frame is None:
+                raise BodyError(f"Node sent a frame during {op!r}, which makes none")
+            if refused is None:
+                try:
+                    on_frame(answer["frame"])
+                except Exception as error:  # noqa: BLE001 - raised again after the answer
+                    refused = error
 
     def close(self) -> None:
         """End the process; its last requests are not waited for."""

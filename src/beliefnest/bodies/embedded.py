@@ -37,6 +37,7 @@ class EmbeddedBody:
         self._agents = frozenset(snapshot.agents)
         self._sink = sink
         self._events: list[Event] = []
+        self._closed = False
         self._on_close = on_close
 
     @property
@@ -84,7 +85,10 @@ class EmbeddedBody:
         self._agents = frozenset(snapshot.agents)
 
     def close(self) -> None:
-        """Give the region up."""
+        """Give the region up; a second call does nothing."""
+        if self._closed:
+            return
+        self._closed = True
         self._channel.request("destroy_region", region=self._region)
         self._on_close()
 

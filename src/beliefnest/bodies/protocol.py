@@ -78,7 +78,7 @@ class Body(Protocol):
         """Be as the snapshot says, by changing only what differs; no frames are sent."""
 
     def close(self) -> None:
-        """Give the body up."""
+        """Give the body up; a second call does nothing."""
 
 
 class World(Protocol):

@@ -20,6 +20,7 @@ class ScriptedBody:
     def __init__(self, world: ScriptedWorld, sink: Sink) -> None:
         self.world = world
         self._sink = sink
+        self._recording = True
         world.listen(sink)
 
     @property
@@ -47,8 +48,10 @@ class ScriptedBody:
         self.world.become(snapshot)
 
     def close(self) -> None:
-        """Stop recording."""
-        self.world.unlisten(self._sink)
+        """Stop recording; a second call does nothing."""
+        if self._recording:
+            self._recording = False
+            self.world.unlisten(self._sink)
 
 
 class ScriptedBodies:

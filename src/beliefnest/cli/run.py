@@ -1,4 +1,4 @@
-"""`beliefnest run`: every condition in a world of its own, recorded, judged and pictured."""
+"""`beliefnest run`: every condition by itself, recorded, judged and pictured."""
 
 import json
 import os
@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from rich.table import Table
 
-from beliefnest.bodies.worlds import check_world
+from beliefnest.bodies.worlds import Worlds, check_world
 from beliefnest.cli.console import progress_on, stdout
 from beliefnest.cli.folder import ConditionFolder, RunFolder
 from beliefnest.cli.matrix import score_runs, score_table, scores_json
@@ -115,8 +115,9 @@ def run_scenarios(options: RunOptions) -> int:
     cells = plan_cells(scenarios, options.models, options.repeat, options.seed)
     status: Status = "failed"
     try:
-        for cell in cells:
-            run.do(cell)
+        with Worlds(options.seed) as worlds:
+            for cell in cells:
+                run.do(cell, worlds)
         if len(run.scenes) == len(cells) > 1:
             save(
                 draw_overview(run.scenes[: len(scenarios)], first.description or first.name),
@@ -155,7 +156,7 @@ class _Run:
         self.results: list[dict[str, Any]] = []
         self.failures: list[dict[str, object]] = []
 
-    def do(self, cell: Cell) -> None:
+    def do(self, cell: Cell, worlds: Worlds) -> None:
         """Run a cell, unless an earlier part of the run has; keep what came of it."""
         place = self.folder.cell(cell.folder)
         known = place.result()
@@ -165,7 +166,8 @@ class _Run:
             return
         place.begin()
         try:
-            outcome, scene = _run(cell, place, self._models[cell.model], self._options)
+            model = self._models[cell.model]
+            outcome, scene = _run(cell, place, model, self._options, worlds)
         except ModelError as error:
             self.failures.append(
                 {
@@ -199,14 +201,14 @@ def _check_numbers(options: RunOptions) -> None:
 
 
 def _run(
-    cell: Cell, place: ConditionFolder, model: Model, options: RunOptions
+    cell: Cell, place: ConditionFolder, model: Model, options: RunOptions, worlds: Worlds
 ) -> tuple[Outcome, Scene]:
     scenario = cell.scenario
     asking = Asking(options.asking.attempts, Sampling(options.asking.temperature, cell.seed))
     started = time.perf_counter()
     with (
         progress_on(cell.title) as on_progress,
-        Nest.open(scenario, world=options.world, store=place.store, seed=cell.seed) as nest,
+        Nest.open(scenario, options.world, place.store, cell.seed, worlds) as nest,
     ):
         outcome = run_scenario(nest, scenario, model, cell.seed, started, on_progress, asking)
         for number, probe in enumerate(outcome.probes, start=1):

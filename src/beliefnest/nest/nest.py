@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Protocol, Self
 from beliefnest.belief.entries import InitialBelief
 from beliefnest.bodies.protocol import World
 from beliefnest.bodies.scripted import ScriptedBodies
-from beliefnest.bodies.worlds import LateWorld, open_world
+from beliefnest.bodies.worlds import LateWorld, Worlds, open_world
 from beliefnest.errors import ProgramError
 from beliefnest.nest.compare import Difference, compare, false_beliefs
 from beliefnest.nest.engine import Engine
@@ -91,6 +91,7 @@ class Nest:
         world: str = "embedded",
         store: str | Path | None = None,
         seed: int = 0,
+        worlds: Worlds | None = None,
     ) -> Self:
         """Open a scenario in a world.
 
@@ -99,6 +100,7 @@ class Nest:
             world: `embedded`, or `scripted`.
             store: File to record in; None: memory.
             seed: Drives every random number.
+            worlds: Lends the world, to one nest after the other; None: one is started.
 
         Raises:
             BodyError: The world could not be started.
@@ -109,7 +111,7 @@ class Nest:
             start = _Start(scenario, world, seed)
         else:
             start = _Start(scenario.setting, world, seed, scenario.text, scenario.condition)
-        opened = open_world(world, seed)
+        opened = open_world(world, seed) if worlds is None else worlds.lend(world)
         try:
             return cls._of(_begun(start, opened, store))
         except BaseException:
