@@ -7,7 +7,7 @@ from beliefnest.belief.view import State
 from beliefnest.nest.nest import Nest
 from beliefnest.nest.paths import parse_path, path_text
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
-from beliefnest.scenarios.scenario import Arrives, Scenario
+from beliefnest.scenarios.scenario import Arrives, Hears, Scenario, Stands
 from beliefnest.timeline.journal import Journal
 from beliefnest.viewer.scene import Caption, Row, Scene, decisive_tick, read_scene, read_trails
 from beliefnest.world.values import EventKind, Position
@@ -47,7 +47,7 @@ def read_outcome_scene(nest: Nest, journal: Journal, outcome: Outcome) -> Scene:
         story=tuple(step.label for step in scenario.setting.script),
     )
     rows = [
-        state_row(state.path, state, _held(state, outcome))
+        state_row(state.path, state, _held(state, outcome), _notes(state, outcome))
         for state in (outcome.reality, *outcome.beliefs.values())
     ]
     trails = read_trails(journal, scenario.setting.snapshot, tick)
@@ -97,15 +97,34 @@ def _deed(event: PerceivedEvent, scenario: Scenario) -> str:
     return f"{titled(event.actor or 'somebody')} {words}"
 
 
-def state_row(path: tuple[str, ...], state: State, ok: bool | None) -> Row:
-    """The row of a simulator: what it holds of the containers."""
+def state_row(
+    path: tuple[str, ...], state: State, ok: bool | None, notes: tuple[str, ...] = ()
+) -> Row:
+    """The row of a simulator: what it holds of the containers, and other things of note."""
     return Row(
         label=" that ".join(f"{titled(name)} believes" for name in path) or "In reality",
         path=path_text(path),
         contents={place: held.items for place, held in state.containers.items()},
         complete=frozenset(place for place, held in state.containers.items() if held.complete),
         ok=ok,
+        notes=notes,
     )
+
+
+def _notes(state: State, outcome: Outcome) -> tuple[str, ...]:
+    """What a simulator holds of the agents and words that something is expected of."""
+    notes = []
+    for each in outcome.expectations:
+        content = each.expectation.content
+        if outcome.state(each.expectation.path) is not state:
+            continue
+        if isinstance(content, Stands):
+            place = state.agents[content.agent].position
+            notes.append(f"{content.agent} {'anywhere' if place is None else point_text(place)}")
+        elif isinstance(content, Hears):
+            heard = any(content.text in text for _, _, text in state.chat)
+            notes.append(f"{content.text}: {'' if heard else 'not '}heard")
+    return tuple(notes)
 
 
 def _held(state: State, outcome: Outcome) -> bool | None:

@@ -44,13 +44,16 @@ def draw_scene(scene: Scene) -> Image.Image:
 def draw_overview(scenes: Sequence[Scene], title: str) -> Image.Image:
     """Several scenes side by side, with what everybody believes below each."""
     rows = max(len(scene.rows) for scene in scenes)
-    verdicts = max(len(scene.caption.verdicts) for scene in scenes)
+    measure = Canvas(1, 1, PAPER)
+    verdicts = max(
+        sum(height + 10 for _, _, height in _verdicts(measure, scene, _COLUMN)) for scene in scenes
+    )
     step = _COLUMN + _GAP
     top = 176
     below = top + _COLUMN + 14
     canvas = Canvas(
         2 * _MARGIN + len(scenes) * step - _GAP,
-        round(below + rows * _ROW + verdicts * 76 + 64),
+        round(below + rows * _ROW + verdicts + 64),
         PAPER,
     )
     canvas.text((_MARGIN, 40), title, 28, INK, bold=True)
@@ -87,9 +90,7 @@ def _panel(canvas: Canvas, scene: Scene, corner: XY, width: float) -> float:
     for row in scene.rows:
         _row(canvas, row, places, scene.labels, (left, top), width)
         top += _ROW
-    for text, ok in scene.caption.verdicts:
-        lines = canvas.wrapped(text, 17, width - 64)
-        height = 22 * len(lines) + 22
+    for lines, ok, height in _verdicts(canvas, scene, width):
         canvas.box((left, top), (left + width, top + height), blend(PAPER, INK, 0.06), None, 1, 8)
         for number, line in enumerate(lines):
             canvas.text((left + 16, top + 22 + 22 * number), line, 17, INK, bold=True)
@@ -97,6 +98,17 @@ def _panel(canvas: Canvas, scene: Scene, corner: XY, width: float) -> float:
             icons.mark(canvas, (left + width - 28, top + height / 2), 24, ok)
         top += height + 10
     return top
+
+
+def _verdicts(
+    canvas: Canvas, scene: Scene, width: float
+) -> list[tuple[list[str], bool | None, float]]:
+    """Lines, mark and height of what came of each prediction."""
+    found = []
+    for text, ok in scene.caption.verdicts:
+        lines = canvas.wrapped(text, 17, width - 64)
+        found.append((lines, ok, 22.0 * len(lines) + 22))
+    return found
 
 
 def _row(
@@ -114,6 +126,9 @@ def _row(
     for number, line in enumerate(canvas.wrapped(row.label, 16, label_width)):
         canvas.text((left + 14, top + 22 + 19 * number), line, 16, INK, bold=True)
     canvas.text((left + 14, top + _ROW - 26), row.path, 13, _QUIET)
+    beside = left + 14 + canvas.text_width(row.path, 13) + 34
+    for number, note in enumerate(reversed(row.notes)):
+        canvas.text((beside, top + _ROW - 26 - 18 * number), note, 14, INK)
     if row.ok is not None:
         at = (left + 14 + canvas.text_width(row.path, 13) + 16, top + _ROW - 26)
         icons.mark(canvas, at, 14, row.ok)

@@ -104,7 +104,7 @@ class Floor:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """What one simulator holds of the containers.
+    """What one simulator holds.
 
     Attributes:
         label: Whose belief it is, for people.
@@ -112,6 +112,7 @@ class Row:
         contents: Position to known items; None: nothing is known of it.
         complete: The containers whose known items are known to be all.
         ok: Whether it is as expected; None: nothing was expected.
+        notes: What else it holds that matters, as where somebody is and what was heard.
     """
 
     label: str
@@ -119,6 +120,7 @@ class Row:
     contents: Mapping[Position, Mapping[str, int] | None]
     complete: frozenset[Position]
     ok: bool | None
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
