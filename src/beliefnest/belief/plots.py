@@ -182,7 +182,7 @@ class Plots:
             wide = np.full((size, len(new)), filler, dtype=row.dtype)
             self._rows[name] = np.concatenate([row, wide], axis=1)
         # Whoever looks next looks at the new cells too.
-        self._rows["eye"][:] = UNKNOWN
+        self._rows["eye"][: self.count] = UNKNOWN
 
     @property
     def tracked(self) -> npt.NDArray[np.int32]:
@@ -243,8 +243,10 @@ class Plots:
         node = self.count
         size = len(self._rows["parent"])
         if node == size:
+            # Room that is not written to yet takes no memory, so there may be plenty.
             for name, row in self._rows.items():
-                self._rows[name] = np.concatenate([row, row[:1].repeat(size, axis=0)])
+                self._rows[name] = np.empty((8 * size, *row.shape[1:]), dtype=row.dtype)
+                self._rows[name][:size] = row
         self._reset(node)
         self.count += 1
         return node
