@@ -136,7 +136,7 @@ class Nodes(NamedTuple):
         looks: (N, A), version of each agent's believed equipment; -1 unknown.
         seen_at: (N, A), tick of the perception that the pose rests on.
         current: (N, A), whether the pose is backed by a perception in this tick.
-        blocks: (N, C), believed block states; -1 unknown.
+        blocks: (N, C), believed block states; -1 unknown. No version has 32768 states.
         codes: (N, cells with margin), geometry of the blocks.
         geometry: (N,), counts changes of the geometry.
         pending: (N, words), bit set of cells that the parent knows otherwise.
@@ -159,7 +159,7 @@ class Nodes(NamedTuple):
     looks: Ints
     seen_at: Ints
     current: Flags
-    blocks: Ints
+    blocks: npt.NDArray[np.int16]
     codes: npt.NDArray[np.uint16]
     geometry: Ints
     pending: npt.NDArray[np.uint64]

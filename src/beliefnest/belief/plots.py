@@ -47,7 +47,7 @@ class Plots:
             "looks": np.full((2, agents), UNKNOWN, dtype=np.int32),
             "seen_at": np.full((2, agents), UNKNOWN, dtype=np.int32),
             "current": np.zeros((2, agents), dtype=np.bool_),
-            "blocks": np.full((2, cells), UNKNOWN, dtype=np.int32),
+            "blocks": np.full((2, cells), UNKNOWN, dtype=np.int16),
             "codes": np.zeros((2, margin), dtype=np.uint16),
             "geometry": np.zeros(2, dtype=np.int32),
             "pending": np.zeros((2, -(-cells // 64)), dtype=np.uint64),
@@ -203,8 +203,8 @@ class Plots:
 
     def blocks(self, node: int) -> BlockGrid:
         """A copy of a node's blocks, of the box's shape."""
-        blocks: BlockGrid = self._rows["blocks"][node].reshape(self._ground.box.shape).copy()
-        return blocks
+        blocks: BlockGrid = self._rows["blocks"][node].astype(np.int32)
+        return blocks.reshape(self._ground.box.shape)
 
     def version(self, node: int, agent: int) -> int:
         """Version of an agent's believed pose; -1: unknown."""
@@ -253,7 +253,7 @@ class Plots:
 
     def _reset(self, node: int) -> None:
         for row in self._rows.values():
-            if row.dtype == np.int32:
+            if np.issubdtype(row.dtype, np.signedinteger):
                 row[node] = UNKNOWN
             else:
                 row[node] = 0

@@ -18,6 +18,9 @@ BlockGrid = npt.NDArray[np.int32]
 """Block state ids of a box, shape `Box.shape`, C order; -1 is unknown."""
 
 
+_NOTHING: Mapping[object, object] = {}
+
+
 @dataclass(frozen=True, slots=True)
 class Frame:
     """What changed in one simulator during one tick.
@@ -38,6 +41,12 @@ class Frame:
     containers: Mapping[Position, Items | None] = field(default_factory=dict)
     items: Mapping[int, DroppedItem | None] = field(default_factory=dict)
     events: tuple[Event, ...] = ()
+
+    def __post_init__(self) -> None:
+        # Runs have very many frames, and most change little: nothings are one and the same.
+        for name in ("agents", "blocks", "containers", "items"):
+            if not getattr(self, name):
+                object.__setattr__(self, name, _NOTHING)
 
     @property
     def is_empty(self) -> bool:
