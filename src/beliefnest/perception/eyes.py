@@ -22,12 +22,11 @@ from beliefnest.perception.rays import (
     neighbour,
 )
 from beliefnest.perception.shadows import Counts, Suspects
+from beliefnest.perception.sight import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT
 
 __all__ = ["Eye", "eye_sees_agent", "eye_sees_block", "eye_sees_point", "set_code"]
 
-# Heights of `sight.AGENT_SAMPLE_HEIGHTS` and `sight.BODY_CENTRE_HEIGHT`, as compiled constants.
-_HEIGHTS = np.array([1.62, 0.9, 0.05])
-_CENTRE = 0.9
+_HEIGHTS = np.array(AGENT_SAMPLE_HEIGHTS)
 
 
 @compiled
@@ -78,7 +77,7 @@ def eye_sees_agent(
     """Whether an agent with its feet at a point is seen by one of its sample points."""
     place = eye[0]
     x, y, z = feet[0] - place[0], feet[1] - place[1], feet[2] - place[2]
-    if not in_reach(eye, x, y + _CENTRE, z):
+    if not in_reach(eye, x, y + BODY_CENTRE_HEIGHT, z):
         return False
     for height in _HEIGHTS:
         if _sees_sample(codes, sizes, starts, boxes, eye, (x, y + height, z)):
