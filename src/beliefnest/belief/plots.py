@@ -159,11 +159,6 @@ class Plots:
             for cell in cells
         }
 
-    def watches(self, node: int, cell: int) -> bool:
-        """Whether the owner of a node sees a tracked cell in the simulator around it."""
-        spot = int(np.flatnonzero(self._tracked == cell)[0])
-        return bool(self._rows["watched"][node, spot])
-
     def put(self, node: int, cell: int, state: int, basis: Basis) -> None:
         """Let a node hold a block state by hand."""
         kernel.put(self._ground.space, self.nodes(), node, cell, state)
