@@ -7,6 +7,7 @@ the world and its frames are recorded there (semantics, sections 6 and 7).
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
+from threading import RLock
 from typing import Self
 
 from beliefnest.belief.reading import Reading
@@ -82,6 +83,9 @@ class Engine:
         world: Where bodies live; a body is made when it is first needed.
         seed: Drives every random number.
         log: Notes beside the timelines, kept together with them; None: in memory.
+
+    Attributes:
+        turn: Held by the thread that is in the nest.
     """
 
     def __init__(
@@ -92,6 +96,7 @@ class Engine:
         seed: int,
         log: RunLog | None = None,
     ) -> None:
+        self.turn = RLock()
         self.setting = setting
         self.journal = journal
         self.world = world
@@ -154,9 +159,9 @@ class Engine:
         """
         key, position = self._when(path, tick)
         reading = self.history.reading(key, path, position)
-        blocks = Blocks(self.history, key, position, reading)
+        blocks = Blocks(self.history, key, position, reading, self.turn)
         shown = self.journal.info(key).head if tick is None else tick
-        return LiveState(reading, blocks, self.setting.snapshot.box, shown)
+        return LiveState(reading, blocks, self.setting.snapshot.box, shown, self.turn)
 
     def _when(self, path: Path, tick: int | None) -> tuple[TimelineKey, int]:
         info = self.info(path)

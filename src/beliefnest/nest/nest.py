@@ -20,6 +20,7 @@ from beliefnest.nest.saved import decode_start, encode_start
 from beliefnest.nest.script import STEP, steps_played
 from beliefnest.nest.setting import Setting, Step
 from beliefnest.nest.simulator import PastSimulator, Simulator
+from beliefnest.nest.turns import in_turn
 from beliefnest.perception.options import Perception
 from beliefnest.timeline.journal import MemoryJournal
 from beliefnest.timeline.records import RunRecord
@@ -166,6 +167,7 @@ class Nest:
     ) -> None:
         self.close()
 
+    @in_turn
     def close(self) -> None:
         """End the world and close the store."""
         self._engine.close()
@@ -207,6 +209,7 @@ class Nest:
         """
         return Simulator(self._engine, parse_path(path, self.agents))
 
+    @in_turn
     def at(self, tick: int) -> "Past":
         """All simulators as they were at a past tick.
 
@@ -216,6 +219,7 @@ class Nest:
         self._engine.reading((), tick)
         return Past(self._engine, tick)
 
+    @in_turn
     def compare(self, a: str, b: str, *, unknown: bool = True) -> list[Difference]:
         """Where two simulators differ: blocks, containers, agents' poses, inventories.
 
@@ -230,6 +234,7 @@ class Nest:
         one, other = parse_path(a, self.agents), parse_path(b, self.agents)
         return compare(self._engine, one, other, None, unknown=unknown)
 
+    @in_turn
     def false_beliefs(self, path: str) -> list[Difference]:
         """What a simulator holds otherwise than reality (`a`) does; unknown is not false.
 
@@ -290,6 +295,7 @@ class Nest:
         if on_progress is not None:
             on_progress("script played", len(script), len(script))
 
+    @in_turn
     def _play_step(self, number: int, step: Step) -> None:
         results = self._engine.run((), step.programs, step.timeout_ticks, {STEP: str(number)})
         for agent, result in results.items():
@@ -313,6 +319,7 @@ class Past:
         """The simulator of a belief path as it was."""
         return PastSimulator(self._engine, parse_path(path, self._engine.agents), self._tick)
 
+    @in_turn
     def compare(self, a: str, b: str, *, unknown: bool = True) -> list[Difference]:
         """Where two simulators differ: blocks, containers, agents' poses, inventories.
 
@@ -327,6 +334,7 @@ class Past:
         one, other = parse_path(a, self._engine.agents), parse_path(b, self._engine.agents)
         return compare(self._engine, one, other, self._tick, unknown=unknown)
 
+    @in_turn
     def false_beliefs(self, path: str) -> list[Difference]:
         """What a simulator holds otherwise than reality (`a`) does; unknown is not false.
 

@@ -16,6 +16,7 @@ from beliefnest.nest.engine import Engine
 from beliefnest.nest.explain import element_of, explain
 from beliefnest.nest.explanation import Explanation
 from beliefnest.nest.paths import normalised, path_text
+from beliefnest.nest.turns import in_turn
 from beliefnest.prompts import Template, render
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
 from beliefnest.world.scripted import ScriptedWorld
@@ -66,8 +67,10 @@ class _Seen:
         Raises:
             TemplateError: The template is wrong; the message names its line.
         """
-        return render(template, self, variables)
+        with self._engine.turn:
+            return render(template, self, variables)
 
+    @in_turn
     def explain(
         self,
         *,
@@ -97,6 +100,7 @@ class _Seen:
         """The simulator of what `agent` believes in this one."""
         raise NotImplementedError
 
+    @in_turn
     def visible_blocks(self, agent: str) -> npt.NDArray[np.bool_]:
         """Which blocks an agent sees from its pose in this simulator.
 
@@ -133,6 +137,7 @@ class PastSimulator(_Seen):
         return PastSimulator(self._engine, self._child_path(agent), self._tick)
 
     @property
+    @in_turn
     def state(self) -> State:
         """What the simulator held, read-only."""
         return self._engine.state(self._path, self._tick)
@@ -164,6 +169,7 @@ class Simulator(_Seen):
         return self._engine.info(self._path).head
 
     @property
+    @in_turn
     def scripted(self) -> ScriptedWorld:
         """The scripted world to act in, of a control-mode simulator without Minecraft.
 
@@ -180,6 +186,7 @@ class Simulator(_Seen):
         """The simulator of what `agent` believes in this one."""
         return Simulator(self._engine, self._child_path(agent))
 
+    @in_turn
     def switch(self, name: str, at: int | None = None) -> None:
         """Select a branch: a new name forks here, a known one restores its latest state.
 
@@ -203,11 +210,13 @@ class Simulator(_Seen):
         else:
             self._engine.select(key)
 
+    @in_turn
     def branches(self) -> tuple[TimelineInfo, ...]:
         """The simulator's own timelines, in order of creation, each with its fork point."""
         timelines = self._engine.journal.timelines()
         return tuple(info for info in timelines if info.key.path == self._path)
 
+    @in_turn
     def rename(self, old: str, new: str) -> None:
         """Give a branch another name.
 
@@ -219,6 +228,7 @@ class Simulator(_Seen):
             raise BranchError(f"{FOLLOW!r} is the name of no branch; choose another one")
         self._engine.rename(TimelineKey(self._path, old), new)
 
+    @in_turn
     def delete(self, name: str, recursive: bool = False) -> None:
         """Delete a branch, for good.
 
@@ -234,6 +244,7 @@ class Simulator(_Seen):
         key = journal.info(TimelineKey(self._path, name)).key
         self._engine.delete([*(_based_on(key, journal.timelines()) if recursive else ()), key])
 
+    @in_turn
     def describe(self, name: str, text: str) -> None:
         """Say what a branch is for; BranchError if there is none of that name."""
         self._engine.journal.describe(TimelineKey(self._path, name), text)
@@ -253,6 +264,7 @@ class Simulator(_Seen):
         """
         return self.run_all({agent: code}, timeout_ticks)[agent]
 
+    @in_turn
     def run_all(
         self, programs: Mapping[str, str], timeout_ticks: int = 1200
     ) -> Mapping[str, ProgramResult]:
@@ -263,10 +275,12 @@ class Simulator(_Seen):
             raise InputError(f"timeout_ticks is {timeout_ticks}; give at least 1")
         return self._engine.run(self._path, programs, timeout_ticks)
 
+    @in_turn
     def step(self, ticks: int = 1) -> None:
         """Let ticks pass in a control-mode simulator."""
         self._engine.step(self._path, ticks)
 
+    @in_turn
     def edit(
         self,
         blocks: Mapping[Position, str | None] | None = None,
@@ -299,6 +313,7 @@ class Simulator(_Seen):
         self._engine.edit(self._path, states, {p: dict(i) for p, i in (containers or {}).items()})
 
     @property
+    @in_turn
     def state(self) -> State:
         """What the simulator holds, read-only."""
         return self._engine.state(self._path)

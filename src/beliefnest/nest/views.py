@@ -1,6 +1,7 @@
 """Read-only views of nodes, as users, prompts and pictures get them."""
 
 from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager
 from functools import cached_property
 
 import numpy as np
@@ -25,7 +26,15 @@ _SPEECH = (EventKind.CHAT, EventKind.THINK)
 class Blocks:
     """The blocks of a node at one entry of a timeline, by position."""
 
-    def __init__(self, history: History, key: TimelineKey, position: int, reading: Reading) -> None:
+    def __init__(
+        self,
+        history: History,
+        key: TimelineKey,
+        position: int,
+        reading: Reading,
+        turn: AbstractContextManager[object],
+    ) -> None:
+        self._turn = turn
         self._history = history
         self._key = key
         self._position = position
@@ -35,7 +44,8 @@ class Blocks:
     @property
     def grid(self) -> BlockGrid:
         """Block state ids, shape of the box, -1 unknown."""
-        return self._reading.blocks
+        with self._turn:
+            return self._reading.blocks
 
     def __getitem__(self, position: Position) -> str | None:
         state = int(self.grid[self._index(position)])
@@ -68,7 +78,8 @@ class Blocks:
         """Whether the block is backed by a perception in this tick."""
         self._index(position)
         path = self._reading.path
-        return self._history.block_is_current(self._key, path, self._position, position)
+        with self._turn:
+            return self._history.block_is_current(self._key, path, self._position, position)
 
     def basis(self, position: Position) -> Basis | None:
         """What the block rests on; None where it is unknown."""
@@ -78,9 +89,10 @@ class Blocks:
             # Who asks for a few will ask for all.
             every = len(self._bases) >= _FEW
             cells = range(self._history.ground.cells) if every else [cell]
-            self._bases.update(
-                self._history.block_bases(self._key, self._reading.path, self._position, cells)
-            )
+            with self._turn:
+                self._bases.update(
+                    self._history.block_bases(self._key, self._reading.path, self._position, cells)
+                )
         return self._bases[cell]
 
     def _index(self, position: Position) -> tuple[int, int, int]:
@@ -91,16 +103,25 @@ class Blocks:
 
 
 class LiveState(State):
-    """A node's state, read part by part when it is asked for."""
+    """A node's state, read part by part when it is asked for, in the nest's `turn`."""
 
-    def __init__(self, reading: Reading, blocks: Blocks, box: Box, tick: int) -> None:
+    def __init__(
+        self,
+        reading: Reading,
+        blocks: Blocks,
+        box: Box,
+        tick: int,
+        turn: AbstractContextManager[object],
+    ) -> None:
         for name, value in (("path", reading.path), ("tick", tick), ("box", box)):
             object.__setattr__(self, name, value)
         object.__setattr__(self, "_reading", reading)
         object.__setattr__(self, "_blocks", blocks)
+        object.__setattr__(self, "_turn", turn)
 
     _reading: Reading
     _blocks: Blocks
+    _turn: AbstractContextManager[object]
 
     @property
     def blocks(self) -> BlockView:
@@ -110,17 +131,20 @@ class LiveState(State):
     @cached_property
     def containers(self) -> Mapping[Position, ContainerBelief]:
         """Known containers by position."""
-        return self._reading.containers
+        with self._turn:
+            return self._reading.containers
 
     @cached_property
     def agents(self) -> Mapping[str, AgentBelief]:
         """Every agent of the scenario by name."""
-        return self._reading.agents
+        with self._turn:
+            return self._reading.agents
 
     @cached_property
     def items(self) -> Mapping[int, DroppedItem]:
         """Dropped items last seen."""
-        return self._reading.items
+        with self._turn:
+            return self._reading.items
 
     @cached_property
     def events(self) -> tuple[PerceivedEvent, ...]:
@@ -139,7 +163,8 @@ class LiveState(State):
 
     @cached_property
     def _perceived(self) -> tuple[PerceivedEvent, ...]:
-        return self._reading.events()
+        with self._turn:
+            return self._reading.events()
 
     def _said(self, kind: EventKind) -> list[tuple[int, str, str]]:
         events = (event for event in self._perceived if event.kind is kind)

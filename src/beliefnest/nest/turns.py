@@ -1,0 +1,34 @@
+"""One call at a time in a nest, whichever threads they come from.
+
+A nest's timelines, forests and bodies belong together, and Node does one thing at a time.
+Programs of different simulators can be asked for side by side, in threads: each runs in its
+turn, and since simulators do not disturb each other, the turns' order cannot be seen in them.
+"""
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Concatenate, ParamSpec, Protocol, TypeVar
+
+from beliefnest.nest.engine import Engine
+
+__all__ = ["in_turn"]
+
+
+class _OfEngine(Protocol):
+    _engine: Engine
+
+
+S = TypeVar("S", bound=_OfEngine)
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def in_turn(method: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P], R]:
+    """Let a method wait until no other thread is in the nest."""
+
+    @wraps(method)
+    def waiting(self: S, /, *args: P.args, **kwargs: P.kwargs) -> R:
+        with self._engine.turn:
+            return method(self, *args, **kwargs)
+
+    return waiting
