@@ -32,6 +32,25 @@ def second_half(nest):
     nest["/observer/sally"].run("sally", ROAM)
 
 
+def test_dropped_items_are_the_same_on_both_sides_of_a_switch():
+    """A visit to another branch leaves items and their numbers as they were, in the body too."""
+    toss = "await bot.toss(mcData.itemsByName.diamond.id, null, 1); await bot.waitForTicks(30)"
+    with bn.Nest.open(bn.Scenario.load("sally-anne", 3), seed=SEED) as nest:
+        world = nest["/"]
+        world.edit(containers={(-2, -51, -4): {"diamond": 3}})
+        world.switch("dropping")
+        result = world.run(
+            "anne", f"await getItemFromChest(bot, new Vec3(-2, -51, -4), {{diamond: 2}}); {toss}"
+        )
+        assert result.ok, result.error
+        lying = dict(world.state.items)
+        assert len(lying) == 1
+        for branch, items in (("main", {}), ("dropping", lying)):
+            world.switch(branch)
+            assert world.state.items == items
+            assert nest._engine.body(()).snapshot().items == items
+
+
 def frames(store):
     with SqliteJournal.read(store) as journal:
         return {

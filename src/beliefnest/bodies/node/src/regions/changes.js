@@ -1,5 +1,6 @@
 'use strict'
 /** Makes parts of the active region as asked, changing only what differs. */
+const { isDeepStrictEqual } = require('node:util')
 const { BadRequest } = require('../channel/errors')
 const { itemStates } = require('./facts')
 
@@ -25,16 +26,17 @@ function applyContainers (serv, region, containers) {
   }
 }
 
-/** @param {object} items by any key; all that lie in the region */
+/** @param {object} items by number; all that lie in the region */
 function applyItems (serv, region, items) {
-  const text = list => JSON.stringify(list.map(({ name, count, position }) => [name, count, position]).sort())
-  const wanted = Object.values(items)
-  if (text(wanted) === text(Object.values(itemStates(serv, region)))) return
-  serv.removeItemEntities(place => region.contains(place))
-  for (const { name, count, position } of wanted) {
+  for (const [id, state] of Object.entries(itemStates(serv, region))) {
+    if (!isDeepStrictEqual(state, items[id])) serv.removeItem(id)
+  }
+  for (const [id, { name, count, position }] of Object.entries(items)) {
+    if (serv.entities[id]?.item !== undefined) continue
     const data = serv.registry.itemsByName[name]
     if (data === undefined) throw new BadRequest(`there is no item called ${name}`)
-    serv.dropItem(region.toServer(position), new serv.Item(data.id, count), { delay: 0 })
+    if (serv.entities[id] !== undefined) throw new BadRequest(`item ${id} has the number of an agent's body; give it a higher one`)
+    serv.dropItem(region.toServer(position), new serv.Item(data.id, count), { delay: 0, id: Number(id) })
   }
 }
 

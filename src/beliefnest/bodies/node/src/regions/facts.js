@@ -49,7 +49,7 @@ function agentStates (serv, region) {
   return Object.fromEntries(serv.players.map(player => [player.agent, agentState(region, player)]))
 }
 
-/** @returns {object} dropped items of the active region by entity id */
+/** @returns {object} dropped items of the active region by number */
 function itemStates (serv, region) {
   const items = {}
   for (const { id, item, position } of serv.itemEntities(place => region.contains(place))) {

@@ -61,8 +61,8 @@ class Regions {
       await this.inside(region, async () => {
         buildColumns(this.serv, region, states)
         applyContainers(this.serv, region, containers)
-        applyItems(this.serv, region, items)
         await this.bodies.add(region, agents)
+        applyItems(this.serv, region, items)
         region.recorder.settle()
       })
     } catch (error) {
@@ -78,9 +78,9 @@ class Regions {
     await this.inside(region, async () => {
       applyBlocks(this.serv, region, blocks)
       applyContainers(this.serv, region, containers)
-      applyItems(this.serv, region, items)
       await this.bodies.apply(region, agents)
       region.tick = tick
+      applyItems(this.serv, region, items)
       region.recorder.settle()
     })
     return this.snapshot(region)
@@ -105,6 +105,7 @@ class Regions {
   async resumed (region, action) {
     return this.inside(region, async () => {
       region.reseed()
+      this.serv.numberItems()
       await this.bodies.settle(region)
       return action()
     })

@@ -16,6 +16,7 @@ module.exports.server = serv => {
    */
   serv.join = (end, start) => {
     const type = serv.registry.entitiesByName.player.id
+    serv.entityMaxId = freeNumber(serv) - 1
     const player = serv.initEntity('player', type, serv.overworld, start.position.clone())
     Object.assign(player, {
       _client: end,
@@ -49,6 +50,13 @@ module.exports.player = (player, serv) => {
     player.sendSelfPosition()
   }
   player.kick = reason => player._client.end(reason)
+}
+
+// The lowest: which body a player has must not depend on who left, or on what was dropped.
+function freeNumber ({ entities }) {
+  let number = 1
+  while (number in entities) number += 1
+  return number
 }
 
 function sendLogin (player, serv) {

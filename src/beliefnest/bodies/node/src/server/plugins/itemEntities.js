@@ -12,15 +12,27 @@ const TOSS_LIFT = 0.1
 const POP_SPEED = 0.1
 const BELOW_EYES = 0.3
 
+/** Every tick has numbers of its own, so that no number is used twice; the first ones are the players'. */
+const NUMBERS_PER_TICK = 100
+
 /**
- * Making dropped items: `serv.dropItem(position, item, {velocity, delay})` makes one, which
- * nobody can pick up for `delay` ticks; `serv.itemEntities(within)` lists them (`{id, item, position}`).
- * What becomes of them is in itemMotion.js.
+ * Making dropped items: `serv.dropItem(position, item, {velocity, delay, id})` makes one, which
+ * nobody can pick up for `delay` ticks; `serv.itemEntities(within)` lists them (`{id, item, position}`),
+ * `serv.removeItem(id)` takes one away. What becomes of them is in itemMotion.js.
+ *
+ * The number of an item is that of its entity. A new one's depends on the tick and on what lies
+ * there, never on what lay there once: a region made anew goes on with the same numbers.
  */
 module.exports.server = (serv) => {
   const type = serv.registry.entitiesByName.item.id
 
-  serv.dropItem = (position, item, { velocity = new Vec3(0, 0, 0), delay = MINED_DELAY } = {}) => {
+  /** To be called at the start of a call: numbers go on from those that are taken. */
+  serv.numberItems = () => { serv.entityMaxId = Math.max(0, ...Object.keys(serv.entities).map(Number)) }
+
+  const nextNumber = () => Math.max(serv.entityMaxId + 1, (serv.region.tick + 1) * NUMBERS_PER_TICK)
+
+  serv.dropItem = (position, item, { velocity = new Vec3(0, 0, 0), delay = MINED_DELAY, id = nextNumber() } = {}) => {
+    serv.entityMaxId = id - 1
     const entity = serv.initEntity('object', type, serv.overworld, position.clone())
     becomeItem(entity, serv.Item, { item, velocity, delay })
     entity.updateAndSpawn()
@@ -41,4 +53,6 @@ module.exports.server = (serv) => {
 
   serv.itemEntities = (within) => Object.values(serv.entities).filter(
     ({ item, position }) => item && within(position))
+
+  serv.removeItem = (id) => serv.entities[id].destroy()
 }
