@@ -126,6 +126,16 @@ def show(
 
 
 @app.command()
+def branches(
+    run: Annotated[Path, typer.Argument(help="A run folder, or a run file.")], json: Json = False
+) -> None:
+    """Show the branches of a recorded run, each below the one it was forked from."""
+    from beliefnest.cli.branches import show_branches
+
+    show_branches(run, as_json=json)
+
+
+@app.command()
 def prompt(
     run: Annotated[Path, typer.Argument(help="A run folder, or one condition's in it.")],
     path: Annotated[str, typer.Option(help="The belief to render.")],
