@@ -54,6 +54,18 @@ def test_the_branch_of_a_probe_is_shown(run: Path, capsys: pytest.CaptureFixture
     assert probe["tick"] > follow["tick"]
 
 
+def test_what_ran_in_a_simulator_is_told(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert shown(run, capsys, "--path", "/observer")["programs"] == []
+    programs = shown(run, capsys, "--path", "/observer", "--branch", "probe 1")["programs"]
+    assert isinstance(programs, list)
+    (program,) = programs
+    assert (program["agent"], program["ok"], program["unfinished"]) == ("sally", False, [])
+    assert "diamond" in program["error"]
+    assert program["lines"][0] == 1
+    assert run_command_line(["show", str(run)]) == 0
+    assert "program of anne: ended well" in capsys.readouterr().out
+
+
 def test_a_table_names_the_containers(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command_line(["show", str(run), "--path", "/observer/sally"]) == 0
     lines = capsys.readouterr().out.splitlines()

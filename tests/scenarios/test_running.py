@@ -90,8 +90,8 @@ def test_a_probe_without_expectation_is_only_recorded() -> None:
     outcome = run(Parrot("await nowhere(bot);"), probes=[probe()])
     (result,) = outcome.probes
     assert result.ok is None
-    assert not result.ok_run
-    assert "nowhere" in str(result.error)
+    assert not result.result.ok
+    assert "nowhere" in str(result.result.error)
     assert outcome.ok
 
 
@@ -114,7 +114,7 @@ def test_every_probe_starts_from_the_end_of_the_script() -> None:
         script=[{"agent": "ann", "program": look}],
         probes=[probe(agent="ann", path="/ann", label="same")] * 2,
     )
-    assert [result.ok_run for result in outcome.probes] == [True, True]
+    assert [result.result.ok for result in outcome.probes] == [True, True]
     assert len({result.branch for result in outcome.probes}) == 2
     assert outcome.state("/ann").containers[BLUE].items == {"apple": 1}
 

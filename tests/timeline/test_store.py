@@ -25,6 +25,9 @@ MAIN = TimelineKey((), "main")
 PLAN = TimelineKey(("sally",), "plan")
 RUN = RunRecord("sally-anne", "box: …\n", "3", 7, {"minecraft": "1.20.4"}, b"\0setting")
 PROGRAM = ProgramRecord(("sally",), "plan", "sally", "await x()", 12, False, "line 1: no x", 3)
+LONG = replace(
+    PROGRAM, ok=True, error=None, lines=(1, 3), log=("a", "é"), unfinished=("waitTicks of line 3",)
+)
 PROMPT = PromptRecord(("sally",), "plan", 12, "offline", "Get a diamond.", "You are …", "await x()")
 
 
@@ -495,7 +498,7 @@ def test_records_are_there_after_opening_again(run_file):
         records = journal.records
         records.set_run(RUN)
         records.add_program(PROGRAM)
-        records.add_program(replace(PROGRAM, ok=True, error=None))
+        records.add_program(LONG)
         records.add_prompt(PROMPT)
         records.select(("sally",), "x")
         records.select(("sally",), "plan")
@@ -504,7 +507,7 @@ def test_records_are_there_after_opening_again(run_file):
     with SqliteJournal.read(run_file) as reader:
         records = reader.records
         assert records.run() == RUN
-        assert records.programs() == (PROGRAM, replace(PROGRAM, ok=True, error=None))
+        assert records.programs() == (PROGRAM, LONG)
         assert records.prompts() == (PROMPT,)
         assert records.selected() == {(): "main", ("sally",): "plan"}
         assert records.state("random") == b"\0\1"

@@ -36,7 +36,7 @@ class EmbeddedBody:
         self._tick = snapshot.tick
         self._agents = frozenset(snapshot.agents)
         self._sink = sink
-        self._events: list[Event] = []
+        self._happened: list[tuple[int, Event]] = []
         self._closed = False
         self._on_close = on_close
 
@@ -59,7 +59,7 @@ class EmbeddedBody:
                     f"{agent} has no bot in {self._region}: its pose is not known there; "
                     f"there are {', '.join(sorted(self._agents)) or 'no bots'}"
                 )
-        self._events = []
+        self._happened = []
         answer = self._channel.request(
             "run",
             self._take,
@@ -68,7 +68,7 @@ class EmbeddedBody:
             timeout_ticks=timeout_ticks,
         )
         self._tick = answer["tick"]
-        return messages.results_of(answer["results"], tuple(self._events))
+        return messages.results_of(answer["results"], tuple(self._happened))
 
     def step(self, ticks: int) -> None:
         """Let ticks pass without programs."""
@@ -96,7 +96,7 @@ class EmbeddedBody:
         frame: Frame
         _, frame = messages.frame_of(message)
         self._tick = frame.tick
-        self._events.extend(frame.events)
+        self._happened.extend((frame.tick, event) for event in frame.events)
         self._sink(frame)
 
 

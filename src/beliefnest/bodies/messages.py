@@ -6,7 +6,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from beliefnest.bodies.protocol import Fault, ProgramResult
+from beliefnest.bodies.protocol import Fault, ProgramResult, Unfinished
 from beliefnest.errors import BodyError
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.values import (
@@ -105,10 +105,30 @@ class _Fault(msgspec.Struct, frozen=True):
         return Fault(self.message, self.kind, self.line, self.column, self.skill)
 
 
+class _Unfinished(msgspec.Struct, frozen=True):
+    what: str
+    line: int | None
+
+
 class _Result(msgspec.Struct, frozen=True):
     ok: bool
     ticks: int
+    lines: tuple[int, ...]
+    log: tuple[str, ...]
+    unfinished: tuple[_Unfinished, ...]
     error: _Fault | None = None
+
+    def value(self, agent: str, happened: tuple[tuple[int, Event], ...]) -> ProgramResult:
+        return ProgramResult(
+            agent,
+            self.ok,
+            None if self.error is None else self.error.value(),
+            self.ticks,
+            happened,
+            self.lines,
+            self.log,
+            tuple(Unfinished(each.what, each.line) for each in self.unfinished),
+        )
 
 
 def frame_of(message: Mapping[str, Any]) -> tuple[str, Frame]:
@@ -187,20 +207,15 @@ def agent_message(agent: AgentState) -> dict[str, Any]:
 
 
 def results_of(
-    message: Mapping[str, Any], events: tuple[Event, ...]
+    message: Mapping[str, Any], happened: tuple[tuple[int, Event], ...]
 ) -> Mapping[str, ProgramResult]:
-    """Results of programs by agent; the events of the run belong to all of them.
+    """Results of programs by agent; what happened in the run, by tick, belongs to all of them.
 
     Raises:
         BodyError: The message is not of the agreed form.
     """
     got = _converted(message, dict[str, _Result])
-    return {
-        agent: ProgramResult(
-            result.ok, None if result.error is None else result.error.value(), result.ticks, events
-        )
-        for agent, result in got.items()
-    }
+    return {agent: result.value(agent, happened) for agent, result in got.items()}
 
 
 def _converted(message: Any, kind: type[Any]) -> Any:

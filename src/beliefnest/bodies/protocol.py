@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from beliefnest.world.frames import Frame, Snapshot
-from beliefnest.world.values import Event
+from beliefnest.world.values import Event, EventKind
 
-__all__ = ["Body", "Fault", "ProgramResult", "Sink", "World"]
+__all__ = ["Body", "Fault", "ProgramResult", "Sink", "Unfinished", "World"]
 
 Sink = Callable[[Frame], None]
 """Takes the frames of a body as they come, in order of tick."""
@@ -36,21 +36,71 @@ class Fault:
         return f"{place}{self.message}"
 
 
+_NO_DEEDS = (EventKind.CHAT, EventKind.THINK, EventKind.BLOCK_UPDATE)
+
+
+@dataclass(frozen=True, slots=True)
+class Unfinished:
+    """What was still going on when a program ended, and was stopped then.
+
+    Attributes:
+        what: The skill or call that was not waited for, the timer, or what the bot was doing.
+        line: Line that began it; None where no call of the program is known for it.
+    """
+
+    what: str
+    line: int | None = None
+
+    def __str__(self) -> str:
+        return self.what if self.line is None else f"{self.what} of line {self.line}"
+
+
 @dataclass(frozen=True, slots=True)
 class ProgramResult:
     """What became of a program.
 
     Attributes:
+        agent: Who ran it.
         ok: Whether it ended without an error.
         error: Why it failed; None if it did not.
         ticks: How many ticks it ran.
-        events: What happened in the simulator meanwhile, in order.
+        happened: What happened in the simulator meanwhile, whoever did it, in order: (tick, event).
+        lines: Lines of its text that ran, from 1, rising.
+        log: What it wrote to its console, bounded.
+        unfinished: What was stopped because it was still going on at the program's end.
     """
 
+    agent: str
     ok: bool
     error: Fault | None
     ticks: int
-    events: tuple[Event, ...] = ()
+    happened: tuple[tuple[int, Event], ...] = ()
+    lines: tuple[int, ...] = ()
+    log: tuple[str, ...] = ()
+    unfinished: tuple[Unfinished, ...] = ()
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """What happened in the simulator meanwhile, whoever did it, in order."""
+        return tuple(event for _, event in self.happened)
+
+    @property
+    def actions(self) -> tuple[Event, ...]:
+        """What the program's agent did, in order; what it said and thought is no deed."""
+        return tuple(
+            event
+            for _, event in self.happened
+            if event.actor == self.agent and event.kind not in _NO_DEEDS
+        )
+
+    @property
+    def said(self) -> tuple[tuple[int, str], ...]:
+        """What the program's agent said aloud or to one, in order: (tick, text)."""
+        return tuple(
+            (tick, event.detail["text"])
+            for tick, event in self.happened
+            if event.actor == self.agent and event.kind is EventKind.CHAT
+        )
 
 
 class Body(Protocol):

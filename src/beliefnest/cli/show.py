@@ -2,7 +2,7 @@
 
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +21,7 @@ from beliefnest.nest.recorded import RecordedNest
 from beliefnest.prompts.templates import built_in_template, load_template
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import FOLLOW
+from beliefnest.timeline.records import ProgramRecord
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.viewer.picture import draw_scene, save
 from beliefnest.viewer.scene import Caption, read_scene, read_trails
@@ -60,6 +61,7 @@ def show_run(options: ShowOptions) -> None:
             nest.select(options.path, options.branch)
         simulator = nest.simulator(options.path, options.tick)
         state = simulator.state
+        programs = [each for each in nest.programs(options.path) if each.tick <= state.tick]
         if options.png is not None:
             tick = min(state.tick, nest.head("/"))
             caption = Caption(scenario.name, f"{simulator.path} at tick {tick}")
@@ -69,9 +71,11 @@ def show_run(options: ShowOptions) -> None:
             save(draw_scene(scene), options.png)
         if options.as_json:
             place = {"path": simulator.path, "branch": options.branch or FOLLOW, "tick": state.tick}
-            sys.stdout.write(json.dumps({**place, **state_json(state)}, indent=2) + "\n")
+            ran = {"programs": [_program_json(each) for each in programs]}
+            sys.stdout.write(json.dumps({**place, **state_json(state), **ran}, indent=2) + "\n")
         elif options.png is None:
             _print_state(state, simulator.path, scenario)
+            _print_programs(programs)
 
 
 def print_prompt(run: Path, path: str, template: Path | None, variables: list[str]) -> None:
@@ -128,3 +132,27 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
     console.print(containers, agents)
     for tick, speaker, text in state.chat:
         console.print(f"{tick} {speaker}: {text}", highlight=False, markup=False)
+
+
+def _print_programs(programs: Sequence[ProgramRecord]) -> None:
+    console = stdout()
+    for program in programs:
+        ended = "ended well" if program.error is None else program.error
+        ran = f"tick {program.tick}, {program.ticks} ticks: program of {program.agent}: {ended}"
+        console.print(ran, highlight=False, markup=False)
+        for told in (*program.log, *(f"stopped at its end: {each}" for each in program.unfinished)):
+            console.print(f"    {told}", highlight=False, markup=False)
+
+
+def _program_json(program: ProgramRecord) -> dict[str, object]:
+    return {
+        "agent": program.agent,
+        "tick": program.tick,
+        "ticks": program.ticks,
+        "ok": program.ok,
+        "error": program.error,
+        "lines": list(program.lines),
+        "log": list(program.log),
+        "unfinished": list(program.unfinished),
+        "code": program.code,
+    }

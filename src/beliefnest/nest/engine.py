@@ -298,6 +298,9 @@ class Engine:
                         ticks=result.ticks,
                         group=group,
                         detail=noted,
+                        lines=result.lines,
+                        log=result.log,
+                        unfinished=tuple(map(str, result.unfinished)),
                     )
                 )
         return results

@@ -12,6 +12,7 @@ from beliefnest.nest.saved import decode_start
 from beliefnest.nest.setting import Setting
 from beliefnest.nest.simulator import PastSimulator
 from beliefnest.timeline.journal import FOLLOW, Journal, TimelineKey
+from beliefnest.timeline.records import ProgramRecord
 from beliefnest.timeline.store import SqliteJournal
 
 __all__ = ["RecordedNest"]
@@ -106,6 +107,20 @@ class RecordedNest:
     def branches(self) -> tuple[TimelineKey, ...]:
         """All timelines there are, in order of creation."""
         return tuple(info.key for info in self._engine.journal.timelines())
+
+    def programs(self, path: str) -> tuple[ProgramRecord, ...]:
+        """Programs that ran in a simulator on the branch it is on, in order of their end.
+
+        In follow mode there are none; those that ran before the fork belong to another branch.
+        """
+        names = parse_path(path, self._engine.agents)
+        branch = self._engine.info(names).key.branch
+        noted = self._engine.log.programs()
+        return tuple(
+            each
+            for each in noted
+            if names in self._engine.selected and (each.path, each.branch) == (names, branch)
+        )
 
     def at(self, tick: int) -> Past:
         """All simulators at a tick.

@@ -20,11 +20,13 @@ from beliefnest.nest.turns import in_turn
 from beliefnest.prompts import Template, render
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
 from beliefnest.world.scripted import ScriptedWorld
-from beliefnest.world.values import Items, Position
+from beliefnest.world.values import TICKS_PER_SECOND, Items, Position
 
 __all__ = ["PastSimulator", "Simulator"]
 
 Mode = Literal["control", "follow"]
+
+_LONGEST = 24 * 3600 * TICKS_PER_SECOND
 
 
 class _Seen:
@@ -255,9 +257,11 @@ class Simulator(_Seen):
         Args:
             agent: Whose bot runs it.
             code: JavaScript: the body of an async function, or one whole async function.
-            timeout_ticks: Ticks after which the program is stopped.
+            timeout_ticks: Ticks after which the program is stopped, at most those of a day.
 
         Raises:
+            InputError: The code is no text, or the ticks are no such number.
+            PathError: There is no such agent.
             BranchError: The simulator is in follow mode.
             WorldError: The agent is not there, or the world runs no programs.
             BodyError: The Minecraft side died.
@@ -268,11 +272,18 @@ class Simulator(_Seen):
     def run_all(
         self, programs: Mapping[str, str], timeout_ticks: int = 1200
     ) -> Mapping[str, ProgramResult]:
-        """Run programs of several agents at the same time, tick by tick together."""
-        for agent in programs:
+        """Run programs of several agents at the same time, tick by tick together.
+
+        Raises:
+            InputError: There is no program, or as for `run`.
+        """
+        if not isinstance(programs, Mapping) or not programs:
+            raise InputError(f"no program is in {programs!r}; give a mapping of code by agent")
+        for agent, code in programs.items():
             self._child_path(agent)
-        if timeout_ticks <= 0:
-            raise InputError(f"timeout_ticks is {timeout_ticks}; give at least 1")
+            if not isinstance(code, str):
+                raise InputError(f"the program of {agent} is a text, not {type(code).__name__}")
+        _check_timeout(timeout_ticks)
         return self._engine.run(self._path, programs, timeout_ticks)
 
     @in_turn
@@ -323,6 +334,12 @@ class Simulator(_Seen):
 
     def _explained_tick(self) -> None:
         return None
+
+
+def _check_timeout(ticks: int) -> None:
+    whole = isinstance(ticks, int) and not isinstance(ticks, bool)
+    if not whole or not 1 <= ticks <= _LONGEST:
+        raise InputError(f"timeout_ticks is {ticks!r}; give a whole number, at most {_LONGEST}")
 
 
 def _based_on(key: TimelineKey, infos: Sequence[TimelineInfo]) -> list[TimelineKey]:

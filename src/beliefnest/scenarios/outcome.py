@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from beliefnest.belief.view import State
+from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.llm.messages import Usage
 from beliefnest.nest.paths import parse_path, path_text
 from beliefnest.scenarios.scenario import Expectation, Probe, Scenario
@@ -24,8 +25,7 @@ class ProbeOutcome:
         branch: The branch that it ran on.
         attempts: How often the model was asked; faults were sent back in between.
         usage: What all its answers took.
-        ok_run: Whether the program ended without an error.
-        error: Why it failed; None if it did not.
+        result: What became of the program.
         opened: The containers that the agent opened, in order.
         arrived: Where the agent stood in the end; None if it was not there.
         ok: Whether the outcome was as expected; None: nothing was expected.
@@ -38,8 +38,7 @@ class ProbeOutcome:
     branch: str
     attempts: int
     usage: Usage
-    ok_run: bool
-    error: str | None
+    result: ProgramResult
     opened: tuple[Position, ...]
     arrived: Point | None
     ok: bool | None

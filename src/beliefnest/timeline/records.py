@@ -49,6 +49,9 @@ class ProgramRecord:
         ticks: How many ticks it took.
         group: Programs that ran at the same time in one call share a number.
         detail: Further facts of the caller.
+        lines: Lines of its text that ran, from 1, rising.
+        log: What it wrote to its console.
+        unfinished: What was still going on when it ended, in words.
     """
 
     path: tuple[str, ...]
@@ -61,6 +64,9 @@ class ProgramRecord:
     ticks: int
     group: int = 0
     detail: Mapping[str, str] = field(default_factory=dict)
+    lines: tuple[int, ...] = ()
+    log: tuple[str, ...] = ()
+    unfinished: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

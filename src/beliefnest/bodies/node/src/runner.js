@@ -6,8 +6,9 @@ class Runner {
   /**
    * @param {import('./regions/regions').Regions} regions
    * @param {(request: {code: string, bot: object, scope: object, signal: AbortSignal}) =>
-   *   Promise<{ok: boolean, error: object | null}>} runProgram never rejects; ends soon after
-   *   `signal` is aborted
+   *   Promise<{ok: boolean, error: object | null, lines: number[], log: {text: string}[],
+   *   unfinished: {what: string, line: number | null}[]}>} runProgram never rejects for a fault of the
+   *   program; ends as soon as `signal` is aborted
    * @param {(bot: object, emit: (event: object) => void, signal: AbortSignal) => object} scopeOf what a
    *   program of this bot finds in scope; `emit` hears what its skills report until `signal` is aborted
    */
@@ -36,21 +37,18 @@ class Runner {
         await this.endAll(region, runs, timeoutTicks)
       }
     })
-    for (const run of runs) run.result.ticks = run.endTick - first
-    const results = Object.keys(programs).map((agent, index) => [agent, runs[index].result])
+    const results = Object.keys(programs).map((agent, index) => [agent, { ...runs[index].result, ticks: runs[index].endTick - first }])
     return { tick: region.tick, results: Object.fromEntries(results) }
   }
 
   start (region, { bot }, code) {
     const abort = new AbortController()
-    const run = { bot, abort, result: null, endTick: null }
+    const run = { abort, result: null, endTick: null, timeout: null }
     const emit = event => region.emit({ ...event, actor: bot.username })
     const request = { code, bot, scope: this.scopeOf(bot, emit, abort.signal), signal: abort.signal }
-    this.runProgram(request).then(({ ok, error }) => {
-      if (run.result !== null) return
-      run.result = { ok, error }
+    this.runProgram(request).then(report => {
       abort.abort()
-      stopBot(bot)
+      run.result = resultOf(report, stopBot(bot), run.timeout)
     }).catch(fault => region.faults.push(fault))
     return run
   }
@@ -65,22 +63,27 @@ class Runner {
   async endAll (region, runs, timeoutTicks) {
     for (const run of runs) {
       if (run.result !== null) continue
-      run.result = { ok: false, error: timeoutError(timeoutTicks) }
+      run.timeout = timeoutTicks
       run.endTick = region.tick
       run.abort.abort()
-      stopBot(run.bot)
     }
     await this.regions.clock.advance(0)
   }
 }
 
-function timeoutError (ticks) {
+/**
+ * @param {object} report of the sandbox
+ * @param {string[]} stopped what the bot was still doing
+ * @param {number | null} timeout the limit in ticks that ended the program, if it did
+ * @returns {object} RESULT, without ticks
+ */
+function resultOf ({ ok, error, lines, log, unfinished }, stopped, timeout) {
   return {
-    kind: 'timeout',
-    message: `the program did not end within ${ticks} ticks`,
-    line: null,
-    column: null,
-    skill: null
+    ok,
+    error: timeout === null ? error : { ...error, kind: 'timeout', message: `the program did not end within ${timeout} ticks` },
+    lines,
+    log: log.map(({ text }) => text),
+    unfinished: [...unfinished, ...stopped.map(what => ({ what, line: null }))]
   }
 }
 

@@ -1,7 +1,7 @@
 'use strict'
 const assert = require('node:assert/strict')
 const { after, before, describe, it } = require('node:test')
-const { Node, region } = require('./harness')
+const { agent, floor, Node, region, THREE } = require('./harness')
 
 describe('programs', () => {
   let node
@@ -52,7 +52,7 @@ describe('programs', () => {
     const { error } = results.sally
     assert.deepEqual([error.line, error.column], [3, 3])
     assert.match(error.message, /undefinedName/)
-    assert.deepEqual(results.anne, { ok: true, error: null, ticks: results.anne.ticks })
+    assert.deepEqual(results.anne, { ok: true, error: null, lines: [1], log: [], unfinished: [], ticks: results.anne.ticks })
     assert.equal(results.observer.error.kind, 'syntax')
   })
 
@@ -60,6 +60,67 @@ describe('programs', () => {
     const { results } = await run({ sally: '\nawait goToPosition(bot, "there")' })
     assert.equal(results.sally.error.skill, 'goToPosition')
     assert.equal(results.sally.error.line, 2)
+  })
+
+  it('tell which of their own lines ran, and what they wrote', async () => {
+    const { results } = await run({
+      sally: 'const n = 2\nif (n > 3) {\n  bot.chat("never")\n}\nconsole.log("n", n, [n])',
+      anne: 'console.warn("a")\nawait bot.waitForTicks(1)\nthrow new Error("b")\nconsole.log("c")',
+      observer: 'let a = ;'
+    })
+    assert.deepEqual([results.sally.lines, results.sally.log], [[1, 2, 5], ['n 2 [2]']])
+    assert.deepEqual([results.anne.lines, results.anne.log, results.anne.error.line], [[1, 2, 3], ['a'], 3])
+    assert.deepEqual([results.observer.lines, results.observer.log], [[], []])
+  })
+
+  it('tell what was still going on at their end, and it is stopped', async () => {
+    const { name, results } = await run({
+      sally: 'setInterval(() => bot.chat("late"), 50)\ngoToPosition(bot, new Vec3(9, -51, 9))\nawait bot.waitForTicks(3)',
+      anne: 'bot.setControlState("forward", true)\nawait bot.waitForTicks(5)',
+      observer: 'await goToPosition(bot, new Vec3(3, -51, 8))\nbot.pathfinder.setGoal(new goals.GoalNear(9, -51, -9, 0))\nawait bot.waitForTicks(5)'
+    })
+    assert.equal(results.sally.ok, true)
+    assert.deepEqual(results.sally.unfinished, [
+      { what: 'goToPosition', line: 2 }, { what: 'setInterval', line: 1 }, { what: 'a walk', line: null }
+    ])
+    assert.deepEqual(results.anne.unfinished, [{ what: 'a movement', line: null }])
+    assert.deepEqual(results.observer.unfinished, [{ what: 'a walk', line: null }])
+    await node.request('step', { region: name, ticks: 20 })
+    node.frames.length = 0
+    await node.request('step', { region: name, ticks: 20 })
+    assert.deepEqual(node.frames, [])
+  })
+
+  it('leave nothing unfinished when they wait for what they begin', async () => {
+    const chest = [3, -51, 3, 2955]
+    const { results } = await run({
+      sally: 'await depositItemIntoChest(bot, new Vec3(3, -51, 3), { diamond: 1 })\nawait goToPosition(bot, new Vec3(-5, -51, -5))',
+      anne: 'await bot.pathfinder.goto(new goals.GoalNear(-7, -51, -7, 1))'
+    }, 400, { blocks: floor([chest]), containers: [[3, -51, 3, {}]], agents: { ...THREE(), sally: agent([0.5, -51, 0.5], { inventory: { diamond: 1 } }) } })
+    assert.deepEqual([results.sally.error, results.anne.error], [null, null])
+    assert.deepEqual([results.sally.unfinished, results.anne.unfinished], [[], []])
+  })
+
+  it('that run out of ticks or of fuel tell as much', async () => {
+    const { results } = await run({
+      sally: 'console.log("on my way")\nawait goToPosition(bot, new Vec3(9, -51, 9))\nconsole.log("there")',
+      anne: 'console.log("round")\nfor (;;) {}'
+    }, 5)
+    const { kind, line, message } = results.sally.error
+    assert.deepEqual([kind, line, message], ['timeout', 2, 'the program did not end within 5 ticks'])
+    assert.deepEqual([results.sally.lines, results.sally.log], [[1, 2], ['on my way']])
+    assert.deepEqual(results.sally.unfinished, [{ what: 'goToPosition', line: 2 }, { what: 'a walk', line: null }])
+    assert.deepEqual([results.anne.error.kind, results.anne.lines, results.anne.log], ['fuel', [1, 2], ['round']])
+  })
+
+  it('cannot write without end', async () => {
+    const { results: { sally, anne } } = await run({
+      sally: 'for (let i = 0; i < 1500; i++) console.log(i)', anne: 'console.log("x".repeat(90000))\nconsole.log("y")'
+    })
+    assert.equal(sally.log.length, 1000)
+    assert.match(sally.log[999], /^999 .*left out/)
+    assert.equal(anne.log.length, 1)
+    assert.ok(anne.log[0].length < 51000)
   })
 
   it('are ended at the time limit, and their bots stand still then', async () => {

@@ -8,6 +8,8 @@ const { chargePathfinder } = require('./pathing')
 // mineflayer injects its plugins in a timer of its own, which Node fires after this long.
 const INJECTION_MS = 1
 
+const CONTROLS = ['forward', 'back', 'left', 'right', 'jump', 'sprint', 'sneak']
+
 /**
  * Starts a bot; it is usable `INJECTION_MS` of virtual time later.
  * @param {object} client a connection's client end
@@ -32,13 +34,20 @@ function startBot (client, clock) {
 
 /**
  * Makes a bot stand still and finish what it was doing: path, digging, controls, window.
+ * @returns {string[]} what it was doing
  */
 function stopBot (bot) {
+  const doing = []
+  if (bot.pathfinder.goal) doing.push('a walk')
+  else if (CONTROLS.some(control => bot.getControlState(control))) doing.push('a movement')
+  if (bot.targetDigBlock) doing.push('digging')
+  if (bot.currentWindow) doing.push('an open window')
   bot.pathfinder.setGoal(null)
   if (bot.targetDigBlock) bot.stopDigging()
   bot.clearControlStates()
   if (bot.currentWindow) bot.closeWindow(bot.currentWindow)
   bot.deactivateItem()
+  return doing
 }
 
 /** @returns {string} a player id (UUID) that depends on nothing but the agent's name */

@@ -182,12 +182,21 @@ class Guest {
     this.ended = new GuestEnded(kind, detail, stack)
   }
 
-  /** Numbers of the statements that ran, and the last one, read from the guest's memory. */
-  statements () {
-    const memory = new Uint32Array(this.interpreter.glue.HEAPU8.buffer, this.marks.place, this.marks.length)
+  /** Numbers of the statements that ran, read from the guest's memory. */
+  get statements () {
+    const { marked } = this
     const ran = []
-    for (let n = 1; n < memory.length; n++) if (memory[n] === n) ran.push(n)
-    return { ran, last: memory.length > 0 ? memory[0] : 0 }
+    for (let n = 1; n < marked.length; n++) if (marked[n] === n) ran.push(n)
+    return ran
+  }
+
+  /** Number of the statement that began last, 0 for none. */
+  get lastStatement () {
+    return this.marked[0] ?? 0
+  }
+
+  get marked () {
+    return new Uint32Array(this.interpreter.glue.HEAPU8.buffer, this.marks.place, this.marks.length)
   }
 
   /** The interpreter calls a host function. The estimate of the stack counts no frames of the host. */

@@ -33,10 +33,12 @@ function createSandbox (options = {}) {
  *   other values are not handed over. Vec3, goals and Movements are the guest's own.
  * @param {AbortSignal} [request.signal] ends the program when aborted
  * @returns {Promise<{ok: boolean, error: ?{message: string, line: ?number, column: ?number, skill: ?string,
- *   kind: string}, lines: number[], log: {level: string, text: string}[], unfinished: string[], fuel: number}>}
+ *   kind: string}, lines: number[], log: {level: string, text: string}[],
+ *   unfinished: {what: string, line: ?number}[], fuel: number}>}
  *   never rejects for a fault of the program. `kind` is syntax, error, skill (a skill or a call of the bot
  *   failed), refused (an argument that cannot be used), fuel, memory, stack, aborted or internal;
- *   `lines` ran; `unfinished` names calls that were under way at the end; `fuel` was used.
+ *   `lines` ran; `unfinished` are the calls and timers that were under way at the end, with the line of the
+ *   statement that began them; `fuel` was used.
  *   Time, timers and random numbers are those of the process at the time of the call.
  */
 async function run (engine, { code, bot, scope = {}, fuel, memory, signal }) {
@@ -65,13 +67,12 @@ async function observe (session, guest, program, parameters, { fuel, memory, sig
   else session.begin(program, parameters)
   const outcome = await session.finished
   signal?.removeEventListener('abort', abort)
-  const { ran, last } = guest.statements()
   return {
     ok: outcome.ok,
-    error: describeOutcome(outcome, program, { fuel, memory }, last),
-    lines: program.linesOf(ran),
+    error: describeOutcome(outcome, program, { fuel, memory }, guest.lastStatement),
+    lines: program.linesOf(guest.statements),
     log: session.log,
-    unfinished: session.unfinished,
+    unfinished: session.unfinished.map(({ what, statement }) => ({ what, line: program.statement(statement)?.line ?? null })),
     fuel: guest.fuelAtEnd
   }
 }

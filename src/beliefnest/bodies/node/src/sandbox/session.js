@@ -11,7 +11,7 @@ const { GuestEnded } = require('./engine')
 const { stateOf } = require('./policy/types')
 const { kindOf } = require('./kind-of')
 
-const LIMITS = { message: 1_000_000, calls: 100, timers: 1000, listeners: 100, logLines: 1000, logLength: 2000, error: 4000 }
+const LIMITS = { message: 1_000_000, calls: 100, timers: 1000, listeners: 100, logLines: 1000, logCharacters: 50_000, error: 4000 }
 // Who waits for what a listener or a timer of the program answers.
 const NOBODY = 0
 const REQUEST_COST = { each: 1500, character: 20 }
@@ -36,6 +36,7 @@ class Session {
     this.places = new WeakMap()
     this.nextId = 1
     this.log = []
+    this.logRoom = LIMITS.logCharacters
     this.outcome = null
     this.unfinished = []
     this.finished = new Promise((resolve) => { this.resolve = resolve })
@@ -73,7 +74,7 @@ class Session {
   finish (outcome) {
     if (this.outcome !== null) return
     this.outcome = outcome
-    this.unfinished = [...this.calls.values()]
+    this.unfinished = [...this.calls.values(), ...this.timers.values()].map(({ what, statement }) => ({ what, statement }))
     for (const timer of this.timers.values()) timer.stop()
     for (const { event, listener } of this.listeners) this.bot.removeListener(event, listener)
     this.guest.end('ended', 'the program has ended')
@@ -131,7 +132,7 @@ class Session {
   promiseToGuest (promise, label, toGuest) {
     if (this.calls.size >= LIMITS.calls) throw new RefusedError(`${LIMITS.calls} calls are under way, which is the limit`)
     const id = this.nextId++
-    this.calls.set(id, label)
+    this.calls.set(id, { what: label, statement: this.guest.lastStatement })
     const settle = (ok, convert) => {
       this.calls.delete(id)
       if (this.outcome === null) this.wake(['settle', id, ...this.converted(ok, convert, label)])
@@ -275,7 +276,8 @@ class Session {
       this.wake(['fire', id])
     }
     const timer = repeat ? setInterval(fire, delay) : setTimeout(fire, delay)
-    this.timers.set(id, { stop: () => repeat ? clearInterval(timer) : clearTimeout(timer) })
+    const what = repeat ? 'setInterval' : 'setTimeout'
+    this.timers.set(id, { what, statement: this.guest.lastStatement, stop: () => repeat ? clearInterval(timer) : clearTimeout(timer) })
     return null
   }
 
@@ -286,7 +288,11 @@ class Session {
   }
 
   write (level, text) {
-    if (this.log.length < LIMITS.logLines) this.log.push({ level: String(level).slice(0, 10), text: String(text).slice(0, LIMITS.logLength) })
+    if (this.log.length >= LIMITS.logLines || this.logRoom <= 0) return null
+    const written = String(text).slice(0, this.logRoom)
+    this.logRoom -= written.length
+    const isLast = this.log.length === LIMITS.logLines - 1 || this.logRoom <= 0
+    this.log.push({ level: String(level).slice(0, 10), text: isLast ? `${written} ... (the rest of the output is left out)` : written })
     return null
   }
 

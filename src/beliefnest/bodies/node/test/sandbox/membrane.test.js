@@ -199,7 +199,7 @@ describe('the membrane', () => {
 
   it('names what was still under way at the end', async () => {
     const { ok, unfinished } = await run('never(); bot.waitForTicks(5)')
-    assert.deepStrictEqual([ok, unfinished], [true, ['never', 'bot.waitForTicks']])
+    assert.deepStrictEqual([ok, unfinished], [true, [{ what: 'never', line: 1 }, { what: 'bot.waitForTicks', line: 1 }]])
   })
 
   it('ends when the signal is aborted, before and during the run', async () => {
