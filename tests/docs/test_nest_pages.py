@@ -1,0 +1,24 @@
+"""The pages about timelines and programs do what they say, their examples one after the other."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+@pytest.mark.parametrize("page", ["timelines.md", "programs.md"])
+def test_examples_print_what_the_page_says(
+    page: str,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = (DOCS / page).read_text(encoding="utf-8")
+    for example in re.findall(r"```python\n(.*?)```", text, re.DOTALL):
+        exec(compile(example, page, "exec"), {"__name__": "example"})
+        printed = capsys.readouterr().out.splitlines()
+        claims = re.findall(r"print\(.*\)  # (.*)", example)
+        assert [line for line in printed if line in claims] == claims
