@@ -37,7 +37,7 @@ class Round:
 def ask(model: Model, belief: bn.Simulator, task: str) -> str:
     """The program that a model gives for a task, from one belief alone."""
     return ask_for_program(
-        model,
+        belief.noting(model, task=task),
         belief.render(built_in_template("paper"), task=task),
         check=lambda program: None,
         system=belief.render(built_in_template("instructions"), skills=skills()),

@@ -3,6 +3,7 @@
 import json
 import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,8 @@ import pytest
 from beliefnest.errors import BranchError, InputError
 from beliefnest.timeline.export import FORMATS, export
 from beliefnest.timeline.journal import Edit, ForkPoint, MemoryJournal, TimelineKey
-from beliefnest.timeline.tables import TABLES
+from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
+from beliefnest.timeline.tables import TABLES, BeliefRow, program_row, prompt_row, run_row
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, Box, DroppedItem, Event, EventKind
@@ -19,6 +21,30 @@ from beliefnest.world.values import AgentState, Box, DroppedItem, Event, EventKi
 DOCS = Path(__file__).parents[2] / "docs" / "export.md"
 MAIN = TimelineKey((), "main")
 PLAN = TimelineKey(("sally",), "plan")
+RUN = RunRecord("short", "name: short", "", 7, {"node": "v24"}, b"", {"short.txt": "{{ task }}"})
+PROGRAM = ProgramRecord(("sally",), "plan", "sally", "x()", 5, False, "no x", 3, 2, {"step": "1"})
+PROMPT = PromptRecord(
+    ("sally", "anne"),
+    PLAN,
+    5,
+    "told",
+    1,
+    (("user", "Go."),),
+    {"temperature": 0.0, "seed": None},
+    "x()",
+    None,
+    1,
+    20,
+    3,
+    None,
+)
+BELIEF = BeliefRow(
+    ("sally",),
+    MAIN,
+    6,
+    {"containers": {"1,2,3": {"items": {}, "complete": False}}},
+    {"1,2,3": None, "1,2,4": "stone"},
+)
 
 
 @pytest.fixture(scope="module")
@@ -73,9 +99,14 @@ def written(request, journal, registry, first, tmp_path):
     if request.param == "parquet":
         pytest.importorskip("pyarrow", reason="the extra parquet is not installed")
     out = tmp_path / "out"
-    beliefs = [(6, ("sally",), {"containers": {"1,2,3": {"items": {}, "complete": False}}})]
     counts = export(
-        journal, request.param, out, registry=registry, first=first, beliefs=iter(beliefs)
+        journal,
+        request.param,
+        out,
+        registry=registry,
+        first=first,
+        beliefs=iter([BELIEF]),
+        notes=iter([run_row(RUN, [RUN.versions]), program_row(PROGRAM), prompt_row(PROMPT)]),
     )
     tables = {
         name: {"jsonl": jsonl, "parquet": parquet}[request.param](out, name) for name in TABLES
@@ -166,7 +197,37 @@ def test_containers_items_and_events(written):
 def test_beliefs(written):
     (row,) = written["beliefs"]
     assert (row["tick"], row["path"]) == (6, "/sally")
+    assert (row["timeline_path"], row["timeline_branch"]) == ("/", "main")
     assert row["state"] == {"containers": {"1,2,3": {"items": {}, "complete": False}}}
+    assert row["blocks"] == {"1,2,3": None, "1,2,4": "stone"}
+
+
+def test_the_run_its_programs_and_its_prompts(written):
+    assert written["run"] == [
+        {
+            "scenario": "short",
+            "condition": None,
+            "seed": 7,
+            "versions": [{"node": "v24"}],
+            "text": "name: short",
+            "templates": {"short.txt": "{{ task }}"},
+        }
+    ]
+    (program,) = written["programs"]
+    assert (program["path"], program["branch"], program["tick"]) == ("/sally", "plan", 5)
+    assert (program["agent"], program["code"], program["ok"]) == ("sally", "x()", False)
+    assert (program["error"], program["ticks"], program["call"]) == ("no x", 3, 2)
+    assert program["detail"] == {"step": "1"}
+    (prompt,) = written["prompts"]
+    assert (prompt["path"], prompt["timeline_path"], prompt["timeline_branch"]) == (
+        "/sally/anne",
+        "/sally",
+        "plan",
+    )
+    assert prompt["messages"] == [{"role": "user", "text": "Go."}]
+    assert prompt["sampling"] == {"temperature": 0.0, "seed": None}
+    assert (prompt["answer"], prompt["error"], prompt["attempt"]) == ("x()", None, 1)
+    assert (prompt["input_tokens"], prompt["output_tokens"], prompt["cost"]) == (20, 3, None)
 
 
 def test_chosen_timelines_alone(journal, registry, tmp_path):
@@ -178,8 +239,9 @@ def test_nothing_is_written_when_it_fails(journal, registry, tmp_path):
     out = tmp_path / "out"
     with pytest.raises(BranchError):
         export(journal, "jsonl", out, registry=registry, timelines=[TimelineKey((), "none")])
+    odd = replace(BELIEF, state={"x": object()})
     with pytest.raises(InputError, match="plain data"):
-        export(journal, "jsonl", out, registry=registry, beliefs=[(0, (), {"x": object()})])
+        export(journal, "jsonl", out, registry=registry, beliefs=[odd])
     with pytest.raises(InputError, match="no format 'csv'; there are jsonl, parquet"):
         export(journal, "csv", out, registry=registry)
     assert list(tmp_path.iterdir()) == []

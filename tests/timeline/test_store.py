@@ -28,7 +28,17 @@ PROGRAM = ProgramRecord(("sally",), "plan", "sally", "await x()", 12, False, "li
 LONG = replace(
     PROGRAM, ok=True, error=None, lines=(1, 3), log=("a", "é"), unfinished=("waitTicks of line 3",)
 )
-PROMPT = PromptRecord(("sally",), "plan", 12, "offline", "Get a diamond.", "You are …", "await x()")
+PROMPT = PromptRecord(
+    ("sally", "anne"),
+    PLAN,
+    12,
+    "offline",
+    1,
+    (("system", "You are …"), ("user", "Get a diamond.")),
+    {"temperature": 0.5, "seed": None},
+    "await x()",
+    None,
+)
 
 
 def kept(journal):
@@ -524,7 +534,8 @@ def test_records_follow_their_branch(run_file):
         records.select(("sally",), "plan")
         journal.rename(PLAN, "try")
         assert [p.branch for p in records.programs()] == ["try", "plan"]
-        assert [p.branch for p in records.prompts()] == ["try"]
+        assert [p.timeline.branch for p in records.prompts()] == ["try"]
+        assert [p.branch for p in records.prompts()] == ["follow"]
         assert records.selected() == {("sally",): "try"}
         journal.verify()
         journal.delete(TimelineKey(("sally",), "try"))

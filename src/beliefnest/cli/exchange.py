@@ -7,15 +7,16 @@ from pathlib import Path
 from typing import cast, get_args
 
 from beliefnest.cli.folder import store_in
-from beliefnest.cli.report import state_json
+from beliefnest.cli.report import belief_json, place_key
 from beliefnest.errors import InputError
 from beliefnest.nest.nest import Nest
-from beliefnest.nest.paths import parse_path
+from beliefnest.nest.paths import parse_path, path_text
 from beliefnest.nest.recorded import RecordedNest
 from beliefnest.nest.traced import import_trace
 from beliefnest.timeline.export import Format, export
+from beliefnest.timeline.records import Records
 from beliefnest.timeline.store import SqliteJournal
-from beliefnest.timeline.tables import BeliefRow
+from beliefnest.timeline.tables import BeliefRow, Row, program_row, prompt_row, run_row
 from beliefnest.timeline.trace import load_trace
 from beliefnest.world.registry import Registry
 
@@ -29,7 +30,7 @@ class ExportOptions:
     Attributes:
         run: Run folder, or its store.
         format: Name of the format.
-        paths: Belief paths whose states are written for every tick with a change.
+        paths: Belief paths whose states are written for every tick with a change, on every branch.
         out: The folder to write.
     """
 
@@ -60,16 +61,24 @@ def export_run(options: ExportOptions) -> None:
             registry=Registry.load(),
             first=nest.setting.snapshot,
             beliefs=_beliefs(nest, options.paths),
+            notes=_notes(journal.records),
         )
     for table, count in counts.items():
         sys.stdout.write(f"{table}: {count}\n")
 
 
+def _notes(records: Records) -> Iterator[Row]:
+    yield run_row(records.run(), records.versions())
+    yield from map(program_row, records.programs())
+    yield from map(prompt_row, records.prompts())
+
+
 def _beliefs(nest: RecordedNest, paths: Sequence[str]) -> Iterator[BeliefRow]:
-    for path in paths:
-        names = parse_path(path, nest.agents)
-        for tick in nest.changes(path):
-            yield tick, names, state_json(nest.simulator(path, tick).state)
+    for path in dict.fromkeys(parse_path(path, nest.agents) for path in paths):
+        for moment in nest.over_time(path_text(path)):
+            blocks = {place_key(place): block for place, block in moment.blocks.items()}
+            state = belief_json(moment.state)
+            yield BeliefRow(path, moment.timeline, moment.tick, state, blocks)
 
 
 def import_run(trace: Path, out: Path) -> None:

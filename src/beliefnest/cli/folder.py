@@ -10,6 +10,7 @@ from typing import Any
 
 from beliefnest.errors import InputError
 from beliefnest.scenarios.outcome import ProbeOutcome
+from beliefnest.scenarios.reading import templates_file
 from beliefnest.scenarios.scenario import Scenario
 
 __all__ = [
@@ -17,7 +18,7 @@ __all__ = [
     "STORE",
     "ConditionFolder",
     "RunFolder",
-    "recorded_scenario",
+    "kept_scenario_file",
     "store_in",
     "stores_in",
 ]
@@ -27,7 +28,6 @@ PICTURE = "picture.png"
 _REPORT = "run.json"
 _RESULT = "result.json"
 _SCENARIO = "scenario.yaml"
-_CONDITION = "condition-"
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,31 +78,34 @@ class RunFolder:
 
     @staticmethod
     def open(
-        wanted: Path | None, name: str, now: datetime, settings: Mapping[str, object], text: str
+        wanted: Path | None, now: datetime, settings: Mapping[str, object], scenario: Scenario
     ) -> "RunFolder":
         """Make the folder of a run, or go on in that of a run that has not ended.
 
         Args:
             wanted: The folder; None: `runs/NAME-DATE-TIME` in the current one.
-            name: Name of the scenario.
             now: The time, for the name.
             settings: What was asked for; a run goes on only with the same.
-            text: The scenario as written, which is kept and must be the same as well.
+            scenario: Its file, and the templates that this names, are kept and must be the same
+                as well.
 
         Raises:
             InputError: It cannot be made, or holds something else already.
         """
+        name = scenario.name
         path = (
             wanted if wanted is not None else _unused(Path("runs"), f"{name}-{now:%Y%m%d-%H%M%S}")
         )
         try:
             path.mkdir(parents=True, exist_ok=True)
             if any(path.iterdir()):
-                _check_same(path, settings, text)
+                _check_same(path, settings, scenario)
             else:
                 report = {"scenario": name, "status": "running", "settings": settings, "runs": []}
                 _write(path / _REPORT, _json(report))
-                _write(path / _SCENARIO, text)
+                _write(path / _SCENARIO, scenario.text)
+                if scenario.templates:
+                    _write(templates_file(path / _SCENARIO), _json(scenario.templates))
         except OSError as error:
             raise InputError(f"the run folder {path} cannot be written: {error.strerror}") from None
         return RunFolder(path)
@@ -163,19 +166,25 @@ def stores_in(run: Path) -> tuple[Path, ...]:
     return found
 
 
-def recorded_scenario(store: Path) -> Scenario:
-    """The scenario that a store in a run folder was recorded from, under its condition.
+def kept_scenario_file(out: Path | None, wanted: str) -> Path | None:
+    """The scenario kept in a run folder, for a run that goes on without the file it began with.
 
-    Raises:
-        InputError: The store does not lie in a run folder.
-        ScenarioError: The scenario kept there is not readable by this version.
+    Args:
+        out: The run folder; None: there is none.
+        wanted: The scenario that was asked for.
+
+    Returns:
+        None if the folder keeps none, or not the one that was asked for.
     """
-    files = [folder / _SCENARIO for folder in store.parents[1:4]]
-    file = next((file for file in files if file.is_file()), None)
-    if file is None:
-        raise InputError(f"{store} does not lie in a run folder: there is no {files[0]}")
-    _, sign, number = store.parent.name.partition(_CONDITION)
-    return Scenario.load(str(file), int(number) if sign and number.isdecimal() else None)
+    if out is None or not (out / _SCENARIO).is_file() or not wanted.endswith((".yaml", ".yml")):
+        return None
+    try:
+        written = Path(wanted).read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return out / _SCENARIO
+    except (OSError, UnicodeDecodeError):
+        return None
+    return out / _SCENARIO if written == (out / _SCENARIO).read_text(encoding="utf-8") else None
 
 
 def _unused(parent: Path, name: str) -> Path:
@@ -183,7 +192,7 @@ def _unused(parent: Path, name: str) -> Path:
     return next((path for path in candidates if not path.exists()), candidates[-1])
 
 
-def _check_same(path: Path, settings: Mapping[str, object], text: str) -> None:
+def _check_same(path: Path, settings: Mapping[str, object], scenario: Scenario) -> None:
     """Refuse a folder that is not that of the same run, or of one that has ended."""
     file = path / _REPORT
     found = _read(file) if file.is_file() else {}
@@ -191,12 +200,14 @@ def _check_same(path: Path, settings: Mapping[str, object], text: str) -> None:
         raise InputError(f"{path} is not empty; name another folder with --out")
     if found.get("status") == "done":
         raise InputError(f"{path} holds a run that has ended; name another folder with --out")
-    kept = path / _SCENARIO
+    kept, templates = path / _SCENARIO, templates_file(path / _SCENARIO)
     # As JSON knows them: a tuple is a list there.
     asked = json.loads(json.dumps(settings))
     differing = [key for key in asked if found["settings"].get(key) != asked[key]]
-    if not kept.is_file() or kept.read_text(encoding="utf-8") != text:
+    if not kept.is_file() or kept.read_text(encoding="utf-8") != scenario.text:
         differing.append("scenario")
+    if (_read(templates) if templates.is_file() else {}) != scenario.templates:
+        differing.append("template")
     if differing:
         raise InputError(
             f"{path} holds a run with another {' and '.join(differing)}; "

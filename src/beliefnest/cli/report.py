@@ -6,18 +6,21 @@ from pathlib import Path
 from rich import box
 from rich.table import Table
 
+from beliefnest.belief.entries import Basis
 from beliefnest.belief.view import State
 from beliefnest.cli.pictures import container_name, point_text
 from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.judging import places_of
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Arrives, Hears, Holds, Opens, Scenario
-from beliefnest.world.values import Point
+from beliefnest.world.values import Point, Position
 
 __all__ = [
+    "belief_json",
     "cost_text",
     "outcome_json",
     "outcome_table",
+    "place_key",
     "report_json",
     "state_json",
     "usage_json",
@@ -30,7 +33,7 @@ def state_json(state: State) -> dict[str, object]:
     """A state as the STATE object of the public surface."""
     return {
         "containers": {
-            ",".join(map(str, place)): {
+            place_key(place): {
                 "items": dict(sorted(container.items.items())),
                 "complete": container.complete,
             }
@@ -42,6 +45,47 @@ def state_json(state: State) -> dict[str, object]:
         },
         "chat": [list(line) for line in state.chat],
     }
+
+
+def belief_json(state: State) -> dict[str, object]:
+    """All of a state but its blocks: what `state_json` has, and what it rests on."""
+    return {
+        **state_json(state),
+        "containers": {
+            place_key(place): {
+                "items": dict(sorted(container.items.items())),
+                "complete": container.complete,
+                "current": container.current,
+                **_basis_json(container.basis),
+            }
+            for place, container in sorted(state.containers.items())
+        },
+        "agents": {
+            name: {
+                "position": _list(agent.position),
+                "yaw": agent.yaw,
+                "pitch": agent.pitch,
+                "current": agent.current,
+                **_basis_json(agent.basis),
+                "equipment": agent.equipment and dict(sorted(agent.equipment.items())),
+                "inventory": dict(sorted(agent.inventory.items())),
+                "inventory_complete": agent.inventory_complete,
+            }
+            for name, agent in sorted(state.agents.items())
+        },
+        "thoughts": [list(line) for line in state.thoughts],
+    }
+
+
+def place_key(place: Position) -> str:
+    """A block's position as the key of a JSON object."""
+    return ",".join(map(str, place))
+
+
+def _basis_json(basis: Basis | None) -> dict[str, object]:
+    if basis is None:
+        return {"observed_at": None, "source": None}
+    return {"observed_at": basis.observed_at, "source": basis.source.value}
 
 
 def outcome_json(outcome: Outcome, model: str, run_dir: Path) -> dict[str, object]:

@@ -5,7 +5,7 @@ import os
 import sys
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
 from typing import Any, Literal
@@ -14,12 +14,12 @@ from rich.table import Table
 
 from beliefnest.bodies.worlds import Worlds, check_world
 from beliefnest.cli.console import progress_on, stdout
-from beliefnest.cli.folder import ConditionFolder, RunFolder
+from beliefnest.cli.folder import ConditionFolder, RunFolder, kept_scenario_file
 from beliefnest.cli.matrix import score_runs, score_table, scores_json
 from beliefnest.cli.pictures import read_outcome_scene
 from beliefnest.cli.plan import Cell, plan_cells
 from beliefnest.cli.report import outcome_json, outcome_table, report_json
-from beliefnest.errors import InputError, ModelError
+from beliefnest.errors import InputError, ModelError, ScenarioError
 from beliefnest.llm.budget import Budget, RunLimits
 from beliefnest.llm.cache import CacheMode
 from beliefnest.llm.messages import Model, Sampling, Usage
@@ -110,7 +110,11 @@ def run_scenarios(options: RunOptions) -> int:
         resolve_model(name, os.environ)
     first = scenarios[0]
     settings = options.settings
-    folder = RunFolder.open(options.out, first.name, datetime.now(), settings, first.text)
+    # A condition may have a template of its own.
+    whole = replace(
+        first, templates={n: t for each in scenarios for n, t in each.templates.items()}
+    )
+    folder = RunFolder.open(options.out, datetime.now(), settings, whole)
     run = _Run(options, folder)
     cells = plan_cells(scenarios, options.models, options.repeat, options.seed)
     status: Status = "failed"
@@ -185,10 +189,20 @@ class _Run:
 
 
 def _scenarios(options: RunOptions) -> tuple[Scenario, ...]:
-    if not options.conditions:
-        return Scenario.load_all(options.scenario)
-    numbers = dict.fromkeys(options.conditions)
-    return tuple(Scenario.load(options.scenario, number) for number in numbers)
+    try:
+        return _loaded(options.scenario, options.conditions)
+    except ScenarioError:
+        # A run goes on with what its folder keeps, whatever became of the files it began with.
+        kept = kept_scenario_file(options.out, options.scenario)
+        if kept is None:
+            raise
+    return _loaded(str(kept), options.conditions)
+
+
+def _loaded(name_or_path: str, conditions: Sequence[int]) -> tuple[Scenario, ...]:
+    if not conditions:
+        return Scenario.load_all(name_or_path)
+    return tuple(Scenario.load(name_or_path, number) for number in dict.fromkeys(conditions))
 
 
 def _check_numbers(options: RunOptions) -> None:

@@ -9,20 +9,23 @@ from pathlib import Path
 
 from rich import box
 from rich.table import Table
+from rich.text import Text
 
 from beliefnest.belief.view import State
 from beliefnest.cli.console import stdout
-from beliefnest.cli.folder import recorded_scenario, store_in
+from beliefnest.cli.folder import store_in
 from beliefnest.cli.pictures import container_name, point_text, state_row, titled
 from beliefnest.cli.report import state_json
 from beliefnest.errors import InputError
 from beliefnest.nest.nest import Nest
 from beliefnest.nest.recorded import RecordedNest
 from beliefnest.prompts.templates import built_in_template, load_template
+from beliefnest.scenarios.loading import kept_scenario
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import FOLLOW
-from beliefnest.timeline.records import ProgramRecord
+from beliefnest.timeline.records import ProgramRecord, PromptRecord
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.tables import prompt_row
 from beliefnest.viewer.picture import draw_scene, save
 from beliefnest.viewer.scene import Caption, read_scene, read_trails
 
@@ -61,6 +64,7 @@ def show_run(options: ShowOptions) -> None:
             nest.select(options.path, options.branch)
         simulator = nest.simulator(options.path, options.tick)
         state = simulator.state
+        asked = [each for each in nest.prompts(options.path) if each.tick <= state.tick]
         programs = [each for each in nest.programs(options.path) if each.tick <= state.tick]
         if options.png is not None:
             tick = min(state.tick, nest.head("/"))
@@ -71,11 +75,17 @@ def show_run(options: ShowOptions) -> None:
             save(draw_scene(scene), options.png)
         if options.as_json:
             place = {"path": simulator.path, "branch": options.branch or FOLLOW, "tick": state.tick}
-            ran = {"programs": [_program_json(each) for each in programs]}
-            sys.stdout.write(json.dumps({**place, **state_json(state), **ran}, indent=2) + "\n")
+            content = {
+                **place,
+                **state_json(state),
+                "programs": [_program_json(each) for each in programs],
+                "prompts": [prompt_row(each)[1] for each in asked],
+            }
+            sys.stdout.write(json.dumps(content, indent=2) + "\n")
         elif options.png is None:
             _print_state(state, simulator.path, scenario)
             _print_programs(programs)
+            _print_prompts(asked)
 
 
 def print_prompt(run: Path, path: str, template: Path | None, variables: list[str]) -> None:
@@ -105,15 +115,16 @@ def print_prompt(run: Path, path: str, template: Path | None, variables: list[st
 def _opened(run: Path) -> Iterator[tuple[Scenario, RecordedNest, SqliteJournal]]:
     store = store_in(run)
     with SqliteJournal.read(store) as journal, Nest.read(store) as nest:
-        yield _scenario(store, nest), nest, journal
+        yield _scenario(journal, nest), nest, journal
 
 
-def _scenario(store: Path, nest: RecordedNest) -> Scenario:
-    """The scenario in the run folder; a store that lies in none has its setting and no names."""
-    try:
-        return recorded_scenario(store)
-    except InputError:
+def _scenario(journal: SqliteJournal, nest: RecordedNest) -> Scenario:
+    """The scenario of a run; one that was told in code has its setting and no names."""
+    run = journal.records.run()
+    if not run.text:
         return Scenario(nest.setting)
+    condition = int(run.condition) if run.condition else None
+    return kept_scenario(run.text, run.templates, condition, f"scenario of {journal.path}")
 
 
 def _print_state(state: State, path: str, scenario: Scenario) -> None:
@@ -131,7 +142,7 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
         agents.add_row(titled(name), where, "yes" if agent.current else "no", holds)
     console.print(containers, agents)
     for tick, speaker, text in state.chat:
-        console.print(f"{tick} {speaker}: {text}", highlight=False, markup=False)
+        console.print(_foreign(f"{tick} {speaker}: {text}"), highlight=False)
 
 
 def _print_programs(programs: Sequence[ProgramRecord]) -> None:
@@ -139,9 +150,9 @@ def _print_programs(programs: Sequence[ProgramRecord]) -> None:
     for program in programs:
         ended = "ended well" if program.error is None else program.error
         ran = f"tick {program.tick}, {program.ticks} ticks: program of {program.agent}: {ended}"
-        console.print(ran, highlight=False, markup=False)
+        console.print(_foreign(ran), highlight=False)
         for told in (*program.log, *(f"stopped at its end: {each}" for each in program.unfinished)):
-            console.print(f"    {told}", highlight=False, markup=False)
+            console.print(_foreign(f"    {told}"), highlight=False)
 
 
 def _program_json(program: ProgramRecord) -> dict[str, object]:
@@ -156,3 +167,25 @@ def _program_json(program: ProgramRecord) -> dict[str, object]:
         "unfinished": list(program.unfinished),
         "code": program.code,
     }
+
+
+def _print_prompts(prompts: Sequence[PromptRecord]) -> None:
+    if not prompts:
+        return
+    table = Table("asked at", "model", "attempt", "for", "answer", box=box.SIMPLE_HEAVY)
+    for prompt in prompts:
+        given = f"no answer: {prompt.error}" if prompt.answer is None else prompt.answer
+        cells = (
+            str(prompt.tick),
+            prompt.model,
+            str(prompt.attempt),
+            prompt.detail.get("task", ""),
+            given.strip(),
+        )
+        table.add_row(*map(_foreign, cells))
+    stdout().print(table)
+
+
+def _foreign(text: str) -> Text:
+    """A text that others wrote: no markup, and nothing in it commands the terminal."""
+    return Text("".join(c if c.isprintable() or c == "\n" else "\ufffd" for c in text))

@@ -158,10 +158,14 @@ class Engine:
             TickError: The tick is in the future, or before the start of everything.
         """
         key, position = self._when(path, tick)
-        reading = self.history.reading(key, path, position)
-        blocks = Blocks(self.history, key, position, reading, self.turn)
         shown = self.journal.info(key).head if tick is None else tick
-        return LiveState(reading, blocks, self.setting.snapshot.box, shown, self.turn)
+        return self.state_after(key, path, position, shown)
+
+    def state_after(self, key: TimelineKey, path: Path, entries: int, tick: int) -> LiveState:
+        """The view of a node's state on a timeline, after some of its entries, as of a tick."""
+        reading = self.history.reading(key, path, entries)
+        blocks = Blocks(self.history, key, entries, reading, self.turn)
+        return LiveState(reading, blocks, self.setting.snapshot.box, tick, self.turn)
 
     def _when(self, path: Path, tick: int | None) -> tuple[TimelineKey, int]:
         info = self.info(path)
@@ -383,6 +387,7 @@ class Engine:
         seed = f"{self.seed} {name}"
         self._bodies[key.path] = self.world.open_body(name, seed, snapshot, recorder)
         self._recorders[key.path] = recorder
+        self.log.add_versions(self.world.versions)
 
     @contextmanager
     def _recording(self, path: Path) -> Iterator[Body]:

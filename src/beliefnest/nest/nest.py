@@ -1,7 +1,7 @@
 """The nest: the real world and all beliefs in it."""
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Protocol, Self
@@ -21,11 +21,11 @@ from beliefnest.nest.script import STEP, steps_played
 from beliefnest.nest.setting import Setting, Step
 from beliefnest.nest.simulator import PastSimulator, Simulator
 from beliefnest.nest.turns import in_turn
+from beliefnest.nest.versions import own_versions
 from beliefnest.perception.options import Perception
 from beliefnest.timeline.journal import MemoryJournal
-from beliefnest.timeline.records import RunRecord
+from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.timeline.store import SqliteJournal
-from beliefnest.version import VERSION
 from beliefnest.world.scripted import ScriptedWorld
 
 if TYPE_CHECKING:
@@ -47,6 +47,10 @@ class HasSetting(Protocol):
     @property
     def text(self) -> str:
         """The text of the scenario's file, for the record; empty if there is none."""
+
+    @property
+    def templates(self) -> Mapping[str, str]:
+        """Texts of the prompt templates that the file names, for the record."""
 
     @property
     def condition(self) -> int | None:
@@ -111,7 +115,9 @@ class Nest:
         if isinstance(scenario, Setting):
             start = _Start(scenario, world, seed)
         else:
-            start = _Start(scenario.setting, world, seed, scenario.text, scenario.condition)
+            start = _Start(
+                scenario.setting, world, seed, scenario.text, scenario.templates, scenario.condition
+            )
         opened = open_world(world, seed) if worlds is None else worlds.lend(world)
         try:
             return cls._of(_begun(start, opened, store))
@@ -134,7 +140,9 @@ class Nest:
             run = journal.records.run()
             setting, world = decode_start(run.setting)
             late = LateWorld(world, run.seed)
-            return cls._of(Engine(setting, journal, late, run.seed, FileLog(journal)).resume())
+            engine = Engine(setting, journal, late, run.seed, FileLog(journal)).resume()
+            engine.log.add_versions(own_versions())
+            return cls._of(engine)
         except BaseException:
             journal.close()
             raise
@@ -200,6 +208,21 @@ class Nest:
     def tick(self) -> int:
         """The real world's latest tick."""
         return self._engine.info(()).head
+
+    @in_turn
+    def programs(self) -> Sequence[ProgramRecord]:
+        """All programs that ran, on branches that are there, in order of their end."""
+        return self._engine.log.programs()
+
+    @in_turn
+    def prompts(self) -> Sequence[PromptRecord]:
+        """All requests to models that `Simulator.noting` kept, with what came of them."""
+        return self._engine.log.prompts()
+
+    @in_turn
+    def versions(self) -> Sequence[Mapping[str, str]]:
+        """Program to version, when the run began and whenever it was resumed with others."""
+        return self._engine.log.versions()
 
     def __getitem__(self, path: str) -> Simulator:
         """The simulator of a belief path; `/` is the real world.
@@ -355,6 +378,7 @@ class _Start:
     world: str
     seed: int
     text: str = ""
+    templates: Mapping[str, str] = field(default_factory=dict)
     condition: int | None = None
 
     def record(self, world: World) -> RunRecord:
@@ -364,14 +388,17 @@ class _Start:
             text=self.text,
             condition="" if self.condition is None else str(self.condition),
             seed=self.seed,
-            versions={"beliefnest": VERSION, **world.versions},
+            versions={**own_versions(), **world.versions},
             setting=encode_start(self.setting, self.world),
+            templates=self.templates,
         )
 
 
 def _begun(start: _Start, world: World, store: str | Path | None) -> Engine:
     if store is None:
-        return Engine(start.setting, MemoryJournal(), world, start.seed).begin()
+        engine = Engine(start.setting, MemoryJournal(), world, start.seed)
+        engine.log.add_versions(own_versions())
+        return engine.begin()
     journal = SqliteJournal.create_file(store)
     try:
         with journal.together():

@@ -1,18 +1,20 @@
 """A recorded run, read-only: any simulator of it, on any branch, at any tick."""
 
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Self
 
 from beliefnest.bodies.scripted import ScriptedBodies
 from beliefnest.nest.engine import MAIN, Engine
 from beliefnest.nest.nest import Past
+from beliefnest.nest.overtime import Moment, over_time
 from beliefnest.nest.paths import parse_path
 from beliefnest.nest.runlog import FileLog
 from beliefnest.nest.saved import decode_start
 from beliefnest.nest.setting import Setting
 from beliefnest.nest.simulator import PastSimulator
-from beliefnest.timeline.journal import FOLLOW, Journal, TimelineKey
-from beliefnest.timeline.records import ProgramRecord
+from beliefnest.timeline.journal import FOLLOW, Journal, TimelineKey, lineage
+from beliefnest.timeline.records import ProgramRecord, PromptRecord
 from beliefnest.timeline.store import SqliteJournal
 
 __all__ = ["RecordedNest"]
@@ -71,6 +73,10 @@ class RecordedNest:
         """Names of all agents, sorted."""
         return self._engine.agents
 
+    def versions(self) -> Sequence[Mapping[str, str]]:
+        """Program to version, when the run began and whenever it was resumed with others."""
+        return self._engine.log.versions()
+
     def __getitem__(self, path: str) -> PastSimulator:
         """A simulator at the latest tick of its timeline.
 
@@ -98,29 +104,51 @@ class RecordedNest:
         """The latest tick of the timeline that a simulator is on."""
         return self._engine.info(parse_path(path, self._engine.agents)).head
 
-    def changes(self, path: str) -> tuple[int, ...]:
-        """The ticks with an entry on the timeline that a simulator is on, its own first one too."""
-        info = self._engine.info(parse_path(path, self._engine.agents))
-        entries = self._engine.journal.entries(info.key, 0, info.entries)
-        return tuple(sorted({info.start, *(entry.tick for entry in entries)}))
+    def over_time(self, path: str) -> Iterator[Moment]:
+        """A simulator at every tick with a change, on every timeline that it has or can follow.
+
+        Raises:
+            PathError: The path is malformed or names an unknown agent.
+        """
+        return over_time(self._engine, parse_path(path, self._engine.agents))
 
     def branches(self) -> tuple[TimelineKey, ...]:
         """All timelines there are, in order of creation."""
         return tuple(info.key for info in self._engine.journal.timelines())
 
-    def programs(self, path: str) -> tuple[ProgramRecord, ...]:
-        """Programs that ran in a simulator on the branch it is on, in order of their end.
+    def programs(self, path: str | None = None) -> tuple[ProgramRecord, ...]:
+        """Programs that ran, in order of their end.
 
-        In follow mode there are none; those that ran before the fork belong to another branch.
+        Args:
+            path: Those that ran in this simulator on the branch it is on: in follow mode there are
+                none, and those that ran before the fork belong to another branch. None: all.
+
+        Raises:
+            PathError: The path is malformed or names an unknown agent.
         """
+        programs = tuple(self._engine.log.programs())
+        if path is None:
+            return programs
         names = parse_path(path, self._engine.agents)
-        branch = self._engine.info(names).key.branch
-        noted = self._engine.log.programs()
-        return tuple(
-            each
-            for each in noted
-            if names in self._engine.selected and (each.path, each.branch) == (names, branch)
-        )
+        key = self._engine.selected.get(names)
+        return tuple(p for p in programs if TimelineKey(p.path, p.branch) == key)
+
+    def prompts(self, path: str | None = None) -> tuple[PromptRecord, ...]:
+        """Requests to models with what came of them, in order.
+
+        Args:
+            path: Those made from this simulator, in the past of the branch it is on or follows;
+                None: all.
+
+        Raises:
+            PathError: The path is malformed or names an unknown agent.
+        """
+        prompts = tuple(self._engine.log.prompts())
+        if path is None:
+            return prompts
+        names = parse_path(path, self._engine.agents)
+        until = dict(lineage(self._engine.journal, self._engine.controller(names)))
+        return tuple(p for p in prompts if p.path == names and p.tick <= until.get(p.timeline, -1))
 
     def at(self, tick: int) -> Past:
         """All simulators at a tick.

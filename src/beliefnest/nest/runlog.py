@@ -1,11 +1,15 @@
-"""What a nest notes beside its timelines: selections and programs, in memory or in the file."""
+"""What a nest notes beside its timelines, in memory or in the file.
+
+That is which branches are selected, programs, requests to models, and what ran them.
+"""
 
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from typing import Protocol
 
-from beliefnest.timeline.records import ProgramRecord
+from beliefnest.timeline.journal import TimelineKey
+from beliefnest.timeline.records import ProgramRecord, PromptRecord
 from beliefnest.timeline.store import SqliteJournal
 
 __all__ = ["FileLog", "MemoryLog", "RunLog"]
@@ -31,6 +35,18 @@ class RunLog(Protocol):
     def programs(self) -> Sequence[ProgramRecord]:
         """All programs of branches that are there, in order of their end."""
 
+    def add_prompt(self, prompt: PromptRecord) -> None:
+        """Note a request to a model and what came of it."""
+
+    def prompts(self) -> Sequence[PromptRecord]:
+        """All requests to models from branches that are there, in order."""
+
+    def add_versions(self, versions: Mapping[str, str]) -> None:
+        """Note what runs from now on, if it is not what ran before."""
+
+    def versions(self) -> Sequence[Mapping[str, str]]:
+        """Program to version, when the run began and whenever it went on with others."""
+
     def renamed(self, path: Path, branch: str, name: str) -> None:
         """Follow a branch that got another name."""
 
@@ -44,6 +60,8 @@ class MemoryLog:
     def __init__(self) -> None:
         self._selected: dict[Path, str] = {}
         self._programs: list[ProgramRecord] = []
+        self._prompts: list[PromptRecord] = []
+        self._versions: dict[str, str] = {}
 
     def together(self) -> AbstractContextManager[None]:
         """Nothing to do: what is in memory ends together."""
@@ -65,11 +83,31 @@ class MemoryLog:
         """All programs of branches that are there, in order of their end."""
         return tuple(self._programs)
 
+    def add_prompt(self, prompt: PromptRecord) -> None:
+        """Note a request to a model and what came of it."""
+        self._prompts.append(prompt)
+
+    def prompts(self) -> Sequence[PromptRecord]:
+        """All requests to models from branches that are there, in order."""
+        return tuple(self._prompts)
+
+    def add_versions(self, versions: Mapping[str, str]) -> None:
+        """Note what runs; in one process that is added to and does not change."""
+        self._versions |= versions
+
+    def versions(self) -> Sequence[Mapping[str, str]]:
+        """Program to version."""
+        return (self._versions,)
+
     def renamed(self, path: Path, branch: str, name: str) -> None:
         """Follow a branch that got another name."""
         self._programs = [
             replace(each, branch=name) if (each.path, each.branch) == (path, branch) else each
             for each in self._programs
+        ]
+        old, new = TimelineKey(path, branch), TimelineKey(path, name)
+        self._prompts = [
+            replace(each, timeline=new) if each.timeline == old else each for each in self._prompts
         ]
         if self._selected.get(path) == branch:
             self._selected[path] = name
@@ -77,6 +115,7 @@ class MemoryLog:
     def forgotten(self, path: Path, branch: str) -> None:
         """Follow a branch that was deleted."""
         self._programs = [p for p in self._programs if (p.path, p.branch) != (path, branch)]
+        self._prompts = [p for p in self._prompts if p.timeline != TimelineKey(path, branch)]
         if self._selected.get(path) == branch:
             del self._selected[path]
 
@@ -106,6 +145,22 @@ class FileLog:
     def programs(self) -> Sequence[ProgramRecord]:
         """All programs of branches that are there, in order of their end."""
         return self._journal.records.programs()
+
+    def add_prompt(self, prompt: PromptRecord) -> None:
+        """Note a request to a model and what came of it."""
+        self._journal.records.add_prompt(prompt)
+
+    def prompts(self) -> Sequence[PromptRecord]:
+        """All requests to models from branches that are there, in order."""
+        return self._journal.records.prompts()
+
+    def add_versions(self, versions: Mapping[str, str]) -> None:
+        """Note what runs from now on, if it is not what ran before."""
+        self._journal.records.add_versions(versions)
+
+    def versions(self) -> Sequence[Mapping[str, str]]:
+        """Program to version, when the run began and whenever it went on with others."""
+        return self._journal.records.versions()
 
     def renamed(self, path: Path, branch: str, name: str) -> None:
         """Nothing to do."""

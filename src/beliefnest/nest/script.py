@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from beliefnest.timeline.journal import Journal, TimelineKey
+from beliefnest.timeline.journal import Journal, TimelineKey, lineage
 from beliefnest.timeline.records import ProgramRecord
 
 __all__ = ["STEP", "steps_played"]
@@ -18,12 +18,8 @@ def steps_played(journal: Journal, key: TimelineKey, programs: Iterable[ProgramR
     """
     noted = [program for program in programs if STEP in program.detail]
     played = 0
-    place: TimelineKey | None = key
-    until = journal.info(key).head
-    while place is not None:
+    for place, until in lineage(journal, key):
         here = [p for p in noted if (p.path, p.branch) == (place.path, place.branch)]
         ended = [int(p.detail[STEP]) + 1 for p in here if p.tick + p.ticks <= until]
         played = max([played, *ended])
-        base = journal.info(place).base
-        place, until = (None, 0) if base is None else (base.timeline, base.tick)
     return played

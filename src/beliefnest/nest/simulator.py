@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -15,12 +15,16 @@ from beliefnest.errors import BranchError, InputError, PathError, PositionError,
 from beliefnest.nest.engine import Engine
 from beliefnest.nest.explain import element_of, explain
 from beliefnest.nest.explanation import Explanation
+from beliefnest.nest.noting import NotingModel
 from beliefnest.nest.paths import normalised, path_text
 from beliefnest.nest.turns import in_turn
 from beliefnest.prompts import Template, render
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
 from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.values import TICKS_PER_SECOND, Items, Position
+
+if TYPE_CHECKING:
+    from beliefnest.llm.messages import Model
 
 __all__ = ["PastSimulator", "Simulator"]
 
@@ -285,6 +289,17 @@ class Simulator(_Seen):
                 raise InputError(f"the program of {agent} is a text, not {type(code).__name__}")
         _check_timeout(timeout_ticks)
         return self._engine.run(self._path, programs, timeout_ticks)
+
+    def noting(self, model: "Model", **detail: str) -> "Model":
+        """A model whose conversation with the caller is kept in the run, request by request.
+
+        Give it to `ask_for_program` in place of the model; `Nest.prompts` lists what was kept.
+
+        Args:
+            model: Who is asked.
+            detail: Facts to keep with every request, as `task`.
+        """
+        return NotingModel(model, self._engine, self._path, detail)
 
     @in_turn
     def step(self, ticks: int = 1) -> None:

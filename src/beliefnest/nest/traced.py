@@ -5,12 +5,12 @@ from pathlib import Path
 from beliefnest.nest.engine import MAIN
 from beliefnest.nest.saved import encode_start
 from beliefnest.nest.setting import Setting
+from beliefnest.nest.versions import own_versions
 from beliefnest.perception.options import Perception
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.records import RunRecord
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.timeline.trace import Trace, record_trace
-from beliefnest.version import VERSION
 
 __all__ = ["import_trace"]
 
@@ -39,7 +39,7 @@ def import_trace(
                 text="",
                 condition="",
                 seed=0,
-                versions={"beliefnest": VERSION},
+                versions=own_versions(),
                 setting=encode_start(setting, "scripted"),
             )
         )

@@ -67,6 +67,7 @@ def build_scenario(
     descriptions = {
         number: str(conditions[number].get("description", "")) for number in sorted(conditions)
     }
+    probes = tuple(builder.probe(n, entry) for n, entry in enumerate(file.probes))
     return Scenario(
         setting=builder.setting(),
         description=file.description,
@@ -74,13 +75,18 @@ def build_scenario(
         condition=condition,
         condition_description=descriptions.get(condition, "") if condition is not None else "",
         conditions=descriptions,
-        probes=tuple(builder.probe(n, entry) for n, entry in enumerate(file.probes)),
+        probes=probes,
         expectations=tuple(
             builder.expectation(n, entry) for n, entry in enumerate(file.expectations)
         ),
         labels={entry.at: entry.label for entry in file.containers if entry.label},
         source=document.source,
         text=document.text,
+        templates={
+            entry.template: probe.template
+            for entry, probe in zip(file.probes, probes, strict=True)
+            if entry.template is not None and probe.template is not None
+        },
     )
 
 
@@ -234,6 +240,8 @@ class _Builder:
     def _template(self, path: KeyPath, name: str | None) -> str | None:
         if name is None:
             return None
+        if name in self._document.templates:
+            return self._document.templates[name]
         file = self._document.folder / name
         try:
             return file.read_text(encoding="utf-8")

@@ -6,7 +6,7 @@ can still be reported where it was written.
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -41,12 +41,14 @@ class Document:
         root: Its content.
         folder: Where files that it names are looked for.
         text: The text of the file; empty if there is none.
+        templates: Texts of templates that it names, kept with it; others are read from files.
     """
 
     source: str
     root: Node
     folder: Path
     text: str = ""
+    templates: Mapping[str, str] = field(default_factory=dict)
 
     def fault(self, path: KeyPath, message: str) -> ScenarioError:
         """The error that names file, line and key of what is wrong."""

@@ -10,10 +10,10 @@ from beliefnest.errors import UnknownNameError
 from beliefnest.scenarios.build import build_scenario
 from beliefnest.scenarios.document import Document, merged, wrapped
 from beliefnest.scenarios.form import check_form
-from beliefnest.scenarios.reading import read_yaml
+from beliefnest.scenarios.reading import parse_yaml, read_yaml
 from beliefnest.scenarios.scenario import Scenario
 
-__all__ = ["builtin_names", "load_conditions", "load_scenario", "scenario_from"]
+__all__ = ["builtin_names", "kept_scenario", "load_conditions", "load_scenario", "scenario_from"]
 
 _SUFFIXES = (".yaml", ".yml")
 
@@ -42,6 +42,23 @@ def load_conditions(name_or_path: str) -> tuple[Scenario, ...]:
 def scenario_from(content: Mapping[str, Any], condition: int | None, source: str) -> Scenario:
     """See `Scenario.from_mapping`."""
     return _scenario(Document(source, wrapped(content), Path()), condition)
+
+
+def kept_scenario(
+    text: str, templates: Mapping[str, str], condition: int | None, source: str
+) -> Scenario:
+    """A scenario as a run keeps it.
+
+    Args:
+        text: The text of its file.
+        templates: The templates that this names, by the name written there.
+        condition: Number of its condition; None: it was run as written.
+        source: What messages call it.
+
+    Raises:
+        ScenarioError: This version does not understand it.
+    """
+    return _scenario(replace(parse_yaml(text, source), templates=templates), condition)
 
 
 def _document(name_or_path: str) -> Document:

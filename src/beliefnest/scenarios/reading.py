@@ -1,8 +1,10 @@
 """Reading scenario files: YAML, with the line of every key kept."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
+import msgspec
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
@@ -10,37 +12,67 @@ from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.document import Document, Node
 
-__all__ = ["read_yaml"]
+__all__ = ["parse_yaml", "read_yaml", "templates_file"]
 
 _MAX_VALUES = 200_000
 _MAX_DEPTH = 40
 
 
 def read_yaml(path: Path) -> Document:
-    """The document in a YAML file.
+    """The document in a YAML file, with the templates that were kept beside it, if any.
 
     Raises:
         ScenarioError: The file cannot be read, or is not one YAML mapping.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise ScenarioError(f"{path}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise ScenarioError(f"{path}: is not UTF-8 text (byte {error.start})") from None
+    kept = templates_file(path)
+    templates = _templates(kept) if kept.is_file() else {}
+    return replace(parse_yaml(_text(path), str(path)), folder=path.parent, templates=templates)
+
+
+def templates_file(path: Path) -> Path:
+    """Where the templates that a scenario file names are kept beside it: name to text, as JSON."""
+    return path.with_suffix(".templates.json")
+
+
+def parse_yaml(text: str, source: str) -> Document:
+    """The document that a YAML text holds.
+
+    Args:
+        text: The text.
+        source: What messages call it.
+
+    Raises:
+        ScenarioError: It is not one YAML mapping.
+    """
     try:
         content = YAML(typ="rt", pure=True).load(text)
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line = f":{mark.line + 1}" if mark is not None else ""
         problem = " ".join((error.problem or "it cannot be parsed").split())
-        raise ScenarioError(f"{path}{line}: broken YAML: {problem}") from None
+        raise ScenarioError(f"{source}{line}: broken YAML: {problem}") from None
     except YAMLError as error:
-        raise ScenarioError(f"{path}: broken YAML: {' '.join(str(error).split())}") from None
+        raise ScenarioError(f"{source}: broken YAML: {' '.join(str(error).split())}") from None
     if not isinstance(content, CommentedMap):
-        raise ScenarioError(f"{path}: is not a mapping of keys to values; see docs/scenarios.md")
-    root = _Conversion(str(path)).node(content, 1, 0)
-    return Document(source=str(path), root=root, folder=path.parent, text=text)
+        raise ScenarioError(f"{source}: is not a mapping of keys to values; see docs/scenarios.md")
+    root = _Conversion(source).node(content, 1, 0)
+    return Document(source=source, root=root, folder=Path(), text=text)
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise ScenarioError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise ScenarioError(f"{path}: is not UTF-8 text (byte {error.start})") from None
+
+
+def _templates(path: Path) -> dict[str, str]:
+    try:
+        return msgspec.json.decode(_text(path), type=dict[str, str])
+    except msgspec.MsgspecError as error:
+        raise ScenarioError(f"{path}: is no mapping from names to texts: {error}") from None
 
 
 class _Conversion:

@@ -95,11 +95,13 @@ def _paths(scenario: Scenario) -> list[str]:
 
 
 def _run_probe(nest: Nest, number: int, probe: Probe, model: Model, asking: Asking) -> ProbeOutcome:
-    trials = _Trials(nest, probe, f"probe {number}")
-    prompts = _Prompts(nest[probe.path], probe)
+    name = f"probe {number}"
+    trials = _Trials(nest, probe, name)
+    believer = nest[probe.path]
+    prompts = _Prompts(believer, probe)
     try:
         attempts = ask_for_program(
-            model,
+            believer.noting(model, probe=name, task=probe.task),
             prompts.prompt,
             trials.complaint,
             asking.attempts,

@@ -122,6 +122,7 @@ class Scenario:
         labels: What people call the containers.
         source: Where it comes from, for messages.
         text: The text of its file; empty if it was built in code.
+        templates: Texts of the templates that its probes name, by the name written there.
     """
 
     setting: Setting
@@ -135,6 +136,7 @@ class Scenario:
     labels: Mapping[Position, str] = field(default_factory=dict)
     source: str = "scenario"
     text: str = ""
+    templates: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def name(self) -> str:

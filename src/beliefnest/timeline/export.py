@@ -8,6 +8,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
+from itertools import chain
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
@@ -56,6 +57,7 @@ def export(
     first: Snapshot | None = None,
     timelines: Iterable[TimelineKey] | None = None,
     beliefs: Iterable[BeliefRow] = (),
+    notes: Iterable[Row] = (),
 ) -> Mapping[str, int]:
     """Write a journal into a new folder, whole or not at all.
 
@@ -67,6 +69,7 @@ def export(
         first: State before the first entry of the timelines that have no base.
         timelines: Which timelines to write; None: all.
         beliefs: States of nodes, in the order they are to be written in.
+        notes: Rows of what is kept beside timelines: the run, programs, prompts.
 
     Returns:
         Number of rows by table.
@@ -79,7 +82,9 @@ def export(
     opener = _opener(format)
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise InputError(f"{out} is there already; remove it or choose another folder")
-    rows = _rows(journal, registry, first, timelines, beliefs)
+    rows = chain(
+        notes, _timeline_rows(journal, registry, first, timelines), map(belief_row, beliefs)
+    )
     try:
         with _folder_in_place_of(out) as folder:
             return _written(rows, folder, opener)
@@ -89,12 +94,11 @@ def export(
         ) from fault
 
 
-def _rows(
+def _timeline_rows(
     journal: Journal,
     registry: Registry,
     first: Snapshot | None,
     timelines: Iterable[TimelineKey] | None,
-    beliefs: Iterable[BeliefRow],
 ) -> Iterator[Row]:
     chosen = [i.key for i in journal.timelines()] if timelines is None else list(timelines)
     for key in chosen:
@@ -104,7 +108,6 @@ def _rows(
             yield from snapshot_rows(key, first, registry)
         for number, entry in enumerate(journal.entries(key, 0, info.entries)):
             yield from entry_rows(key, number, entry, registry)
-    yield from map(belief_row, beliefs)
 
 
 def _written(

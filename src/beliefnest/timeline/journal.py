@@ -28,6 +28,7 @@ __all__ = [
     "check_append",
     "check_base",
     "check_place",
+    "lineage",
     "path_text",
 ]
 
@@ -250,6 +251,19 @@ class Journal(Protocol):
 
     def close(self) -> None:
         """Give up what the journal holds open."""
+
+
+def lineage(journal: Journal, key: TimelineKey) -> Iterator[tuple[TimelineKey, int]]:
+    """A timeline and those it goes on from, each with its last tick that lies in the past of it.
+
+    Raises:
+        BranchError: There is no timeline of that key.
+    """
+    info = journal.info(key)
+    yield key, info.head
+    while info.base is not None:
+        yield info.base.timeline, info.base.tick
+        info = journal.info(info.base.timeline)
 
 
 class MemoryJournal:

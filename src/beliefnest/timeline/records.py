@@ -9,6 +9,7 @@ import msgspec
 from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
 from beliefnest.timeline.database import Database, Row, checked, seal
+from beliefnest.timeline.journal import FOLLOW, TimelineKey
 
 __all__ = ["ProgramRecord", "PromptRecord", "Records", "RunRecord", "path_from", "path_to"]
 
@@ -22,8 +23,9 @@ class RunRecord:
         text: The scenario file, whole.
         condition: Name of the condition; empty if the scenario has none.
         seed: Seed of every random number.
-        versions: Program to version, of everything that ran.
+        versions: Program to version, of everything that ran when it began.
         setting: What the nest needs to be made again, in its own format.
+        templates: Texts of the prompt templates that the scenario names, by these names.
     """
 
     scenario: str
@@ -32,6 +34,7 @@ class RunRecord:
     seed: int
     versions: Mapping[str, str]
     setting: bytes = b""
+    templates: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,30 +74,51 @@ class ProgramRecord:
 
 @dataclass(frozen=True, slots=True)
 class PromptRecord:
-    """A prompt and what a model answered.
+    """One request to a model and what came of it.
 
     Attributes:
-        path: Belief path it was rendered from.
-        branch: Branch of that simulator.
-        tick: Tick it was rendered at.
-        model: Name of the model; empty if none was asked.
-        task: What the agent is to do.
-        prompt: The text the model received.
-        answer: The text it gave; None if none was asked or it gave none.
-        detail: Further facts of the caller: tokens, cost, template.
+        path: Belief path it was made from.
+        timeline: The timeline that this belief was on: its own or that of a simulator it follows.
+        tick: Tick of that timeline.
+        model: Name of the model.
+        attempt: 1 for the first request of a conversation, 2 for the one after a fault.
+        messages: What the model received: role and text of each message.
+        sampling: How the answer was to be drawn.
+        answer: The text it gave; None if it gave none.
+        error: Why it gave none; None if it gave one.
+        requests: Requests that reached a provider.
+        input_tokens: Tokens sent.
+        output_tokens: Tokens received.
+        cost: US dollars; None where a price is not known.
+        cached: Whether the answer had been kept from another time.
+        detail: Further facts of the caller.
     """
 
     path: tuple[str, ...]
-    branch: str
+    timeline: TimelineKey
     tick: int
     model: str
-    task: str
-    prompt: str
+    attempt: int
+    messages: tuple[tuple[str, str], ...]
+    sampling: Mapping[str, float | int | None]
     answer: str | None
+    error: str | None
+    requests: int = 0
+    input_tokens: int = 0
+    output_tokens: int = 0
+    cost: float | None = 0.0
+    cached: bool = False
     detail: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def branch(self) -> str:
+        """The branch its simulator was on; `follow` in follow mode."""
+        return self.timeline.branch if self.path == self.timeline.path else FOLLOW
 
 
 Record = TypeVar("Record", ProgramRecord, PromptRecord)
+
+_VERSIONS = list[dict[str, str]]
 
 _TABLES: Mapping[type, str] = {ProgramRecord: "program", PromptRecord: "prompt"}
 
@@ -134,6 +158,18 @@ class Records:
                 "the run was stopped while it began: start it again"
             )
         return codec.decode(body, RunRecord)
+
+    def add_versions(self, versions: Mapping[str, str]) -> None:
+        """Note what runs from now on, if it is not what ran before."""
+        known = self.versions()
+        now = {**known[-1], **versions}
+        if now != known[-1]:
+            self.put_state("versions", codec.encode([*known[1:], now]))
+
+    def versions(self) -> tuple[Mapping[str, str], ...]:
+        """Program to version, when the run began and whenever it went on with others."""
+        later = self.state("versions")
+        return (self.run().versions, *([] if later is None else codec.decode(later, _VERSIONS)))
 
     def put_state(self, name: str, value: bytes) -> None:
         """Keep bytes under a name, in place of what was there: counters, random states."""
@@ -175,11 +211,11 @@ class Records:
         return self._all(ProgramRecord)
 
     def add_prompt(self, prompt: PromptRecord) -> None:
-        """Append a prompt with its answer."""
+        """Append a request to a model with what came of it."""
         self._add(prompt)
 
     def prompts(self) -> Sequence[PromptRecord]:
-        """All prompts, in order."""
+        """All requests to models, in order."""
         return self._all(PromptRecord)
 
     def verify(self) -> None:
@@ -209,7 +245,8 @@ class Records:
             self._database.execute(f"DELETE FROM {table} WHERE path = ? AND branch = ?", where)
 
     def _add(self, record: ProgramRecord | PromptRecord) -> None:
-        values = (path_to(record.path), record.branch, codec.encode(record))
+        key = _belongs_to(record)
+        values = (path_to(key.path), key.branch, codec.encode(record))
         with self._database.transaction():
             self._database.execute(
                 f"INSERT INTO {_TABLES[type(record)]} (path, branch, body, seal) "
@@ -221,7 +258,7 @@ class Records:
         rows = self._rows(_TABLES[kind], "", ())
         # The column is right where the branch was renamed after the record was written.
         return tuple(
-            replace(codec.decode(body, kind), branch=branch) for _, (_, branch, body) in rows
+            _with_branch(codec.decode(body, kind), branch) for _, (_, branch, body) in rows
         )
 
     def _rows(self, table: str, where: str, values: Row) -> Iterator[tuple[int, Row]]:
@@ -230,3 +267,16 @@ class Records:
         )
         for number, *row in rows:
             yield number, checked(tuple(row), self._database.path, f"{table} {number}")
+
+
+def _belongs_to(record: ProgramRecord | PromptRecord) -> TimelineKey:
+    """The timeline that a record is renamed and deleted with."""
+    if isinstance(record, PromptRecord):
+        return record.timeline
+    return TimelineKey(record.path, record.branch)
+
+
+def _with_branch(record: Record, branch: str) -> Record:
+    if isinstance(record, PromptRecord):
+        return replace(record, timeline=replace(record.timeline, branch=branch))
+    return replace(record, branch=branch)

@@ -3,13 +3,15 @@
 Pure functions from entries to rows; docs/export.md describes the columns for readers.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy as np
 
 from beliefnest.timeline.journal import Entry, TimelineInfo, TimelineKey, path_text
+from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, DroppedItem, Items, Position
@@ -22,18 +24,38 @@ __all__ = [
     "Row",
     "belief_row",
     "entry_rows",
+    "program_row",
+    "prompt_row",
+    "run_row",
     "snapshot_rows",
     "timeline_row",
 ]
 
 Column = Literal["text", "integer", "number", "boolean", "object"]
-"""Type of a column's values; every value may also be null. An object is a JSON object."""
+"""Type of a column's values; every value may also be null. An object is a JSON object or array."""
 
 Row = tuple[str, dict[str, Any]]
 """Name of a table, and values by column."""
 
-BeliefRow = tuple[int, tuple[str, ...], Mapping[str, Any]]
-"""Tick, belief path, and state as plain data."""
+
+@dataclass(frozen=True, slots=True)
+class BeliefRow:
+    """A belief at one tick.
+
+    Attributes:
+        path: Whose belief.
+        timeline: The timeline it was on.
+        tick: Tick of that timeline.
+        state: What it held, as plain data.
+        blocks: Blocks that changed since the row before, as plain data.
+    """
+
+    path: tuple[str, ...]
+    timeline: TimelineKey
+    tick: int
+    state: Mapping[str, Any]
+    blocks: Mapping[str, str | None]
+
 
 _PLACE: Mapping[str, Column] = {
     "path": "text",
@@ -41,11 +63,25 @@ _PLACE: Mapping[str, Column] = {
     "entry": "integer",
     "tick": "integer",
 }
+_ON_TIMELINE: Mapping[str, Column] = {
+    "path": "text",
+    "timeline_path": "text",
+    "timeline_branch": "text",
+    "tick": "integer",
+}
 _CELL: Mapping[str, Column] = {"x": "integer", "y": "integer", "z": "integer"}
 _POINT: Mapping[str, Column] = {"x": "number", "y": "number", "z": "number"}
 
 TABLES: Mapping[str, Mapping[str, Column]] = MappingProxyType(
     {
+        "run": {
+            "scenario": "text",
+            "condition": "text",
+            "seed": "integer",
+            "versions": "object",
+            "text": "text",
+            "templates": "object",
+        },
         "timelines": {
             "path": "text",
             "branch": "text",
@@ -86,7 +122,37 @@ TABLES: Mapping[str, Mapping[str, Column]] = MappingProxyType(
             "actor": "text",
             "detail": "object",
         },
-        "beliefs": {"tick": "integer", "path": "text", "state": "object"},
+        "programs": {
+            "path": "text",
+            "branch": "text",
+            "tick": "integer",
+            "agent": "text",
+            "code": "text",
+            "ok": "boolean",
+            "error": "text",
+            "ticks": "integer",
+            "call": "integer",
+            "lines": "object",
+            "log": "object",
+            "unfinished": "object",
+            "detail": "object",
+        },
+        "prompts": {
+            **_ON_TIMELINE,
+            "model": "text",
+            "attempt": "integer",
+            "messages": "object",
+            "sampling": "object",
+            "answer": "text",
+            "error": "text",
+            "requests": "integer",
+            "input_tokens": "integer",
+            "output_tokens": "integer",
+            "cost": "number",
+            "cached": "boolean",
+            "detail": "object",
+        },
+        "beliefs": {**_ON_TIMELINE, "state": "object", "blocks": "object"},
     }
 )
 """Table to column to type, in the order in which they are written."""
@@ -152,10 +218,69 @@ def snapshot_rows(key: TimelineKey, snapshot: Snapshot, registry: Registry) -> I
     yield from _item_rows(place, snapshot.items.items())
 
 
+def run_row(run: RunRecord, versions: Sequence[Mapping[str, str]]) -> Row:
+    """The row of the run itself."""
+    return "run", {
+        "scenario": run.scenario,
+        "condition": run.condition or None,
+        "seed": run.seed,
+        "versions": [dict(each) for each in versions],
+        "text": run.text,
+        "templates": dict(run.templates),
+    }
+
+
+def program_row(program: ProgramRecord) -> Row:
+    """The row of a program that ran."""
+    return "programs", {
+        "path": path_text(program.path),
+        "branch": program.branch,
+        "tick": program.tick,
+        "agent": program.agent,
+        "code": program.code,
+        "ok": program.ok,
+        "error": program.error,
+        "ticks": program.ticks,
+        "call": program.group,
+        "lines": list(program.lines),
+        "log": list(program.log),
+        "unfinished": list(program.unfinished),
+        "detail": dict(program.detail),
+    }
+
+
+def prompt_row(prompt: PromptRecord) -> Row:
+    """The row of a request to a model."""
+    return "prompts", {
+        **_on_timeline(prompt.path, prompt.timeline, prompt.tick),
+        "model": prompt.model,
+        "attempt": prompt.attempt,
+        "messages": [{"role": role, "text": text} for role, text in prompt.messages],
+        "sampling": dict(prompt.sampling),
+        "answer": prompt.answer,
+        "error": prompt.error,
+        "requests": prompt.requests,
+        "input_tokens": prompt.input_tokens,
+        "output_tokens": prompt.output_tokens,
+        "cost": prompt.cost,
+        "cached": prompt.cached,
+        "detail": dict(prompt.detail),
+    }
+
+
 def belief_row(row: BeliefRow) -> Row:
     """The row of one node's state at one tick."""
-    tick, path, state = row
-    return "beliefs", {"tick": tick, "path": path_text(path), "state": dict(state)}
+    place = _on_timeline(row.path, row.timeline, row.tick)
+    return "beliefs", {**place, "state": dict(row.state), "blocks": dict(row.blocks)}
+
+
+def _on_timeline(path: tuple[str, ...], timeline: TimelineKey, tick: int) -> dict[str, Any]:
+    return {
+        "path": path_text(path),
+        "timeline_path": path_text(timeline.path),
+        "timeline_branch": timeline.branch,
+        "tick": tick,
+    }
 
 
 def _place(key: TimelineKey, number: int, tick: int) -> dict[str, Any]:

@@ -1,0 +1,90 @@
+"""A model around a model, which notes in the run what was asked and answered."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from beliefnest.errors import ModelError
+from beliefnest.nest.engine import Engine
+from beliefnest.timeline.records import PromptRecord
+
+if TYPE_CHECKING:  # Models take long to import, and few nests have one.
+    from beliefnest.llm.messages import Answer, Message, Model, Sampling
+
+__all__ = ["NotingModel"]
+
+
+class NotingModel:
+    """A model asked from one simulator, for one conversation.
+
+    Each request is noted with its answer, or with the model's error, once that is there.
+
+    Args:
+        model: The model to ask.
+        engine: Where it is noted.
+        path: The simulator it is asked from.
+        detail: Further facts to note.
+    """
+
+    def __init__(
+        self, model: "Model", engine: Engine, path: tuple[str, ...], detail: Mapping[str, str]
+    ) -> None:
+        self._model = model
+        self._engine = engine
+        self._path = path
+        self._detail = detail
+        self._asked = 0
+
+    @property
+    def name(self) -> str:
+        """Name of the model that is asked."""
+        return self._model.name
+
+    def answer(self, messages: "Sequence[Message]", sampling: "Sampling") -> "Answer":
+        """Ask and note.
+
+        Raises:
+            ModelError: The model failed.
+            StoreError: The run file cannot be written.
+        """
+        # Others may use the nest while the model thinks.
+        with self._engine.turn:
+            info = self._engine.info(self._path)
+        self._asked += 1
+        asked = PromptRecord(
+            path=self._path,
+            timeline=info.key,
+            tick=info.head,
+            model=self.name,
+            attempt=self._asked,
+            messages=tuple((message.role, message.text) for message in messages),
+            sampling={
+                "temperature": sampling.temperature,
+                "seed": sampling.seed,
+                "max_output_tokens": sampling.max_output_tokens,
+            },
+            answer=None,
+            error=None,
+            detail=self._detail,
+        )
+        try:
+            answer = self._model.answer(messages, sampling)
+        except ModelError as error:
+            self._note(replace(asked, error=str(error)))
+            raise
+        self._note(
+            replace(
+                asked,
+                answer=answer.text,
+                requests=answer.usage.requests,
+                input_tokens=answer.usage.input_tokens,
+                output_tokens=answer.usage.output_tokens,
+                cost=answer.usage.cost,
+                cached=answer.cached,
+            )
+        )
+        return answer
+
+    def _note(self, prompt: PromptRecord) -> None:
+        with self._engine.turn:
+            self._engine.log.add_prompt(prompt)

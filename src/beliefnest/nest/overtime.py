@@ -1,0 +1,70 @@
+"""One belief through all of its time, on every timeline there is of it."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from beliefnest.belief.view import State
+from beliefnest.nest.engine import Engine
+from beliefnest.timeline.journal import Journal, TimelineInfo, TimelineKey
+from beliefnest.world.frames import BlockGrid
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Box, Position
+
+__all__ = ["Moment", "over_time"]
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """A simulator at a tick at which something changed.
+
+    Attributes:
+        timeline: The timeline it is on: its own or that of a simulator it follows.
+        tick: Tick of that timeline.
+        state: What it holds.
+        blocks: What became of blocks since the moment before on that timeline, None where unknown;
+            in the first one, all blocks that are known.
+    """
+
+    timeline: TimelineKey
+    tick: int
+    state: State
+    blocks: Mapping[Position, str | None]
+
+
+def over_time(engine: Engine, path: tuple[str, ...]) -> Iterator[Moment]:
+    """The first tick of each timeline that a simulator has or can follow, and each with a change.
+
+    Timelines come in order of creation, each with its own ticks: what lies before its first is
+    told of the one it goes on from.
+    """
+    registry = engine.history.ground.registry
+    box = engine.setting.snapshot.box
+    for info in engine.journal.timelines():
+        if path[: len(info.key.path)] != info.key.path:
+            continue
+        before = np.full(box.shape, -1, dtype=np.int32)
+        for tick, entries in _places(engine.journal, info).items():
+            grid = engine.history.reading(info.key, path, entries).blocks.copy()
+            state = engine.state_after(info.key, path, entries, tick)
+            yield Moment(info.key, tick, state, _changed(before, grid, box, registry))
+            before = grid
+
+
+def _places(journal: Journal, info: TimelineInfo) -> dict[int, int]:
+    """The first tick and each with an entry: how many entries lie at it or before."""
+    places = {info.start: 0}
+    for number, entry in enumerate(journal.entries(info.key, 0, info.entries), start=1):
+        places[entry.tick] = number
+    return places
+
+
+def _changed(
+    before: BlockGrid, after: BlockGrid, box: Box, registry: Registry
+) -> dict[Position, str | None]:
+    x, y, z = box.low
+    return {
+        (x + i, y + j, z + k): None if after[i, j, k] < 0 else registry.text(int(after[i, j, k]))
+        for i, j, k in np.argwhere(before != after).tolist()
+    }

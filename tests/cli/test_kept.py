@@ -1,0 +1,156 @@
+"""A run needs nothing but its folder: what it was asked, and all that it read, is kept in it."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+import beliefnest as bn
+from beliefnest.cli.app import run_command_line
+
+ROOM = """\
+name: room
+box: [[0, 0, 0], [6, 3, 6]]
+blocks:
+  - {block: stone, fill: [[0, 0, 0], [6, 0, 6]]}
+containers:
+  - {label: apple box, at: [3, 1, 3], items: {apple: 1}}
+agents:
+  ann: {position: [1.5, 1, 1.5]}
+  bob: {position: [5.5, 1, 5.5]}
+probes:
+  - path: /ann/bob
+    acts_in: /ann
+    agent: bob
+    task: Get an apple.
+    template: ../texts/short.txt
+    expect: {opens: [3, 1, 3]}
+"""
+TEMPLATE = "{{ branch.state.owner }}: {{ task }}"
+TAKE = "```javascript\nawait getItemFromChest(bot, new Vec3(3, 1, 3), {apple: 1})\n```"
+STORE = Path("run", "run.bn")
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """A run that failed half-way, and the same when it had gone on; their originals are gone."""
+    with pytest.MonkeyPatch.context() as patch:
+        folder = tmp_path_factory.mktemp("kept")
+        patch.chdir(folder)
+        Path("texts").mkdir()
+        Path("mine").mkdir()
+        Path("texts/short.txt").write_text(TEMPLATE, encoding="utf-8")
+        Path("mine/room.yaml").write_text(ROOM, encoding="utf-8")
+        answers = Path("answers.json")
+        command = ["run", "mine/room.yaml", "--model", f"scripted:{answers}", "--out", "done"]
+        answers.write_text(json.dumps(["I cannot [/]\x1b[31m."]), encoding="utf-8")
+        assert run_command_line([*command, "--cache", "off"]) == 3
+        shutil.copytree("done", "failed")
+        shutil.rmtree("texts")
+        answers.write_text(json.dumps([TAKE]), encoding="utf-8")
+        assert run_command_line([*command, "--cache", "off"]) == 0
+        shutil.rmtree("mine")
+        answers.unlink()
+        return folder / "failed", folder / "done"
+
+
+def test_a_run_goes_on_without_the_template_it_began_with(kept: tuple[Path, Path]) -> None:
+    _, done = kept
+    with bn.Nest.read(done / STORE) as nest:
+        (asked,) = nest.prompts()
+    assert asked.messages[-1] == ("user", "bob: Get an apple.")
+    assert asked.answer == TAKE
+
+
+def test_what_a_model_failed_at_is_kept(kept: tuple[Path, Path]) -> None:
+    failed, _ = kept
+    with bn.Nest.read(failed / STORE) as nest:
+        first, second = nest.prompts()
+    assert (first.path, first.attempt, first.error) == (("ann", "bob"), 1, None)
+    assert (second.attempt, second.answer) == (2, None)
+    assert "no answer left" in str(second.error)
+    assert first.detail == {"probe": "probe 1", "task": "Get an apple."}
+
+
+def test_what_was_asked_is_shown(
+    kept: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    failed, done = kept
+    assert run_command_line(["show", str(failed), "--path", "/ann/bob"]) == 0
+    printed = capsys.readouterr().out
+    assert "I cannot [/]\ufffd[31m." in printed
+    assert "no answer left" in printed
+    assert run_command_line(["show", str(done), "--path", "/ann/bob", "--json"]) == 0
+    (asked,) = json.loads(capsys.readouterr().out)["prompts"]
+    assert (asked["attempt"], asked["answer"]) == (1, TAKE)
+    assert run_command_line(["show", str(done), "--path", "/ann", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["prompts"] == []
+
+
+def test_a_run_file_alone_is_shown_with_names(
+    kept: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _, done = kept
+    alone = shutil.copy(done / STORE, tmp_path / "moved.bn")
+    assert run_command_line(["show", str(alone), "--path", "/ann"]) == 0
+    assert "apple box" in capsys.readouterr().out
+    assert run_command_line(["show", str(alone), "--png", str(tmp_path / "room.png")]) == 0
+
+
+def test_its_prompt_is_rendered_and_its_programs_are_replayed(
+    kept: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    _, done = kept
+    command = ["prompt", str(done), "--path", "/ann/bob", "--var", "task=Get an apple."]
+    assert run_command_line(command) == 0
+    assert "Task: Get an apple." in capsys.readouterr().out
+    assert run_command_line(["replay", str(done)]) == 0
+
+
+def test_the_scenario_in_its_folder_is_whole(kept: tuple[Path, Path]) -> None:
+    _, done = kept
+    scenario = bn.Scenario.load(str(done / "scenario.yaml"))
+    assert scenario.probes[0].template == TEMPLATE
+    assert scenario.text == ROOM
+
+
+def test_a_run_goes_on_only_with_the_template_it_began_with(
+    kept: tuple[Path, Path],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(kept[0], "failed")
+    Path("texts").mkdir()
+    Path("mine").mkdir()
+    Path("texts/short.txt").write_text("another one", encoding="utf-8")
+    Path("mine/room.yaml").write_text(ROOM, encoding="utf-8")
+    Path("answers.json").write_text("[]", encoding="utf-8")
+    command = ["run", "mine/room.yaml", "--model", "scripted:answers.json", "--out", "failed"]
+    assert run_command_line(command) == 2
+    assert "another template" in capsys.readouterr().err
+
+
+def test_all_that_ran_is_exported_with_its_versions(
+    kept: tuple[Path, Path], tmp_path: Path
+) -> None:
+    _, done = kept
+    out = tmp_path / "tables"
+    assert run_command_line(["export", str(done), "--out", str(out)]) == 0
+    tables = {
+        name: [json.loads(line) for line in (out / f"{name}.jsonl").read_text().splitlines()]
+        for name in ("run", "programs", "prompts")
+    }
+    (run,) = tables["run"]
+    assert (run["scenario"], run["seed"], run["text"]) == ("room", 0, ROOM)
+    assert run["templates"] == {"../texts/short.txt": TEMPLATE}
+    (versions,) = run["versions"]
+    assert {"beliefnest", "python", "numba", "node", "minecraft", "mineflayer", "flying_squid"} <= (
+        versions.keys()
+    )
+    (program,) = tables["programs"]
+    assert (program["path"], program["branch"], program["agent"]) == ("/ann", "probe 1", "bob")
+    (prompt,) = tables["prompts"]
+    assert (prompt["path"], prompt["timeline_path"]) == ("/ann/bob", "/")
