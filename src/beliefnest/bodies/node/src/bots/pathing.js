@@ -17,6 +17,8 @@ function chargePathfinder (bot, clock) {
       clock.charge(NODE_MS)
       return getNeighbors.call(movements, node)
     }
+    rememberBlocks(movements, bot)
+    rememberEntities(movements)
     return movements
   }
   const standard = charged(bot.pathfinder.movements)
@@ -27,6 +29,53 @@ function chargePathfinder (bot, clock) {
     const known = Object.hasOwn(movements, 'getNeighbors')
     setMovements(known ? movements : charged(movements))
   }
+}
+
+/**
+ * Movements note on a block what it is to a walker, anew each time it is asked for, a hundred times a node. What they
+ * noted holds as long as the block: a place whose state changes gets another object. Their sets of
+ * kinds of blocks must not be changed any more.
+ */
+function rememberBlocks (movements, bot) {
+  const { getBlock } = movements
+  movements.getBlock = (place, dx, dy, dz) => {
+    if (!place || !Number.isInteger(place.y)) return getBlock.call(movements, place, dx, dy, dz)
+    const block = bot.world.blockIn(Math.floor(place.x + dx), place.y + dy, Math.floor(place.z + dz))
+    if (block === null || block.notedBy !== movements) return noted(place, dx, dy, dz)
+    // A search raises blocks it would put another one on.
+    block.height = block.top
+    return block
+  }
+  function noted (place, dx, dy, dz) {
+    const block = getBlock.call(movements, place, dx, dy, dz)
+    if (block.position === undefined) return block
+    block.notedBy = movements
+    block.top = block.height
+    return block
+  }
+}
+
+/** Most places have no entity, and need not be made a text of in order to find none. */
+function rememberEntities (movements) {
+  const { updateCollisionIndex, clearCollisionIndex, getNumEntitiesAt } = movements
+  let taken = new Set()
+  movements.updateCollisionIndex = () => {
+    updateCollisionIndex.call(movements)
+    taken = new Set(Object.keys(movements.entityIntersections).map(key => hash(...key.split(',').map(Number))))
+  }
+  movements.clearCollisionIndex = () => {
+    clearCollisionIndex.call(movements)
+    taken = new Set()
+  }
+  movements.getNumEntitiesAt = (place, dx, dy, dz) => {
+    if (!place || !taken.has(hash(place.x + dx, place.y + dy, place.z + dz))) return 0
+    return getNumEntitiesAt.call(movements, place, dx, dy, dz)
+  }
+}
+
+// Two places may have the same; none has two.
+function hash (x, y, z) {
+  return (x * 961 + y * 31 + z) | 0
 }
 
 module.exports = { chargePathfinder }
