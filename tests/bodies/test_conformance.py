@@ -35,6 +35,11 @@ ACTS: dict[str, tuple[str, Callable[[ScriptedBody], None], str]] = {
         "const c = await bot.openContainer(bot.blockAt(new Vec3(2, 1, 2))); c.close()",
     ),
     "say": ("sally", lambda body: body.world.say("sally", "hello"), "bot.chat('hello')"),
+    "whisper": (
+        "sally",
+        lambda body: body.world.whisper("sally", "anne", "psst"),
+        "await whisper(bot, 'anne', 'psst')",
+    ),
     "think": ("anne", lambda body: body.world.think("anne", "hm"), "await think(bot, 'hm')"),
 }
 
@@ -104,12 +109,13 @@ def test_ticks_pass_and_nothing_happens_by_itself(body, frames):
 
 
 def test_the_same_acts_are_the_same_facts(body, frames):
-    for act in ("deposit", "withdraw", "say", "think"):
+    for act in ("deposit", "withdraw", "say", "whisper", "think"):
         do(body, act)
     assert deeds(frames) == [
         (EventKind.DEPOSIT_ITEM_INTO_CHEST, "sally", {"position": CHEST, "items": {"diamond": 1}}),
         (EventKind.GET_ITEM_FROM_CHEST, "anne", {"position": CHEST, "items": {"emerald": 2}}),
         (EventKind.CHAT, "sally", {"text": "hello"}),
+        (EventKind.CHAT, "sally", {"text": "psst", "to": "anne"}),
         (EventKind.THINK, "anne", {"text": "hm"}),
     ]
     there = body.snapshot()

@@ -116,6 +116,7 @@ def go_to_seller(**sections):
     [
         (STAYS_AT_A, "new Vec3(-8, 64, 3)"),
         (f"{STAYS_AT_A}\n{GOES_TO_B}", "new Vec3(8, 64, 3)"),
+        (f"{STAYS_AT_A}\n90;seller whispers to ann;I go to location B.", "new Vec3(8, 64, 3)"),
         (f"{STAYS_AT_A}\n{GOES_TO_B}\n95;mary;I go home to location A.", "new Vec3(8, 64, 3)"),
         (f"{GOES_TO_B}\n99;john;The seller is at Location A again.", "new Vec3(-8, 64, 3)"),
         ("5;seller;I go to location B from location A.", "new Vec3(8, 64, 3)"),

@@ -16,6 +16,7 @@ def everything(state: State) -> dict[str, Any]:
         "events": state.events,
         "chat": tuple(state.chat),
         "thoughts": tuple(state.thoughts),
+        "addressees": tuple(state.addressees),
     }
 
 
@@ -30,4 +31,5 @@ def values(state: State) -> dict[str, Any]:
         "events": state.events,
         "chat": tuple(state.chat),
         "thoughts": tuple(state.thoughts),
+        "addressees": tuple(state.addressees),
     }

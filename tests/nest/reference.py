@@ -148,6 +148,7 @@ class Reference:
             "events": tuple(e for e in node.log if e.kind not in said),
             "chat": said[EventKind.CHAT],
             "thoughts": said[EventKind.THINK],
+            "addressees": tuple(e.detail.get("to") for e in node.log if e.kind is EventKind.CHAT),
         }
 
     def _reality(self, start: Snapshot) -> Node:

@@ -127,6 +127,7 @@ class Stories:
         forks: Whether beliefs are forked, acted in and edited as well.
         ticks: Whether several acts may happen in one tick.
         priors: Whether there are static blocks and initial beliefs.
+        whispers: Whether agents whisper as well.
     """
 
     def __init__(
@@ -138,6 +139,7 @@ class Stories:
         forks: bool = False,
         ticks: bool = True,
         priors: bool = True,
+        whispers: bool = True,
     ) -> None:
         self._blocks = st.sampled_from(blocks)
         self._options = options
@@ -145,6 +147,7 @@ class Stories:
         self._forks = forks
         self._ticks = ticks
         self._priors = priors
+        self._whispers = whispers
 
     @cached_property
     def story(self) -> st.SearchStrategy[Story]:
@@ -201,13 +204,16 @@ class Stories:
         place = st.tuples(st.just("place_agent"), who, self._feet, self._yaw)
         anywhere = st.one_of(self._cell(range(4)), container)
         block = st.one_of(self._blocks, st.sampled_from(["air", "chest", "barrel"]))
+        speech = st.tuples(st.sampled_from(["say", "think"]), who, st.sampled_from(["hi", "hm"]))
+        if self._whispers:
+            speech |= st.tuples(st.just("whisper"), who, who, st.sampled_from(["hi", "hm"]))
         return st.one_of(
             place,
             place,
             st.tuples(st.just("set_block"), anywhere, block),
             st.tuples(st.sampled_from(["deposit", "withdraw"]), who, container, items),
             st.tuples(st.just("open"), who, container),
-            st.tuples(st.sampled_from(["say", "think"]), who, st.sampled_from(["hi", "hm"])),
+            speech,
             st.tuples(st.just("give"), who, who, items),
         )
 

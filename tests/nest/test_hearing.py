@@ -3,6 +3,8 @@
 import pytest
 from tests.nest.places import CLOSED, CORNER, EAST, GAP, MEETING, WEST, nest_of
 
+import beliefnest as bn
+
 
 def chat(nest, path):
     return tuple(nest[path].state.chat)
@@ -124,3 +126,71 @@ def test_4_what_was_heard_is_kept_in_order():
         world.say("b", "two")
     world.say("a", "three")
     assert chat(nest, "/a/b") == ((1, "a", "one"), (1, "b", "two"), (2, "a", "three"))
+
+
+def whispered(nest, path):
+    state = nest[path].state
+    return tuple(zip(state.chat, state.addressees, strict=True))
+
+
+def test_5_5_global_a_whisper_is_known_to_the_two_alone_present_or_not():
+    world, nest = nest_of({"a": WEST, "b": EAST, "c": (8.5, 0, 8.5)}, CLOSED)
+    world.whisper("b", "a", "hello")
+    line = ((1, "b", "hello"), "a")
+    for path in ("/", "/a", "/b", "/a/b", "/b/a", "/a/b/a", "/b/a/b"):
+        assert whispered(nest, path) == (line,), path
+    for path in ("/c", "/a/c", "/b/c", "/c/a", "/c/b", "/a/b/c", "/c/a/b", "/a/c/b"):
+        assert whispered(nest, path) == (), path
+
+
+def test_5_5_global_who_did_not_perceive_a_whisper_credits_nobody_with_it():
+    """Carl stands beside both, and hears everything that is said aloud."""
+    near = {"a": WEST, "b": (3.5, 0, 1.5), "c": (4.5, 0, 1.5)}
+    world, nest = nest_of(near)
+    world.whisper("a", "b", "one")
+    world.say("a", "two")
+    assert chat(nest, "/c") == chat(nest, "/c/a") == chat(nest, "/c/b") == ((2, "a", "two"),)
+    assert chat(nest, "/b/a") == ((1, "a", "one"), (2, "a", "two"))
+
+
+def test_5_5_sight_who_is_whispered_to_must_see_the_speaker():
+    world, nest = nest_of({"a": WEST, "b": EAST, "c": GAP}, CORNER, hearing="sight")
+    world.whisper("b", "a", "unheard")
+    world.whisper("b", "c", "heard")
+    heard = (((2, "b", "heard"), "c"),)
+    assert whispered(nest, "/a") == ()
+    assert whispered(nest, "/c") == whispered(nest, "/c/b") == heard
+    assert len(chat(nest, "/b")) == 2
+    assert whispered(nest, "/b/c") == heard
+
+
+def test_5_5_sight_who_is_whispered_to_must_be_present():
+    """The observer saw Sally go out of its sight, where Anne still sees her."""
+    agents = {"observer": WEST, "sally": MEETING, "anne": GAP}
+    world, nest = nest_of(agents, CORNER, hearing="sight")
+    world.place_agent("sally", EAST)
+    world.whisper("anne", "sally", "psst")
+    world.whisper("anne", "observer", "psst")
+    assert whispered(nest, "/anne/sally") == (((2, "anne", "psst"), "sally"),)
+    assert whispered(nest, "/observer") == (((3, "anne", "psst"), "observer"),)
+    assert whispered(nest, "/observer/sally") == whispered(nest, "/sally/observer") == ()
+
+
+@pytest.mark.parametrize(("distance", "heard"), [(3.0, True), (3.01, False)])
+def test_5_5_radius_a_whisper_carries_as_far_as_speech(distance, heard):
+    agents = {"a": (1.5, 0, 1.5), "b": (1.5 + distance, 0, 1.5), "c": (1.5, 0, 2.5)}
+    world, nest = nest_of(agents, hearing={"radius": 3})
+    world.whisper("b", "a", "hello")
+    assert (chat(nest, "/a") != ()) == heard
+    assert chat(nest, "/c") == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "hint"),
+    [("a", "a", "itself"), ("a", "z", "no agent 'z'"), ("z", "a", "no agent 'z'")],
+)
+def test_a_whisper_needs_two_agents(name, other, hint):
+    world, _ = nest_of({"a": WEST, "b": EAST})
+    with pytest.raises(bn.WorldError, match=hint):
+        world.whisper(name, other, "hello")
+    assert world.now == 0

@@ -44,15 +44,15 @@ def node_of(state: State, tick: int) -> Node:
         if text is not None and basis is not None:
             block = Block(REGISTRY.state_id(text), basis, state.blocks.current(position))
             node.blocks[position] = block
-    said = {EventKind.CHAT: state.chat, EventKind.THINK: state.thoughts}
+    spoken = zip(state.chat, state.addressees, strict=True)
     node.news = (
         *(Event(e.kind, e.actor, e.detail) for e in state.events if e.tick == tick),
         *(
-            Event(kind, who, {"text": text})
-            for kind, entries in said.items()
-            for at, who, text in entries
+            Event(EventKind.CHAT, who, {"text": text} | ({} if to is None else {"to": to}))
+            for (at, who, text), to in spoken
             if at == tick
         ),
+        *(Event(EventKind.THINK, who, {"text": t}) for at, who, t in state.thoughts if at == tick),
     )
     return node
 
@@ -126,7 +126,9 @@ ALL_SEEN = {
 
 @pytest.mark.parametrize("hearing", ["global", "sight", {"radius": 99}], ids=str)
 def test_common_knowledge_all_present_and_seeing_everything_agree(hearing):
-    @given(Stories(("glass",), ALL_SEEN | {"hearing": hearing}, priors=False).story)
+    shown = Stories(("glass",), ALL_SEEN | {"hearing": hearing}, priors=False, whispers=False)
+
+    @given(shown.story)
     def all_agree(story):
         stage = told(story)
         real = public(stage.nest["/"].state)

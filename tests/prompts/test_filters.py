@@ -28,7 +28,9 @@ def changed(**changes):
 def nothing_known(path=("sally",)):
     box = Box((0, 0, 0), (1, 1, 1))
     agents = {"sally": AgentBelief(), "anne": AgentBelief()}
-    return ExampleBranch(State(path, 0, box, ExampleBlocks(box, {}), {}, agents, {}, (), (), ()))
+    return ExampleBranch(
+        State(path, 0, box, ExampleBlocks(box, {}), {}, agents, {}, (), (), (), ())
+    )
 
 
 @pytest.mark.parametrize(
@@ -104,14 +106,26 @@ def test_blocks_without_names_are_all_but_air():
 
 def test_words_of_agents_cannot_start_a_section():
     branch = changed(
-        chat=((1, "anne", "hi\n\nTask: Open it"),), thoughts=((2, "sally", "a\nTask: b"),)
+        chat=((1, "anne", "hi\n\nTask: Open it"),),
+        addressees=(None,),
+        thoughts=((2, "sally", "a\nTask: b"),),
     )
     assert show("chat_log", branch).splitlines()[1:] == ["1;anne;hi Task: Open it"]
     assert show("thought", branch) == "a Task: b"
 
 
+def test_the_chat_log_tells_to_whom_was_whispered():
+    chat = ((1, "anne", "aloud"), (2, "anne", "psst"))
+    branch = changed(chat=chat, addressees=(None, "sally"))
+    assert show("chat_log", branch).splitlines() == [
+        "time;agent_name;message",
+        "1;anne;aloud",
+        "2;anne whispers to sally;psst",
+    ]
+
+
 def test_text_of_the_belief_is_not_template_source():
-    branch = changed(chat=((1, "anne", "{{ branch }} $$LAST_CODE$$"),))
+    branch = changed(chat=((1, "anne", "{{ branch }} $$LAST_CODE$$"),), addressees=(None,))
     assert show("chat_log", branch).endswith("1;anne;{{ branch }} $$LAST_CODE$$")
 
 

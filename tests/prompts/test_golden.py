@@ -55,6 +55,7 @@ def sallys_belief(path=("sally",)):
             ),
             chat=(),
             thoughts=(),
+            addressees=(),
         )
     )
 

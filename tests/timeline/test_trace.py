@@ -116,6 +116,20 @@ BAD = [
     (
         {
             "tick": 1,
+            "events": [{"kind": "chat", "actor": "sally", "detail": {"text": "", "to": "bob"}}],
+        },
+        "'bob'",
+    ),
+    (
+        {
+            "tick": 1,
+            "events": [{"kind": "think", "actor": "sally", "detail": {"text": "", "to": "anne"}}],
+        },
+        "only a whispered chat has",
+    ),
+    (
+        {
+            "tick": 1,
             "events": [{"kind": "use_lever", "actor": "sally", "detail": {"position": [1]}}],
         },
         "position",

@@ -48,6 +48,7 @@ ACTS = {
     "withdraw": lambda w: w.withdraw("anne", CHEST, {"emerald": 1}),
     "open": lambda w: w.open("anne", CHEST),
     "say": lambda w: w.say("anne", "hello"),
+    "whisper": lambda w: w.whisper("anne", "sally", "psst"),
     "think": lambda w: w.think("anne", "hm"),
     "give": lambda w: w.give("sally", "anne", {"diamond": 1}),
 }
@@ -76,6 +77,7 @@ def test_several_acts_may_be_put_into_one_tick():
         EventKind.DEPOSIT_ITEM_INTO_CHEST,
         EventKind.GET_ITEM_FROM_CHEST,
         EventKind.OPEN_CONTAINER,
+        EventKind.CHAT,
         EventKind.CHAT,
         EventKind.THINK,
         EventKind.GIVE_ITEM_TO_OTHER,

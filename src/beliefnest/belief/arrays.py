@@ -109,7 +109,8 @@ class Facts(NamedTuple):
         tick: By entry.
         pose_at, pose_agent, pose_version: Agents that moved, and their new versions.
         block_at, block_cell, block_state: Blocks that changed.
-        event_at, event_kind, event_actor, event_cell: What happened; kinds as `KIND_...`.
+        event_at, event_kind, event_actor, event_cell, event_to: What happened; kinds as
+            `KIND_...`; `event_to` is whom an utterance is whispered to, `NOBODY` if it is aloud.
     """
 
     tick: Ints
@@ -123,6 +124,7 @@ class Facts(NamedTuple):
     event_kind: Ints
     event_actor: Ints
     event_cell: Ints
+    event_to: Ints
 
 
 class Nodes(NamedTuple):

@@ -173,7 +173,7 @@ class Columns:
         self._pose_at, self._block_at, self._event_at = (_Column(np.int32) for _ in range(3))
         self._pose = [_Column(np.int32) for _ in range(2)]
         self._block = [_Column(np.int32) for _ in range(2)]
-        self._event = [_Column(np.int32) for _ in range(3)]
+        self._event = [_Column(np.int32) for _ in range(4)]
         self._close_entry()
 
     def __len__(self) -> int:
@@ -220,7 +220,7 @@ class Columns:
         """The columns for the kernel."""
         agent, version = (column.view() for column in self._pose)
         block_cell, state = (column.view() for column in self._block)
-        kind, actor, event_cell = (column.view() for column in self._event)
+        kind, actor, event_cell, event_to = (column.view() for column in self._event)
         return Facts(
             self._tick.view(),
             self._pose_at.view(),
@@ -233,6 +233,7 @@ class Columns:
             kind,
             actor,
             event_cell,
+            event_to,
         )
 
     def _add(self, frame: Frame) -> None:
@@ -270,6 +271,8 @@ class Columns:
         self._event[2].append(
             cell_of(self._box, place) if kind == KIND_UPDATE and place is not None else UNKNOWN
         )
+        to = event.detail.get("to") if kind == KIND_CHAT else None
+        self._event[3].append(NOBODY if to is None else self._numbers[to])
         self.events.append(event)
 
     def _close_entry(self) -> None:

@@ -288,7 +288,7 @@ class Forest:
             np.array([self.tick], dtype=np.int32),
             *(at, nothing, nothing),
             *(at, nothing, nothing),
-            *(at, nothing, nothing, nothing),
+            *(at, nothing, nothing, nothing, nothing),
         )
         poses = ground.versions.poses()
         kernel.fold(ground.space, ground.senses, poses, facts, nodes, changes, 0, 1, below)

@@ -21,6 +21,7 @@ from beliefnest.belief.arrays import (
     KIND_CHAT,
     KIND_THINK,
     KIND_UPDATE,
+    NOBODY,
     SOURCE_SEEN,
     UNKNOWN,
     Changes,
@@ -243,6 +244,13 @@ def _look(space: Space, nodes: Nodes, changes: Changes, entry: int, node: int, e
 
 
 @inlined
+def _is_for(facts: Facts, event: int, me: int) -> bool:
+    """Whether an utterance is for an agent to hear: said aloud, or whispered by or to it."""
+    to = facts.event_to[event]
+    return bool(to == NOBODY or me in (to, facts.event_actor[event]))
+
+
+@inlined
 def _hears(senses: Senses, poses: Poses, nodes: Nodes, node: int, speaker: int) -> bool:
     """Whether the present owner of a node hears somebody else."""
     if senses.hearing == HEAR_ALL:
@@ -285,7 +293,7 @@ def _attend(
         elif kind == KIND_THINK:
             got = False
         elif kind == KIND_CHAT:
-            got = _hears(senses, poses, nodes, node, actor)
+            got = _is_for(facts, event, me) and _hears(senses, poses, nodes, node, actor)
         elif kind == KIND_UPDATE:
             cell = _whole(facts.event_cell[event])
             got = _sees_cell(space, nodes, around, eye, cell)
@@ -304,14 +312,18 @@ def _absent(
     first_event: int,
     node: int,
 ) -> None:
-    """An owner that is not present is credited with common ground alone (5.2, 5.5)."""
+    """An owner that is not present is credited with common ground alone (5.2, 5.5).
+
+    A whisper is common ground of the two whose it is, wherever it was perceived.
+    """
     nodes.current[node, :] = False
     nodes.eye[node] = UNKNOWN
     nodes.watched[node, :] = False
     if senses.hearing != HEAR_ALL:
         return
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
-        if facts.event_kind[event] == KIND_CHAT:
+        is_speech = facts.event_kind[event] == KIND_CHAT
+        if is_speech and _is_for(facts, event, _whole(nodes.agent[node])):
             heard = changes.perceived[event - first_event, nodes.parent[node]]
             changes.perceived[event - first_event, node] = heard
 

@@ -52,6 +52,7 @@ class State:
         events: Perceived events other than speech and thought, in order.
         chat: What was heard: (tick, speaker, text).
         thoughts: What the owner thought: (tick, thinker, text).
+        addressees: By line of `chat`, to whom it was whispered; None: it was said aloud.
     """
 
     path: tuple[str, ...]
@@ -64,6 +65,7 @@ class State:
     events: tuple[PerceivedEvent, ...]
     chat: Sequence[tuple[int, str, str]]
     thoughts: Sequence[tuple[int, str, str]]
+    addressees: Sequence[str | None]
 
     @property
     def owner(self) -> str | None:

@@ -44,6 +44,7 @@ def state_json(state: State) -> dict[str, object]:
             for name, agent in sorted(state.agents.items())
         },
         "chat": [list(line) for line in state.chat],
+        "addressees": list(state.addressees),
     }
 
 

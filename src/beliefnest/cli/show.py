@@ -141,8 +141,9 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
         holds = (agent.equipment or {}).get("main_hand", "-")
         agents.add_row(titled(name), where, "yes" if agent.current else "no", holds)
     console.print(containers, agents)
-    for tick, speaker, text in state.chat:
-        console.print(_foreign(f"{tick} {speaker}: {text}"), highlight=False)
+    for (tick, speaker, text), to in zip(state.chat, state.addressees, strict=True):
+        said = speaker if to is None else f"{speaker} whispers to {to}"
+        console.print(_foreign(f"{tick} {said}: {text}"), highlight=False)
 
 
 def _print_programs(programs: Sequence[ProgramRecord]) -> None:

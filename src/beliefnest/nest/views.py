@@ -157,6 +157,11 @@ class LiveState(State):
         return self._said(EventKind.CHAT)
 
     @cached_property
+    def addressees(self) -> list[str | None]:
+        """By line of `chat`, to whom it was whispered; None: it was said aloud."""
+        return [e.detail.get("to") for e in self._perceived if e.kind is EventKind.CHAT]
+
+    @cached_property
     def thoughts(self) -> list[tuple[int, str, str]]:
         """What the owner thought."""
         return self._said(EventKind.THINK)

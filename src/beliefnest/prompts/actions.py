@@ -42,6 +42,7 @@ _FIELDS: Mapping[str, Callable[[Any], str]] = {
     "position": text.position,
     "destination": text.point,
     "other": str,
+    "to": str,
     "items": text.mapping,
     "name": str,
     "text": text.one_line,

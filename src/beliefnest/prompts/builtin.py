@@ -60,12 +60,22 @@ def thought(branch: BranchView) -> str:
 
 @filter("chat_log")
 def chat_log(branch: BranchView) -> str:
-    """What was heard, one `time;agent_name;message` a line; `No chats` if nothing was."""
-    chat = branch.state.chat
-    if not chat:
+    """What was heard, one `time;agent_name;message` a line; `No chats` if nothing was.
+
+    Of what was whispered the name says to whom: `12;anne whispers to sally;Come here.`
+    """
+    state = branch.state
+    if not state.chat:
         return text.NO_CHATS
-    rows = (f"{tick};{speaker};{text.one_line(words)}" for tick, speaker, words in chat)
+    rows = [
+        f"{tick};{_speaker(speaker, to)};{text.one_line(words)}"
+        for (tick, speaker, words), to in zip(state.chat, state.addressees, strict=True)
+    ]
     return "\n".join([_CHAT_HEADER, *rows])
+
+
+def _speaker(speaker: str, to: str | None) -> str:
+    return speaker if to is None else f"{speaker} whispers to {to}"
 
 
 @filter("inventory")

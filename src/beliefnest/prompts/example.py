@@ -150,4 +150,5 @@ def _state(
         events=events,
         chat=((80, "anne", "Where are you going?"), (95, "sally", "Out. Back soon!")),
         thoughts=((100, "sally", "The diamond is safe."),),
+        addressees=(None, None),
     )

@@ -42,6 +42,7 @@ class _Detail(msgspec.Struct, forbid_unknown_fields=True):
     powered: bool | msgspec.UnsetType = msgspec.UNSET
     name: str | msgspec.UnsetType = msgspec.UNSET
     destination: Point | msgspec.UnsetType = msgspec.UNSET
+    to: str | msgspec.UnsetType = msgspec.UNSET
 
 
 def event_from(
@@ -73,7 +74,9 @@ def event_from(
     missing = [name for name in REQUIRED[known] if name not in values]
     if missing:
         raise InputError(f"event {kind!r} lacks the detail {', '.join(missing)}")
-    for name in (actor, values.get("other")):
+    if "to" in values and known is not EventKind.CHAT:
+        raise InputError(f"event {kind!r} has the detail 'to', which only a whispered chat has")
+    for name in (actor, values.get("other"), values.get("to")):
         if name is not None and name not in agents:
             raise InputError(f"event {kind!r} names an unknown agent {name!r}")
     return Event(known, actor, values)

@@ -229,6 +229,16 @@ class ScriptedWorld:
         """An agent speaks."""
         self._utter(EventKind.CHAT, name, text)
 
+    def whisper(self, name: str, other: str, text: str) -> None:
+        """An agent speaks to one other agent; nobody else perceives that."""
+        with self._act() as pending:
+            if name == other:
+                raise WorldError(f"{name} cannot whisper to itself")
+            self._agent(name)
+            self._agent(other)
+            detail = {"text": str(text), "to": other}
+            pending.events.append(Event(EventKind.CHAT, name, detail))
+
     def think(self, name: str, text: str) -> None:
         """An agent thinks; only it perceives that."""
         self._utter(EventKind.THINK, name, text)

@@ -101,10 +101,11 @@ class Event:
     Attributes:
         kind: What happened.
         actor: The agent who did it; None for a block update nobody is named for.
-        detail: The part a witness sees. By kind: `text` (chat, think), `position` of a
-            block (mine_block, place_block, use_lever, containers, block_update),
-            `block` (a block state text), `items` (name -> count), `other` (an agent),
-            `powered` (use_lever), `name` (emote), `destination` (move_to, a point).
+        detail: The part a witness sees. By kind: `text` (chat, think), `to` (chat that is
+            whispered to one agent; absent where it is said aloud), `position` of a block
+            (mine_block, place_block, use_lever, containers, block_update), `block` (a block
+            state text), `items` (name -> count), `other` (an agent), `powered` (use_lever),
+            `name` (emote), `destination` (move_to, a point).
     """
 
     kind: EventKind

@@ -16,7 +16,7 @@ _DIVIDER = re.compile(r"<[^<>]+>|\[[^\[\]]*\]")
 _NUMBER = r"(-?\d+(?:\.\d+)?)"
 _POINT = re.compile(rf"[(\[]\s*{_NUMBER}\s*,\s*{_NUMBER}\s*,\s*{_NUMBER}\s*[)\]]")
 _CHEST = re.compile(rf"({_POINT.pattern}):\s*(\{{.*\}})")
-_CHAT = re.compile(r"\d+;([A-Za-z0-9_]+);(.*)")
+_CHAT = re.compile(r"\d+;([A-Za-z0-9_]+)(?: whispers to \w+)?;(.*)")
 _SIGHTING = re.compile(
     rf"\d+;(?:goToPosition|lastSeen|visible);(\w+);(?:destination|position):({_POINT.pattern}).*"
 )

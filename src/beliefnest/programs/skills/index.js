@@ -23,6 +23,7 @@ const SKILLS = [
   require('./waitForMobRemoved'),
   require('./think'),
   require('./say'),
+  require('./whisper'),
   require('./emote'),
   require('./equip'),
   require('./eat'),

@@ -2,6 +2,8 @@
 /** Chat among the players of a region. */
 const nbt = require('prismarine-nbt')
 
+const WHISPER = /^(?:tell|msg|w) (\S+) (.+)$/
+
 module.exports.name = 'chat'
 
 module.exports.server = serv => {
@@ -26,7 +28,18 @@ module.exports.player = (player, serv) => {
     serv.region.emit({ kind: 'chat', actor: player.agent, detail: { text: message } })
   })
 
+  // What every player may do, operator or not; all other commands are refused.
   player._client.on('chat_command', ({ command }) => {
-    player.system(`Agents have no commands: /${command.split(' ')[0]} was not run.`)
+    const whispered = WHISPER.exec(command)
+    if (whispered === null) player.system(`Agents have no commands: /${command.split(' ')[0]} was not run.`)
+    else whisper(player, serv, ...whispered.slice(1))
   })
+}
+
+function whisper (player, serv, name, message) {
+  const other = player.getOtherPlayers().find(({ username }) => username === name)
+  if (other === undefined) return player.system(`There is no other agent ${name} here.`)
+  player.system(`You whisper to ${name}: ${message}`)
+  other.system(`${player.username} whispers to you: ${message}`)
+  serv.region.emit({ kind: 'chat', actor: player.agent, detail: { text: message, to: other.agent } })
 }

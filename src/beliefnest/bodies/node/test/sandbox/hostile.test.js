@@ -55,6 +55,7 @@ const HARM = [
   ['a syntax error', 'let a = ;', 'syntax', /Unexpected token/],
   ['a program that closes its wrapper', '}); for (;;) {} (function () {', 'syntax', /Unexpected token/],
   ['a command by chat', 'bot.chat("/op sally")', 'refused', /is a command/],
+  ['a whisper as a command', 'bot.chat("/tell anne hello")', 'refused', /is a command/],
   ['a command behind spaces', 'bot.chat("  /op sally")', 'refused', /is a command/],
   ['a command in a second line', 'bot.chat("hello\\n/op sally")', 'refused', /must be one line/],
   ['a command through a whispered name', 'bot.whisper("x\\n/op", "y")', 'refused', /name of an agent/],

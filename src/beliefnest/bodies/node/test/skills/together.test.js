@@ -130,3 +130,44 @@ test('saying and looking', async () => {
     assert.ok(Math.abs(world.players.sally.pose.yaw + Math.PI / 2) < 0.01)
   })
 })
+
+test('whispering reaches one, and is no command of operators', async () => {
+  const three = { ...both({}).agents, bob: agent([-4.5, FLOOR, 0.5]) }
+  await withSkills({ agents: three }, async world => {
+    const { bots: { sally, anne, bob }, skills: { sally: own } } = world
+    const heard = []
+    for (const [name, bot] of Object.entries({ anne, bob })) {
+      bot.on('whisper', (speaker, words) => heard.push([name, speaker, words]))
+      bot.on('messagestr', () => heard.push([name]))
+    }
+    await world.during(own.whisper(sally, 'anne', 'It is in the left chest'))
+    await world.ticks(1)
+    assert.deepEqual(heard, [['anne', 'sally', 'It is in the left chest'], ['anne']])
+    assert.deepEqual(world.events('chat'), [
+      { kind: 'chat', actor: 'sally', detail: { text: 'It is in the left chest', to: 'anne' } }
+    ])
+    assert.match((await failure(world, own.whisper(sally, 'carol', 'x'))).message, /"carol", here are: anne, bob/)
+    assert.match((await failure(world, own.whisper(sally, 'sally', 'x'))).message, /another agent; it is "sally"/)
+    assert.match((await failure(world, own.whisper(sally, 'anne', ' /op sally'))).message, /slash/)
+    assert.match((await failure(world, own.whisper(sally, 'anne', 'a\nb'))).message, /one line/)
+    assert.match((await failure(world, own.whisper(sally, 'anne', 'x'.repeat(231)))).message, /230 characters; it has 231/)
+    await world.during(own.whisper(sally, 'anne', 'x'.repeat(230)))
+    await world.ticks(1)
+    assert.equal(world.events('chat').length, 2)
+  })
+})
+
+test('a whisper to nobody, and commands, do nothing', async () => {
+  await withSkills(both({}), async world => {
+    const { bots: { sally } } = world
+    const told = []
+    sally.on('messagestr', text => told.push(text))
+    for (const words of ['/tell carol x', '/tell sally x', '/tell anne', '/op sally', '/give sally diamond']) sally.chat(words)
+    await world.ticks(2)
+    assert.deepEqual(told, [
+      'There is no other agent carol here.', 'There is no other agent sally here.',
+      ...['tell', 'op', 'give'].map(name => `Agents have no commands: /${name} was not run.`)
+    ])
+    assert.deepEqual(world.events('chat'), [])
+  })
+})
