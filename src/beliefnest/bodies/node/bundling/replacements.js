@@ -76,9 +76,19 @@ function replacements (version, outdir) {
       build.onLoad({ filter: /minecraft-data\/minecraft-data\/data\/pc\/.*\.json$/ }, ({ path: file }) => ({
         contents: dataModule(file, outdir), loader: 'js'
       }))
+      build.onLoad({ filter: /prismarine-physics\/lib\/features\.json$/ }, ({ path: file }) => ({
+        contents: JSON.stringify(physicsFeatures(file, version)), loader: 'json'
+      }))
       memoise(build)
     }
   }
+}
+
+// Asked for many times a tick, by going through all features and all their versions.
+function physicsFeatures (file, version) {
+  const major = version.split('.').slice(0, 2).join('.')
+  return JSON.parse(fs.readFileSync(file)).filter(({ versions }) => versions.includes(major))
+    .map(({ name }) => ({ name, versions: [major] }))
 }
 
 // A text parsed when needed is faster than the same data as program text.

@@ -73,9 +73,8 @@ class Recorder {
     const known = this.known[part]
     const changed = {}
     for (const [key, state] of Object.entries(present)) {
-      const text = JSON.stringify(state)
-      if (known.get(key) === text) continue
-      known.set(key, text)
+      if (known.has(key) && equal(known.get(key), state)) continue
+      known.set(key, state)
       changed[key] = state
     }
     for (const key of known.keys()) {
@@ -85,6 +84,14 @@ class Recorder {
     }
     return changed
   }
+}
+
+/** Whether two values of the channel (numbers, texts, lists, maps) are the same. */
+function equal (a, b) {
+  if (a === b) return true
+  if (a === null || b === null || typeof a !== 'object' || typeof b !== 'object') return false
+  const keys = Object.keys(a)
+  return keys.length === Object.keys(b).length && keys.every(key => Object.hasOwn(b, key) && equal(a[key], b[key]))
 }
 
 module.exports = { Recorder }

@@ -5,13 +5,13 @@ const { createHash } = require('node:crypto')
 class Random {
   /** @param {string} seed any text; the same text gives the same numbers */
   constructor (seed) {
-    const digest = createHash('sha256').update(seed).digest()
-    this.words = [0, 4, 8, 12].map(offset => digest.readInt32LE(offset))
+    this.seed = seed
+    this.words = null
   }
 
   /** @returns {number} the next 32 random bits, 0 <= n < 2^32 */
   nextUint32 () {
-    const words = this.words
+    const words = (this.words ??= wordsOf(this.seed))
     const sum = (((words[0] + words[1]) | 0) + words[3]) | 0
     words[3] = (words[3] + 1) | 0
     words[0] = words[1] ^ (words[1] >>> 9)
@@ -33,6 +33,12 @@ class Random {
     for (let i = 0; i < bytes.length; i++) bytes[i] = this.nextUint32() >>> 24
     return bytes
   }
+}
+
+// Most ticks draw no number, so that this waits for the first.
+function wordsOf (seed) {
+  const digest = createHash('sha256').update(seed).digest()
+  return [0, 4, 8, 12].map(offset => digest.readInt32LE(offset))
 }
 
 module.exports = { Random }

@@ -70,6 +70,15 @@ function setPossessions (player, serv, { inventory, equipment }) {
   }
 }
 
+function possessionsOf (stacks, held) {
+  const equipment = {}
+  for (const [part, slot] of Object.entries(WORN)) {
+    if (stacks[slot]) equipment[part] = stacks[slot].name
+  }
+  if (held) equipment.main_hand = held.name
+  return { inventory: countByName([...stacks.slice(1), stacks[0]]), equipment }
+}
+
 module.exports.player = (player, serv) => {
   player.heldItemSlot = 0
   player.inventory = serv.makeInventory()
@@ -82,16 +91,20 @@ module.exports.player = (player, serv) => {
     return rest
   }
 
-  /** `{inventory: {name: count}, equipment: {slot: name}}`, what is worn, held or on the cursor included. */
+  // Asked for at every tick; stacks are values, so that the same ones in the same places are the same possessions.
+  let known = { stacks: [], heldItemSlot: 0, possessions: null }
+
+  /** `{inventory: {name: count}, equipment: {slot: name}}`, what is worn, held or on the cursor included; not to be changed. */
   player.possessions = () => {
-    const { slots } = player.inventory
-    const equipment = {}
-    for (const [part, slot] of Object.entries(WORN)) {
-      if (slots[slot]) equipment[part] = slots[slot].name
+    const { inventory: { slots }, heldItemSlot, windows: { cursor } } = player
+    const same = known.heldItemSlot === heldItemSlot && known.stacks.length === slots.length &&
+      known.stacks[0] === cursor && slots.every((item, i) => i === 0 || item === known.stacks[i])
+    if (!same) {
+      // What lies in slot 0 is the result of crafting, which nobody has yet.
+      const stacks = [cursor, ...slots.slice(1)]
+      known = { stacks, heldItemSlot, possessions: possessionsOf(stacks, stacks[HOTBAR_START + heldItemSlot]) }
     }
-    const held = slots[HOTBAR_START + player.heldItemSlot]
-    if (held) equipment.main_hand = held.name
-    return { inventory: countByName([...slots.slice(1), player.windows.cursor]), equipment }
+    return known.possessions
   }
 
   /** Makes the player have exactly this. @throws RangeError where it cannot. */
