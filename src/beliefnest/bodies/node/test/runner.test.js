@@ -123,6 +123,16 @@ describe('programs', () => {
     assert.ok(anne.log[0].length < 51000)
   })
 
+  it('that do not wait for a skill that fails fail with it, and the others go on', async () => {
+    const { results } = await run({
+      sally: 'giveItemToOther(bot, "anne", "dirt", 1).catch(() => {})\n  giveItemToOther(bot, "anne", "dirt", 1)\nawait bot.waitForTicks(20)',
+      anne: 'await bot.waitForTicks(5)'
+    })
+    const { kind, skill, line, column } = results.sally.error
+    assert.deepEqual([kind, skill, line, column], ['skill', 'giveItemToOther', 2, 3])
+    assert.equal(results.anne.ok, true)
+  })
+
   it('are ended at the time limit, and their bots stand still then', async () => {
     const { name, tick, results } = await run({
       sally: 'bot.setControlState("forward", true); setInterval(() => bot.chat("still here"), 50); await new Promise(() => {})'

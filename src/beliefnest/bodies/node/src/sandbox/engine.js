@@ -20,6 +20,7 @@ const CROSSING_STACK_BYTES = 20_000
 // After its end a guest that called the host still has to take the answer; then it traps.
 const LAST_BREATH = 20_000
 const JOBS_AT_ONCE = 100
+const MOST_STRAYS = 1000
 const HOST_FUNCTIONS = { host: 1, now: 2, random: 3 }
 
 /** Why a guest can run no more: `fuel`, `memory`, `stack`, `internal`, or what `end` was told. */
@@ -73,7 +74,9 @@ class Engine {
 
   // The state every guest starts in, made once: a fresh context with the guest's side of the border.
   async makeTemplate () {
-    const interpreter = await QuickJS.open(this.module, this.memories.take(0), { call: () => 0, interrupt: () => false })
+    let strays = 0
+    const host = { call: () => 0, interrupt: () => false, rejected: () => { strays++ } }
+    const interpreter = await QuickJS.open(this.module, this.memories.take(0), host)
     interpreter.create(SHADOW_STACK_BYTES)
     const config = JSON.stringify({ kinds: kindNames, goals: GOAL_NAMES, tables })
     const setUp = interpreter.evaluate(guestSource, 'guest.js')
@@ -81,6 +84,8 @@ class Engine {
       ...Object.entries(HOST_FUNCTIONS).map(([name, id]) => interpreter.hostFunction(name, id)), interpreter.string(config)
     ])
     const functions = Object.fromEntries(['start', 'dispatch', 'describe'].map((name) => [name, interpreter.property(guest, name)]))
+    interpreter.evaluate('Promise.reject()', 'check.js')
+    if (strays !== 1) throw new Error('this build of QuickJS does not tell of rejected promises where rejections.js looks for it')
     return { state: interpreter.save(), functions }
   }
 }
@@ -95,6 +100,7 @@ class Guest {
     this.ended = null
     this.fuelAtEnd = null
     this.marks = { place: 0, length: 0 }
+    this.strays = new Map()
     this.nesting = 0
   }
 
@@ -139,13 +145,19 @@ class Guest {
   result () {
     const state = this.interpreter.promiseState(this.program)
     if (state === 'pending') return null
-    return state === 'fulfilled' ? { ok: true } : { ok: false, error: this.enter(() => this.reason()) }
+    return state === 'fulfilled' ? { ok: true } : { ok: false, error: this.enter(() => this.reason(this.program)) }
   }
 
-  reason () {
+  /** @returns {?object} the error of the first promise that was rejected while nothing waited for it */
+  strayError () {
+    const [promise] = this.strays.values()
+    return promise === undefined ? null : this.enter(() => this.reason(promise))
+  }
+
+  reason (promise) {
     const { interpreter } = this
     try {
-      return JSON.parse(interpreter.text(interpreter.call(this.functions.describe, [interpreter.promiseResult(this.program)])))
+      return JSON.parse(interpreter.text(interpreter.call(this.functions.describe, [interpreter.promiseResult(promise)])))
     } catch (error) {
       if (error instanceof GuestException && error.guest.message !== 'interrupted') return {}
       throw error
@@ -218,6 +230,20 @@ class Guest {
     } catch (error) {
       this.fault(error)
       return 0
+    }
+  }
+
+  /** The interpreter tells of a promise, its JSValue, that was rejected with no handler, or got one since. */
+  rejected (promise, isHandled) {
+    if (this.ended) return
+    try {
+      const kept = this.strays.get(promise)
+      if (!isHandled && this.strays.size < MOST_STRAYS) this.strays.set(promise, this.interpreter.keep(promise))
+      if (!isHandled || kept === undefined) return
+      this.strays.delete(promise)
+      this.interpreter.free(kept)
+    } catch (error) {
+      this.fault(error)
     }
   }
 

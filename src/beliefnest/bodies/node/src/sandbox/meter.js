@@ -35,7 +35,8 @@ const MAX_I32 = 0x7fffffff
  * @param {object} limits
  * @param {number} limits.stackBytes the largest value `depth` may take, in estimated bytes
  * @param {number} limits.initialPages what the imported memory has at least, in pages of 64 KiB
- * @returns {Uint8Array} the rewritten module, with two more exports: `fuel` and `depth`, mutable i32
+ * @returns {Uint8Array} the rewritten module, with three more exports: `fuel` and `depth`, mutable i32, and
+ *   its `table`
  * @throws {Error} if the module has something this rewriting does not know
  */
 function meter (bytes, { stackBytes, initialPages }) {
@@ -49,7 +50,7 @@ function meter (bytes, { stackBytes, initialPages }) {
     [SECTION.function, appended(sections.get(SECTION.function), [plan.bulkType, plan.bulkType].map(unsigned))],
     [SECTION.global, appended(sections.get(SECTION.global), [counter(MAX_I32), counter(0)])],
     [SECTION.export, appended(sections.get(SECTION.export),
-      [globalExport('fuel', plan.fuel), globalExport('depth', plan.depth)])],
+      [exported('fuel', KIND.global, plan.fuel), exported('depth', KIND.global, plan.depth), exported('table', KIND.table, 0)])],
     [SECTION.code, writeVector(bodies.map((body) => [...unsigned(body.length), ...body]))]
   ])
   return assemble(bytes, replaced)
@@ -212,8 +213,8 @@ function counter (initial) {
   return [I32, 1, OP.i32Const, ...signed(initial), OP.end]
 }
 
-function globalExport (name, index) {
-  return [name.length, ...Buffer.from(name), KIND.global, ...unsigned(index)]
+function exported (name, kind, index) {
+  return [name.length, ...Buffer.from(name), kind, ...unsigned(index)]
 }
 
 function appended (content, entries) {

@@ -2,21 +2,23 @@
 /** What a run is reported as: for the program's writer, in places of the program's own text. */
 
 const MAX_MESSAGE = 4000
+const NOT_AWAITED = ' (nothing waited for this promise: write await, or catch its error)'
 const PLACE = /\(?program\.js:(\d+):(\d+)\)?/
 
 /**
- * @param {{ok: boolean, error?: object, ended?: import('./engine').GuestEnded}} outcome of the session
+ * @param {{ok: boolean, error?: object, stray?: boolean, ended?: import('./engine').GuestEnded}} outcome of the session;
+ *   `stray`: the error is that of a promise that nothing waited for
  * @param {{locate: function, callee: function, statement: function}} program
  * @param {{fuel: number, memory: number}} limits
  * @param {number} last number of the statement that ran last, 0 for none
  * @returns {?{message: string, line: ?number, column: ?number, skill: ?string, kind: string}}
  */
-function describeOutcome ({ ok, error, ended }, program, limits, last) {
+function describeOutcome ({ ok, error, stray, ended }, program, limits, last) {
   if (ok) return null
   const { message, skill, kind, stack } = ended ? ofEnd(ended, limits) : ofError(error, limits)
   const { place, callee } = placeIn(stack, program)
   const { line, column } = place ?? program.statement(last) ?? { line: null, column: null }
-  return { message: named(message, callee).slice(0, MAX_MESSAGE), line, column, skill, kind }
+  return { message: named(message, callee).slice(0, MAX_MESSAGE) + (stray ? NOT_AWAITED : ''), line, column, skill, kind }
 }
 
 // The interpreter does not say what is not a function.

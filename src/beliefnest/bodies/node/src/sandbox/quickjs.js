@@ -7,6 +7,8 @@
 const { QuickJSFFI } = require('@jitl/quickjs-wasmfile-release-sync/ffi')
 const loadGlue = require('@jitl/quickjs-wasmfile-release-sync/emscripten-module')
 
+const { addTracker, setTracker } = require('./rejections')
+
 const CHUNK = 4096
 const EMPTY = Buffer.alloc(CHUNK)
 const ALL_INTRINSICS = 0
@@ -25,11 +27,12 @@ class GuestException extends Error {
 
 class QuickJS {
   /** Use `QuickJS.open`. */
-  constructor (glue, { fuel, depth }) {
+  constructor (glue, { fuel, depth }, tracker) {
     this.glue = glue
     this.ffi = new QuickJSFFI(glue)
     this.fuel = fuel
     this.depth = depth
+    this.tracker = tracker
     this.runtime = 0
     this.context = 0
   }
@@ -37,8 +40,9 @@ class QuickJS {
   /**
    * @param {WebAssembly.Module} module metered
    * @param {WebAssembly.Memory} wasmMemory as new
-   * @param {{call: function(number, number, number): number, interrupt: function(): boolean}} host `call` gets the number of
-   *   a host function, the count and the place of its arguments, and returns a value it gives away, or 0
+   * @param {{call: function(number, number, number): number, interrupt: function(): boolean,
+   *   rejected: function(bigint, boolean): void}} host `call` gets the number of a host function, the count and the place
+   *   of its arguments, and returns a value it gives away, or 0; `rejected` as in rejections.js
    * @returns {Promise<QuickJS>} settled without any timer or input
    */
   static async open (module, wasmMemory, host) {
@@ -58,7 +62,8 @@ class QuickJS {
       shouldInterrupt: () => host.interrupt() ? 1 : 0,
       freeHostRef: () => {}
     }
-    return new QuickJS(glue, instance.exports)
+    const tracker = addTracker(instance.exports.table, (promise, handled) => host.rejected(promise, handled))
+    return new QuickJS(glue, instance.exports, tracker)
   }
 
   /** Makes a runtime and a context in it. */
@@ -66,6 +71,7 @@ class QuickJS {
     this.runtime = this.ffi.QTS_NewRuntime()
     this.ffi.QTS_RuntimeSetMaxStackSize(this.runtime, stackBytes)
     this.ffi.QTS_RuntimeEnableInterruptHandler(this.runtime)
+    setTracker(this.glue.HEAPU8.buffer, this.runtime, this.tracker)
     this.context = this.ffi.QTS_NewContext(this.runtime, ALL_INTRINSICS)
   }
 
@@ -124,6 +130,15 @@ class QuickJS {
   /** @returns {string} the text of an argument of a host function */
   argument (values, index) {
     return this.text(this.ffi.QTS_ArgvGetJSValueConstPointer(values, index))
+  }
+
+  /** @returns {number} a value that stays, of the JSValue of one that the interpreter holds */
+  keep (bits) {
+    const place = this.allocate(8)
+    new BigUint64Array(this.glue.HEAPU8.buffer, place, 1)[0] = BigInt.asUintN(64, bits)
+    const value = this.ffi.QTS_DupValuePointer(this.context, place)
+    this.glue._free(place)
+    return value
   }
 
   free (value) {

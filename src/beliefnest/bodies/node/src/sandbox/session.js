@@ -64,7 +64,9 @@ class Session {
   // Looks whether the program has ended, or waits for what cannot happen any more.
   look () {
     const result = this.guest.result()
-    if (result !== null) this.finish(result)
+    const stray = result?.ok === false ? null : this.guest.strayError()
+    if (stray !== null) this.finish({ ok: false, error: stray, stray: true })
+    else if (result !== null) this.finish(result)
     else if (this.calls.size + this.timers.size + this.listeners.length === 0) {
       this.finish({ ok: false, ended: new GuestEnded('stuck', 'the program waits for a promise that nothing will settle') })
     }
@@ -178,8 +180,10 @@ class Session {
     }
     const waiting = this.tickets.get(ticket)
     if (waiting === undefined) throw new RefusedError('nobody waits for that callback')
+    // What cannot be used leaves the ticket to the error that the guest reports next.
+    const value = ok ? this.exchange.toHost(wire, 'the result of the callback') : null
     this.tickets.delete(ticket)
-    if (ok) waiting.resolve(this.exchange.toHost(wire, 'the result of the callback'))
+    if (ok) waiting.resolve(value)
     else waiting.reject(this.errorOfGuest(wire))
     return null
   }

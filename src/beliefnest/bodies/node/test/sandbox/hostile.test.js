@@ -88,6 +88,11 @@ const HARM = [
   ['a throwing toJSON everywhere', 'Object.prototype.toJSON = () => { throw new Error("mine") }; await echo(bot, {})', 'error', /broke what would have said how/],
   ['a broken library', 'delete Array.prototype[Symbol.iterator]; await echo(bot, [1])', 'error', /not iterable/],
   ['a library broken for later', 'setTimeout(() => { delete Array.prototype[Symbol.iterator] }, 0); await bot.waitForTicks(2)', 'error', /not iterable/],
+  ['a rejection that nobody waits for', 'Promise.reject(new Error("mine")); await bot.waitForTicks(5)', 'error', /^mine \(nothing waited for/],
+  ['a rejection of null that nobody waits for', 'Promise.reject(null)', 'error', /the program threw null/],
+  ['rejections without end', 'for (;;) Promise.reject(1)', null, /fuel|memory/],
+  ['handled rejections without end', 'for (;;) Promise.reject(1).catch(() => {})', null, /fuel|memory/],
+  ['a rejection in a microtask', 'queueMicrotask(() => { throw new Error("micro") }); await bot.waitForTicks(5)', 'error', /micro/],
   ['a promise that nothing settles', 'await new Promise(() => {})', 'stuck', /nothing will settle/],
   ['an object made like the bot', 'Object.create(Object.getPrototypeOf(bot)).chat("x")', 'error', /no object of the game/],
   ['a method of the bot on something else', 'bot.chat.call({}, "x")', 'error', /no object of the game/]
@@ -133,8 +138,8 @@ describe('a hostile program', () => {
       setInterval(() => bot.chat('late interval'), 1)
       bot.on('health', () => bot.chat('late listener'))
       bot.waitForTicks(1).then(() => bot.chat('late promise'))
-      Promise.resolve().then(async () => { for (let i = 0; i < 20; i++) { await null; bot.chat('late job') } })
-      Promise.reject(new Error('late rejection'))`
+      bot.waitForTicks(2).then(() => { throw new Error('late rejection') })
+      Promise.resolve().then(async () => { for (let i = 0; i < 20; i++) { await null; bot.chat('late job') } })`
     const { ok } = await sandbox.run({ code, bot, scope })
     assert.strictEqual(ok, true)
     const count = bot.calls.length
