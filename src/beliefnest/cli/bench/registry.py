@@ -13,6 +13,7 @@ BENCHES: Mapping[str, str] = {
     "startup": "beliefnest.cli.bench.startup",
     "body": "beliefnest.cli.bench.body",
     "size": "beliefnest.cli.bench.size",
+    "programs": "beliefnest.cli.bench.programs",
     "timelines": "beliefnest.cli.bench.timelines",
     "prompts": "beliefnest.cli.bench.prompts",
     "beliefs": "beliefnest.cli.bench.beliefs",

@@ -1,7 +1,8 @@
 'use strict'
 /**
  * The Minecraft side of BeliefNest: one process with the server and all bots, driven over
- * one descriptor, ended by the end of that one or of the lifeline.
+ * one descriptor, ended by the end of that one or of the lifeline. With the arguments `containment PAIRS` it
+ * measures its sandbox instead, and prints the times as JSON.
  */
 const net = require('node:net')
 const path = require('node:path')
@@ -9,21 +10,25 @@ const { Worker } = require('node:worker_threads')
 const { Clock } = require('./time/clock')
 const { installTime } = require('./time/install')
 
-// Numbers of the descriptors are the program's two arguments.
-const [CHANNEL, LIFELINE] = process.argv.slice(2).map(Number)
 // build.js puts all programs side by side.
 const LIFELINE_FILE = typeof BUNDLED === 'undefined' ? ['channel', 'lifeline.js'] : ['lifeline.js']
 
-function main () {
+function main ([first, second]) {
   const clock = new Clock('')
   installTime(clock)
   require('./prepare').prepare()
+  if (first === 'containment') measure(clock, Number(second)).catch(fail)
+  else serve(clock, Number(first), Number(second))
+}
+
+/** @param {number} descriptor of the channel; the other one is of the lifeline */
+function serve (clock, descriptor, lifeline) {
   const { Channel } = require('./channel/channel')
   const { Session } = require('./session')
 
-  new Worker(path.join(__dirname, ...LIFELINE_FILE), { workerData: { descriptor: LIFELINE } })
+  new Worker(path.join(__dirname, ...LIFELINE_FILE), { workerData: { descriptor: lifeline } })
     .on('error', fail)
-  const stream = new net.Socket({ fd: CHANNEL, readable: true, writable: true })
+  const stream = new net.Socket({ fd: descriptor, readable: true, writable: true })
   const session = new Session(clock, message => channel.post(message))
   let turn = Promise.resolve()
   const channel = new Channel(stream, request => {
@@ -38,6 +43,12 @@ function main () {
   process.on('unhandledRejection', note)
 }
 
+async function measure (clock, pairs) {
+  const { measureContainment } = require('./containment')
+  const times = await measureContainment(clock, pairs)
+  process.stdout.write(JSON.stringify(times), () => process.exit(0))
+}
+
 // A promise nobody waits for was rejected, for instance by a program that has ended.
 function note (error) {
   process.stderr.write(`unhandled rejection: ${error?.stack ?? error}\n`)
@@ -48,4 +59,4 @@ function fail (error) {
   process.exit(1)
 }
 
-main()
+main(process.argv.slice(2))

@@ -1,0 +1,65 @@
+'use strict'
+/**
+ * Measures what the sandbox adds to a program that walks, with nobody at the channel: the same walk by a program and
+ * by the same skills called without a sandbox, in turns, from the same snapshot.
+ */
+const { Vec3 } = require('vec3')
+const { Session } = require('./session')
+
+const REGION = 'hall'
+const AGENT = 'walker'
+const FLOOR = -52
+const BOX = [[-11, FLOOR, -11], [11, FLOOR + 3, 11]]
+const CORNERS = [[8, 8], [-8, 6], [-5, -9], [9, -7]].map(([x, z]) => [x, FLOOR + 1, z])
+const TIMEOUT_TICKS = 2000
+const PROGRAM = CORNERS.map(corner => `await goToPosition(bot, new Vec3(${corner.join(', ')}), 1)`).join('\n')
+
+/**
+ * @param {import('./time/clock').Clock} clock installed
+ * @param {number} pairs how often each is run
+ * @returns {Promise<{contained: number, direct: number}[]>} milliseconds of processor time of the walks, pair by pair
+ */
+async function measureContainment (clock, pairs) {
+  const session = new Session(clock, () => {})
+  await session.hello({ protocol: 1, seed: 0, minecraft: '1.20.4' })
+  const { runner } = session
+  const start = await session.perform({ op: 'create_region', region: REGION, seed: '0', ...hall() })
+  const ways = { contained: runner.runProgram, direct: walk }
+  const walked = new Set()
+  const spent = []
+  for (let pair = 0; pair < pairs; pair++) {
+    const times = {}
+    // Whoever goes second finds warmer caches.
+    for (const name of pair % 2 ? ['contained', 'direct'] : ['direct', 'contained']) {
+      await session.perform({ op: 'apply', region: REGION, ...start, blocks: [] })
+      runner.runProgram = ways[name]
+      const before = process.cpuUsage()
+      const { tick, results } = await runner.run(REGION, { [AGENT]: PROGRAM }, TIMEOUT_TICKS)
+      const { user, system } = process.cpuUsage(before)
+      times[name] = (user + system) / 1000
+      walked.add(`${results[AGENT].ok} after ${tick} ticks`)
+    }
+    spent.push(times)
+  }
+  if (walked.size !== 1 || !/^true/.test([...walked])) throw new Error(`the walks ended differently: ${[...walked].join('; ')}`)
+  return spent
+}
+
+/** What the program does, without a sandbox. */
+async function walk ({ bot, scope }) {
+  for (const corner of CORNERS) await scope.goToPosition(bot, new Vec3(...corner), 1)
+  return { ok: true, error: null, lines: [], log: [], unfinished: [] }
+}
+
+/** @returns {object} a SNAPSHOT of a floor with one who stands on it */
+function hall () {
+  const [width, height, depth] = [0, 1, 2].map(axis => BOX[1][axis] - BOX[0][axis] + 1)
+  const blocks = new Int32Array(width * height * depth)
+  for (let x = 0; x < width; x++) blocks.fill(1, x * height * depth, x * height * depth + depth)
+  const agents = {
+    [AGENT]: { position: [0.5, FLOOR + 1, 0.5], yaw: 0, pitch: 0, on_ground: true, equipment: {}, inventory: {}, health: 20, food: 20 }
+  }
+  return { box: BOX, tick: 0, blocks: Buffer.from(blocks.buffer), containers: [], agents, items: {} }
+}
+
+module.exports = { measureContainment }
