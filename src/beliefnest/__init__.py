@@ -11,6 +11,7 @@ from beliefnest.version import VERSION
 
 if TYPE_CHECKING:
     from beliefnest.belief.entries import InitialBelief
+    from beliefnest.bodies.limits import ProcessLimits
     from beliefnest.bodies.protocol import ProgramResult
     from beliefnest.errors import (
         BeliefNestError,
@@ -55,6 +56,7 @@ __all__ = [
     "Perception",
     "Pose",
     "PositionError",
+    "ProcessLimits",
     "ProgramError",
     "ProgramResult",
     "Radius",
@@ -79,6 +81,7 @@ _HOMES = {
     "Nest": "beliefnest.nest.nest",
     "Perception": "beliefnest.perception.options",
     "Pose": "beliefnest.nest.compare",
+    "ProcessLimits": "beliefnest.bodies.limits",
     "ProgramResult": "beliefnest.bodies.protocol",
     "Radius": "beliefnest.perception.options",
     "Scenario": "beliefnest.scenarios",

@@ -7,6 +7,7 @@ process status the command line ends with when the error reaches it.
 __all__ = [
     "BeliefNestError",
     "BodyError",
+    "BodyLostError",
     "BranchError",
     "InputError",
     "ModelError",
@@ -76,6 +77,10 @@ class BodyError(BeliefNestError):
     """The Minecraft side failed to start, died, or broke the channel's protocol."""
 
     exit_status = 3
+
+
+class BodyLostError(BodyError):
+    """The process behind a body ended; what was asked of it counts as not having happened."""
 
 
 class ModelError(BeliefNestError):

@@ -1,8 +1,5 @@
 """Worlds lent to one nest after another, and a channel that stays in step."""
 
-import os
-import signal
-
 import pytest
 
 import beliefnest as bn
@@ -23,16 +20,6 @@ def test_a_lent_world_gives_the_frames_of_a_fresh_one():
     with Worlds(0) as worlds:
         frames(bn.Scenario.load("sally-anne", condition=1), worlds)
         assert frames(last, worlds) == frames(last)
-
-
-def test_a_world_that_died_is_not_lent_again():
-    scenario = bn.Scenario.load("sally-anne", condition=1)
-    with Worlds(0) as worlds:
-        with bn.Nest.open(scenario, worlds=worlds) as nest:
-            os.kill(nest._engine.world._world.pid, signal.SIGKILL)
-            with pytest.raises(bn.BodyError, match="signal 9"):
-                nest.play()
-        assert frames(scenario, worlds)
 
 
 def test_a_frame_that_is_refused_does_not_put_the_channel_out_of_step():

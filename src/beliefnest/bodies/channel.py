@@ -4,19 +4,16 @@ Length-prefixed msgpack over a socket pair. Requests are answered one at a time;
 arrive before the answer of the request that caused them.
 """
 
-import contextlib
-import os
-import signal
 import socket
 import struct
-import subprocess
-import tempfile
-from collections.abc import Callable
-from typing import IO, Any, Self
+from collections.abc import Callable, Sequence
+from typing import Any, Self, TypeVar
 
 import msgspec
 
-from beliefnest.errors import BodyError, WorldError
+from beliefnest.bodies.child import Child
+from beliefnest.bodies.limits import ProcessLimits
+from beliefnest.errors import BodyError, BodyLostError, WorldError
 
 __all__ = ["PROTOCOL", "Channel"]
 
@@ -24,170 +21,185 @@ PROTOCOL = 1
 """Version of the channel's messages; both sides state it."""
 
 _HEADER = struct.Struct(">I")
-_STDERR_LINES = 15
-_GRACE_SECONDS = 2.0
+_MAX_MESSAGE = 1 << 30
+_WAIT_SECONDS = 1.0
 
 FrameHandler = Callable[[dict[str, Any]], None]
+A = TypeVar("A")
+T = TypeVar("T")
+
+
+class _BrokenError(Exception):
+    """Node does not speak as agreed, or not at all."""
 
 
 class Channel:
     """A running Node process and the socket to it; make one with `Channel.start`."""
 
-    def __init__(
-        self,
-        process: "subprocess.Popen[bytes]",
-        connection: socket.socket,
-        lifeline: int,
-        stderr: IO[bytes],
-    ) -> None:
-        self._process = process
+    def __init__(self, child: Child, connection: socket.socket, silence: float) -> None:
+        self._child = child
         self._connection = connection
-        self._lifeline: int | None = lifeline
-        self._stderr = stderr
+        self._silence = silence
+        self._wait = min(_WAIT_SECONDS, silence)
+        connection.settimeout(self._wait)
         self._number = 0
-        self._unanswered: str | None = None
+        self._tick: int | None = None
+        self._closed = False
 
     @classmethod
-    def start(cls, command: list[str]) -> Self:
+    def start(cls, command: Sequence[str], limits: ProcessLimits | None = None) -> Self:
         """Start a process that speaks the channel's protocol.
 
         Args:
             command: The program and its arguments; the numbers of the two descriptors
                 are appended to them.
+            limits: What the process may take.
 
         Raises:
             BodyError: The program could not be started.
         """
+        limits = limits or ProcessLimits()
         ours, theirs = socket.socketpair()
-        life_read, life_write = os.pipe()
-        stderr: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed with the channel
         try:
-            process = subprocess.Popen(
-                [*command, str(theirs.fileno()), str(life_read)],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=stderr,
-                pass_fds=(theirs.fileno(), life_read),
-                # Ctrl-C is Python's to handle: it ends Node by closing the lifeline.
-                start_new_session=True,
-            )
-        except OSError as error:
+            child = Child.start(command, theirs.fileno(), limits)
+        except BaseException:
             ours.close()
-            os.close(life_write)
-            stderr.close()
-            raise BodyError(
-                f"cannot start {command[0]}: {error.strerror}; run `beliefnest doctor`"
-            ) from error
+            raise
         finally:
             theirs.close()
-            os.close(life_read)
-        return cls(process, ours, life_write, stderr)
+        return cls(child, ours, limits.silence)
 
     @property
     def pid(self) -> int:
         """Process id of Node."""
-        return self._process.pid
+        return self._child.pid
+
+    @property
+    def lost(self) -> bool:
+        """Whether Node has ended; it will answer nothing more."""
+        return not self._child.alive
 
     def request(self, op: str, on_frame: FrameHandler | None = None, **arguments: Any) -> Any:
         """Send a request and return its result; frames on the way go to `on_frame`.
 
         Raises:
             WorldError: Node refused the request as impossible.
-            BodyError: Node failed, or is gone; the message carries its last words.
+            BodyLostError: Node ended, or had to be killed; the message carries its last words.
+            BodyError: Node failed to do it.
         """
-        if self._unanswered is not None:
-            raise BodyError(
-                f"{self._unanswered!r} was interrupted before Node had answered; "
-                f"this world cannot be asked for {op!r} any more"
-            )
+        if self._closed:
+            raise BodyError(f"the world was closed; it cannot be asked for {op!r} any more")
         self._number += 1
+        self._tick = None
         message = msgspec.msgpack.encode({"id": self._number, "op": op, **arguments})
-        self._unanswered = op
         try:
-            self._connection.sendall(_HEADER.pack(len(message)) + message)
-            answer, refused = self._answer(op, on_frame)
+            self._send(_HEADER.pack(len(message)) + message)
+            answer, refused = self._answer(on_frame)
         except (OSError, EOFError) as error:
-            raise BodyError(self._death_notice(op)) from error
-        self._unanswered = None
+            raise self._lost(op) from error
+        except _BrokenError as error:
+            raise self._lost(op, str(error)) from error
+        except BaseException:
+            # Its answer would be taken for that of the next request.
+            self._child.kill()
+            raise
         if refused is not None:
             raise refused
-        return self._result(op, answer)
+        return _result(op, answer)
 
-    def _answer(
-        self, op: str, on_frame: FrameHandler | None
-    ) -> tuple[dict[str, Any], Exception | None]:
+    def kill(self) -> None:
+        """End the process at once."""
+        self._child.kill()
+
+    def close(self) -> None:
+        """End the process; its last requests are not waited for."""
+        self._closed = True
+        self._connection.close()
+        self._child.close()
+
+    def _answer(self, on_frame: FrameHandler | None) -> tuple[dict[str, Any], Exception | None]:
         """The answer to a request, and why a frame before it could not be taken.
 
         Frames are read to the end all the same, so that the next request finds its answer.
         """
         refused: Exception | None = None
         while True:
-            answer = self._receive()
-            if "frame" not in answer:
-                return answer, refused
-            if on_frame is None:
-                raise BodyError(f"Node sent a frame during {op!r}, which makes none")
-            if refused is None:
-                try:
-                    on_frame(answer["frame"])
-                except Exception as error:  # noqa: BLE001 - raised again after the answer
-                    refused = error
+            message = self._receive()
+            if "beat" in message:
+                self._tick = self._tick if message["beat"] is None else message["beat"]
+            elif "frame" in message:
+                if on_frame is None:
+                    raise _BrokenError("sent a frame of its own accord")
+                self._tick = message["frame"]["tick"]
+                if refused is None:
+                    try:
+                        on_frame(message["frame"])
+                    except Exception as error:  # noqa: BLE001 - raised again after the answer
+                        refused = error
+            elif message.get("id") == self._number:
+                return message, refused
+            else:
+                raise _BrokenError(f"answered request {message.get('id')}, not {self._number}")
 
-    def close(self) -> None:
-        """End the process; its last requests are not waited for."""
-        if self._lifeline is None:
-            return
-        os.close(self._lifeline)
-        self._lifeline = None
-        self._connection.close()
-        try:
-            self._process.wait(timeout=_GRACE_SECONDS)
-        except subprocess.TimeoutExpired:
-            self.kill()
-        self._stderr.close()
-
-    def kill(self) -> None:
-        """End the process at once."""
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(self._process.pid, signal.SIGKILL)
-        self._process.wait()
+    def _send(self, message: bytes) -> None:
+        rest = memoryview(message)
+        while rest:
+            rest = rest[self._patiently(self._connection.send, rest) :]
 
     def _receive(self) -> dict[str, Any]:
         (length,) = _HEADER.unpack(self._read(_HEADER.size))
+        if length > _MAX_MESSAGE:
+            raise _BrokenError(f"announced a message of {length} bytes")
         try:
-            answer = msgspec.msgpack.decode(self._read(length), type=dict[str, Any])
+            message = msgspec.msgpack.decode(self._read(length), type=dict[str, Any])
         except msgspec.MsgspecError as error:
-            raise BodyError(f"Node sent {length} bytes that are no message: {error}") from error
-        return answer
+            raise _BrokenError(f"sent {length} bytes that are no message ({error})") from error
+        return message
 
     def _read(self, length: int) -> bytes:
         parts = bytearray()
         while len(parts) < length:
-            part = self._connection.recv(min(length - len(parts), 1 << 20))
+            wanted = min(length - len(parts), 1 << 20)
+            part = self._patiently(self._connection.recv, wanted)
             if not part:
                 raise EOFError
             parts += part
         return bytes(parts)
 
-    def _result(self, op: str, answer: dict[str, Any]) -> Any:
-        if answer.get("id") != self._number:
-            raise BodyError(f"Node answered request {answer.get('id')}, not {self._number} ({op})")
-        if answer["ok"]:
-            return answer.get("result")
-        error = answer["error"]
-        if error["kind"] == "bad_request":
-            raise WorldError(error["message"])
-        stack = error.get("stack", "")
-        raise BodyError(
-            f"the Minecraft side failed in {op!r}: {error['message']}\n{stack}".rstrip()
-        )
+    def _patiently(self, act: Callable[[A], T], argument: A) -> T:
+        """Read or write as soon as that is possible.
 
-    def _death_notice(self, op: str) -> str:
-        self.kill()
-        status = self._process.returncode
-        how = f"signal {-status}" if status < 0 else f"status {status}"
-        self._stderr.seek(0)
-        lines = self._stderr.read().decode(errors="replace").strip().splitlines()
-        last = "\n".join(lines[-_STDERR_LINES:])
-        words = f"; its last words:\n{last}" if last else "; it said nothing"
-        return f"Node ended with {how} during {op!r}{words}"
+        Short waits are counted and not the clock read: time in which this process itself was
+        stopped is not Node's silence.
+        """
+        waited = 0.0
+        while True:
+            try:
+                return act(argument)
+            except TimeoutError:
+                waited += self._wait
+                if waited >= self._silence:
+                    raise _BrokenError(f"gave no sign of life for {self._silence:g} s") from None
+
+    def _lost(self, op: str, fault: str | None = None) -> BodyLostError:
+        """What is to be said of a Node that ended by itself, or is killed for a fault."""
+        if fault is not None:
+            self._child.kill()
+        elif not self._child.ends():
+            fault = "closed the channel"
+            self._child.kill()
+        how, words = self._child.obituary()
+        ended = f"ended {how}" if fault is None else f"{fault} and was killed"
+        when = f"during {op!r}" if self._tick is None else f"during {op!r}, after tick {self._tick}"
+        told = f"; its last words:\n{words}" if words else "; it said nothing"
+        return BodyLostError(f"Node {ended} {when}{told}")
+
+
+def _result(op: str, answer: dict[str, Any]) -> Any:
+    if answer["ok"]:
+        return answer.get("result")
+    error = answer["error"]
+    if error["kind"] == "bad_request":
+        raise WorldError(error["message"])
+    stack = error.get("stack", "")
+    raise BodyError(f"the Minecraft side failed in {op!r}: {error['message']}\n{stack}".rstrip())

@@ -7,9 +7,10 @@ import numpy as np
 
 from beliefnest.bodies import messages
 from beliefnest.bodies.channel import PROTOCOL, Channel
+from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.node_files import node_command
 from beliefnest.bodies.protocol import ProgramResult, Sink
-from beliefnest.errors import WorldError
+from beliefnest.errors import BodyError, BodyLostError, WorldError
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.values import Box, Event
 
@@ -39,6 +40,11 @@ class EmbeddedBody:
         self._happened: list[tuple[int, Event]] = []
         self._closed = False
         self._on_close = on_close
+
+    @property
+    def lost(self) -> bool:
+        """Whether the Node it lived in has ended."""
+        return self._channel.lost
 
     @property
     def tick(self) -> int:
@@ -86,11 +92,16 @@ class EmbeddedBody:
 
     def close(self) -> None:
         """Give the region up; a second call does nothing."""
-        if self._closed:
+        if self._closed or self.lost:
             return
         self._closed = True
-        self._channel.request("destroy_region", region=self._region)
-        self._on_close()
+        try:
+            self._channel.request("destroy_region", region=self._region)
+        except BodyError:
+            # Nor can a new region take its place there.
+            self._channel.kill()
+        else:
+            self._on_close()
 
     def _take(self, message: dict[str, Any]) -> None:
         frame: Frame
@@ -101,27 +112,31 @@ class EmbeddedBody:
 
 
 class EmbeddedWorld:
-    """A running Node process; make one with `EmbeddedWorld.start`."""
+    """A running Node process, or the next one after it ended; `EmbeddedWorld.start` makes it."""
 
-    def __init__(self, channel: Channel, versions: Mapping[str, str]) -> None:
+    def __init__(
+        self, seed: int, limits: ProcessLimits, channel: Channel, versions: Mapping[str, str]
+    ) -> None:
+        self._seed = seed
+        self._limits = limits
         self._channel = channel
-        self._names: set[str] = set()
         self._versions = versions
+        self._names: set[str] = set()
+        self._closed = False
 
     @classmethod
-    def start(cls, seed: int) -> Self:
+    def start(cls, seed: int, limits: ProcessLimits | None = None) -> Self:
         """Start Node with an empty world.
+
+        Args:
+            seed: Drives the random numbers of the world itself.
+            limits: What Node may take.
 
         Raises:
             BodyError: Node or the bundle is missing, or the start failed.
         """
-        channel = Channel.start(node_command())
-        try:
-            told = channel.request("hello", protocol=PROTOCOL, seed=seed, minecraft=MINECRAFT)
-        except BaseException:
-            channel.close()
-            raise
-        return cls(channel, {program: str(version) for program, version in told.items()})
+        limits = limits or ProcessLimits()
+        return cls(seed, limits, *_started(seed, limits))
 
     @property
     def versions(self) -> Mapping[str, str]:
@@ -134,18 +149,43 @@ class EmbeddedWorld:
         return self._channel.pid
 
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> EmbeddedBody:
-        """Make a region, fill it, and let the bots of its agents log in."""
+        """Make a region, fill it, and let the bots of its agents log in.
+
+        If Node has ended, another one is started.
+        """
+        if self._closed:
+            raise BodyError("this world was closed; open another one")
+        if self._channel.lost:
+            self._channel.close()
+            self._channel, self._versions = _started(self._seed, self._limits)
+            self._names = set()
         if name in self._names:
             raise WorldError(f"there is a body {name!r} already")
         self._channel.request(
             "create_region", region=name, seed=seed, **messages.snapshot_message(snapshot)
         )
-        self._names.add(name)
-        return EmbeddedBody(self._channel, name, snapshot, sink, lambda: self._names.discard(name))
+        names = self._names
+        names.add(name)
+        return EmbeddedBody(self._channel, name, snapshot, sink, lambda: names.discard(name))
 
     def close(self) -> None:
         """End the process."""
+        self._closed = True
         self._channel.close()
+
+
+def _started(seed: int, limits: ProcessLimits) -> tuple[Channel, Mapping[str, str]]:
+    """A channel to a new Node with an empty world, and the versions of what runs there."""
+    channel = Channel.start(node_command(limits), limits)
+    try:
+        told = channel.request("hello", protocol=PROTOCOL, seed=seed, minecraft=MINECRAFT)
+    except BodyLostError as error:
+        channel.close()
+        raise BodyError(f"Node cannot be started; run `beliefnest doctor`. {error}") from error
+    except BaseException:
+        channel.close()
+        raise
+    return channel, {program: str(version) for program, version in told.items()}
 
 
 def _difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:

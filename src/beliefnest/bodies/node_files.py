@@ -4,6 +4,7 @@ import os
 import stat
 from pathlib import Path
 
+from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.errors import BodyError
 
 __all__ = ["bundle_path", "node_command", "node_path"]
@@ -46,18 +47,20 @@ def bundle_path() -> Path:
     return path
 
 
-def node_command() -> list[str]:
+def node_command(limits: ProcessLimits | None = None) -> list[str]:
     """The command that starts the Minecraft side, with as few permissions as it needs.
 
     Raises:
         BodyError: Node or the bundle is missing.
     """
     node, bundle = node_path(), bundle_path()
+    heap = (limits or ProcessLimits()).heap
     return [
         str(node),
         "--permission",
         f"--allow-fs-read={bundle.parent}",
         "--allow-worker",
         "--no-warnings",
+        f"--max-old-space-size={heap}",
         str(bundle),
     ]

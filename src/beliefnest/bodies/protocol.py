@@ -7,10 +7,14 @@ from typing import Protocol
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.values import Event, EventKind
 
-__all__ = ["Body", "Fault", "ProgramResult", "Sink", "Unfinished", "World"]
+__all__ = ["KILLED", "Body", "Fault", "ProgramResult", "Sink", "Unfinished", "World"]
 
 Sink = Callable[[Frame], None]
 """Takes the frames of a body as they come, in order of tick."""
+
+
+KILLED = "killed"
+"""Kind of failure of a program under which the process behind the world ended."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +23,8 @@ class Fault:
 
     Attributes:
         message: What went wrong and what to do.
-        kind: Kind of failure, as `program`, `syntax`, `timeout`, `budget`.
+        kind: Kind of failure, as `program`, `syntax`, `timeout`, `budget`, or `killed`: the
+            process behind the world ended, and nothing of the program was kept.
         line: Line in the program's own text, from 1; None where there is none.
         column: Column in that line, from 1.
         skill: The skill that failed, if one did.
@@ -102,9 +107,23 @@ class ProgramResult:
             if event.actor == self.agent and event.kind is EventKind.CHAT
         )
 
+    @property
+    def killed(self) -> bool:
+        """Whether the process behind the world ended under it; then nothing of it was kept."""
+        return self.error is not None and self.error.kind == KILLED
+
 
 class Body(Protocol):
-    """One simulator's part of a world; its clock stands still between the calls."""
+    """One simulator's part of a world; its clock stands still between the calls.
+
+    Any call but `close` may raise BodyLostError: the process behind the world ended. What was
+    asked for has not happened, whatever frames it sent; the body and all others of that
+    process are of no more use, and the world can be asked for new ones.
+    """
+
+    @property
+    def lost(self) -> bool:
+        """Whether the process behind the world has ended."""
 
     @property
     def tick(self) -> int:
@@ -117,8 +136,9 @@ class Body(Protocol):
         """Run programs by agent, together, until the last has ended.
 
         Raises:
-            WorldError: An agent is not in this body, or the world runs no programs.
-            BodyError: The Minecraft side died.
+            WorldError: An agent is not in this body, or the world runs no programs; nothing
+                was changed.
+            BodyError: The Minecraft side failed.
         """
 
     def step(self, ticks: int) -> None:
@@ -128,11 +148,11 @@ class Body(Protocol):
         """Be as the snapshot says, by changing only what differs; no frames are sent."""
 
     def close(self) -> None:
-        """Give the body up; a second call does nothing."""
+        """Give the body up, also if it is lost; a second call does nothing."""
 
 
 class World(Protocol):
-    """Where bodies live."""
+    """Where bodies live. If its process has ended, the next body is opened in a new one."""
 
     @property
     def versions(self) -> Mapping[str, str]:
@@ -146,6 +166,10 @@ class World(Protocol):
             seed: Seed of all its random numbers.
             snapshot: What it is filled with.
             sink: Takes its frames.
+
+        Raises:
+            BodyLostError: The process behind the world ended meanwhile.
+            BodyError: The world could not be started, or failed.
         """
 
     def close(self) -> None:

@@ -24,6 +24,11 @@ class ScriptedBody:
         world.listen(sink)
 
     @property
+    def lost(self) -> bool:
+        """False: no process is behind it."""
+        return False
+
+    @property
     def tick(self) -> int:
         """The body's latest tick."""
         return self.world.now

@@ -1,12 +1,13 @@
 """The worlds a nest can be opened in, by name."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from types import TracebackType
 from typing import Self
 
+from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.protocol import Body, Sink, World
 from beliefnest.bodies.scripted import ScriptedBodies
-from beliefnest.errors import BodyError, UnknownNameError
+from beliefnest.errors import UnknownNameError
 from beliefnest.world.frames import Snapshot
 
 __all__ = ["WORLDS", "LateWorld", "Worlds", "check_world", "open_world"]
@@ -15,8 +16,13 @@ WORLDS = ("embedded", "scripted")
 """Names of the worlds."""
 
 
-def open_world(name: str, seed: int) -> World:
+def open_world(name: str, seed: int, limits: ProcessLimits | None = None) -> World:
     """Start a world.
+
+    Args:
+        name: Name of the world.
+        seed: Drives every random number.
+        limits: What its process may take.
 
     Raises:
         BodyError: It could not be started.
@@ -27,7 +33,7 @@ def open_world(name: str, seed: int) -> World:
         case "embedded":
             from beliefnest.bodies.embedded import EmbeddedWorld
 
-            return EmbeddedWorld.start(seed)
+            return EmbeddedWorld.start(seed, limits)
         case "scripted":
             return ScriptedBodies()
         case _:
@@ -50,15 +56,17 @@ class LateWorld:
     Args:
         name: Name of the world.
         seed: Drives every random number.
+        limits: What its process may take.
 
     Raises:
         UnknownNameError: There is no world of that name.
     """
 
-    def __init__(self, name: str, seed: int) -> None:
+    def __init__(self, name: str, seed: int, limits: ProcessLimits | None = None) -> None:
         check_world(name)
         self._name = name
         self._seed = seed
+        self._limits = limits
         self._world: World | None = None
 
     @property
@@ -73,7 +81,7 @@ class LateWorld:
             BodyError: The world could not be started.
         """
         if self._world is None:
-            self._world = open_world(self._name, self._seed)
+            self._world = open_world(self._name, self._seed, self._limits)
         return self._world.open_body(name, seed, snapshot, sink)
 
     def close(self) -> None:
@@ -86,15 +94,17 @@ class Worlds:
     """Worlds that nests live in one after the other, so that each is started once.
 
     What happens in one nest does not depend on those before it: bodies are isolated, and
-    each has its own seed. A world in which something failed is ended, not lent again. Use
-    it in a `with` block.
+    each has its own seed. A process that ended is started again for the next body. Use it
+    in a `with` block.
 
     Args:
         seed: Drives the random numbers of the worlds themselves.
+        limits: What the process of each may take.
     """
 
-    def __init__(self, seed: int) -> None:
+    def __init__(self, seed: int, limits: ProcessLimits | None = None) -> None:
         self._seed = seed
+        self._limits = limits
         self._worlds: dict[str, World] = {}
 
     def __enter__(self) -> Self:
@@ -106,8 +116,9 @@ class Worlds:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        for name in list(self._worlds):
-            self._end(name)
+        for world in self._worlds.values():
+            world.close()
+        self._worlds.clear()
 
     def lend(self, name: str) -> World:
         """A world whose `close` gives up the bodies that were opened in it, not the world.
@@ -117,19 +128,15 @@ class Worlds:
             UnknownNameError: There is no world of that name.
         """
         if name not in self._worlds:
-            self._worlds[name] = open_world(name, self._seed)
-        return _Lent(self._worlds[name], lambda: self._end(name))
-
-    def _end(self, name: str) -> None:
-        self._worlds.pop(name).close()
+            self._worlds[name] = open_world(name, self._seed, self._limits)
+        return _Lent(self._worlds[name])
 
 
 class _Lent:
     """A world for one nest only."""
 
-    def __init__(self, world: World, end: Callable[[], None]) -> None:
+    def __init__(self, world: World) -> None:
         self._world = world
-        self._end = end
         self._bodies: list[Body] = []
 
     @property
@@ -144,10 +151,7 @@ class _Lent:
         return body
 
     def close(self) -> None:
-        """Give up all bodies; the world too if it does not even do that."""
-        try:
-            for body in self._bodies:
-                body.close()
-        except BodyError:
-            self._end()
+        """Give up all bodies."""
+        for body in self._bodies:
+            body.close()
         self._bodies.clear()

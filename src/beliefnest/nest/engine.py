@@ -2,20 +2,34 @@
 
 A simulator is in control mode iff a timeline is selected for it; it then has a body in
 the world and its frames are recorded there (semantics, sections 6 and 7).
+
+A call on a body happens as a whole or, if it raises, not at all. If the process behind the
+world ends, all bodies in it are lost, and each is made again from its timeline when it is
+needed. The call under way has not happened: it is made again, but for programs, which end as
+`killed`.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from threading import RLock
-from typing import Self
+from typing import Self, TypeVar
 
 from beliefnest.belief.reading import Reading
-from beliefnest.bodies.protocol import Body, ProgramResult, World
-from beliefnest.errors import BodyError, BranchError, StoreError, TickError
+from beliefnest.bodies.protocol import KILLED, Body, Fault, ProgramResult, World
+from beliefnest.errors import (
+    BodyError,
+    BodyLostError,
+    BranchError,
+    StoreError,
+    TickError,
+    WorldError,
+)
 from beliefnest.nest.history import History
 from beliefnest.nest.paths import path_text
+from beliefnest.nest.recorder import Recorder
 from beliefnest.nest.runlog import MemoryLog, RunLog
+from beliefnest.nest.script import UNDONE
 from beliefnest.nest.setting import Setting
 from beliefnest.nest.views import Blocks, LiveState
 from beliefnest.timeline.journal import (
@@ -27,7 +41,7 @@ from beliefnest.timeline.journal import (
     TimelineKey,
 )
 from beliefnest.timeline.records import ProgramRecord
-from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.frames import Snapshot
 from beliefnest.world.values import Items, Position
 
 __all__ = ["MAIN", "Engine", "edited"]
@@ -37,41 +51,10 @@ Path = tuple[str, ...]
 MAIN = "main"
 """Name of the real world's first branch."""
 
-_BATCH = 256
+_LIVES = 3
+"""How many processes a call may use up."""
 
-
-class _Recorder:
-    """Takes a body's frames and appends them to the timeline it is on.
-
-    Each frame is written at once, but while a call is under way, when `batched` is set.
-    """
-
-    def __init__(self, journal: Journal, history: History, key: TimelineKey) -> None:
-        self.key = key
-        self.batched = False
-        self._journal = journal
-        self._history = history
-        self._frames: list[Frame] = []
-        self._tick: int | None = None
-
-    def __call__(self, frame: Frame) -> None:
-        self._tick = frame.tick
-        if not frame.is_empty:
-            self._frames.append(frame)
-        if not self.batched or len(self._frames) >= _BATCH:
-            self.flush()
-
-    def flush(self, tick: int | None = None) -> None:
-        """Write what was taken; `tick` is the body's tick by now."""
-        head = self._tick if tick is None else tick
-        if head is not None:
-            frames, self._frames, self._tick = self._frames, [], None
-            self._journal.append(self.key, frames, head)
-            self._history.note(self.key)
-
-    def drop(self) -> None:
-        """Forget what was taken and could not be written."""
-        self._frames, self._tick = [], None
+T = TypeVar("T")
 
 
 class Engine:
@@ -101,11 +84,11 @@ class Engine:
         self.journal = journal
         self.world = world
         self.seed = seed
-        self.log: RunLog = MemoryLog() if log is None else log
+        self.log: RunLog = MemoryLog(journal) if log is None else log
         self.history = History(journal, setting)
         self.selected: dict[Path, TimelineKey] = {}
         self._bodies: dict[Path, Body] = {}
-        self._recorders: dict[Path, _Recorder] = {}
+        self._recorders: dict[Path, Recorder] = {}
 
     def begin(self) -> Self:
         """Start the real world's timeline and give it its body."""
@@ -114,7 +97,7 @@ class Engine:
             self.journal.create(key, None, self.setting.snapshot.tick)
             self.log.select(key.path, key.branch)
         self.selected[()] = key
-        self._open_body(key, self.setting.snapshot)
+        self._surviving(lambda: self._open_body(key, self.setting.snapshot))
         return self
 
     def resume(self) -> Self:
@@ -191,6 +174,9 @@ class Engine:
 
     def fork(self, path: Path, name: str, tick: int | None) -> None:
         """Begin a branch at the current tick, or at a past one, and select it."""
+        self._surviving(lambda: self._fork(path, name, tick))
+
+    def _fork(self, path: Path, name: str, tick: int | None) -> None:
         source = self.info(path)
         if tick is None:
             base = ForkPoint(source.key, source.entries, source.head)
@@ -208,8 +194,10 @@ class Engine:
 
     def select(self, key: TimelineKey) -> None:
         """Put a simulator on a timeline it has, in the world too."""
-        if self.selected.get(key.path) == key:
-            return
+        if self.selected.get(key.path) != key:
+            self._surviving(lambda: self._select(key))
+
+    def _select(self, key: TimelineKey) -> None:
         with self._embodied(key, self._recorded(key)):
             self.log.select(key.path, key.branch)
 
@@ -262,6 +250,9 @@ class Engine:
             BranchError: The simulator is in follow mode.
             BodyError: The world could not be started.
         """
+        return self._surviving(lambda: self._body(path))
+
+    def _body(self, path: Path) -> Body:
         if path not in self.selected:
             raise BranchError(
                 f"{path_text(path)} is in follow mode and has no body to act in; "
@@ -279,38 +270,66 @@ class Engine:
         timeout_ticks: int,
         detail: Mapping[str, str] | None = None,
     ) -> Mapping[str, ProgramResult]:
-        """Run programs in a body, record what happens, and note them with their results."""
-        with self._recording(path) as body:
-            before = self.info(path)
-            results = body.run(programs, timeout_ticks)
-            noted = {
-                **(detail or {}),
-                "timeout_ticks": str(timeout_ticks),
-                "entries": str(before.entries),
-            }
-            group = 1 + max((program.group for program in self.log.programs()), default=0)
-            for agent, result in results.items():
-                self.log.add_program(
-                    ProgramRecord(
-                        path=path,
-                        branch=before.key.branch,
-                        agent=agent,
-                        code=programs[agent],
-                        tick=before.head,
-                        ok=result.ok,
-                        error=None if result.error is None else str(result.error),
-                        ticks=result.ticks,
-                        group=group,
-                        detail=noted,
-                        lines=result.lines,
-                        log=result.log,
-                        unfinished=tuple(map(str, result.unfinished)),
-                    )
-                )
+        """Run programs in a body, record what happens, and note them with their results.
+
+        If the process behind the world ends under them, their results say so, and what they
+        did until then is not kept.
+        """
+        noted = {**(detail or {}), "timeout_ticks": str(timeout_ticks)}
+        return self._surviving(lambda: self._run(path, programs, timeout_ticks, noted))
+
+    def _run(
+        self, path: Path, programs: Mapping[str, str], timeout_ticks: int, noted: Mapping[str, str]
+    ) -> Mapping[str, ProgramResult]:
+        self._body(path)
+        before = self.info(path)
+        try:
+            with self._recording(path) as body:
+                results = body.run(programs, timeout_ticks)
+                self._note(before, programs, results, noted)
+        except BodyLostError as lost:
+            message = (
+                f"nothing of the program is kept, {path_text(path)} is at tick {before.head} as "
+                f"it was before, and what comes next runs in a new process: {lost}"
+            )
+            fault = Fault(message, KILLED)
+            results = {agent: ProgramResult(agent, False, fault, 0) for agent in programs}
+            with self.log.together():
+                self._note(before, programs, results, {**noted, UNDONE: KILLED})
         return results
+
+    def _note(
+        self,
+        before: TimelineInfo,
+        programs: Mapping[str, str],
+        results: Mapping[str, ProgramResult],
+        noted: Mapping[str, str],
+    ) -> None:
+        group = 1 + max((program.group for program in self.log.programs()), default=0)
+        for agent, result in results.items():
+            self.log.add_program(
+                ProgramRecord(
+                    path=before.key.path,
+                    branch=before.key.branch,
+                    agent=agent,
+                    code=programs[agent],
+                    tick=before.head,
+                    ok=result.ok,
+                    error=None if result.error is None else str(result.error),
+                    ticks=result.ticks,
+                    group=group,
+                    lines=result.lines,
+                    log=result.log,
+                    unfinished=tuple(map(str, result.unfinished)),
+                    detail={**noted, "entries": str(before.entries)},
+                )
+            )
 
     def step(self, path: Path, ticks: int) -> None:
         """Let ticks pass in a body."""
+        self._surviving(lambda: self._step(path, ticks))
+
+    def _step(self, path: Path, ticks: int) -> None:
         with self._recording(path) as body:
             body.step(ticks)
 
@@ -321,6 +340,14 @@ class Engine:
         containers: Mapping[Position, Items],
     ) -> None:
         """Record a change by hand, in the body too where there is one."""
+        self._surviving(lambda: self._edit(path, blocks, containers))
+
+    def _edit(
+        self,
+        path: Path,
+        blocks: Mapping[Position, int],
+        containers: Mapping[Position, Items],
+    ) -> None:
         info = self.info(path)
         edit = Edit(info.head, path, blocks, containers)
         if path not in self._bodies:
@@ -363,6 +390,7 @@ class Engine:
 
     def _restore(self, path: Path) -> None:
         """Make a simulator's body, after a fault, what its timeline says."""
+        self._forget_lost()
         key, body = self.selected.get(path), self._bodies.get(path)
         if body is None:
             return
@@ -372,8 +400,33 @@ class Engine:
         try:
             body.become(self._recorded(key))
         except BodyError:
-            # It died; another one is made when it is needed.
+            # Not even that; another one is made when it is needed.
+            self._give_up(path)
+
+    def _forget_lost(self) -> None:
+        """Forget the bodies whose process has ended; others are made when they are needed."""
+        for path in [path for path, body in self._bodies.items() if body.lost]:
             del self._bodies[path], self._recorders[path]
+
+    def _surviving(self, call: Callable[[], T]) -> T:
+        """Make a call that needs bodies; if their process ends under it, make it again.
+
+        Raises:
+            BodyError: It was started again and again, and each time it ended.
+        """
+        told: list[BodyLostError] = []
+        while len(told) < _LIVES:
+            self._forget_lost()
+            try:
+                return call()
+            except BodyLostError as lost:
+                told.append(lost)
+        self._forget_lost()
+        raise BodyError(
+            f"the process behind the world ended {len(told)} times under one call; nothing of it "
+            "is kept. Run `beliefnest doctor`; if memory or time did not suffice, give more with "
+            f"limits=ProcessLimits(...). The last time: {told[-1]}"
+        ) from told[-1]
 
     def _give_up(self, path: Path) -> None:
         self._recorders.pop(path, None)
@@ -382,7 +435,7 @@ class Engine:
             body.close()
 
     def _open_body(self, key: TimelineKey, snapshot: Snapshot) -> None:
-        recorder = _Recorder(self.journal, self.history, key)
+        recorder = Recorder(self.journal, self.history, key)
         name = path_text(key.path)
         seed = f"{self.seed} {name}"
         self._bodies[key.path] = self.world.open_body(name, seed, snapshot, recorder)
@@ -392,25 +445,22 @@ class Engine:
     @contextmanager
     def _recording(self, path: Path) -> Iterator[Body]:
         """A call on a body; what happens and what is noted is kept once it ends, as a whole."""
-        body, recorder = self.body(path), self._recorders[path]
-        kept = ExitStack()
-        kept.enter_context(self.log.together())
+        body = self._body(path)
+        recorder = self._recorders[path]
         recorder.batched = True
         try:
-            yield body
-        finally:
-            recorder.batched = False
-            self._keep(path, body, recorder, kept)
-
-    def _keep(self, path: Path, body: Body, recorder: _Recorder, kept: ExitStack) -> None:
-        # What happened before a fault has happened, so it is kept whatever the call came to.
-        try:
-            with kept:
+            with self.log.together():
+                yield body
                 recorder.flush(body.tick)
+        except WorldError:
+            # It was refused, so that there is nothing to take back.
+            raise
         except BaseException:
             recorder.drop()
             self._restore(path)
             raise
+        finally:
+            recorder.batched = False
 
 
 def edited(snapshot: Snapshot, edit: Edit) -> Snapshot:

@@ -7,10 +7,11 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Protocol, Self
 
 from beliefnest.belief.entries import InitialBelief
+from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.protocol import World
 from beliefnest.bodies.scripted import ScriptedBodies
 from beliefnest.bodies.worlds import LateWorld, Worlds, open_world
-from beliefnest.errors import ProgramError
+from beliefnest.errors import BodyError, ProgramError
 from beliefnest.nest.compare import Difference, compare, false_beliefs
 from beliefnest.nest.engine import Engine
 from beliefnest.nest.explore import Attempt, Score, explore
@@ -35,6 +36,9 @@ __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 
 Progress = Callable[[str, int, int], None]
 """Takes what is being done, how many parts of it are done, and of how many."""
+
+_TRIES = 3
+"""How often a step of the script is begun, if the world's process ends under it."""
 
 
 class HasSetting(Protocol):
@@ -97,6 +101,7 @@ class Nest:
         store: str | Path | None = None,
         seed: int = 0,
         worlds: Worlds | None = None,
+        limits: ProcessLimits | None = None,
     ) -> Self:
         """Open a scenario in a world.
 
@@ -106,6 +111,7 @@ class Nest:
             store: File to record in; None: memory.
             seed: Drives every random number.
             worlds: Lends the world, to one nest after the other; None: one is started.
+            limits: What the world's process may take, if one is started.
 
         Raises:
             BodyError: The world could not be started.
@@ -118,7 +124,7 @@ class Nest:
             start = _Start(
                 scenario.setting, world, seed, scenario.text, scenario.templates, scenario.condition
             )
-        opened = open_world(world, seed) if worlds is None else worlds.lend(world)
+        opened = open_world(world, seed, limits) if worlds is None else worlds.lend(world)
         try:
             return cls._of(_begun(start, opened, store))
         except BaseException:
@@ -126,10 +132,14 @@ class Nest:
             raise
 
     @classmethod
-    def resume(cls, store: str | Path) -> Self:
+    def resume(cls, store: str | Path, limits: ProcessLimits | None = None) -> Self:
         """Go on with a recorded run where it was, on every branch, with its seed.
 
         The world is started, and bodies are made, when they are first needed.
+
+        Args:
+            store: The run file.
+            limits: What the world's process may take.
 
         Raises:
             StoreError: There is no such run, it cannot be read or written, or has another
@@ -139,7 +149,7 @@ class Nest:
         try:
             run = journal.records.run()
             setting, world = decode_start(run.setting)
-            late = LateWorld(world, run.seed)
+            late = LateWorld(world, run.seed, limits)
             engine = Engine(setting, journal, late, run.seed, FileLog(journal)).resume()
             engine.log.add_versions(own_versions())
             return cls._of(engine)
@@ -307,6 +317,7 @@ class Nest:
         Raises:
             ProgramError: A program failed; the message says which step, where it is
                 written, and the program's line.
+            BodyError: The Minecraft side died again and again under a step.
         """
         script = self.setting.script
         programs = self._engine.log.programs()
@@ -320,12 +331,17 @@ class Nest:
 
     @in_turn
     def _play_step(self, number: int, step: Step) -> None:
-        results = self._engine.run((), step.programs, step.timeout_ticks, {STEP: str(number)})
+        for _ in range(_TRIES):
+            results = self._engine.run((), step.programs, step.timeout_ticks, {STEP: str(number)})
+            # Nothing of it was kept, and it does again what it would have done.
+            if not any(result.killed for result in results.values()):
+                break
         for agent, result in results.items():
             if not result.ok:
                 label = f" ({step.label})" if step.label else ""
                 where = f"{step.where}: " if step.where else ""
-                raise ProgramError(
+                fault = BodyError if result.killed else ProgramError
+                raise fault(
                     f"{where}step {number + 1}{label}: the program of {agent} failed: "
                     f"{result.error}"
                 )

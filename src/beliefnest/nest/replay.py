@@ -9,6 +9,7 @@ from beliefnest.errors import StoreError
 from beliefnest.nest.engine import edited
 from beliefnest.nest.history import History
 from beliefnest.nest.paths import path_text
+from beliefnest.nest.script import UNDONE
 from beliefnest.nest.setting import Setting
 from beliefnest.timeline.compare import Difference, first_difference
 from beliefnest.timeline.journal import Edit, Entry, Journal, TimelineInfo, TimelineKey
@@ -68,7 +69,11 @@ def replay(
     """
     history = History(journal, setting)
     for info in journal.timelines():
-        mine = [p for p in programs if (p.path, p.branch) == (info.key.path, info.key.branch)]
+        mine = [
+            p
+            for p in programs
+            if (p.path, p.branch) == (info.key.path, info.key.branch) and UNDONE not in p.detail
+        ]
         reading = history.reading(info.key, info.key.path, 0)
         first = replace(reading.snapshot(), tick=info.start)
         recorded = list(journal.entries(info.key, 0, info.entries))

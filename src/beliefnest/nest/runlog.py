@@ -3,12 +3,12 @@
 That is which branches are selected, programs, requests to models, and what ran them.
 """
 
-from collections.abc import Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import replace
 from typing import Protocol
 
-from beliefnest.timeline.journal import TimelineKey
+from beliefnest.timeline.journal import Journal, TimelineKey
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
 from beliefnest.timeline.store import SqliteJournal
 
@@ -55,17 +55,27 @@ class RunLog(Protocol):
 
 
 class MemoryLog:
-    """Notes that end with the process."""
+    """Notes that end with the process, beside the timelines of a journal that does."""
 
-    def __init__(self) -> None:
+    def __init__(self, journal: Journal) -> None:
+        self._journal = journal
         self._selected: dict[Path, str] = {}
         self._programs: list[ProgramRecord] = []
         self._prompts: list[PromptRecord] = []
         self._versions: dict[str, str] = {}
 
-    def together(self) -> AbstractContextManager[None]:
-        """Nothing to do: what is in memory ends together."""
-        return nullcontext()
+    @contextmanager
+    def together(self) -> Iterator[None]:
+        """Take back what was noted and recorded inside if it raises."""
+        selected, versions = self._selected.copy(), self._versions.copy()
+        programs, prompts = self._programs.copy(), self._prompts.copy()
+        try:
+            with self._journal.together():
+                yield
+        except BaseException:
+            self._selected, self._versions = selected, versions
+            self._programs, self._prompts = programs, prompts
+            raise
 
     def select(self, path: Path, branch: str) -> None:
         """Note which branch a simulator is on."""

@@ -268,7 +268,8 @@ class Simulator(_Seen):
             PathError: There is no such agent.
             BranchError: The simulator is in follow mode.
             WorldError: The agent is not there, or the world runs no programs.
-            BodyError: The Minecraft side died.
+            BodyError: The Minecraft side failed, or died again and again before the program
+                began. If it dies under the program, the result says so (`killed`).
         """
         return self.run_all({agent: code}, timeout_ticks)[agent]
 

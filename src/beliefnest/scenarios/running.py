@@ -185,6 +185,9 @@ class _Trials:
         simulator.switch(branch)
         try:
             result = simulator.run(probe.agent, program, probe.timeout_ticks)
+            if result.killed:
+                # Nothing of it was kept; once more, as it need not have been the program's fault.
+                result = simulator.run(probe.agent, program, probe.timeout_ticks)
             opened = opened_by(probe.agent, result.events)
             arrived = _standing(simulator.state, probe.agent)
         finally:

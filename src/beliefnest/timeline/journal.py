@@ -6,6 +6,7 @@ stored: every follow-mode belief is computed from it.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
@@ -249,6 +250,9 @@ class Journal(Protocol):
         timeline of that key.
         """
 
+    def together(self) -> AbstractContextManager[None]:
+        """Do all that is done inside or, if it raises, none of it. May be nested."""
+
     def close(self) -> None:
         """Give up what the journal holds open."""
 
@@ -359,6 +363,19 @@ class MemoryJournal:
         there = self._checkpoints[self.info(key).key]
         places = [at for kind, at in there if kind == name and at <= entries]
         return (max(places), there[name, max(places)]) if places else None
+
+    @contextmanager
+    def together(self) -> Iterator[None]:
+        """Do all that is done inside or, if it raises, none of it."""
+        infos, entries = self._infos.copy(), self._entries.copy()
+        checkpoints = {key: there.copy() for key, there in self._checkpoints.items()}
+        try:
+            yield
+        except BaseException:
+            for key, info in infos.items():
+                del entries[key][info.entries :]
+            self._infos, self._entries, self._checkpoints = infos, entries, checkpoints
+            raise
 
     def close(self) -> None:
         """Nothing is held open."""

@@ -29,7 +29,7 @@ function serve (clock, descriptor, lifeline) {
   new Worker(path.join(__dirname, ...LIFELINE_FILE), { workerData: { descriptor: lifeline } })
     .on('error', fail)
   const stream = new net.Socket({ fd: descriptor, readable: true, writable: true })
-  const session = new Session(clock, message => channel.post(message))
+  const session = new Session(clock, message => channel.post(message), message => channel.beat(message))
   let turn = Promise.resolve()
   const channel = new Channel(stream, request => {
     turn = turn.then(() => answer(request)).catch(fail)

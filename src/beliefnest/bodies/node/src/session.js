@@ -16,10 +16,12 @@ class Session {
   /**
    * @param {import('./time/clock').Clock} clock
    * @param {(message: object) => void} send
+   * @param {(message: object) => void} [beat] takes a sign of life, as often as there is one
    */
-  constructor (clock, send) {
+  constructor (clock, send, beat = () => {}) {
     this.clock = clock
     this.send = send
+    this.beat = beat
     this.regions = null
     this.runner = null
   }
@@ -61,8 +63,9 @@ class Session {
     registry.loadDimensionCodec(registry.loginPacket.dimensionCodec)
     rememberBlocks(registry)
     const serv = createServer(registry)
-    this.regions = new Regions(serv, this.clock, frame => this.send({ frame }))
-    const sandbox = createSandbox()
+    const alive = () => this.beat({ beat: serv.region?.tick ?? null })
+    this.regions = new Regions(serv, this.clock, frame => this.send({ frame }), alive)
+    const sandbox = createSandbox({}, alive)
     await sandbox.warm()
     this.runner = new Runner(this.regions, request => sandbox.run(request), scopeOf)
     return { protocol: PROTOCOL, node: process.version, ...versions }

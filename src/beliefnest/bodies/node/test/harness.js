@@ -14,6 +14,7 @@ class Node {
     this.child.stdout.on('data', chunk => { this.errors += chunk })
     this.exited = new Promise(resolve => this.child.on('exit', (code, signal) => resolve({ code, signal })))
     this.frames = []
+    this.beats = []
     this.waiting = null
     this.lastId = 0
     this.channel = new Channel(this.child.stdio[3], message => this.receive(message))
@@ -23,6 +24,7 @@ class Node {
 
   receive (message) {
     if (message.frame) this.frames.push(message.frame)
+    else if ('beat' in message) this.beats.push(message.beat)
     else if (message.ok) this.waiting.resolve(message.result)
     else this.waiting.reject(Object.assign(new Error(message.error.message), message.error))
   }

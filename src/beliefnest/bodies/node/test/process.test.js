@@ -14,6 +14,23 @@ describe('the process', () => {
     assert.deepEqual(await node.exited, { code: null, signal: 'SIGKILL' })
   })
 
+  it('tells that it lives while a program computes within one tick, and while quiet ticks pass', async () => {
+    const node = new Node()
+    await node.hello()
+    const { tick } = await node.request('create_region', region('busy'))
+    const busy = Object.fromEntries(Object.keys(region('busy').agents).map(agent => [agent, 'for (;;) {}']))
+    await node.request('run', { region: 'busy', programs: busy, timeout_ticks: 10 })
+    assert.equal(node.beats[0], tick)
+    node.beats.length = 0
+    let ticks = tick + 1
+    while (node.beats.length === 0) {
+      await node.request('step', { region: 'busy', ticks: 4000 })
+      ticks += 4000
+    }
+    assert.ok(node.beats[0] > tick && node.beats[0] <= ticks, `${node.beats[0]}`)
+    await node.close()
+  })
+
   it('ends when the channel is closed', async () => {
     const node = new Node()
     await node.hello()

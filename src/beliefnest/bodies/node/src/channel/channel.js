@@ -1,10 +1,13 @@
 'use strict'
 /** Length-prefixed msgpack messages over a stream: 4 bytes big endian, then one map. */
 const { decode, Encoder } = require('@msgpack/msgpack')
+const { realNow } = require('../time/install')
 
 const HEADER = 4
 // Two seconds of frames.
 const MAX_UNSENT = 40
+// Real time: Python's patience is.
+const BEAT_MS = 1000
 
 class Channel {
   /**
@@ -16,6 +19,7 @@ class Channel {
     this.receive = receive
     this.pending = Buffer.alloc(0)
     this.unsent = []
+    this.written = 0
     this.encoder = new Encoder({ ignoreUndefined: true })
     stream.on('data', chunk => this.take(chunk))
   }
@@ -36,7 +40,13 @@ class Channel {
     if (this.unsent.length >= MAX_UNSENT) this.flush()
   }
 
+  /** Sends a message, and what `post` kept back, if nothing was sent for a second. */
+  beat (message) {
+    if (realNow() - this.written >= BEAT_MS) this.send(message)
+  }
+
   flush () {
+    this.written = realNow()
     this.stream.write(Buffer.concat(this.unsent))
     this.unsent.length = 0
   }

@@ -15,11 +15,13 @@ class Regions {
    * @param {object} serv
    * @param {import('../time/clock').Clock} clock
    * @param {(frame: object) => void} send hears every frame
+   * @param {() => void} [alive] hears that a tick has passed
    */
-  constructor (serv, clock, send) {
+  constructor (serv, clock, send, alive = () => {}) {
     this.serv = serv
     this.clock = clock
     this.send = send
+    this.alive = alive
     this.allotment = new Allotment()
     this.bodies = new Bodies(serv, clock)
     this.byName = new Map()
@@ -121,6 +123,7 @@ class Regions {
     await this.clock.advance(0)
     const frame = region.recorder.frame()
     if (frame !== null) this.send(frame)
+    this.alive()
     region.reseed()
     region.raiseFaults()
   }

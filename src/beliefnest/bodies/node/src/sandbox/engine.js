@@ -40,7 +40,9 @@ class GuestEnded extends Error {
 
 /** The compiled interpreter; makes guests. */
 class Engine {
-  constructor () {
+  /** @param {() => void} [alive] hears now and then that a guest computes within its limits */
+  constructor (alive = () => {}) {
+    this.alive = alive
     this.module = new WebAssembly.Module(interpreterBytes())
     this.template = null
     this.memories = new Memories()
@@ -53,7 +55,7 @@ class Engine {
   async open (limits) {
     this.template ??= this.makeTemplate()
     const { state, functions } = await this.template
-    const guest = new Guest(limits, functions)
+    const guest = new Guest(limits, functions, this.alive)
     guest.memory = this.memories.take(limits.memory)
     guest.interpreter = await QuickJS.open(this.module, guest.memory, guest)
     guest.interpreter.restore(state)
@@ -92,8 +94,9 @@ class Engine {
 
 /** One program's interpreter; after its end every call throws GuestEnded. */
 class Guest {
-  constructor (limits, functions) {
+  constructor (limits, functions, alive) {
     this.limits = limits
+    this.alive = alive
     this.functions = functions
     this.interpreter = null
     this.memory = null
@@ -249,6 +252,7 @@ class Guest {
 
   /** The interpreter asks whether to stop. */
   interrupt () {
+    this.alive()
     return this.interpreter.fuel.value <= GRACE
   }
 

@@ -14,11 +14,12 @@ const GUEST_NAMES = ['Vec3', 'goals', 'Movements']
  * Compiles the interpreter, once for any number of runs.
  * @param {{fuel?: number, memory?: number}} [options] limits of a run: fuel in loop turns and calls
  *   of the interpreter (about one per bytecode instruction), memory in bytes
+ * @param {() => void} [alive] hears now and then that a program computes within its limits
  * @returns {{run: function(object): Promise<object>, warm: function(): Promise<void>}} see `run`; `warm`
  *   does beforehand what the first run would have to do
  */
-function createSandbox (options = {}) {
-  const engine = new Engine()
+function createSandbox (options = {}, alive = () => {}) {
+  const engine = new Engine(alive)
   const defaults = { ...DEFAULTS, ...options }
   return { run: (request) => run(engine, { ...defaults, ...request }), warm: () => engine.warm() }
 }

@@ -10,6 +10,7 @@ const timersPromises = require('node:timers/promises')
 const util = require('node:util')
 
 const RealDate = Date
+const realNow = perfHooks.performance.now.bind(perfHooks.performance)
 
 /** @param {import('./clock').Clock} clock */
 function installTime (clock) {
@@ -102,4 +103,4 @@ function uuidFrom (bytes) {
   return [hex.slice(0, 8), hex.slice(8, 12), hex.slice(12, 16), hex.slice(16, 20), hex.slice(20)].join('-')
 }
 
-module.exports = { installTime }
+module.exports = { installTime, realNow }

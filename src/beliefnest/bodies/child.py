@@ -1,0 +1,130 @@
+"""A process that lives no longer than this one and takes no more than it was given."""
+
+import contextlib
+import os
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from typing import IO, Self
+
+from beliefnest.bodies.limits import ProcessLimits
+from beliefnest.errors import BodyError
+
+__all__ = ["Child"]
+
+_STDERR_LINES = 15
+_STDERR_BYTES = 1 << 16
+_GRACE_SECONDS = 2.0
+_MEGABYTE = 1 << 20
+
+# The caller's own would tell keys to the process and let NODE_OPTIONS change it.
+_ENVIRONMENT = {"TZ": "UTC"}
+
+
+class Child:
+    """A running process; make one with `Child.start`."""
+
+    def __init__(
+        self, process: "subprocess.Popen[bytes]", lifeline: int, stderr: IO[bytes]
+    ) -> None:
+        self._process = process
+        self._lifeline: int | None = lifeline
+        self._stderr = stderr
+
+    @classmethod
+    def start(cls, command: Sequence[str], descriptor: int, limits: ProcessLimits) -> Self:
+        """Start a process.
+
+        Args:
+            command: The program and its arguments; the numbers of two descriptors are appended:
+                the one it inherits, and its lifeline, whose end is to be its own.
+            descriptor: What it inherits.
+            limits: What it may take.
+
+        Raises:
+            BodyError: The program could not be started.
+        """
+        life_read, life_write = os.pipe()
+        stderr: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed with the child
+        try:
+            process = subprocess.Popen(
+                [*command, str(descriptor), str(life_read)],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=stderr,
+                env=_ENVIRONMENT,
+                pass_fds=(descriptor, life_read),
+                # Ctrl-C is Python's to handle: it ends the child by closing the lifeline.
+                start_new_session=True,
+            )
+        except OSError as error:
+            os.close(life_write)
+            stderr.close()
+            raise BodyError(
+                f"cannot start {command[0]}: {error.strerror}; run `beliefnest doctor`"
+            ) from error
+        finally:
+            os.close(life_read)
+        _limit(process.pid, limits)
+        return cls(process, life_write, stderr)
+
+    @property
+    def pid(self) -> int:
+        """Its process id."""
+        return self._process.pid
+
+    @property
+    def alive(self) -> bool:
+        """Whether it has not ended."""
+        return self._process.poll() is None
+
+    def ends(self) -> bool:
+        """Wait a moment for its end; whether that came."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(timeout=_GRACE_SECONDS)
+        return not self.alive
+
+    def kill(self) -> None:
+        """End it at once; nothing is done if it has ended."""
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+        self._process.wait()
+
+    def close(self) -> None:
+        """End it by its lifeline; a second call does nothing."""
+        if self._lifeline is None:
+            return
+        os.close(self._lifeline)
+        self._lifeline = None
+        if not self.ends():
+            self.kill()
+        self._stderr.close()
+
+    def obituary(self) -> tuple[str, str]:
+        """How a process that has ended did so, and its last words, if any, as lines."""
+        status = self._process.returncode
+        how = f"with status {status}" if status >= 0 else f"by signal {-status} ({_name(-status)})"
+        self._stderr.seek(0, os.SEEK_END)
+        self._stderr.seek(max(self._stderr.tell() - _STDERR_BYTES, 0))
+        lines = self._stderr.read().decode(errors="replace").strip().splitlines()
+        return how, "\n".join(lines[-_STDERR_LINES:])
+
+
+def _name(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return "unknown"
+
+
+def _limit(pid: int, limits: ProcessLimits) -> None:
+    """Let the operating system hold a process to its limits, where it can do that from outside."""
+    if sys.platform != "linux":
+        return
+    memory = limits.memory * _MEGABYTE
+    with contextlib.suppress(ProcessLookupError):
+        resource.prlimit(pid, resource.RLIMIT_DATA, (memory, memory))
+        resource.prlimit(pid, resource.RLIMIT_CORE, (0, 0))

@@ -1,0 +1,47 @@
+"""What a body tells, on its way to the timeline it is on."""
+
+from beliefnest.nest.history import History
+from beliefnest.timeline.journal import Journal, TimelineKey
+from beliefnest.world.frames import Frame
+
+__all__ = ["Recorder"]
+
+_BATCH = 256
+
+
+class Recorder:
+    """Takes a body's frames and appends them to the timeline it is on.
+
+    Each frame is written at once, but while a call is under way, when `batched` is set.
+    """
+
+    def __init__(self, journal: Journal, history: History, key: TimelineKey) -> None:
+        self.key = key
+        self.batched = False
+        self._journal = journal
+        self._history = history
+        self._frames: list[Frame] = []
+        self._tick: int | None = None
+
+    def __call__(self, frame: Frame) -> None:
+        """Take a frame."""
+        self._tick = frame.tick
+        if not frame.is_empty:
+            self._frames.append(frame)
+        if not self.batched or len(self._frames) >= _BATCH:
+            self.flush()
+
+    def flush(self, tick: int | None = None) -> None:
+        """Write what was taken; `tick` is the body's tick by now."""
+        head = self._tick if tick is None else tick
+        if head is not None:
+            frames, self._frames, self._tick = self._frames, [], None
+            self._journal.append(self.key, frames, head)
+            self._history.note(self.key)
+
+    def drop(self) -> None:
+        """Forget what was taken, because the journal has taken it back or never had it."""
+        self._frames, self._tick = [], None
+        # What is based on this timeline may have read on in it.
+        for info in self._journal.timelines():
+            self._history.forget(info.key)
