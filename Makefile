@@ -1,10 +1,14 @@
 # Shortcuts for working on BeliefNest, inside an environment with `pip install -e ".[dev]"`.
-.PHONY: test check format schema notices picture bench ci
+.PHONY: test nightly check format schema notices picture bench ci
 
 NODE = $(shell python -c 'from beliefnest.bodies.node_files import node_path; print(node_path())')
 
 test:
 	pytest
+
+# Every property with many examples, every kill and damage with many seeds: takes hours.
+nightly:
+	BELIEFNEST_NIGHTLY=1 pytest
 
 check:
 	ruff check

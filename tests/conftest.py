@@ -3,6 +3,7 @@
 import os
 
 from hypothesis import HealthCheck, settings
+from tests.profiles import NIGHTLY
 
 _SLOW_TO_MAKE = [HealthCheck.too_slow, HealthCheck.data_too_large]
 
@@ -16,4 +17,4 @@ settings.register_profile(
 settings.register_profile(
     "nightly", max_examples=2000, deadline=None, suppress_health_check=_SLOW_TO_MAKE
 )
-settings.load_profile("nightly" if os.environ.get("BELIEFNEST_NIGHTLY") == "1" else "default")
+settings.load_profile("nightly" if NIGHTLY else "default")

@@ -1,10 +1,12 @@
 """A run needs nothing but its folder: what it was asked, and all that it read, is kept in it."""
 
 import json
+import random
 import shutil
 from pathlib import Path
 
 import pytest
+from tests.profiles import at_night
 
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
@@ -30,6 +32,7 @@ probes:
 TEMPLATE = "{{ branch.state.owner }}: {{ task }}"
 TAKE = "```javascript\nawait getItemFromChest(bot, new Vec3(3, 1, 3), {apple: 1})\n```"
 STORE = Path("run", "run.bn")
+DAMAGED = at_night(2000, 40)
 
 
 @pytest.fixture(scope="module")
@@ -154,3 +157,44 @@ def test_all_that_ran_is_exported_with_its_versions(
     assert (program["path"], program["branch"], program["agent"]) == ("/ann", "probe 1", "bob")
     (prompt,) = tables["prompts"]
     assert (prompt["path"], prompt["timeline_path"]) == ("/ann/bob", "/")
+
+
+def exported(store: Path, out: Path) -> dict[str, bytes] | None:
+    """All tables of a run with two of its beliefs; None if it is refused."""
+    paths = [part for path in ("/", "/ann/bob") for part in ("--path", path)]
+    if run_command_line(["export", str(store), "--out", str(out), *paths]) != 0:
+        assert not out.exists()
+        return None
+    return {file.name: file.read_bytes() for file in out.iterdir()}
+
+
+@pytest.fixture(scope="module")
+def whole(kept: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    tables = exported(kept[1] / STORE, tmp_path_factory.mktemp("whole") / "tables")
+    assert tables is not None
+    return tables
+
+
+@pytest.mark.parametrize("seed", range(DAMAGED))
+def test_a_damaged_run_is_refused_or_read_as_it_was(
+    kept: tuple[Path, Path],
+    whole: dict[str, bytes],
+    seed: int,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    chance = random.Random(seed)
+    data = bytearray((kept[1] / STORE).read_bytes())
+    for _ in range(chance.choice((1, 10, 100))):
+        data[chance.randrange(len(data))] ^= chance.randrange(1, 256)
+    if seed % 4 == 0:
+        begin = chance.randrange(len(data))
+        data[begin : begin + 512] = bytes(len(data[begin : begin + 512]))
+    store = tmp_path / "run.bn"
+    store.write_bytes(data)
+    found = exported(store, tmp_path / "tables")
+    if found is None:
+        (line,) = capsys.readouterr().err.splitlines()
+        assert str(store) in line
+    else:
+        assert found == whole

@@ -95,6 +95,7 @@ def test_the_prompt_of_the_probe_is_rendered_again(
         (["show", "RUN", "--tick", "9999"], "future"),
         (["show", "RUN", "--path", "/observer", "--branch", "nothing"], "probe 1"),
         (["show", "nowhere"], "no run at"),
+        (["show", "RUN", "--png", "nowhere/then.png"], "nowhere/then.png cannot be written"),
         (["prompt", "RUN", "--path", "/sally"], "task"),
         (["prompt", "RUN", "--path", "/sally", "--var", "task"], "key=value"),
         (["prompt", "RUN", "--path", "/sally", "--template", "nowhere.txt"], "nowhere.txt"),

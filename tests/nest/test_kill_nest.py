@@ -1,6 +1,5 @@
 """What a killed process leaves: what every call did that returned, and no half of one."""
 
-import os
 import random
 import signal
 import subprocess
@@ -11,11 +10,12 @@ from pathlib import Path
 import pytest
 from tests.nest.acting_nest import PATHS, calls, nest_in
 from tests.nest.comparing import everything
+from tests.profiles import at_night
 
 import beliefnest as bn
 
 ACTING = Path(__file__).with_name("acting_nest.py")
-KILLS = 40 if os.environ.get("BELIEFNEST_NIGHTLY") == "1" else 4
+KILLS = at_night(200, 4)
 LONGEST = 120
 
 

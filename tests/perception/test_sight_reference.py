@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.profiles import at_night
 
 from beliefnest.perception.sight import Sight
 from beliefnest.world.registry import Registry
@@ -135,7 +136,7 @@ def worlds(draw):
     return blocks, origin
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=at_night(2000, 80))
 @given(
     world=worlds(),
     eye=st.tuples(coordinate, coordinate, coordinate),
@@ -164,7 +165,7 @@ def test_blocks_agree_with_the_reference(world, eye, yaw, pitch, max_distance, f
     assert sight.sees_blocks(blocks, origin, eye, yaw, pitch, asked).tolist() == expected
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=at_night(2000, 150))
 @given(
     world=worlds(),
     eye=st.tuples(coordinate, coordinate, coordinate),
@@ -182,7 +183,7 @@ def test_points_agree_with_the_reference(world, eye, points):
         assert (sight.blocker(blocks, origin, eye, point) is None) == free
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=at_night(2000, 100))
 @given(
     world=worlds(),
     changes=st.lists(st.tuples(st.integers(0, 999), st.sampled_from(STATES)), max_size=6),
@@ -239,7 +240,7 @@ def _mapped_yaw(yaw, matrix):
 
 
 @pytest.mark.parametrize("name", MAPS)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=at_night(2000, 60))
 @given(
     world=worlds(),
     eye=st.tuples(coordinate, coordinate, coordinate),

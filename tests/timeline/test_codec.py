@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.profiles import at_night
 
 from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
@@ -110,7 +111,7 @@ def test_snapshots_round_trip(snapshot):
 
 
 @given(st.lists(frames | edits, max_size=5))
-@settings(max_examples=30)
+@settings(max_examples=at_night(2000, 30))
 def test_joined_entries_are_split_again(entries):
     pieces = codec.split(codec.join(codec.encode_entry(entry) for entry in entries))
     assert [codec.decode_entry(piece) for piece in pieces] == entries
@@ -125,7 +126,7 @@ def test_floats_keep_every_bit(bits):
 
 
 @given(frames | edits, st.data())
-@settings(max_examples=50)
+@settings(max_examples=at_night(2000, 50))
 def test_cut_bytes_are_refused(entry, data):
     whole_entry = codec.encode_entry(entry)
     cut = data.draw(st.integers(0, len(whole_entry) - 1))

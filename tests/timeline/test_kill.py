@@ -1,6 +1,5 @@
 """What a writing process leaves to others: while it writes, and when it is killed."""
 
-import os
 import random
 import runpy
 import signal
@@ -11,12 +10,13 @@ from itertools import islice
 from pathlib import Path
 
 import pytest
+from tests.profiles import at_night
 
 from beliefnest.timeline.journal import MemoryJournal
 from beliefnest.timeline.store import SqliteJournal
 
 WRITER = Path(__file__).with_name("killed_writer.py")
-KILLS = 200 if os.environ.get("BELIEFNEST_NIGHTLY") else 10
+KILLS = at_night(200, 10)
 LONGEST = 1000
 """Calls after which a writer is killed at the latest, while it still writes."""
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import Bundle, RuleBasedStateMachine, invariant, rule
+from tests.profiles import at_night
 
 from beliefnest.errors import BranchError, TickError
 from beliefnest.timeline.journal import Edit, ForkPoint, TimelineInfo, TimelineKey
@@ -169,4 +170,4 @@ class StoreMachine(RuleBasedStateMachine):
 
 
 TestStore = StoreMachine.TestCase
-TestStore.settings = settings(max_examples=30, stateful_step_count=25, deadline=None)
+TestStore.settings = settings(max_examples=at_night(2000, 30), stateful_step_count=25)

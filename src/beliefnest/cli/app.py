@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 import typer
 
+from beliefnest.cli.text import printable
 from beliefnest.errors import BeliefNestError
 
 __all__ = ["app", "run_command_line"]
@@ -52,7 +53,8 @@ def run_command_line(arguments: Sequence[str]) -> int:
 
 
 def _fail(message: str, status: int) -> int:
-    print(f"beliefnest: {' '.join(message.split())}", file=sys.stderr)  # noqa: T201
+    line = printable(" ".join(message.split()))
+    print(f"beliefnest: {line}", file=sys.stderr)  # noqa: T201
     return status
 
 

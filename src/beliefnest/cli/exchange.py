@@ -9,7 +9,6 @@ from typing import cast, get_args
 from beliefnest.cli.folder import store_in
 from beliefnest.cli.report import belief_json, place_key
 from beliefnest.errors import InputError
-from beliefnest.nest.nest import Nest
 from beliefnest.nest.paths import parse_path, path_text
 from beliefnest.nest.recorded import RecordedNest
 from beliefnest.nest.traced import import_trace
@@ -51,7 +50,9 @@ def export_run(options: ExportOptions) -> None:
             f"there is no format {options.format!r}; there are {', '.join(get_args(Format))}"
         )
     store = store_in(options.run)
-    with SqliteJournal.read(store) as journal, Nest.read(store) as nest:
+    # The run may go on meanwhile: all tables are of one moment.
+    with SqliteJournal.read(store) as journal, journal.unchanging():
+        nest = RecordedNest.of(journal)
         for path in options.paths:
             parse_path(path, nest.agents)
         counts = export(

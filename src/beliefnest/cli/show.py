@@ -16,8 +16,8 @@ from beliefnest.cli.console import stdout
 from beliefnest.cli.folder import store_in
 from beliefnest.cli.pictures import container_name, point_text, state_row, titled
 from beliefnest.cli.report import state_json
+from beliefnest.cli.text import printable
 from beliefnest.errors import InputError
-from beliefnest.nest.nest import Nest
 from beliefnest.nest.recorded import RecordedNest
 from beliefnest.prompts.templates import built_in_template, load_template
 from beliefnest.scenarios.loading import kept_scenario
@@ -114,7 +114,8 @@ def print_prompt(run: Path, path: str, template: Path | None, variables: list[st
 @contextmanager
 def _opened(run: Path) -> Iterator[tuple[Scenario, RecordedNest, SqliteJournal]]:
     store = store_in(run)
-    with SqliteJournal.read(store) as journal, Nest.read(store) as nest:
+    with SqliteJournal.read(store) as journal, journal.unchanging():
+        nest = RecordedNest.of(journal)
         yield _scenario(journal, nest), nest, journal
 
 
@@ -188,5 +189,5 @@ def _print_prompts(prompts: Sequence[PromptRecord]) -> None:
 
 
 def _foreign(text: str) -> Text:
-    """A text that others wrote: no markup, and nothing in it commands the terminal."""
-    return Text("".join(c if c.isprintable() or c == "\n" else "\ufffd" for c in text))
+    """A text that others wrote, as it is: square brackets in it are no markup."""
+    return Text(printable(text))

@@ -43,14 +43,24 @@ class RecordedNest:
         """
         journal = SqliteJournal.read(store)
         try:
-            run = journal.records.run()
-            setting, _ = decode_start(run.setting)
-            log = FileLog(journal)
-            nest = cls.__new__(cls)
-            nest._engine = Engine(setting, journal, ScriptedBodies(), run.seed, log).resume()
+            return cls.of(journal)
         except BaseException:
             journal.close()
             raise
+
+    @classmethod
+    def of(cls, journal: SqliteJournal) -> Self:
+        """A run whose file is open already; it is closed with the journal.
+
+        Raises:
+            StoreError: It cannot be read.
+        """
+        run = journal.records.run()
+        setting, _ = decode_start(run.setting)
+        nest = cls.__new__(cls)
+        nest._engine = Engine(
+            setting, journal, ScriptedBodies(), run.seed, FileLog(journal)
+        ).resume()
         return nest
 
     def __enter__(self) -> Self:

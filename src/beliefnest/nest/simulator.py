@@ -201,11 +201,15 @@ class Simulator(_Seen):
             at: Past tick to fork a new branch from; None: now.
 
         Raises:
-            BranchError: The name is not allowed, or `at` is given for a known branch.
+            BranchError: The name is not allowed, or `at` is given for a known branch or `follow`.
             TickError: `at` is in the future or before the start.
         """
         _check_branch_name(name)
         if name == FOLLOW:
+            if at is not None:
+                raise BranchError(
+                    f"{FOLLOW!r} goes on with the present; fork tick {at} under a name"
+                )
             self._engine.follow(self._path)
             return
         key = TimelineKey(self._path, name)

@@ -47,6 +47,9 @@ _FAULTS = {
     sqlite3.SQLITE_NOTADB: _DAMAGED,
     sqlite3.SQLITE_ERROR: _DAMAGED,
 }
+_REFUSALS = (sqlite3.Error, OverflowError, UnicodeDecodeError)
+"""What a statement can raise: damage can lie in texts, which SQLite itself does not look into."""
+
 _PRIMARY_CODE = 0xFF
 """The part of an SQLite error code that names the kind of fault."""
 
@@ -163,14 +166,14 @@ class Database:
         """Run a statement that returns nothing."""
         try:
             return self._connection.execute(sql, tuple(values))
-        except (sqlite3.Error, OverflowError) as fault:
+        except _REFUSALS as fault:
             raise self._fault(fault) from fault
 
     def rows(self, sql: str, values: Iterable[object] = ()) -> list[Row]:
         """All rows a query returns."""
         try:
             return self._connection.execute(sql, tuple(values)).fetchall()
-        except (sqlite3.Error, OverflowError) as fault:
+        except _REFUSALS as fault:
             raise self._fault(fault) from fault
 
     def row(self, sql: str, values: Iterable[object] = ()) -> Row | None:
@@ -270,7 +273,11 @@ class Database:
         if not self._open:
             return StoreError(f"{self.path} was closed; open it again")
         code = getattr(fault, "sqlite_errorcode", None)
-        kind = _FAULTS.get(code & _PRIMARY_CODE, "failed") if isinstance(code, int) else "failed"
+        kind = "failed"
+        if isinstance(code, int):
+            kind = _FAULTS.get(code & _PRIMARY_CODE, kind)
+        elif isinstance(fault, sqlite3.OperationalError | UnicodeDecodeError):
+            kind = _DAMAGED
         return StoreError(f"{self.path} {kind} ({fault})")
 
 

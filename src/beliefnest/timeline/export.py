@@ -90,7 +90,7 @@ def export(
             return _written(rows, folder, opener)
     except OSError as fault:
         raise StoreError(
-            f"{out} cannot be written: {fault}; check the path and the disk"
+            f"{out} cannot be written ({fault.strerror or fault}); check the path and the disk"
         ) from fault
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from PIL import Image
 
+from beliefnest.errors import InputError
 from beliefnest.viewer import icons
 from beliefnest.viewer.canvas import XY, Canvas, Colour, blend
 from beliefnest.viewer.icons import AGENT_COLOURS, INK, PAPER
@@ -72,8 +73,17 @@ def draw_overview(scenes: Sequence[Scene], title: str) -> Image.Image:
 
 
 def save(image: Image.Image, path: Path) -> None:
-    """Write a picture as PNG; the same picture gives the same bytes."""
-    image.save(path, format="PNG")
+    """Write a picture as PNG; the same picture gives the same bytes.
+
+    Raises:
+        InputError: The file cannot be written.
+    """
+    try:
+        image.save(path, format="PNG")
+    except OSError as error:
+        raise InputError(
+            f"the picture {path} cannot be written ({error.strerror or error}); check the path"
+        ) from None
 
 
 def _colours(scene: Scene) -> Mapping[str, Colour]:
