@@ -1,4 +1,4 @@
-"""Agent programs: one that does nothing, the price of the sandbox, many agents walking."""
+"""Agent programs: one that does nothing, the price of the sandbox, many walkers, a dead Node."""
 
 import json
 import statistics
@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from beliefnest.bodies.node_files import node_command
+from beliefnest.cli.bench import restore
 from beliefnest.cli.bench.figures import Figure, median_seconds
 from beliefnest.errors import BodyError
 from beliefnest.nest.nest import Nest
@@ -31,7 +32,7 @@ _CORNERS = ((15, 15), (-15, 10), (-10, -17), (17, -12))
 
 def measure() -> Sequence[Figure]:
     """All figures of programs, as users run them: `Nest.open`, `Simulator.run` and `run_all`."""
-    return [_empty(), _containment(), _walk(4, 100.0), _walk(16, 20.0)]
+    return [_empty(), _containment(), _walk(4, 100.0), _walk(16, 20.0), *restore.measure()]
 
 
 def _empty() -> Figure:
