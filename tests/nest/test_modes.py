@@ -1,10 +1,11 @@
 """Follow and control mode, forks, and what goes where (semantics 6)."""
 
+import numpy as np
 import pytest
 from tests.nest.comparing import everything, values
 from tests.nest.places import CHEST, CLOSED, CORNER, EAST, GAP, MEETING, WEST, nest_of
 
-from beliefnest.errors import BranchError, WorldError
+from beliefnest.errors import BranchError, InputError, TickError, WorldError
 
 THREE = {"observer": WEST, "sally": MEETING, "anne": GAP}
 ALL = ["/", "/observer", "/observer/sally", "/sally", "/sally/anne", "/anne"]
@@ -246,3 +247,39 @@ def test_unknown_blocks_stay_unknown_in_control_mode_and_are_air_in_its_world():
     belief.scripted.say("a", "hello")
     assert belief.state.blocks[9, 0, 1] is None
     assert belief.scripted.snapshot().blocks[9, 0, 1] == 0
+
+
+@pytest.mark.parametrize("tick", [1.0, 1.5, "1", True, -1, 9])
+def test_what_is_no_past_tick_is_refused(tick):
+    world, nest = corner()
+    world.step(3)
+    with pytest.raises(TickError):
+        nest["/observer"].switch("past", at=tick)
+    with pytest.raises(TickError):
+        nest.at(tick)
+    assert nest["/observer"].branches() == ()
+    nest["/observer"].switch("past", at=np.int64(2))
+    assert nest.at(np.int64(2))["/"].tick == nest["/observer"].tick == 2
+
+
+@pytest.mark.parametrize("ticks", [-1, 1.5, "2", None, True, 10**9])
+def test_what_is_no_number_of_ticks_is_refused(ticks):
+    _, nest = corner()
+    with pytest.raises(InputError, match="cannot pass"):
+        nest["/"].step(ticks)
+    assert nest.tick == 0
+
+
+def test_follow_goes_on_with_the_present_alone():
+    world, nest = corner()
+    world.step(3)
+    nest["/observer"].switch("try")
+    with pytest.raises(BranchError, match="present"):
+        nest["/observer"].switch("follow", at=1)
+    assert nest["/observer"].branch == "try"
+
+
+def test_a_description_is_a_text():
+    _, nest = corner()
+    with pytest.raises(InputError, match="text"):
+        nest["/"].describe("main", None)

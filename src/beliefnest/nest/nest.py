@@ -21,6 +21,7 @@ from beliefnest.nest.saved import decode_start, encode_start
 from beliefnest.nest.script import STEP, steps_played
 from beliefnest.nest.setting import Setting, Step
 from beliefnest.nest.simulator import PastSimulator, Simulator
+from beliefnest.nest.ticks import tick_of
 from beliefnest.nest.turns import in_turn
 from beliefnest.nest.versions import own_versions
 from beliefnest.perception.options import Perception
@@ -247,10 +248,11 @@ class Nest:
         """All simulators as they were at a past tick.
 
         Raises:
-            TickError: The tick is in the future or before the start.
+            TickError: The tick is no whole number, in the future or before the start.
         """
-        self._engine.reading((), tick)
-        return Past(self._engine, tick)
+        then = tick_of(tick)
+        self._engine.reading((), then)
+        return Past(self._engine, then)
 
     @in_turn
     def compare(self, a: str, b: str, *, unknown: bool = True) -> list[Difference]:

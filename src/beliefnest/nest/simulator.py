@@ -17,6 +17,7 @@ from beliefnest.nest.explain import element_of, explain
 from beliefnest.nest.explanation import Explanation
 from beliefnest.nest.noting import NotingModel
 from beliefnest.nest.paths import normalised, path_text
+from beliefnest.nest.ticks import tick_of, whole
 from beliefnest.nest.turns import in_turn
 from beliefnest.prompts import Template, render
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
@@ -202,7 +203,7 @@ class Simulator(_Seen):
 
         Raises:
             BranchError: The name is not allowed, or `at` is given for a known branch or `follow`.
-            TickError: `at` is in the future or before the start.
+            TickError: `at` is no whole number, in the future or before the start.
         """
         _check_branch_name(name)
         if name == FOLLOW:
@@ -214,7 +215,7 @@ class Simulator(_Seen):
             return
         key = TimelineKey(self._path, name)
         if all(info.key != key for info in self._engine.journal.timelines()):
-            self._engine.fork(self._path, name, at)
+            self._engine.fork(self._path, name, None if at is None else tick_of(at))
         elif at is not None:
             raise BranchError(f"branch {name!r} exists; fork tick {at} under another name")
         else:
@@ -256,7 +257,14 @@ class Simulator(_Seen):
 
     @in_turn
     def describe(self, name: str, text: str) -> None:
-        """Say what a branch is for; BranchError if there is none of that name."""
+        """Say what a branch is for.
+
+        Raises:
+            BranchError: There is no branch of that name.
+            InputError: The description is no text.
+        """
+        if not isinstance(text, str):
+            raise InputError(f"a description is a text, not {text!r}")
         self._engine.journal.describe(TimelineKey(self._path, name), text)
 
     def run(self, agent: str, code: str, timeout_ticks: int = 1200) -> ProgramResult:
@@ -292,8 +300,7 @@ class Simulator(_Seen):
             self._child_path(agent)
             if not isinstance(code, str):
                 raise InputError(f"the program of {agent} is a text, not {type(code).__name__}")
-        _check_timeout(timeout_ticks)
-        return self._engine.run(self._path, programs, timeout_ticks)
+        return self._engine.run(self._path, programs, _timeout(timeout_ticks))
 
     def noting(self, model: "Model", **detail: str) -> "Model":
         """A model whose conversation with the caller is kept in the run, request by request.
@@ -308,8 +315,18 @@ class Simulator(_Seen):
 
     @in_turn
     def step(self, ticks: int = 1) -> None:
-        """Let ticks pass in a control-mode simulator."""
-        self._engine.step(self._path, ticks)
+        """Let ticks pass in a control-mode simulator.
+
+        Raises:
+            InputError: The number is not whole, below 0, or more than a day takes.
+            BranchError: The simulator is in follow mode.
+        """
+        number = whole(ticks)
+        if number is None or not 0 <= number <= _LONGEST:
+            raise InputError(
+                f"{ticks!r} ticks cannot pass; give a whole number, at most {_LONGEST}"
+            )
+        self._engine.step(self._path, number)
 
     @in_turn
     def edit(
@@ -356,10 +373,11 @@ class Simulator(_Seen):
         return None
 
 
-def _check_timeout(ticks: int) -> None:
-    whole = isinstance(ticks, int) and not isinstance(ticks, bool)
-    if not whole or not 1 <= ticks <= _LONGEST:
+def _timeout(ticks: int) -> int:
+    number = whole(ticks)
+    if number is None or not 1 <= number <= _LONGEST:
         raise InputError(f"timeout_ticks is {ticks!r}; give a whole number, at most {_LONGEST}")
+    return number
 
 
 def _based_on(key: TimelineKey, infos: Sequence[TimelineInfo]) -> list[TimelineKey]:
