@@ -108,6 +108,9 @@ def test_its_prompt_is_rendered_and_its_programs_are_replayed(
     command = ["prompt", str(done), "--path", "/ann/bob", "--var", "task=Get an apple."]
     assert run_command_line(command) == 0
     assert "Task: Get an apple." in capsys.readouterr().out
+    own = [*command, "--template", "../texts/short.txt"]
+    assert run_command_line(own) == 0
+    assert capsys.readouterr().out == "bob: Get an apple.\n"
     assert run_command_line(["replay", str(done)]) == 0
 
 

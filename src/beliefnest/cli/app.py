@@ -141,7 +141,9 @@ def branches(
 def prompt(
     run: Annotated[Path, typer.Argument(help="A run folder, or one condition's in it.")],
     path: Annotated[str, typer.Option(help="The belief to render.")],
-    template: Annotated[Path | None, typer.Option(help="Template; the paper's if none.")] = None,
+    template: Annotated[
+        Path | None, typer.Option(help="Template, a file or one the run keeps; else the paper's.")
+    ] = None,
     var: Annotated[list[str] | None, typer.Option(help="A variable, as key=value.")] = None,
 ) -> None:
     """Render a prompt template from a belief of a recorded run."""

@@ -2,7 +2,7 @@
 
 import json
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +19,7 @@ from beliefnest.cli.report import state_json
 from beliefnest.cli.text import printable
 from beliefnest.errors import InputError
 from beliefnest.nest.recorded import RecordedNest
-from beliefnest.prompts.templates import built_in_template, load_template
+from beliefnest.prompts.templates import Template, built_in_template, load_template
 from beliefnest.scenarios.loading import kept_scenario
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import FOLLOW
@@ -94,7 +94,7 @@ def print_prompt(run: Path, path: str, template: Path | None, variables: list[st
     Args:
         run: Run folder, or its store.
         path: Belief path.
-        template: Template file; None: the paper's.
+        template: Template file, or the name of one that the run keeps; None: the paper's.
         variables: `key=value`, each a variable of the template.
 
     Raises:
@@ -106,9 +106,17 @@ def print_prompt(run: Path, path: str, template: Path | None, variables: list[st
         if not sign or not key.isidentifier():
             raise InputError(f"{text!r} is no variable; write --var key=value")
         values[key] = value
-    source = built_in_template("paper") if template is None else load_template(template)
-    with _opened(run) as (_, nest, _):
+    with _opened(run) as (_, nest, journal):
+        source = _template(template, journal.records.run().templates)
         sys.stdout.write(nest.simulator(path).render(source, **values) + "\n")
+
+
+def _template(wanted: Path | None, kept: Mapping[str, str]) -> Template:
+    if wanted is None:
+        return built_in_template("paper")
+    if str(wanted) in kept and not wanted.exists():
+        return Template(str(wanted), kept[str(wanted)])
+    return load_template(wanted)
 
 
 @contextmanager
