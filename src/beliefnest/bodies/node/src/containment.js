@@ -9,8 +9,8 @@ const { Session } = require('./session')
 const REGION = 'hall'
 const AGENT = 'walker'
 const FLOOR = -52
-const BOX = [[-11, FLOOR, -11], [11, FLOOR + 3, 11]]
-const CORNERS = [[8, 8], [-8, 6], [-5, -9], [9, -7]].map(([x, z]) => [x, FLOOR + 1, z])
+const BOX = [[-21, FLOOR, -21], [21, FLOOR + 3, 21]]
+const CORNERS = [[15, 15], [-15, 10], [-10, -17], [17, -12]].map(([x, z]) => [x, FLOOR + 1, z])
 const TIMEOUT_TICKS = 2000
 const PROGRAM = CORNERS.map(corner => `await goToPosition(bot, new Vec3(${corner.join(', ')}), 1)`).join('\n')
 

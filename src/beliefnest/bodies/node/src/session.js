@@ -66,7 +66,8 @@ class Session {
     const alive = () => this.beat({ beat: serv.region?.tick ?? null })
     this.regions = new Regions(serv, this.clock, frame => this.send({ frame }), alive)
     const sandbox = createSandbox({}, alive)
-    await sandbox.warm()
+    // For its names, which are those of every bot.
+    await sandbox.warm(scopeOf({ registry }, () => {}))
     this.runner = new Runner(this.regions, request => sandbox.run(request), scopeOf)
     return { protocol: PROTOCOL, node: process.version, ...versions }
   }

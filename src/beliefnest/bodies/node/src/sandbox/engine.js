@@ -38,23 +38,28 @@ class GuestEnded extends Error {
   }
 }
 
+/**
+ * @typedef {{parameters: string[], skills: string[], data: boolean}} Scope what programs find: the names in
+ *   order, which of them are skills, whether `mcData` is there
+ */
+
 /** The compiled interpreter; makes guests. */
 class Engine {
   /** @param {() => void} [alive] hears now and then that a guest computes within its limits */
   constructor (alive = () => {}) {
     this.alive = alive
     this.module = new WebAssembly.Module(interpreterBytes())
-    this.template = null
+    this.templates = new Map()
     this.memories = new Memories()
   }
 
   /**
    * @param {{fuel: number, memory: number}} limits fuel in units of the meter, memory in bytes
+   * @param {Scope} scope
    * @returns {Promise<Guest>} settled without any timer or input
    */
-  async open (limits) {
-    this.template ??= this.makeTemplate()
-    const { state, functions } = await this.template
+  async open (limits, scope) {
+    const { state, functions } = await this.templateOf(scope)
     const guest = new Guest(limits, functions, this.alive)
     guest.memory = this.memories.take(limits.memory)
     guest.interpreter = await QuickJS.open(this.module, guest.memory, guest)
@@ -68,14 +73,18 @@ class Engine {
     this.memories.give(guest.memory, guest.limits.memory)
   }
 
-  /** Makes what every program starts from, so that the first one need not wait for it. */
-  async warm () {
-    this.template ??= this.makeTemplate()
-    await this.template
+  /**
+   * What every program of a scope starts from, made once.
+   * @param {Scope} scope
+   */
+  templateOf (scope) {
+    const text = JSON.stringify(scope)
+    if (!this.templates.has(text)) this.templates.set(text, this.makeTemplate(text))
+    return this.templates.get(text)
   }
 
-  // The state every guest starts in, made once: a fresh context with the guest's side of the border.
-  async makeTemplate () {
+  // A fresh context with the guest's side of the border and everything in scope.
+  async makeTemplate (scopeText) {
     let strays = 0
     const host = { call: () => 0, interrupt: () => false, rejected: () => { strays++ } }
     const interpreter = await QuickJS.open(this.module, this.memories.take(0), host)
@@ -85,6 +94,7 @@ class Engine {
     const guest = interpreter.call(setUp, [
       ...Object.entries(HOST_FUNCTIONS).map(([name, id]) => interpreter.hostFunction(name, id)), interpreter.string(config)
     ])
+    interpreter.call(interpreter.property(guest, 'bind'), [interpreter.string(scopeText)])
     const functions = Object.fromEntries(['start', 'dispatch', 'describe'].map((name) => [name, interpreter.property(guest, name)]))
     interpreter.evaluate('Promise.reject()', 'check.js')
     if (strays !== 1) throw new Error('this build of QuickJS does not tell of rejected promises where rejections.js looks for it')
@@ -120,15 +130,13 @@ class Guest {
   /**
    * Starts the program.
    * @param {{text: string, marks: number}} program `text` of a function of (marks, ...parameters) that returns a promise
-   * @param {{parameters: string[], skills: string[], data: boolean}} scope
    * @param {{host: function(string): string, now: function(): number, random: function(): number}} world
    */
-  start (program, scope, { host, now, random }) {
+  start (program, { host, now, random }) {
     const { interpreter } = this
     interpreter.fuel.value = UNMETERED
     const { place, value } = interpreter.buffer(program.marks * 4)
     this.marks = { place, length: program.marks }
-    const config = interpreter.string(JSON.stringify(scope))
     this.answers = {
       [HOST_FUNCTIONS.host]: (values) => interpreter.string(host(interpreter.argument(values, 0))),
       [HOST_FUNCTIONS.now]: () => interpreter.number(now()),
@@ -137,7 +145,7 @@ class Guest {
     interpreter.fuel.value = this.limits.fuel + GRACE
     this.enter(() => {
       const main = interpreter.evaluate(program.text, 'program.js')
-      this.program = interpreter.call(this.functions.start, [main, config, value])
+      this.program = interpreter.call(this.functions.start, [main, value])
     })
   }
 

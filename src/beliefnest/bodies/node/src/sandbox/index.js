@@ -15,13 +15,14 @@ const GUEST_NAMES = ['Vec3', 'goals', 'Movements']
  * @param {{fuel?: number, memory?: number}} [options] limits of a run: fuel in loop turns and calls
  *   of the interpreter (about one per bytecode instruction), memory in bytes
  * @param {() => void} [alive] hears now and then that a program computes within its limits
- * @returns {{run: function(object): Promise<object>, warm: function(): Promise<void>}} see `run`; `warm`
- *   does beforehand what the first run would have to do
+ * @returns {{run: function(object): Promise<object>, warm: function(object): Promise<void>}} see `run`; `warm` does beforehand
+ *   what the first run of a scope would have to do
  */
 function createSandbox (options = {}, alive = () => {}) {
   const engine = new Engine(alive)
   const defaults = { ...DEFAULTS, ...options }
-  return { run: (request) => run(engine, { ...defaults, ...request }), warm: () => engine.warm() }
+  const warm = async (scope) => { await engine.templateOf(namesOf(scope)) }
+  return { run: (request) => run(engine, { ...defaults, ...request }), warm }
 }
 
 /**
@@ -45,27 +46,27 @@ function createSandbox (options = {}, alive = () => {}) {
 async function run (engine, { code, bot, scope = {}, fuel, memory, signal }) {
   if (!(fuel > 0 && fuel <= MAX_FUEL)) throw new RangeError(`the fuel must be between 1 and ${MAX_FUEL}, found ${fuel}`)
   const { skills, data } = splitScope(scope)
-  const parameters = ['bot', ...GUEST_NAMES, ...(data ? ['mcData'] : []), ...Object.keys(skills)]
+  const names = namesOf(scope)
   let program
   try {
-    program = prepareProgram(code, parameters)
+    program = prepareProgram(code, names.parameters)
   } catch (error) {
     if (!(error instanceof ProgramSyntaxError)) throw error
     const { message, line, column } = error
     return { ok: false, error: { message, line, column, skill: null, kind: 'syntax' }, lines: [], log: [], unfinished: [], fuel: 0 }
   }
-  const guest = await engine.open({ fuel, memory })
+  const guest = await engine.open({ fuel, memory }, names)
   const session = new Session(guest, { bot, skills, data, random: () => Math.random() })
-  const report = await observe(session, guest, program, parameters, { fuel, memory, signal })
+  const report = await observe(session, guest, program, { fuel, memory, signal })
   engine.close(guest)
   return report
 }
 
-async function observe (session, guest, program, parameters, { fuel, memory, signal }) {
+async function observe (session, guest, program, { fuel, memory, signal }) {
   const abort = () => session.finish({ ok: false, ended: new GuestEnded('aborted', 'the program was ended from outside') })
   signal?.addEventListener('abort', abort, { once: true })
   if (signal?.aborted) abort()
-  else session.begin(program, parameters)
+  else session.begin(program)
   const outcome = await session.finished
   signal?.removeEventListener('abort', abort)
   return {
@@ -76,6 +77,13 @@ async function observe (session, guest, program, parameters, { fuel, memory, sig
     unfinished: session.unfinished.map(({ what, statement }) => ({ what, line: program.statement(statement)?.line ?? null })),
     fuel: guest.fuelAtEnd
   }
+}
+
+/** @returns {import('./engine').Scope} */
+function namesOf (scope) {
+  const { skills, data } = splitScope(scope)
+  const names = Object.keys(skills)
+  return { parameters: ['bot', ...GUEST_NAMES, ...(data ? ['mcData'] : []), ...names], skills: names, data: data !== null }
 }
 
 function splitScope (scope) {

@@ -45,15 +45,13 @@ class Session {
   /**
    * Starts the program.
    * @param {{text: string, marks: number}} program
-   * @param {string[]} parameters the names in scope, in order
    */
-  begin (program, parameters) {
-    const scope = { parameters, skills: Object.keys(this.skills), data: this.data !== null }
+  begin (program) {
     const world = { host: (text) => this.answer(text), now: () => Date.now(), random: this.random }
     this.exchange.handle(this.bot, 'bot')
     try {
       this.guarded(() => {
-        this.guest.start(program, scope, world)
+        this.guest.start(program, world)
         this.look()
       })
     } catch (error) {

@@ -15,9 +15,9 @@ describe('the metered interpreter', () => {
 
   /** How a program of statements ends: fuel used, and the kind of end. */
   async function run (statements, limits = LIMITS, world = WORLD) {
-    const guest = await engine.open(limits)
+    const guest = await engine.open(limits, SCOPE)
     try {
-      guest.start({ text: `(async function (marks) { ${statements} })`, marks: 1 }, SCOPE, world)
+      guest.start({ text: `(async function (marks) { ${statements} })`, marks: 1 }, world)
     } catch (error) {
       if (!(error instanceof GuestEnded)) throw error
       return { kind: error.kind, fuel: guest.fuelAtEnd, guest }

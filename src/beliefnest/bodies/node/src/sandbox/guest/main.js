@@ -7,13 +7,20 @@ module.exports = function defineMain (env) {
   const { describe, decode } = env
   const { parse, stringify } = JSON
 
-  // The bot is the first object of the game that the host names.
-  function start (program, scopeText, marks) {
+  let scope = []
+
+  // Makes what programs find in scope, once for all that start from here. The bot is the first object of the game
+  // that the host names.
+  function bind (scopeText) {
     const { parameters, skills, data } = parse(scopeText)
-    const scope = { ...env.bindSkills(skills), Vec3: env.Vec3, goals: env.goals, Movements: env.Movements }
-    if (data) scope.mcData = env.bindData()
-    scope.bot = decode({ $: 'h', id: 0, k: 'bot' })
-    return program(new Uint32Array(marks), ...parameters.map((name) => scope[name]))
+    const known = { ...env.bindSkills(skills), Vec3: env.Vec3, goals: env.goals, Movements: env.Movements }
+    if (data) known.mcData = env.bindData()
+    known.bot = decode({ $: 'h', id: 0, k: 'bot' })
+    scope = parameters.map((name) => known[name])
+  }
+
+  function start (program, marks) {
+    return program(new Uint32Array(marks), ...scope)
   }
 
   const actions = {
@@ -31,5 +38,5 @@ module.exports = function defineMain (env) {
     }
   }
 
-  return { start, dispatch, describe: (error) => stringify(describe(error)) }
+  return { bind, start, dispatch, describe: (error) => stringify(describe(error)) }
 }

@@ -5,7 +5,7 @@ const parts = [require('./vec3'), require('./values'), require('./border'), requ
 
 /**
  * An expression: a function of (host, now, random, configText) that prepares the
- * global object and returns `{start(program, scope, marks), dispatch(text), describe(error)}`.
+ * global object and returns `{bind(scopeText), start(program, marks), dispatch(text), describe(error)}`.
  */
 const guestSource = `(function (host, now, random, configText) {
   'use strict'
