@@ -160,6 +160,40 @@ describe('programs', () => {
     assert.equal(results.sally.error.kind, 'fuel')
   })
 
+  it('cannot change how later programs find their way', async () => {
+    const { name, results } = await run({
+      sally: `const movements = new Movements(bot)
+        movements.canDig = true
+        movements.digCost = -5
+        bot.pathfinder.setMovements(movements)
+        bot.pathfinder.thinkTimeout = 0
+        bot.pathfinder.searchRadius = 1`
+    })
+    assert.equal(results.sally.error, null)
+    const again = await node.request('run', {
+      region: name, programs: { sally: 'console.log(bot.pathfinder.thinkTimeout, bot.pathfinder.searchRadius)\nawait goToPosition(bot, new Vec3(7, -51, 7))' }, timeout_ticks: 200
+    })
+    assert.equal(again.results.sally.error, null)
+    assert.deepEqual(again.results.sally.log, ['5000 -1'])
+  })
+
+  it('that close a window under a transfer cannot stop time', async () => {
+    const race = `const chest = await bot.openChest(bot.blockAt(new Vec3(2, -51, 2)))
+      const { id } = bot.registry.itemsByName.dirt
+      for (let i = 0; i < 6; i++) chest.deposit(id, null, 1).catch(error => console.log(error.message))
+      chest.close()
+      bot.toss(id, null, 1).catch(error => console.log(error.message))
+      await bot.waitForTicks(10)`
+    const { name, results } = await run({ sally: race, anne: 'await bot.waitForTicks(5)' }, 100, {
+      blocks: floor([[2, -51, 2, 2955]]), containers: [[2, -51, 2, {}]],
+      agents: { ...THREE(), sally: agent([0.5, -51, 0.5], { inventory: { dirt: 10 } }) }
+    })
+    assert.equal(results.anne.error, null)
+    assert.match(results.sally.log.join(), /packets were sent at once/)
+    const again = await node.request('run', { region: name, programs: { sally: 'await goToPosition(bot, new Vec3(-3, -51, 3))' }, timeout_ticks: 200 })
+    assert.equal(again.results.sally.error, null)
+  })
+
   it('search for a path without end only as long as time allows', async () => {
     const { tick, results } = await run({ sally: 'await bot.pathfinder.goto(new goals.GoalNear(300, -51, 300, 0))' }, 400)
     assert.ok(tick <= 400)

@@ -33,7 +33,8 @@ function startBot (client, clock) {
 }
 
 /**
- * Makes a bot stand still and finish what it was doing: path, digging, controls, window.
+ * Makes a bot stand still and finish what it was doing: path, digging, controls, window; how it looks
+ * for paths is as at first.
  * @returns {string[]} what it was doing
  */
 function stopBot (bot) {
@@ -43,6 +44,7 @@ function stopBot (bot) {
   if (bot.targetDigBlock) doing.push('digging')
   if (bot.currentWindow) doing.push('an open window')
   bot.pathfinder.setGoal(null)
+  bot.pathfinder.reset()
   if (bot.targetDigBlock) bot.stopDigging()
   bot.clearControlStates()
   if (bot.currentWindow) bot.closeWindow(bot.currentWindow)

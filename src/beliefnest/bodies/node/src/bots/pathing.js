@@ -7,7 +7,8 @@ const NODE_MS = 0.1
 
 /**
  * Charges the bot's pathfinder for its search, and keeps it from changing the world on its
- * way: agents walk around walls, they do not dig through them.
+ * way: agents walk around walls, they do not dig through them. `bot.pathfinder.reset()` undoes what
+ * a program has set.
  */
 function chargePathfinder (bot, clock) {
   const setMovements = bot.pathfinder.setMovements
@@ -28,6 +29,11 @@ function chargePathfinder (bot, clock) {
   bot.pathfinder.setMovements = movements => {
     const known = Object.hasOwn(movements, 'getNeighbors')
     setMovements(known ? movements : charged(movements))
+  }
+  const { thinkTimeout, tickTimeout, searchRadius } = bot.pathfinder
+  bot.pathfinder.reset = () => {
+    Object.assign(bot.pathfinder, { thinkTimeout, tickTimeout, searchRadius })
+    if (bot.pathfinder.movements !== standard) setMovements(standard)
   }
 }
 

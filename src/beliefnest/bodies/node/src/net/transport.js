@@ -6,6 +6,10 @@
  */
 const { EventEmitter } = require('node:events')
 
+// What a bot may send before the other side has taken any of it: some loops of Mineflayer that wait for a window
+// which is closed meanwhile would go on without letting time pass.
+const MOST_AT_ONCE = 5000
+
 class MemoryEnd extends EventEmitter {
   /**
    * @param {object} link what both ends share: `version`, `supportFeature`, `report(error)`
@@ -23,6 +27,7 @@ class MemoryEnd extends EventEmitter {
     this.state = 'play'
     this.latency = 0
     this.ended = false
+    this.expected = 0
     this.settings = {}
     this.socket = { remoteAddress: 'memory', destroy () {} }
   }
@@ -31,9 +36,13 @@ class MemoryEnd extends EventEmitter {
     return this.link.supportFeature(feature)
   }
 
-  /** Sends a packet; the other end gets it after the code that runs now. */
+  /**
+   * Sends a packet; the other end gets it after the code that runs now.
+   * @throws {Error} if a bot sends without end
+   */
   write (name, params) {
     if (this.ended) return
+    this.checkRoom(name)
     this.link.post(this.peer, name, this.translate(name, params))
   }
 
@@ -56,6 +65,10 @@ class MemoryEnd extends EventEmitter {
 }
 
 class ClientEnd extends MemoryEnd {
+  checkRoom (name) {
+    if (this.peer.expected >= MOST_AT_ONCE) throw new Error(`${MOST_AT_ONCE} packets were sent at once, the last of them ${name}; the bot waits for what does not happen`)
+  }
+
   /** What a player types: a command or words. */
   chat (message) {
     if (message.startsWith('/')) this.write('chat_command', { command: message.slice(1) })
@@ -73,6 +86,8 @@ class ClientEnd extends MemoryEnd {
 }
 
 class ServerEnd extends MemoryEnd {
+  checkRoom () {}
+
   /** Handlers on the server side may be async; what they throw is reported all the same. */
   deliver (name, params) {
     for (const listener of this.listeners(name)) {
@@ -94,6 +109,7 @@ class Mail {
   post (end, name, params) {
     if (params === null) return
     this.waiting.push({ end, name, params })
+    end.expected++
     if (this.scheduled) return
     this.scheduled = true
     // Not sooner: a sender may first write and then, some promises later, listen for the answer.
@@ -103,6 +119,7 @@ class Mail {
   handOver () {
     for (let index = 0; index < this.waiting.length; index++) {
       const { end, name, params } = this.waiting[index]
+      end.expected--
       if (end.ended) continue
       try {
         end.deliver(name, params)

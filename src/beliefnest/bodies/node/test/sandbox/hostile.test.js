@@ -76,6 +76,7 @@ const HARM = [
   ['an infinite distance', 'bot.findBlocks({ matching: 1, maxDistance: Infinity })', 'refused', /maxDistance must be a finite number/],
   ['a huge distance', 'bot.findBlocks({ matching: 1, maxDistance: 1e9 })', 'refused', /between 0 and 128/],
   ['a time that is NaN', 'bot.waitForTicks(NaN)', 'refused', /must be a finite number/],
+  ['half an item', 'await (await bot.openContainer(bot.blockAt(new Vec3(0, 1, 0)))).deposit(7, null, 0.5)', null, /whole number, found 0.5|is not there/],
   ['too many calls at once', 'for (let i = 0; i < 1000; i++) never()', 'refused', /calls are under way/],
   ['too many timers', 'for (let i = 0; i < 5000; i++) setTimeout(() => {}, 1e6)', 'refused', /1000 timers/],
   ['too many listeners', 'for (let i = 0; i < 5000; i++) bot.on("health", () => {})', 'refused', /100 listeners/],

@@ -43,7 +43,17 @@ const within = (low, high) => ({
   },
   toGuest: number.toGuest
 })
-const count = within(0, 1_000_000)
+
+/** A whole number between two bounds, inclusive. */
+const whole = (low, high) => ({
+  toHost: (x, wire, where) => {
+    const value = within(low, high).toHost(x, wire, where)
+    if (!Number.isInteger(value)) throw new RefusedError(`${where} must be a whole number, found ${value}`)
+    return value
+  },
+  toGuest: number.toGuest
+})
+const count = whole(0, 1_000_000)
 const ticks = within(0, MAX_TICKS)
 const slot = within(-1, 1000)
 
@@ -177,6 +187,6 @@ const search = {
 }
 
 module.exports = {
-  plain, nothing, boolean, number, text, vector, block, item, goal, movements, within, count, ticks, slot, choice,
+  plain, nothing, boolean, number, text, vector, block, item, goal, movements, within, whole, count, ticks, slot, choice,
   live, maybe, list, dictionary, record, either, later, chatText, playerName, entityFilter, search, stateOf
 }
