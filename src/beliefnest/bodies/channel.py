@@ -17,7 +17,7 @@ from beliefnest.errors import BodyError, BodyLostError, WorldError
 
 __all__ = ["PROTOCOL", "Channel"]
 
-PROTOCOL = 1
+PROTOCOL = 2
 """Version of the channel's messages; both sides state it."""
 
 _HEADER = struct.Struct(">I")

@@ -92,6 +92,7 @@ class _Snapshot(msgspec.Struct, frozen=True):
     containers: list[tuple[int, int, int, dict[str, int]]]
     agents: dict[str, _Agent]
     items: dict[int, _Item] = {}
+    hidden: bytes = b""
 
 
 class _Fault(msgspec.Struct, frozen=True):
@@ -164,6 +165,7 @@ def snapshot_of(message: Mapping[str, Any], box: Box) -> Snapshot:
         {(x, y, z): items for x, y, z, items in sorted(got.containers, key=lambda c: c[:3])},
         {name: agent.value() for name, agent in sorted(got.agents.items())},
         {number: item.value() for number, item in sorted(got.items.items())},
+        got.hidden,
     )
 
 
@@ -176,6 +178,7 @@ def snapshot_message(snapshot: Snapshot) -> dict[str, Any]:
         "containers": contents_message(snapshot.containers),
         "agents": {name: agent_message(agent) for name, agent in snapshot.agents.items()},
         "items": items_message(snapshot.items),
+        "hidden": snapshot.hidden,
     }
 
 

@@ -129,6 +129,10 @@ class Body(Protocol):
     def tick(self) -> int:
         """The body's latest tick."""
 
+    @property
+    def hidden(self) -> bytes:
+        """What goes on in it besides its snapshot's facts, as of the end of the last call."""
+
     def snapshot(self) -> Snapshot:
         """All there is in it now."""
 

@@ -33,6 +33,11 @@ class ScriptedBody:
         """The body's latest tick."""
         return self.world.now
 
+    @property
+    def hidden(self) -> bytes:
+        """Nothing: all there is can be seen."""
+        return b""
+
     def snapshot(self) -> Snapshot:
         """All there is in it now."""
         return self.world.snapshot()

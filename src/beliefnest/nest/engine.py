@@ -26,6 +26,7 @@ from beliefnest.errors import (
     WorldError,
 )
 from beliefnest.nest.history import History
+from beliefnest.nest.moments import hidden_at, note_hidden, present, snapshot_at
 from beliefnest.nest.paths import path_text
 from beliefnest.nest.recorder import Recorder
 from beliefnest.nest.runlog import MemoryLog, RunLog
@@ -186,8 +187,7 @@ class Engine:
             place, entries = self.place_of(source.key, tick)
             base = ForkPoint(place, entries, tick)
         key = TimelineKey(path, name)
-        reading = self.history.reading(base.timeline, path, base.entries)
-        snapshot = replace(reading.snapshot(), tick=base.tick)
+        snapshot = snapshot_at(self.journal, self.history, path, base)
         with self._embodied(key, snapshot), self.log.together():
             self.journal.create(key, base, base.tick)
             self.log.select(path, name)
@@ -351,10 +351,17 @@ class Engine:
         info = self.info(path)
         edit = Edit(info.head, path, blocks, containers)
         if path not in self._bodies:
-            self.journal.append(info.key, [edit], info.head)
+            self._append_edit(info.key, edit)
             return
-        with self._embodied(info.key, edited(self.reading(path).snapshot(), edit)):
-            self.journal.append(info.key, [edit], info.head)
+        with self._embodied(info.key, edited(self._recorded(info.key), edit)):
+            self._append_edit(info.key, edit)
+
+    def _append_edit(self, key: TimelineKey, edit: Edit) -> None:
+        # What goes on in the body goes on after an edit.
+        hidden = hidden_at(self.journal, present(self.journal, key))
+        with self.log.together():
+            self.journal.append(key, [edit], edit.tick)
+            note_hidden(self.journal, present(self.journal, key), hidden)
 
     def close(self) -> None:
         """Give up all bodies, the world and the journal."""
@@ -366,8 +373,7 @@ class Engine:
 
     def _recorded(self, key: TimelineKey) -> Snapshot:
         """What a body on that timeline has to be like now."""
-        reading = self.history.reading(key, key.path)
-        return replace(reading.snapshot(), tick=self.journal.info(key).head)
+        return snapshot_at(self.journal, self.history, key.path, present(self.journal, key))
 
     @contextmanager
     def _embodied(self, key: TimelineKey, snapshot: Snapshot) -> Iterator[None]:
@@ -452,6 +458,7 @@ class Engine:
             with self.log.together():
                 yield body
                 recorder.flush(body.tick)
+                note_hidden(self.journal, present(self.journal, recorder.key), body.hidden)
         except WorldError:
             # It was refused, so that there is nothing to take back.
             raise

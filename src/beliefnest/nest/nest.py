@@ -133,7 +133,12 @@ class Nest:
             raise
 
     @classmethod
-    def resume(cls, store: str | Path, limits: ProcessLimits | None = None) -> Self:
+    def resume(
+        cls,
+        store: str | Path,
+        limits: ProcessLimits | None = None,
+        worlds: Worlds | None = None,
+    ) -> Self:
         """Go on with a recorded run where it was, on every branch, with its seed.
 
         The world is started, and bodies are made, when they are first needed.
@@ -141,6 +146,7 @@ class Nest:
         Args:
             store: The run file.
             limits: What the world's process may take.
+            worlds: Lends the world, to one nest after the other; None: one is started.
 
         Raises:
             StoreError: There is no such run, it cannot be read or written, or has another
@@ -150,7 +156,7 @@ class Nest:
         try:
             run = journal.records.run()
             setting, world = decode_start(run.setting)
-            late = LateWorld(world, run.seed, limits)
+            late = LateWorld(world, run.seed, limits) if worlds is None else worlds.lend(world)
             engine = Engine(setting, journal, late, run.seed, FileLog(journal)).resume()
             engine.log.add_versions(own_versions())
             return cls._of(engine)

@@ -1,18 +1,19 @@
 """Running recorded programs again, each timeline in a fresh body, and comparing the frames."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import groupby
 
 from beliefnest.bodies.protocol import Body, World
 from beliefnest.errors import StoreError
 from beliefnest.nest.engine import edited
 from beliefnest.nest.history import History
+from beliefnest.nest.moments import snapshot_at
 from beliefnest.nest.paths import path_text
 from beliefnest.nest.script import UNDONE
 from beliefnest.nest.setting import Setting
 from beliefnest.timeline.compare import Difference, first_difference
-from beliefnest.timeline.journal import Edit, Entry, Journal, TimelineInfo, TimelineKey
+from beliefnest.timeline.journal import Edit, Entry, ForkPoint, Journal, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import ProgramRecord
 from beliefnest.world.frames import Frame, Snapshot
 
@@ -74,8 +75,8 @@ def replay(
             for p in programs
             if (p.path, p.branch) == (info.key.path, info.key.branch) and UNDONE not in p.detail
         ]
-        reading = history.reading(info.key, info.key.path, 0)
-        first = replace(reading.snapshot(), tick=info.start)
+        start = ForkPoint(info.key, 0, info.start)
+        first = snapshot_at(journal, history, info.key.path, start)
         recorded = list(journal.entries(info.key, 0, info.entries))
         calls = [_call(list(group)) for _, group in groupby(mine, key=lambda p: p.group)]
         found = _run_again(world, info, first, recorded, calls, seed)

@@ -56,7 +56,11 @@ class Frame:
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """All of one simulator at one tick; the grid is not to be written to."""
+    """All of one simulator at one tick; the grid is not to be written to.
+
+    `hidden` is what goes on there besides and nobody can perceive, as the speed of who falls or the
+    heat of a furnace: bytes that only the simulator's world reads. Empty: nothing is under way.
+    """
 
     tick: int
     box: Box
@@ -64,3 +68,4 @@ class Snapshot:
     containers: Mapping[Position, Items]
     agents: Mapping[str, AgentState]
     items: Mapping[int, DroppedItem] = field(default_factory=dict)
+    hidden: bytes = b""

@@ -22,28 +22,28 @@ class Runner {
    * @param {string} name of the region
    * @param {object} programs code by agent
    * @param {number} timeoutTicks after which programs that still run are ended
-   * @returns {Promise<{tick: number, results: object}>} RESULT by agent
+   * @returns {Promise<{tick: number, hidden: Uint8Array, results: object}>} RESULT by agent
    */
   async run (name, programs, timeoutTicks) {
     const region = this.regions.get(name)
     const bodies = Object.keys(programs).map(agent => region.body(agent))
     const first = region.tick
     const runs = []
-    await this.regions.resumed(region, async () => {
+    const ended = await this.regions.resumed(region, async () => {
       Object.values(programs).forEach((code, index) => runs.push(this.start(region, bodies[index], code)))
       try {
-        await this.untilEnded(region, runs, first + timeoutTicks)
+        await this.untilEnded(region, runs, timeoutTicks)
       } finally {
         await this.endAll(region, runs, timeoutTicks)
       }
     })
     const results = Object.keys(programs).map((agent, index) => [agent, { ...runs[index].result, ticks: runs[index].endTick - first }])
-    return { tick: region.tick, results: Object.fromEntries(results) }
+    return { ...ended, results: Object.fromEntries(results) }
   }
 
   start (region, { bot }, code) {
     const abort = new AbortController()
-    const run = { abort, result: null, endTick: null, timeout: null }
+    const run = { agent: bot.username, abort, result: null, endTick: null, timeout: null }
     const emit = event => region.emit({ ...event, actor: bot.username })
     const request = { code, bot, scope: this.scopeOf(bot, emit, abort.signal), signal: abort.signal }
     this.runProgram(request).then(report => {
@@ -53,11 +53,19 @@ class Runner {
     return run
   }
 
-  async untilEnded (region, runs, lastTick) {
-    do {
-      await this.regions.tick(region)
+  // What programs leave undone is broken off before the last frame is made, which so tells of it.
+  async untilEnded (region, runs, timeoutTicks) {
+    const lastTick = region.tick + timeoutTicks
+    let over = false
+    const look = async () => {
       for (const run of runs) if (run.result !== null) run.endTick ??= region.tick
-    } while (runs.some(run => run.result === null) && region.tick < lastTick)
+      over = runs.every(run => run.result !== null) || region.tick >= lastTick
+      if (!over) return
+      await this.endAll(region, runs, timeoutTicks)
+      const clean = runs.every(({ result }) => result.unfinished.length === 0)
+      await this.regions.bodies.rest(region, runs.map(({ agent }) => agent), clean)
+    }
+    while (!over) await this.regions.tick(region, look)
   }
 
   async endAll (region, runs, timeoutTicks) {

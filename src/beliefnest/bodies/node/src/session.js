@@ -10,7 +10,7 @@ const { scopeOf } = require('./scope')
 const { BadRequest } = require('./channel/errors')
 const versions = require('./versions')
 
-const PROTOCOL = 1
+const PROTOCOL = 2
 
 class Session {
   /**

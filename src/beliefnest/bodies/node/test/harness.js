@@ -38,7 +38,7 @@ class Node {
   }
 
   hello (seed = 0) {
-    return this.request('hello', { protocol: 1, seed, minecraft: '1.20.4' })
+    return this.request('hello', { protocol: 2, seed, minecraft: '1.20.4' })
   }
 
   /** Ends the process as Python's end would. */
@@ -79,7 +79,7 @@ const THREE = () => ({
 /** @returns {object} arguments of create_region */
 function region (name, more = {}) {
   return {
-    region: name, seed: name, box: BOX, tick: 0, blocks: floor(), containers: [], agents: THREE(), items: {}, ...more
+    region: name, seed: name, box: BOX, tick: 0, blocks: floor(), containers: [], agents: THREE(), items: {}, hidden: null, ...more
   }
 }
 

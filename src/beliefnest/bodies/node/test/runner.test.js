@@ -27,8 +27,9 @@ describe('programs', () => {
     assert.equal(tick, results.anne.ticks)
     assert.ok(results.sally.ticks < results.anne.ticks)
     const said = frames.map(frame => frame.events.filter(event => event.kind === 'chat').map(event => event.actor).join())
-    // What they do before they first wait belongs to the first tick, as what comes after it.
-    assert.deepEqual(said.filter(Boolean), ['sally,anne,sally,anne', 'sally,anne', 'anne', 'anne', 'anne'])
+    // Programs begin as they are listed, bots move in order of their names. What comes before the first wait belongs
+    // to the first tick, as what comes after it.
+    assert.deepEqual(said.filter(Boolean), ['sally,anne,anne,sally', 'anne,sally', 'anne', 'anne', 'anne'])
   })
 
   it('may be one whole function', async () => {

@@ -47,6 +47,7 @@ function stopBot (bot) {
   bot.pathfinder.reset()
   if (bot.targetDigBlock) bot.stopDigging()
   bot.clearControlStates()
+  bot.jumpQueued = false
   if (bot.currentWindow) bot.closeWindow(bot.currentWindow)
   bot.deactivateItem()
   return doing

@@ -1,10 +1,8 @@
 'use strict'
 /** Translates packets between the server's world and a region's scenario coordinates. */
+const { toStep } = require('../steps')
 const { TO_CLIENT, TO_SERVER } = require('./packets')
 
-// Points cross in steps of 2^-24 blocks: such a number plus a whole offset is exact, so that
-// what a region computes does not depend on where in the world it lies.
-const STEPS = 2 ** 24
 // block_dig's later statuses (drop, release, swap) carry a meaningless location of zeros.
 const LAST_DIG_STATUS_WITH_PLACE = 2
 const FIXED_POINT = 8
@@ -43,7 +41,6 @@ class Shift {
 }
 
 const same = value => value
-const toStep = value => Math.round(value * STEPS) / STEPS
 
 /** One function per kind of packets.js: (shift, value, entry, packet) -> new value. */
 const KINDS = {

@@ -116,6 +116,12 @@ class Mail {
     setImmediate(() => this.handOver())
   }
 
+  /** Drops what was sent and has not arrived. */
+  clear () {
+    this.waiting.length = 0
+    this.scheduled = false
+  }
+
   handOver () {
     for (let index = 0; index < this.waiting.length; index++) {
       const { end, name, params } = this.waiting[index]

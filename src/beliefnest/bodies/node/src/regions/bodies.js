@@ -4,7 +4,7 @@ const { connect } = require('../net/transport')
 const { BadRequest } = require('../channel/errors')
 const { orBadRequest } = require('./changes')
 const { agentState } = require('./facts')
-const { agentUuid, INJECTION_MS, startBot } = require('../bots/bot')
+const { agentUuid, INJECTION_MS, startBot, stopBot } = require('../bots/bot')
 
 // What gravity leaves of the vertical speed of one who stands: (0 - 0.08) * 0.98 a tick.
 const STANDING_VELOCITY = -0.0784
@@ -27,7 +27,9 @@ class Bodies {
    * @param {object} agents AGENT by name
    */
   async add (region, agents) {
-    const joining = Object.entries(agents).map(([agent, state]) => this.start(region, agent, state))
+    // Ticks begin on the tick, whenever somebody joined.
+    this.clock.active.time -= INJECTION_MS
+    const joining = inOrder(Object.entries(agents)).map(([agent, state]) => this.start(region, agent, state))
     await this.clock.advance(INJECTION_MS)
     for (const { player, state } of joining) this.letIn(region, player, state)
     await this.clock.advance(0)
@@ -75,34 +77,78 @@ class Bodies {
    * @param {object} agents AGENT or null by name
    */
   async apply (region, agents) {
-    const joining = {}
-    const staying = []
-    for (const [agent, state] of Object.entries(agents)) {
-      const body = region.bodies.get(agent)
-      if (state === null && body !== undefined) this.remove(region, agent)
-      else if (state !== null && body === undefined) joining[agent] = state
-      else if (state !== null) staying.push({ ...body, state })
-    }
-    for (const { player, state } of staying) {
+    const present = Object.keys(agents).every(agent => (agents[agent] !== null) === region.bodies.has(agent))
+    if (!present) return this.replace(region, agents)
+    const changed = Object.entries(agents).filter(([, state]) => state !== null)
+      .map(([agent, state]) => ({ ...region.bodies.get(agent), state }))
+    for (const { player, state } of changed) {
       player.place(region.toServer(state.position), state.yaw, state.pitch)
       player.food = state.food
       give(player, state)
     }
-    if (Object.keys(joining).length > 0) await this.add(region, joining)
     await this.clock.advance(0)
-    for (const { bot, player, state } of staying) ground(bot, player, state)
+    for (const { bot, player, state } of changed) ground(bot, player, state)
   }
 
-  /** Puts standing agents exactly where the channel says they are; their bots stop gliding. */
+  // Who acts first in a tick depends on who joined first, so that all join anew.
+  async replace (region, agents) {
+    const states = Object.fromEntries(
+      [...region.bodies].map(([agent, { player }]) => [agent, agentState(region, player)]))
+    for (const agent of Object.keys(states)) this.remove(region, agent)
+    // What they waited for does not concern anybody any more.
+    region.context.timers.clear()
+    region.mail.clear()
+    const wanted = Object.entries({ ...states, ...agents }).filter(([, state]) => state !== null)
+    await this.add(region, Object.fromEntries(wanted))
+  }
+
+  /** Puts agents exactly where the channel says they are; those who stand stop gliding. */
   async settle (region) {
-    const standing = [...region.bodies.values()]
-      .filter(({ player }) => player.onGround)
-      .map(({ bot, player }) => ({ bot, player, state: agentState(region, player) }))
-    for (const { player, state } of standing) {
+    const settling = [...region.bodies.values()].map(({ bot, player }) => {
+      const state = agentState(region, player)
+      return { bot, player, state, velocity: bot.entity.velocity.clone() }
+    })
+    for (const { player, state } of settling) {
+      if (state.on_ground) player.fallsFrom = null
       player.place(region.toServer(state.position), state.yaw, state.pitch)
     }
     await this.clock.advance(0)
-    for (const { bot, player, state } of standing) ground(bot, player, state)
+    for (const { bot, player, state, velocity } of settling) {
+      if (!state.on_ground) bot.entity.velocity.update(velocity)
+      ground(bot, player, state)
+    }
+  }
+
+  /**
+   * Ends what is under way with agents, so that nothing of it needs to be told.
+   * @param {boolean} clean whether nothing that a bot was asked to do is still waited for; what is
+   *   would go on whenever time does, so that all bots are made anew
+   */
+  async rest (region, agents, clean) {
+    const resting = agents.map(agent => region.bodies.get(agent))
+    for (const { bot } of resting) stopBot(bot)
+    await this.clock.advance(0)
+    for (const { player } of resting) player.emit('rest')
+    await this.clock.advance(0)
+    if (clean) return
+    const hidden = this.serv.hidden(region)
+    await this.replace(region, {})
+    this.serv.takeUp(region, hidden)
+    await this.clock.advance(0)
+  }
+
+  /** The part of what is hidden that is up to bots; see server/plugins/hidden.js. */
+  keepSpeeds () {
+    this.serv.keeps('speeds', {
+      save: region => inOrder([...region.bodies]).filter(([, { player }]) => !player.onGround)
+        .map(([agent, { bot: { entity: { velocity: { x, y, z } } } }]) => [agent, x, y, z]),
+      restore (rows, region) {
+        const told = new Map(rows.map(([agent, ...speed]) => [agent, speed]))
+        for (const [agent, { bot, player }] of region.bodies) {
+          if (!player.onGround) bot.entity.velocity.set(...told.get(agent) ?? [0, 0, 0])
+        }
+      }
+    })
   }
 
   /** Takes an agent out of the active region. */
@@ -113,6 +159,10 @@ class Bodies {
     bot.removeAllListeners()
     this.serv.forgetPlayer?.(player.uuid)
   }
+}
+
+function inOrder (entries) {
+  return entries.sort(([a], [b]) => (a < b ? -1 : 1))
 }
 
 function requireInside (region, agent, position) {

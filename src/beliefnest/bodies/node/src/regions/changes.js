@@ -10,7 +10,7 @@ function applyBlocks (serv, region, blocks) {
     if (!region.box.contains(x, y, z)) {
       throw new BadRequest(`block (${x}, ${y}, ${z}) lies outside the box of region ${region.name}`)
     }
-    serv.blocks.set(region.toServer([x, y, z]), state)
+    serv.blocks.put(region.toServer([x, y, z]), state)
   }
 }
 

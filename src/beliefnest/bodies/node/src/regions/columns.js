@@ -32,6 +32,7 @@ function buildColumns (serv, region, states) {
     const state = box.contains(x, y, z) ? states[box.index(x, y, z)] : wall
     if (state <= 0 || y < serv.minY || y >= serv.minY + serv.worldHeight) return
     setRaw(serv, x + origin.x, y, z + origin.z, state)
+    if (state !== wall) serv.containers.stand(region.toServer([x, y, z]))
   })
 }
 

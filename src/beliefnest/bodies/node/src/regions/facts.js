@@ -1,5 +1,6 @@
 'use strict'
 /** What is the case in a region, as the channel says it: read from the server, never from bots. */
+const { toStep } = require('../steps')
 
 const DECIMALS = 1e6
 
@@ -36,12 +37,8 @@ function changedContainers (serv, region) {
 
 /** @returns {Array} [x, y, z, items] of all containers in the box */
 function containerStates (serv, region) {
-  const all = []
-  region.box.forEach((x, y, z) => {
-    const items = serv.containers.get(region.toServer([x, y, z]))
-    if (items !== null) all.push([x, y, z, sorted(items)])
-  })
-  return all
+  return serv.containers.positions(position => region.contains(position)).map(position =>
+    [...region.toScenario(position), sorted(serv.containers.get(position))])
 }
 
 /** @returns {object} agents of the active region by name */
@@ -58,4 +55,12 @@ function itemStates (serv, region) {
   return items
 }
 
-module.exports = { agentState, agentStates, changedContainers, containerStates, itemStates }
+/** Puts what lies in a region exactly where the channel says it does. */
+function settleItems (serv, region) {
+  for (const entity of serv.itemEntities(place => region.contains(place))) {
+    const [x, y, z] = region.toScenario(entity.position).map(rounded).map(toStep)
+    serv.placeItem(entity, region.toServer([x, y, z]))
+  }
+}
+
+module.exports = { agentState, agentStates, changedContainers, containerStates, itemStates, settleItems }

@@ -1,11 +1,12 @@
 'use strict'
 /** All regions of the world: making, changing, looking at, and giving up one. */
+const { decode, encode } = require('@msgpack/msgpack')
 const { Allotment } = require('./allotment')
 const { Bodies } = require('./bodies')
 const { Box } = require('./box')
 const { buildColumns, dropColumns, readStates } = require('./columns')
 const { applyBlocks, applyContainers, applyItems } = require('./changes')
-const { agentStates, containerStates, itemStates } = require('./facts')
+const { agentStates, containerStates, itemStates, settleItems } = require('./facts')
 const { Recorder } = require('./recorder')
 const { Region, TICK_MS } = require('./region')
 const { BadRequest } = require('../channel/errors')
@@ -24,6 +25,7 @@ class Regions {
     this.alive = alive
     this.allotment = new Allotment()
     this.bodies = new Bodies(serv, clock)
+    this.bodies.keepSpeeds()
     this.byName = new Map()
     serv.blocks.on('change', ({ position, after }) => serv.region.recorder.blockChanged(position, after))
     serv.facts.on('event', event => serv.region.recorder.serverEvent(event))
@@ -51,7 +53,7 @@ class Regions {
   }
 
   /** @returns {Promise<object>} SNAPSHOT of the new region, once every bot stands in it */
-  async create ({ region: name, seed, box: corners, tick, blocks, containers, agents, items }) {
+  async create ({ region: name, seed, box: corners, tick, blocks, containers, agents, items, hidden }) {
     if (this.byName.has(name)) throw new BadRequest(`there already is a region ${name}`)
     const box = new Box(...corners)
     requireHeight(this.serv, box)
@@ -65,7 +67,7 @@ class Regions {
         applyContainers(this.serv, region, containers)
         await this.bodies.add(region, agents)
         applyItems(this.serv, region, items)
-        region.recorder.settle()
+        await this.takeUp(region, hidden)
       })
     } catch (error) {
       await this.destroy(name)
@@ -75,7 +77,7 @@ class Regions {
   }
 
   /** @returns {Promise<object>} SNAPSHOT of the region once it is as asked */
-  async apply ({ region: name, blocks, containers, agents, items, tick }) {
+  async apply ({ region: name, blocks, containers, agents, items, tick, hidden }) {
     const region = this.get(name)
     await this.inside(region, async () => {
       applyBlocks(this.serv, region, blocks)
@@ -83,9 +85,23 @@ class Regions {
       await this.bodies.apply(region, agents)
       region.tick = tick
       applyItems(this.serv, region, items)
-      region.recorder.settle()
+      await this.takeUp(region, hidden)
     })
     return this.snapshot(region)
+  }
+
+  /** Makes a region that is as its SNAPSHOT says go on as `hidden` says; null: with nothing under way. */
+  async takeUp (region, hidden) {
+    this.serv.takeUp(region, hidden?.byteLength > 0 ? decode(hidden) : {})
+    await this.clock.advance(0)
+    region.context.setDate(region.tick * TICK_MS)
+    region.recorder.settle()
+  }
+
+  /** @returns {Uint8Array} what goes on in a region and no SNAPSHOT has; empty if nothing does */
+  hidden (region) {
+    const parts = this.serv.hidden(region)
+    return Object.keys(parts).length === 0 ? new Uint8Array(0) : encode(parts)
   }
 
   async destroy (name) {
@@ -103,24 +119,31 @@ class Regions {
   /**
    * Runs `action` in a region that goes on as one made anew from its snapshot would, so that
    * neither an end of the process nor a visit to another branch can be seen in what follows.
+   * @returns {Promise<{tick: number, hidden: Uint8Array}>}
    */
   async resumed (region, action) {
     return this.inside(region, async () => {
       region.reseed()
       this.serv.numberItems()
+      settleItems(this.serv, region)
       await this.bodies.settle(region)
-      return action()
+      await action()
+      return { tick: region.tick, hidden: this.hidden(region) }
     })
   }
 
-  /** One tick of the active region; its frame is sent if anything changed. */
-  async tick (region) {
+  /**
+   * One tick of the active region; its frame is sent if anything changed.
+   * @param {() => Promise<void>} [before] what is to happen before the frame is made
+   */
+  async tick (region, before) {
     await this.clock.advance(TICK_MS)
     region.tick += 1
     this.serv.tickCount = region.tick
     this.serv.tickRegion(position => region.contains(position))
     this.serv.emit('tick', TICK_MS / 1000, region.tick, region)
     await this.clock.advance(0)
+    await before?.()
     const frame = region.recorder.frame()
     if (frame !== null) this.send(frame)
     this.alive()
@@ -130,10 +153,9 @@ class Regions {
 
   async step (name, ticks) {
     const region = this.get(name)
-    await this.resumed(region, async () => {
+    return this.resumed(region, async () => {
       for (let count = 0; count < ticks; count++) await this.tick(region)
     })
-    return { tick: region.tick }
   }
 
   /** @returns {Promise<object>} SNAPSHOT */
@@ -145,7 +167,8 @@ class Regions {
         blocks: new Uint8Array(states.buffer, states.byteOffset, states.byteLength),
         containers: containerStates(this.serv, region),
         agents: agentStates(this.serv, region),
-        items: itemStates(this.serv, region)
+        items: itemStates(this.serv, region),
+        hidden: this.hidden(region)
       }
     })
   }

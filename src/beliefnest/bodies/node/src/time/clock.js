@@ -24,6 +24,7 @@ class Context {
     this.report = report
     this.time = 0
     this.charged = 0
+    this.shift = 0
     this.random = new Random(seed)
     this.timers = new TimerQueue(() => this.time)
   }
@@ -31,6 +32,11 @@ class Context {
   /** Milliseconds since the context began, thinking time charged to this callback included. */
   now () {
     return this.time + this.charged
+  }
+
+  /** Makes the context's date, which need not rise, that of `ms` after its beginning; what waits goes on waiting. */
+  setDate (ms) {
+    this.shift = ms - this.time
   }
 }
 
@@ -43,7 +49,7 @@ class Clock {
 
   /** Milliseconds since 1970 in the active context. */
   epochNow () {
-    return EPOCH_MS + this.active.now()
+    return EPOCH_MS + this.active.now() + this.active.shift
   }
 
   /**

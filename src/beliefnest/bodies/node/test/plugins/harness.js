@@ -21,12 +21,12 @@ const LIMIT = 2000
 async function inWorld ({ agents = { sally: agent([0.5, FLOOR, 0.5]) }, blocks = [], containers = [], box = BOX }, body) {
   const frames = []
   const session = new Session(clock, ({ frame }) => frames.push(frame))
-  await session.perform({ op: 'hello', protocol: 1, seed: 0, minecraft: '1.20.4' })
+  await session.perform({ op: 'hello', protocol: 2, seed: 0, minecraft: '1.20.4' })
   const { regions } = session
   const { serv } = regions
   const states = blocks.map(([x, y, z, name, properties]) => [x, y, z, serv.blocks.state(name, properties)])
   await regions.create({
-    region: 'test', seed: 'test', box, tick: 0, blocks: floor(states, box), containers, agents, items: {}
+    region: 'test', seed: 'test', box, tick: 0, blocks: floor(states, box), containers, agents, items: {}, hidden: null
   })
   await regions.inside(regions.get('test'), () => body(worldOf(regions, frames)))
 }

@@ -74,7 +74,7 @@ test('items lie on slabs and do not go through walls', async () => {
 
 test('items vanish after five minutes', async () => {
   await inWorld({ agents: pair({}) }, async world => {
-    world.serv.dropItem(world.at(8.5, FLOOR, 8.5), new world.serv.Item(1, 1)).age = 5990
+    world.serv.dropItem(world.at(8.5, FLOOR, 8.5), new world.serv.Item(1, 1)).born = world.region.tick - 5990
     await world.ticks(9)
     assert.equal(lying(world).length, 1)
     await world.ticks(1)

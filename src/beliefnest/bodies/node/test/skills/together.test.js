@@ -107,7 +107,7 @@ test('waiting for a number of ticks, a condition, and a mob', async () => {
     assert.ok(Math.abs(region.tick - start - 30) <= 1)
     assert.equal(await world.during(own.waitUntil(sally, () => region.tick > start + 50 && 'late')), 'late')
     assert.match((await failure(world, own.waitUntil(sally, () => false, 20))).message, /within 20 ticks/)
-    world.serv.dropItem(world.at(9.5, FLOOR, 9.5), new world.serv.Item(1, 1)).age = 5980
+    world.serv.dropItem(world.at(9.5, FLOOR, 9.5), new world.serv.Item(1, 1)).born = world.region.tick - 5980
     await world.ticks(1)
     const item = Object.values(sally.entities).find(({ name }) => name === 'item')
     await world.during(own.waitForMobRemoved(sally, item, 5))

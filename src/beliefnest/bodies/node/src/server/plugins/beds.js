@@ -43,7 +43,7 @@ module.exports.server = (serv) => {
     serv._writeAll('animation', { entityId: player.id, animation: LEAVE_BED })
   }
 
-  serv.blocks.on('change', ({ position, before, after, player }) => {
+  serv.blocks.on('update', ({ position, before, after, player }) => {
     const old = serv.blocks.describe(before)
     if (!old.name.endsWith('_bed') || serv.blocks.describe(after).name === old.name) return
     for (const sleeper of serv.players) if (sleeper.bed && keyOf(sleeper.bed) === keyOf(position)) serv.getUp(sleeper)
@@ -64,5 +64,5 @@ module.exports.player = (player, serv) => {
   player._client.on('entity_action', ({ actionId }) => {
     if (actionId === STOP_SLEEPING || actionId === 'stop_sleeping') serv.getUp(player)
   })
-  player.on('disconnected', () => serv.getUp(player))
+  for (const end of ['rest', 'disconnected']) player.on(end, () => serv.getUp(player))
 }

@@ -8,7 +8,8 @@ const { decode, encode } = require('./lib/states')
  * two acts of one tick could interleave; here an act is done when the call returns.
  *
  * `serv.blocks.on('change', ({position, before, after, player}) => ...)` reports every
- * change of a block state (ids), whoever made it; `player` is set where one did.
+ * change of a block state (ids), whoever made it; `player` is set where one did. `update` follows
+ * where what is beside the block is to take notice: a door's other half, sand without a hold.
  */
 module.exports.server = (serv) => {
   const { registry } = serv
@@ -54,15 +55,23 @@ module.exports.server = (serv) => {
     location: position, type: serv.overworld.sync.getBlockStateId(position),
   })
 
-  blocks.set = (position, stateId, player = null) => {
+  /** Sets a block as it is, and nothing else: what is beside it does not take notice. */
+  blocks.put = (position, stateId, player = null) => {
     const before = serv.overworld.sync.getBlockStateId(position)
-    if (before === stateId) return
+    if (before === stateId) return null
     serv.overworld.sync.setBlockStateId(position, stateId)
     const column = `${Math.floor(position.x / 16)},${Math.floor(position.z / 16)}`
     for (const other of serv.players) {
       if (other.loadedChunks?.[column]) blocks.send(other, position)
     }
-    blocks.emit('change', { position: position.clone(), before, after: stateId, player })
+    const change = { position: position.clone(), before, after: stateId, player }
+    blocks.emit('change', change)
+    return change
+  }
+
+  blocks.set = (position, stateId, player = null) => {
+    const change = blocks.put(position, stateId, player)
+    if (change !== null) blocks.emit('update', change)
   }
 
   serv.blocks = blocks

@@ -71,7 +71,7 @@ module.exports.server = (serv) => {
   Object.keys(TITLES).forEach((name) => serv.onInteraction(name, open))
 
   /** What is left of a double chest is a single one. */
-  serv.blocks.on('change', ({ position, before, after }) => {
+  serv.blocks.on('update', ({ position, before, after }) => {
     const old = serv.blocks.describe(before)
     const other = TITLES[old.name] && partnerOf(position, old)
     if (!other || serv.blocks.describe(after).name === old.name) return

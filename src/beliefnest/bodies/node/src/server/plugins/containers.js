@@ -6,11 +6,16 @@ const { ContainerStore } = require('./lib/containerStore')
 module.exports.server = (serv) => {
   serv.containers = new ContainerStore(serv)
   serv.onForget((within) => serv.containers.forget(within))
+  serv.keeps('contents', {
+    save: (region) => serv.containers.save(region),
+    restore: (rows, region) => serv.containers.restore(rows, region),
+  })
 
   /** A container that is broken by somebody spills; one that is replaced otherwise is gone. */
   serv.blocks.on('change', ({ position, before, after, player }) => {
     const names = [before, after].map((stateId) => serv.blocks.describe(stateId).name)
     const items = serv.containers.blockChanged(position, ...names)
+    serv.containers.stand(position)
     if (player) items.forEach((item) => serv.popItem(position, item))
   })
 }

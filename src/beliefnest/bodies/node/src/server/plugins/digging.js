@@ -39,6 +39,8 @@ module.exports.server = (serv) => {
 module.exports.player = (player, serv) => {
   let digging = null
 
+  player.on('rest', () => { digging = null })
+
   player.digTick = () => { if (digging) digging.ticks += 1 }
 
   const canMine = (position) => player.health > 0 && player.canReach(position) &&

@@ -44,7 +44,7 @@ module.exports.server = (serv) => {
   }
 
   /** A door is two blocks; without one the other does not stand. */
-  serv.blocks.on('change', ({ position, before, after, player }) => {
+  serv.blocks.on('update', ({ position, before, after, player }) => {
     const old = serv.blocks.describe(before)
     if (!old.name.endsWith('_door') || serv.blocks.describe(after).name === old.name) return
     const other = otherHalf(position, old)

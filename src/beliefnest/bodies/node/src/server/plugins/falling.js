@@ -18,10 +18,11 @@ module.exports.server = (serv) => {
   function check (position) {
     if (!FALLS.test(serv.blocks.at(position).name)) return
     if (!GIVES_WAY.test(serv.blocks.at(position.offset(0, -1, 0)).name)) return
-    serv.after(PACE, position, () => fall(position))
+    serv.after(PACE, position, 'fall')
   }
+  serv.onDue('fall', fall)
 
-  serv.blocks.on('change', ({ position }) => {
+  serv.blocks.on('update', ({ position }) => {
     check(position)
     check(position.offset(0, 1, 0))
   })

@@ -3,7 +3,7 @@
 const { INPUT, FUEL, SIZE, coldFire, arrange, burn } = require('./lib/fire')
 const { KINDS, resultOf, ticksOf, burnTicks } = require('./lib/smelting')
 const { cell, containerMenu } = require('./lib/menus')
-const { keyOf, vecOf } = require('./lib/positions')
+const { byPlace, keyOf, vecOf } = require('./lib/positions')
 
 const WINDOWS = { blast_furnace: 10, furnace: 14, smoker: 22 }
 const TITLES = { blast_furnace: 'Blast Furnace', furnace: 'Furnace', smoker: 'Smoker' }
@@ -65,7 +65,21 @@ module.exports.server = (serv) => {
   serv.blocks.on('change', ({ position, before, after }) => {
     if (serv.blocks.describe(before).name !== serv.blocks.describe(after).name) fires.delete(keyOf(position))
   })
-  serv.onForget((within) => {
+  function putOut (within) {
     for (const [key, { position }] of fires) if (within(position)) fires.delete(key)
+  }
+  serv.onForget(putOut)
+
+  serv.keeps('fires', {
+    save: (region) => [...fires.values()]
+      .filter(({ position, left, done }) => region.contains(position) && (left > 0 || done > 0))
+      .map(({ position, left, whole, done }) => [...region.toScenario(position), left, whole, done]).sort(byPlace),
+    restore (rows, region) {
+      putOut((place) => region.contains(place))
+      for (const [x, y, z, left, whole, done] of rows) {
+        const position = region.toServer([x, y, z])
+        if (isFurnace(position)) Object.assign(fireAt(position), { left, whole, done })
+      }
+    },
   })
 }

@@ -1,7 +1,8 @@
 'use strict'
 
+const { isDeepStrictEqual } = require('node:util')
 const { INVENTORY_START, HOTBAR_START, OFF_HAND } = require('./lib/menus')
-const { countByName, stacksOf } = require('./lib/items')
+const { countByName, equal, rowsOf, slotsOf, stacksOf } = require('./lib/items')
 const { store } = require('./lib/clicks')
 
 const WORN = { head: 5, chest: 6, legs: 7, feet: 8, off_hand: OFF_HAND }
@@ -33,10 +34,20 @@ module.exports.server = (serv) => {
   serv.recallPlayer = (uuid) => left().get(uuid)
   /** Makes a player who has left unknown, so that a later one of that name starts empty. */
   serv.forgetPlayer = (uuid) => left().delete(uuid)
+
+  serv.keeps('slots', {
+    save: () => serv.players.flatMap((player) => {
+      const slots = player.saveSlots()
+      return slots ? [[player.agent, ...slots]] : []
+    }),
+    restore (rows) {
+      const told = new Map(rows.map(([agent, ...slots]) => [agent, slots]))
+      serv.players.forEach((player) => player.restoreSlots(told.get(player.agent)))
+    },
+  })
 }
 
-function storage (player) {
-  const { slots } = player.inventory
+function storage (slots) {
   return {
     get: (i) => slots[i] ?? null,
     set: (i, item) => { slots[i] = item; },
@@ -45,29 +56,28 @@ function storage (player) {
   }
 }
 
-function setPossessions (player, serv, { inventory, equipment }) {
-  const { Item } = serv
-  const { slots } = player.inventory
+/** The slots of one who was given this and holds the first slot of the hotbar. */
+function layOut ({ Item, registry }, size, { inventory, equipment }, who) {
+  const slots = new Array(size).fill(null)
   const rest = { ...inventory }
   const take = (name) => {
-    if (!(rest[name] > 0)) throw new RangeError(`${player.username} cannot wear or hold ${name}: the inventory has none`)
+    if (!(rest[name] > 0)) throw new RangeError(`${who} cannot wear or hold ${name}: the inventory has none`)
     rest[name] -= 1
-    return new Item(serv.registry.itemsByName[name].id, 1)
+    return new Item(registry.itemsByName[name].id, 1)
   }
-  slots.fill(null)
-  player.windows.cursor = null
   for (const [part, slot] of Object.entries(WORN)) {
     if (equipment[part]) slots[slot] = take(equipment[part])
   }
-  const heldSlot = HOTBAR_START + player.heldItemSlot
-  const order = [heldSlot, ...STORE_ORDER.filter((slot) => slot !== heldSlot)]
-  if (equipment.main_hand) slots[heldSlot] = take(equipment.main_hand)
-  const free = equipment.main_hand ? order : [...order.slice(1), heldSlot]
-  for (const stack of stacksOf(Item, serv.registry, rest)) {
-    if (store(storage(player), stack, free)) {
-      throw new RangeError(`the inventory given to ${player.username} does not fit in 36 slots: ${stack.name} is left over`)
+  const [held, ...others] = STORE_ORDER
+  if (equipment.main_hand) slots[held] = take(equipment.main_hand)
+  const free = equipment.main_hand ? STORE_ORDER : [...others, held]
+  for (const stack of stacksOf(Item, registry, rest)) {
+    const inOffHand = slots[OFF_HAND]?.name === stack.name ? [OFF_HAND] : []
+    if (store(storage(slots), stack, [...free, ...inOffHand])) {
+      throw new RangeError(`the inventory given to ${who} does not fit in 36 slots: ${stack.name} is left over`)
     }
   }
+  return slots
 }
 
 function possessionsOf (stacks, held) {
@@ -86,7 +96,7 @@ module.exports.player = (player, serv) => {
 
   /** Stores an item; returns what did not fit, or null. */
   player.storeItem = (item) => {
-    const rest = store(storage(player), item, STORE_ORDER)
+    const rest = store(storage(player.inventory.slots), item, STORE_ORDER)
     player.inventoryChanged()
     return rest
   }
@@ -109,7 +119,33 @@ module.exports.player = (player, serv) => {
 
   /** Makes the player have exactly this. @throws RangeError where it cannot. */
   player.setPossessions = ({ inventory = {}, equipment = {} }) => {
-    setPossessions(player, serv, { inventory, equipment })
+    carry(0, layOut(serv, player.inventory.slots.length, { inventory, equipment }, player.username))
+    player.windows.cursor = null
+    player.inventoryChanged()
+  }
+
+  function carry (heldItemSlot, slots) {
+    slots.forEach((item, i) => { player.inventory.slots[i] = item })
+    if (player.heldItemSlot === heldItemSlot) return
+    player.heldItemSlot = heldItemSlot
+    player._client.write('held_item_slot', { slot: heldItemSlot })
+  }
+
+  const usual = () => layOut(serv, player.inventory.slots.length, player.possessions(), player.username)
+
+  /** `[held, ...[slot, name, count]]`; null where `setPossessions` would fill the slots so. */
+  player.saveSlots = () => {
+    const { slots } = player.inventory
+    const asUsual = player.heldItemSlot === 0 && usual().every((item, i) => equal(item, slots[i]))
+    return asUsual ? null : [player.heldItemSlot, ...rowsOf(slots)]
+  }
+
+  /** Puts what the player has into the slots that `saveSlots` told. */
+  player.restoreSlots = ([held, ...rows] = [0]) => {
+    const before = player.possessions()
+    const plain = usual()
+    carry(held, slotsOf(serv.Item, serv.registry, rows, player.inventory.slots.length))
+    if (!isDeepStrictEqual(player.possessions(), before)) carry(0, plain)
     player.inventoryChanged()
   }
 

@@ -4,6 +4,7 @@ const { Vec3 } = require('vec3')
 const { becomeItem, direction } = require('./lib/itemEntity')
 const { centreOf } = require('./lib/positions')
 const { toDegrees } = require('../angles')
+const { toStep } = require('../../steps')
 
 const MINED_DELAY = 10
 const TOSSED_DELAY = 40
@@ -24,6 +25,7 @@ const NUMBERS_PER_TICK = 100
  * there, never on what lay there once: a region made anew goes on with the same numbers.
  */
 module.exports.server = (serv) => {
+  const stepped = ({ x, y, z }) => new Vec3(toStep(x), toStep(y), toStep(z))
   const type = serv.registry.entitiesByName.item.id
 
   /** To be called at the start of a call: numbers go on from those that are taken. */
@@ -33,8 +35,8 @@ module.exports.server = (serv) => {
 
   serv.dropItem = (position, item, { velocity = new Vec3(0, 0, 0), delay = MINED_DELAY, id = nextNumber() } = {}) => {
     serv.entityMaxId = id - 1
-    const entity = serv.initEntity('object', type, serv.overworld, position.clone())
-    becomeItem(entity, serv.Item, { item, velocity, delay })
+    const entity = serv.initEntity('object', type, serv.overworld, stepped(position))
+    becomeItem(entity, serv.Item, { item, velocity, delay, born: serv.region.tick })
     entity.updateAndSpawn()
     return entity
   }
@@ -55,4 +57,25 @@ module.exports.server = (serv) => {
     ({ item, position }) => item && within(position))
 
   serv.removeItem = (id) => serv.entities[id].destroy()
+
+  /** Puts an item somewhere, at once. */
+  serv.placeItem = (entity, position) => {
+    if (position.equals(entity.position)) return
+    entity.position = position
+    const { x, y, z } = position
+    serv._writeAll('entity_teleport', { entityId: entity.id, x, y, z, yaw: 0, pitch: 0, onGround: entity.onGround })
+  }
+
+  serv.keeps('items', {
+    save: (region) => serv.itemEntities((place) => region.contains(place)).map(
+      ({ id, velocity: { x, y, z }, delay, born, onGround }) => [id, x, y, z, delay, born, onGround]),
+    restore (rows, region) {
+      for (const entity of serv.itemEntities((place) => region.contains(place))) {
+        Object.assign(entity, { velocity: new Vec3(0, 0, 0), delay: 0, born: region.tick, onGround: true })
+      }
+      for (const [id, x, y, z, delay, born, onGround] of rows) {
+        if (serv.entities[id]?.item) Object.assign(serv.entities[id], { velocity: new Vec3(x, y, z), delay, born, onGround })
+      }
+    },
+  })
 }

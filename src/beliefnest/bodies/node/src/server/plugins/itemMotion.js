@@ -44,21 +44,17 @@ module.exports.server = (serv) => {
   }
 
   function fall (entity) {
-    const before = entity.position
-    const next = step(entity, shapesAt)
-    const landed = next.onGround && !entity.onGround
-    Object.assign(entity, next)
+    const { position, velocity, onGround } = step(entity, shapesAt)
+    const landed = onGround && !entity.onGround
+    Object.assign(entity, { velocity, onGround })
+    serv.placeItem(entity, position)
     if (landed) merge(entity)
-    if (before.equals(entity.position)) return
-    const { x, y, z } = entity.position
-    serv._writeAll('entity_teleport', { entityId: entity.id, x, y, z, yaw: 0, pitch: 0, onGround: next.onGround })
   }
 
   function tick (entity) {
-    entity.age += 1
     if (entity.delay > 0) entity.delay -= 1
     fall(entity)
-    if (entity.age >= LIFETIME || entity.position.y < serv.minY - VOID_DEPTH) entity.destroy()
+    if (serv.region.tick - entity.born >= LIFETIME || entity.position.y < serv.minY - VOID_DEPTH) entity.destroy()
     if (entity.delay > 0) return
     for (const player of serv.players) {
       if (!exists(entity)) return

@@ -15,9 +15,9 @@ module.exports.server = (serv) => {
   }
   serv.onInteraction('lever', switchLever)
 
-  function release (position, name) {
+  function release (position) {
     const block = serv.blocks.at(position)
-    if (block.name !== name) return
+    if (!block.name.endsWith('_button')) return
     serv.blocks.set(position, serv.blocks.stateWith(block, { powered: false }))
   }
 
@@ -25,10 +25,10 @@ module.exports.server = (serv) => {
     if (block.properties.powered) return true
     const stone = /^(stone|polished_blackstone)_button$/.test(block.name)
     serv.blocks.set(position, serv.blocks.stateWith(block, { powered: true }), player)
-    serv.after(stone ? STONE_BUTTON_TICKS : WOODEN_BUTTON_TICKS, position,
-      () => release(position, block.name))
+    serv.after(stone ? STONE_BUTTON_TICKS : WOODEN_BUTTON_TICKS, position, 'release')
     return true
   }
+  serv.onDue('release', release)
   for (const { name } of serv.registry.blocksArray) {
     if (name.endsWith('_button')) serv.onInteraction(name, push)
   }

@@ -42,7 +42,7 @@ module.exports.server = (serv) => {
     for (const part of parts) serv.blocks.set(part, serv.blocks.stateWith(serv.blocks.at(part), change), player)
   }
 
-  serv.blocks.on('change', ({ position, before, after, player }) => {
+  serv.blocks.on('update', ({ position, before, after, player }) => {
     const source = [before, after].map(serv.blocks.describe).find(({ name }) => SOURCE.test(name))
     if (!source) return
     const places = [...around(position), ...around(position.plus(holderOf(source)))]

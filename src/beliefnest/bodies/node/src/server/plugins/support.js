@@ -14,7 +14,7 @@ module.exports.server = (serv) => {
     if (item) serv.popItem(position, new serv.Item(item.id, 1))
   }
 
-  serv.blocks.on('change', ({ position, after, player }) => {
+  serv.blocks.on('update', ({ position, after, player }) => {
     if (!player || serv.blocks.describe(after).solid) return
     FACES.forEach((face) => comeOff(position.plus(face), player))
   })

@@ -8,17 +8,17 @@
 module.exports.server = (serv) => {
   const tickers = []
   const forgetters = []
+  const actions = new Map()
   let countdowns = []
 
   /** Register work done every tick: `ticker(within)`. */
   serv.onTick = (ticker) => { tickers.push(ticker) }
 
-  /** Run `action` after `ticks` ticks of the place `position`; returns a cancel function. */
-  serv.after = (ticks, position, action) => {
-    const countdown = { left: ticks, position: position.clone(), action }
-    countdowns.push(countdown)
-    return () => { countdowns = countdowns.filter((other) => other !== countdown) }
-  }
+  /** Register what happens when a countdown of a kind ends: `action(position)`. */
+  serv.onDue = (kind, action) => actions.set(kind, action)
+
+  /** Begin a countdown of `ticks` ticks of the place `position`. */
+  serv.after = (ticks, position, kind) => countdowns.push({ left: ticks, position: position.clone(), kind })
 
   function runCountdowns (within) {
     const due = []
@@ -26,7 +26,7 @@ module.exports.server = (serv) => {
       if (within(countdown.position) && --countdown.left <= 0) due.push(countdown)
     }
     countdowns = countdowns.filter((countdown) => !due.includes(countdown))
-    due.forEach((countdown) => countdown.action())
+    due.forEach(({ kind, position }) => actions.get(kind)(position))
   }
 
   serv.tickRegion = (within) => {
@@ -34,9 +34,20 @@ module.exports.server = (serv) => {
     tickers.forEach((ticker) => ticker(within))
   }
 
+  const elsewhere = (within) => countdowns.filter(({ position }) => !within(position))
+
+  serv.keeps('countdowns', {
+    save: (region) => countdowns.filter(({ position }) => region.contains(position))
+      .map(({ kind, position, left }) => [kind, ...region.toScenario(position), left]),
+    restore (rows, region) {
+      const restored = rows.map(([kind, x, y, z, left]) => ({ kind, position: region.toServer([x, y, z]), left }))
+      countdowns = [...elsewhere((place) => region.contains(place)), ...restored]
+    },
+  })
+
   /** Drops what plugins keep about a part of the world that is given up. */
   serv.forgetRegion = (within) => {
-    countdowns = countdowns.filter((countdown) => !within(countdown.position))
+    countdowns = elsewhere(within)
     forgetters.forEach((forget) => forget(within))
   }
 

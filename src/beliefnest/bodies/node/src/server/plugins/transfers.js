@@ -36,5 +36,5 @@ module.exports.player = (player, serv) => {
     for (const { ledger } of ledgers) ledger.settle().forEach((fact) => player.emitEvent(fact))
     ledgers = ledgers.filter(({ isOpen }) => isOpen())
   }
-  player.on('disconnected', () => player.reportTransfers())
+  for (const end of ['rest', 'disconnected']) player.on(end, () => player.reportTransfers())
 }

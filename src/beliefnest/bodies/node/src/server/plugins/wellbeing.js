@@ -12,22 +12,30 @@ const EATEN = 9
 /** Falling hurts; eating fills. Hunger does not come by itself. */
 module.exports.server = (serv) => {
   serv.onTick(() => serv.players.forEach((player) => player.eatTick()))
+  serv.keeps('falls', {
+    save: () => serv.players.filter(({ onGround, fallsFrom }) => !onGround && fallsFrom !== null)
+      .map(({ agent, fallsFrom }) => [agent, fallsFrom]),
+    restore (rows) {
+      const told = new Map(rows)
+      for (const player of serv.players) player.fallsFrom = told.get(player.agent) ?? null
+    },
+  })
 }
 
 module.exports.player = (player, serv) => {
   const client = player._client
-  let highest = null
+  player.fallsFrom = null
   let eating = null
 
   function land (y) {
-    const damage = Math.ceil(highest - y - SAFE_FALL)
-    highest = null
+    const damage = Math.ceil(player.fallsFrom - y - SAFE_FALL)
+    player.fallsFrom = null
     if (damage > 0) player.updateHealth(Math.max(LEAST_HEALTH, player.health - damage))
   }
 
   function follow ({ y, onGround }) {
     const inWater = serv.blocks.at(player.position).name === 'water'
-    highest = inWater ? y : Math.max(highest ?? y, y)
+    player.fallsFrom = inWater ? y : Math.max(player.fallsFrom ?? y, y)
     if (onGround) land(y)
   }
   client.on('position', follow)
@@ -42,6 +50,7 @@ module.exports.player = (player, serv) => {
     eating = { slot: player.slotOfHand(hand), type: item.type, ticks: 0 }
   })
   player.stopUsing = () => { eating = null }
+  player.on('rest', player.stopUsing)
 
   function eat (slot) {
     const item = player.inventory.slots[slot]

@@ -18,6 +18,7 @@ module.exports.player = (player, serv) => {
   }
   player.inventory.on('updateSlot', () => player.inventoryChanged())
 
+  player.on('rest', () => windows.rest())
   player._client.on('window_click', (packet) => windows.click(packet))
   player._client.on('close_window', ({ windowId }) => {
     if (windowId === windows.current.id) windows.close()

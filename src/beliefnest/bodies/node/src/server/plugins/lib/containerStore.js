@@ -1,7 +1,8 @@
 'use strict'
 
-const { countByName, stacksOf } = require('./items')
-const { keyOf, vecOf } = require('./positions')
+const { isDeepStrictEqual } = require('node:util')
+const { countByName, equal, rowsOf, slotsOf, stacksOf } = require('./items')
+const { byPlace, keyOf, listOf, vecOf } = require('./positions')
 
 const show = ({ x, y, z }) => `(${x}, ${y}, ${z})`
 
@@ -43,6 +44,11 @@ class ContainerStore {
     return this.stored.get(key).slots
   }
 
+  /** Takes note of a container that was built with its region, if there is one. */
+  stand (position) {
+    if (this.kindAt(position) !== undefined) this.slots(position)
+  }
+
   /** To be called after slots were changed: notes it and shows it to those who look in. */
   touch (position) {
     this.changed.set(keyOf(position), vecOf(position))
@@ -66,15 +72,44 @@ class ContainerStore {
     if (kind === undefined) {
       throw new RangeError(`no container at ${show(position)}: the block there is ${this.serv.blocks.at(position).name}`)
     }
-    const stacks = stacksOf(this.serv.Item, this.serv.registry, counts)
-    const arranged = kind.arrange(stacks)
+    const arranged = this.arranged(kind, counts)
     if (arranged === null) {
-      throw new RangeError(`the ${stacks.length} stacks given do not fit into the ${kind.size} slots of the ` +
-        `${kind.name} at ${show(position)}`)
+      throw new RangeError(`the items given do not fit into the ${kind.size} slots of the ${kind.name} at ${show(position)}`)
     }
-    const slots = this.slots(position)
-    slots.forEach((_, i) => { slots[i] = arranged[i] ?? null })
+    this.fill(position, arranged)
     this.touch(position)
+  }
+
+  /** The slots that a content is set into, or null where it does not fit. */
+  arranged (kind, counts) {
+    const slots = kind.arrange(stacksOf(this.serv.Item, this.serv.registry, counts))
+    return slots && Array.from({ length: kind.size }, (_, i) => slots[i] ?? null)
+  }
+
+  fill (position, stacks) {
+    const slots = this.slots(position)
+    slots.forEach((_, i) => { slots[i] = stacks[i] })
+  }
+
+  /** @returns {Array} rows `[x, y, z, ...[slot, name, count]]` of containers whose slots are not as `set` fills them */
+  save (region) {
+    return this.positions((place) => region.contains(place)).flatMap((position) => {
+      const slots = this.slots(position)
+      const usual = this.arranged(this.kindAt(position), countByName(slots))
+      return usual && usual.every((item, i) => equal(item, slots[i])) ? [] : [[...region.toScenario(position), ...rowsOf(slots)]]
+    })
+  }
+
+  /** Puts what containers hold into the slots that `save` told. */
+  restore (rows, region) {
+    const told = new Map(rows.map(([x, y, z, ...slots]) => [keyOf(region.toServer([x, y, z])), slots]))
+    for (const position of this.positions((place) => region.contains(place))) {
+      const counts = countByName(this.slots(position))
+      const kind = this.kindAt(position)
+      const slots = slotsOf(this.serv.Item, this.serv.registry, told.get(keyOf(position)) ?? [], kind.size)
+      const same = isDeepStrictEqual(countByName(slots), counts)
+      this.fill(position, same ? slots : this.arranged(kind, counts) ?? this.slots(position))
+    }
   }
 
   /** Takes note that another block came; returns the items that were inside the old one. */
@@ -98,9 +133,10 @@ class ContainerStore {
     return result
   }
 
-  /** Positions of a part of the world whose containers ever held something. */
+  /** Positions of the containers of a part of the world that anyone opened or put there, in order. */
   positions (within) {
-    return [...this.stored.values()].map(({ position }) => position).filter(within)
+    const places = [...this.stored.values()].map(({ position }) => position).filter(within)
+    return places.sort((a, b) => byPlace(listOf(a), listOf(b)))
   }
 
   /** Drops all that is known of a part of the world. */

@@ -24,14 +24,14 @@ const metadataOf = (Item, { id, item }) => ({
 })
 
 /** Makes an entity of the server a dropped item; `itemId` and `itemCount` are those of `item`. */
-function becomeItem (entity, Item, { item, velocity, delay }) {
+function becomeItem (entity, Item, { item, velocity, delay, born }) {
   Object.assign(entity, {
     uuid: `00000000-0000-4000-8000-${entity.id.toString(16).padStart(12, '0')}`,
     name: 'item',
     item,
     velocity,
     delay,
-    age: 0,
+    born,
     onGround: false,
     showMetadata: (player) => player._client.write('entity_metadata', metadataOf(Item, entity)),
   })

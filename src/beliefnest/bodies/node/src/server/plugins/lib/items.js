@@ -39,10 +39,22 @@ function difference (before, after) {
   return result
 }
 
-/** Stacks of at most a stack's size that make up name -> count. */
+/** Slots as rows `[slot, name, count]`, without the empty ones. */
+function rowsOf (slots) {
+  return [...slots].flatMap((item, slot) => (item ? [[slot, item.name, item.count]] : []))
+}
+
+/** Slots from their rows. */
+function slotsOf (Item, registry, rows, size) {
+  const slots = new Array(size).fill(null)
+  for (const [slot, name, count] of rows) slots[slot] = new Item(registry.itemsByName[name].id, count)
+  return slots
+}
+
+/** Stacks of at most a stack's size that make up name -> count, in order of names. */
 function stacksOf (Item, registry, counts) {
   const stacks = []
-  for (const [name, count] of Object.entries(counts)) {
+  for (const [name, count] of Object.entries(counts).sort(([a], [b]) => (a < b ? -1 : 1))) {
     const data = Object.hasOwn(registry.itemsByName, name) ? registry.itemsByName[name] : null
     if (!data) throw new RangeError(`there is no item called ${name}`)
     if (!Number.isInteger(count) || count < 0) {
@@ -55,4 +67,4 @@ function stacksOf (Item, registry, counts) {
   return stacks
 }
 
-module.exports = { alike, equal, withCount, countByName, difference, stacksOf }
+module.exports = { alike, equal, withCount, countByName, difference, rowsOf, slotsOf, stacksOf }

@@ -1,6 +1,7 @@
 'use strict'
 
 const { Vec3 } = require('vec3')
+const { toStep } = require('../../../steps')
 
 /** Motion of a small box through blocks, per tick, as the game moves dropped items. */
 
@@ -50,7 +51,8 @@ function free (box, axis, distance, blocks) {
 
 /** One tick of `{position, velocity}`: the next of both, and whether it stands on something. */
 function step ({ position, velocity }, shapesAt) {
-  const speed = velocity.offset(0, -GRAVITY, 0)
+  const { x: east, y: up, z: south } = velocity
+  const speed = new Vec3(toStep(east), toStep(up - GRAVITY), toStep(south))
   const next = position.clone()
   const moved = new Vec3(0, 0, 0)
   for (const [axis, name] of [[1, 'y'], [0, 'x'], [2, 'z']]) {

@@ -2,7 +2,7 @@
 
 const { click } = require('./clicks')
 const { equal } = require('./items')
-const { INVENTORY_START, INVENTORY_END, inventoryMenu } = require('./menus')
+const { INVENTORY_START, INVENTORY_END, inventoryMenu, range } = require('./menus')
 
 const LAST_WINDOW_ID = 100
 const OWN_GRID_WIDTH = 2
@@ -108,11 +108,26 @@ class PlayerWindows {
     this.player.inventoryChanged()
   }
 
+  /** Ends all that is under way in windows, as in the next call nobody remembers it. */
+  rest () {
+    const { menu } = this.own
+    const inGrid = () => range(0, menu.craftSlots + 1).some((slot) => menu.get(slot))
+    if (this.opened) {
+      this.forceClose()
+    } else if (this.cursor || inGrid()) {
+      this.close()
+      this.sendAll()
+    }
+    this.lastId = 0
+  }
+
   /** Ends the opened window although the client did not ask for it. */
   forceClose () {
     if (!this.opened) return
     this.client.write('close_window', { windowId: this.opened.id })
     this.close()
+    // A client that is told to close does not copy what the window showed.
+    this.sendAll()
   }
 
   /** The own window goes on showing what the opened one showed of the inventory. */

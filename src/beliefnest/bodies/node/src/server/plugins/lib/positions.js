@@ -7,5 +7,7 @@ const keyOf = ({ x, y, z }) => `${x},${y},${z}`
 const listOf = ({ x, y, z }) => [x, y, z]
 const vecOf = ({ x, y, z }) => new Vec3(x, y, z)
 const centreOf = ({ x, y, z }) => new Vec3(x + 0.5, y + 0.5, z + 0.5)
+/** The order of rows that begin with x, y, z. */
+const byPlace = (a, b) => a[0] - b[0] || a[1] - b[1] || a[2] - b[2]
 
-module.exports = { keyOf, listOf, vecOf, centreOf }
+module.exports = { byPlace, keyOf, listOf, vecOf, centreOf }

@@ -1,0 +1,55 @@
+"""What a body has to be like at a moment of a timeline, hidden things included.
+
+Frames tell what can be perceived. What else goes on in a body is kept at the ends of calls; at
+any other moment, and where a belief is forked, nothing is under way.
+"""
+
+from dataclasses import replace
+
+from beliefnest.nest.history import History
+from beliefnest.timeline.journal import ForkPoint, Journal, TimelineKey
+from beliefnest.world.frames import Snapshot
+
+__all__ = ["hidden_at", "note_hidden", "present", "snapshot_at"]
+
+Path = tuple[str, ...]
+
+
+def present(journal: Journal, key: TimelineKey) -> ForkPoint:
+    """The moment a timeline is at."""
+    info = journal.info(key)
+    return ForkPoint(key, info.entries, info.head)
+
+
+def snapshot_at(journal: Journal, history: History, path: Path, moment: ForkPoint) -> Snapshot:
+    """What a body of the node `path`, the timeline's own or one below it, is filled with."""
+    reading = history.reading(moment.timeline, path, moment.entries)
+    own = path == moment.timeline.path
+    return replace(
+        reading.snapshot(),
+        tick=moment.tick,
+        hidden=hidden_at(journal, moment) if own else b"",
+    )
+
+
+def note_hidden(journal: Journal, moment: ForkPoint, hidden: bytes) -> None:
+    """Keep what goes on in the timeline's body at a moment."""
+    if hidden:
+        journal.put_checkpoint(moment.timeline, _name(moment), moment.entries, hidden)
+
+
+def hidden_at(journal: Journal, moment: ForkPoint) -> bytes:
+    """What was noted to go on in the timeline's body at a moment; empty if nothing was."""
+    found = journal.nearest_checkpoint(moment.timeline, _name(moment), moment.entries)
+    if found is not None and found[0] == moment.entries:
+        return found[1]
+    base = journal.info(moment.timeline).base
+    begins = base is not None and moment.entries == 0 and moment.tick == base.tick
+    if base is None or not begins or base.timeline.path != moment.timeline.path:
+        return b""
+    return hidden_at(journal, base)
+
+
+def _name(moment: ForkPoint) -> str:
+    # Several calls may end after the same entry, in ticks without one.
+    return f"hidden {moment.tick}"
