@@ -7,14 +7,25 @@ A process of `test_kill_nest.py`; `calls` is what it does, also for the model in
 
 import random
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import beliefnest as bn
+from beliefnest.llm import Answer, Message, Sampling
 
 BOX = ((0, 0, 0), (6, 2, 6))
 CHEST = (3, 0, 3)
 AGENTS = {"ann": (1.5, 0.0, 1.5), "bob": (5.5, 0.0, 5.5)}
 PATHS = ("/", "/ann", "/ann/bob", "/bob")
+
+
+class _Model:
+    """Answers with the question."""
+
+    name = "echo"
+
+    def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
+        """What was asked last."""
+        return Answer(messages[-1].text)
 
 
 def nest_in(store: str | None) -> bn.Nest:
@@ -28,12 +39,15 @@ def calls(nest: bn.Nest, seed: int) -> Iterator[None]:
     chance = random.Random(seed)
     while True:
         simulator = nest[chance.choice(PATHS)]
-        act = chance.randrange(8)
+        act = chance.randrange(9)
         if act == 0:
             names = ["one", "two"] if simulator.path == "/" else ["one", "two", "follow"]
             simulator.switch(chance.choice(names))
         elif act == 1:
             simulator.edit(containers={CHEST: {"bread": chance.randrange(1, 9)}})
+        elif act == 8:
+            question = f"{simulator.path} at {simulator.tick}?"
+            simulator.noting(_Model()).answer([Message("user", question)], Sampling())
         elif simulator.mode == "follow":
             continue
         elif act == 2:

@@ -24,6 +24,7 @@ def held(nest):
     return (
         [(each.branch, each.tick, everything(each.state)) for each in simulators],
         [each.branches() for each in simulators],
+        nest.prompts(),
     )
 
 
