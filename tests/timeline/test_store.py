@@ -528,9 +528,11 @@ def test_records_follow_their_branch(run_file):
     with SqliteJournal.open(run_file) as journal:
         records = journal.records
         journal.create(PLAN, None, 0)
+        assert records.next_group() == 1
         records.add_program(PROGRAM)
         records.add_prompt(PROMPT)
         records.add_program(replace(PROGRAM, path=("anne",)))
+        assert records.next_group() == 3
         records.select(("sally",), "plan")
         journal.rename(PLAN, "try")
         assert [p.branch for p in records.programs()] == ["try", "plan"]
@@ -540,5 +542,7 @@ def test_records_follow_their_branch(run_file):
         journal.verify()
         journal.delete(TimelineKey(("sally",), "try"))
         assert [p.path for p in records.programs()] == [("anne",)]
+        journal.delete(MAIN)
+        assert records.next_group() == 3
         assert records.prompts() == ()
         assert records.selected() == {}

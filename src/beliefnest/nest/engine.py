@@ -305,7 +305,7 @@ class Engine:
         results: Mapping[str, ProgramResult],
         noted: Mapping[str, str],
     ) -> None:
-        group = 1 + max((program.group for program in self.log.programs()), default=0)
+        group = self.log.next_group()
         for agent, result in results.items():
             self.log.add_program(
                 ProgramRecord(

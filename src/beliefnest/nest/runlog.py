@@ -32,6 +32,9 @@ class RunLog(Protocol):
     def add_program(self, program: ProgramRecord) -> None:
         """Note a program that has ended."""
 
+    def next_group(self) -> int:
+        """A number for programs that run at the same time, which none before has had."""
+
     def programs(self) -> Sequence[ProgramRecord]:
         """All programs of branches that are there, in order of their end."""
 
@@ -61,6 +64,7 @@ class MemoryLog:
         self._journal = journal
         self._selected: dict[Path, str] = {}
         self._programs: list[ProgramRecord] = []
+        self._ever = 0
         self._prompts: list[PromptRecord] = []
         self._versions: dict[str, str] = {}
 
@@ -88,6 +92,11 @@ class MemoryLog:
     def add_program(self, program: ProgramRecord) -> None:
         """Note a program that has ended."""
         self._programs.append(program)
+        self._ever += 1
+
+    def next_group(self) -> int:
+        """A number for programs that run at the same time, which none before has had."""
+        return self._ever + 1
 
     def programs(self) -> Sequence[ProgramRecord]:
         """All programs of branches that are there, in order of their end."""
@@ -151,6 +160,10 @@ class FileLog:
     def add_program(self, program: ProgramRecord) -> None:
         """Note a program that has ended."""
         self._journal.records.add_program(program)
+
+    def next_group(self) -> int:
+        """A number for programs that run at the same time, which none before has had."""
+        return self._journal.records.next_group()
 
     def programs(self) -> Sequence[ProgramRecord]:
         """All programs of branches that are there, in order of their end."""

@@ -206,6 +206,12 @@ class Records:
         """Append a program that has ended."""
         self._add(program)
 
+    def next_group(self) -> int:
+        """A number for programs that run at the same time, which none before has had."""
+        # The sequence outlives deleted rows.
+        row = self._database.row("SELECT seq FROM sqlite_sequence WHERE name = 'program'")
+        return 1 if row is None else int(row[0]) + 1
+
     def programs(self) -> Sequence[ProgramRecord]:
         """All programs, in order of their end."""
         return self._all(ProgramRecord)
