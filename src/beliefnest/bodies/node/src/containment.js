@@ -32,6 +32,7 @@ async function measureContainment (clock, pairs) {
     // Whoever goes second finds warmer caches.
     for (const name of pair % 2 ? ['contained', 'direct'] : ['direct', 'contained']) {
       await session.perform({ op: 'apply', region: REGION, ...start, blocks: [] })
+      await session.prepare()
       runner.runProgram = ways[name]
       const before = process.cpuUsage()
       const { tick, results } = await runner.run(REGION, { [AGENT]: PROGRAM }, TIMEOUT_TICKS)

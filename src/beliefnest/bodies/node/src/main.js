@@ -37,6 +37,7 @@ function serve (clock, descriptor, lifeline) {
   async function answer (request) {
     channel.send(await session.answer(request))
     if (request.op === 'shutdown') stream.end(() => process.exit(0))
+    else await session.prepare()
   }
   stream.on('end', () => process.exit(0))
   stream.on('error', () => process.exit(1))

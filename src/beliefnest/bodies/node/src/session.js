@@ -24,6 +24,7 @@ class Session {
     this.beat = beat
     this.regions = null
     this.runner = null
+    this.sandbox = null
   }
 
   /** @returns {Promise<object>} the answer to a request, whatever happens */
@@ -34,6 +35,11 @@ class Session {
       const { message, kind = 'internal' } = error
       return { id: request.id, ok: false, error: { kind, message, stack: error.stack } }
     }
+  }
+
+  /** Does what can be done for the next request while the other side works on the answer to the last. */
+  async prepare () {
+    await this.sandbox?.prepare()
   }
 
   async perform (request) {
@@ -65,10 +71,10 @@ class Session {
     const serv = createServer(registry)
     const alive = () => this.beat({ beat: serv.region?.tick ?? null })
     this.regions = new Regions(serv, this.clock, frame => this.send({ frame }), alive)
-    const sandbox = createSandbox({}, alive)
+    this.sandbox = createSandbox({}, alive)
     // For its names, which are those of every bot.
-    await sandbox.warm(scopeOf({ registry }, () => {}))
-    this.runner = new Runner(this.regions, request => sandbox.run(request), scopeOf)
+    await this.sandbox.warm(scopeOf({ registry }, () => {}))
+    this.runner = new Runner(this.regions, request => this.sandbox.run(request), scopeOf)
     return { protocol: PROTOCOL, node: process.version, ...versions }
   }
 }

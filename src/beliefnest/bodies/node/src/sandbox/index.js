@@ -15,14 +15,14 @@ const GUEST_NAMES = ['Vec3', 'goals', 'Movements']
  * @param {{fuel?: number, memory?: number}} [options] limits of a run: fuel in loop turns and calls
  *   of the interpreter (about one per bytecode instruction), memory in bytes
  * @param {() => void} [alive] hears now and then that a program computes within its limits
- * @returns {{run: function(object): Promise<object>, warm: function(object): Promise<void>}} see `run`; `warm` does beforehand
- *   what the first run of a scope would have to do
+ * @returns {{run: function(object): Promise<object>, warm: function(object): Promise<void>, prepare: function(): Promise<void>}}
+ *   see `run`; `warm` does what the first run of a scope would have to do, `prepare` what the next run would
  */
 function createSandbox (options = {}, alive = () => {}) {
   const engine = new Engine(alive)
   const defaults = { ...DEFAULTS, ...options }
   const warm = async (scope) => { await engine.templateOf(namesOf(scope)) }
-  return { run: (request) => run(engine, { ...defaults, ...request }), warm }
+  return { run: (request) => run(engine, { ...defaults, ...request }), warm, prepare: () => engine.prepare() }
 }
 
 /**

@@ -34,6 +34,21 @@ describe('the metered interpreter', () => {
     assert.equal(second.fuel, first.fuel)
   })
 
+  it('counts the same in an interpreter made beforehand, which is used once', async () => {
+    const code = 'globalThis.left = (globalThis.left ?? 0) + 1; if (globalThis.left > 1) for (;;) {}'
+    const first = await run(code)
+    await engine.prepare()
+    const { ready } = engine
+    const second = await run(code)
+    assert.equal(second.guest, ready.guest)
+    assert.equal(second.fuel, first.fuel)
+    assert.notEqual((await run(code)).guest, ready.guest)
+    await engine.prepare()
+    const other = await run(code, { ...LIMITS, fuel: LIMITS.fuel - 1 })
+    assert.equal(other.guest.limits.fuel, LIMITS.fuel - 1)
+    assert.equal(other.fuel, first.fuel)
+  })
+
   it('counts more for more', async () => {
     const turns = async n => (await run(`for (let i = 0; i < ${n}; i++) {}`)).fuel
     const [few, many] = [await turns(1000), await turns(10_000)]
