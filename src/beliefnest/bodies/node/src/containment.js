@@ -4,7 +4,8 @@
  * by the same skills called without a sandbox, in turns, from the same snapshot.
  */
 const { Vec3 } = require('vec3')
-const { Session } = require('./session')
+const { PROTOCOL, Session } = require('./session')
+const versions = require('./versions')
 
 const REGION = 'hall'
 const AGENT = 'walker'
@@ -21,7 +22,7 @@ const PROGRAM = CORNERS.map(corner => `await goToPosition(bot, new Vec3(${corner
  */
 async function measureContainment (clock, pairs) {
   const session = new Session(clock, () => {})
-  await session.hello({ protocol: 1, seed: 0, minecraft: '1.20.4' })
+  await session.hello({ protocol: PROTOCOL, seed: 0, minecraft: versions.minecraft })
   const { runner } = session
   const start = await session.perform({ op: 'create_region', region: REGION, seed: '0', ...hall() })
   const ways = { contained: runner.runProgram, direct: walk }

@@ -79,4 +79,4 @@ class Session {
   }
 }
 
-module.exports = { Session }
+module.exports = { PROTOCOL, Session }
