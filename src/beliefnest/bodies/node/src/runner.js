@@ -30,7 +30,7 @@ class Runner {
     const first = region.tick
     const runs = []
     const ended = await this.regions.resumed(region, async () => {
-      Object.values(programs).forEach((code, index) => runs.push(this.start(region, bodies[index], code)))
+      Object.entries(programs).forEach(([agent, code], index) => runs.push(this.start(region, agent, bodies[index], code)))
       try {
         await this.untilEnded(region, runs, timeoutTicks)
       } finally {
@@ -41,15 +41,15 @@ class Runner {
     return { ...ended, results: Object.fromEntries(results) }
   }
 
-  start (region, { bot }, code) {
+  start (region, agent, { bot }, code) {
     const abort = new AbortController()
-    const run = { agent: bot.username, abort, result: null, endTick: null, timeout: null }
+    const run = { agent, abort, result: null, endTick: null, end: null, crash: null }
     const emit = event => region.emit({ ...event, actor: bot.username })
     const request = { code, bot, scope: this.scopeOf(bot, emit, abort.signal), signal: abort.signal }
     this.runProgram(request).then(report => {
       abort.abort()
-      run.result = resultOf(report, stopBot(bot), run.timeout)
-    }).catch(fault => region.faults.push(fault))
+      run.result = resultOf(report, stopBot(bot), run.end)
+    }).catch(error => { run.crash = error })
     return run
   }
 
@@ -58,8 +58,9 @@ class Runner {
     const lastTick = region.tick + timeoutTicks
     let over = false
     const look = async () => {
+      region.faults = region.faults.filter(fault => !this.blame(region, runs, fault))
       for (const run of runs) if (run.result !== null) run.endTick ??= region.tick
-      over = runs.every(run => run.result !== null) || region.tick >= lastTick
+      over = runs.every(({ result, crash }) => (result ?? crash) !== null) || region.tick >= lastTick
       if (!over) return
       await this.endAll(region, runs, timeoutTicks)
       const clean = runs.every(({ result }) => result.unfinished.length === 0)
@@ -68,27 +69,43 @@ class Runner {
     while (!over) await this.regions.tick(region, look)
   }
 
+  /**
+   * Lets the program of the agent in whose bot something was thrown fail with it, or the only one there is.
+   * @returns {boolean} whether there is such a program
+   */
+  blame (region, runs, { error, agent }) {
+    const run = runs.length === 1 ? runs[0] : runs.find(each => each.agent === agent)
+    if (run === undefined) return false
+    if (run.result !== null || run.end !== null) return true
+    run.end = { kind: 'bot', message: `the bot of ${run.agent} failed in the game's own code: ${error?.message ?? error}` }
+    run.endTick = region.tick
+    run.abort.abort()
+    return true
+  }
+
   async endAll (region, runs, timeoutTicks) {
     for (const run of runs) {
-      if (run.result !== null) continue
-      run.timeout = timeoutTicks
+      if (run.result !== null || run.end !== null) continue
+      run.end = { kind: 'timeout', message: `the program did not end within ${timeoutTicks} ticks` }
       run.endTick = region.tick
       run.abort.abort()
     }
     await this.regions.clock.advance(0)
+    const crashed = runs.find(({ crash }) => crash !== null)
+    if (crashed !== undefined) throw crashed.crash
   }
 }
 
 /**
  * @param {object} report of the sandbox
  * @param {string[]} stopped what the bot was still doing
- * @param {number | null} timeout the limit in ticks that ended the program, if it did
+ * @param {{kind: string, message: string} | null} end why the program was ended, if it did not end by itself
  * @returns {object} RESULT, without ticks
  */
-function resultOf ({ ok, error, lines, log, unfinished }, stopped, timeout) {
+function resultOf ({ ok, error, lines, log, unfinished }, stopped, end) {
   return {
-    ok,
-    error: timeout === null ? error : { ...error, kind: 'timeout', message: `the program did not end within ${timeout} ticks` },
+    ok: ok && end === null,
+    error: end === null ? error : { ...error, ...end },
     lines,
     log: log.map(({ text }) => text),
     unfinished: [...unfinished, ...stopped.map(what => ({ what, line: null }))]

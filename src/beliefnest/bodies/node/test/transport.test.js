@@ -10,9 +10,10 @@ const settled = () => new Promise(resolve => { setImmediate(resolve) })
 
 function pair () {
   const faults = []
+  const report = (fault, owner) => faults.push([owner, fault.message])
   const ends = connect({
     registry,
-    mail: new Mail(fault => faults.push(fault.message)),
+    mail: new Mail((owner, action) => { try { action() } catch (fault) { report(fault, owner) } }, report),
     translator: new Translator({ x: 160, z: 0 }),
     username: 'sally',
     agent: 'sally',
@@ -58,7 +59,7 @@ describe('a connection', () => {
     server.on('three', () => heard.push('three'))
     for (const name of ['one', 'two', 'three']) client.write(name, {})
     await settled()
-    assert.deepEqual(faults, ['at once', 'later'])
+    assert.deepEqual(faults, [['sally', 'at once'], ['sally', 'later']])
     assert.deepEqual(heard, ['three'])
   })
 })

@@ -99,8 +99,13 @@ class ServerEnd extends MemoryEnd {
 
 /** A queue for the packets of one region, so that they arrive in the order they were sent. */
 class Mail {
-  /** @param {(error: Error) => void} report hears what a packet's handlers throw */
-  constructor (report) {
+  /**
+   * @param {(owner: string, action: function(): void) => void} run runs what a packet of an agent's connection,
+   *   in either direction, leads to, and hears what that throws
+   * @param {(error: Error, owner: string) => void} report hears what such code throws later
+   */
+  constructor (run, report) {
+    this.run = run
     this.report = report
     this.waiting = []
     this.scheduled = false
@@ -126,12 +131,7 @@ class Mail {
     for (let index = 0; index < this.waiting.length; index++) {
       const { end, name, params } = this.waiting[index]
       end.expected--
-      if (end.ended) continue
-      try {
-        end.deliver(name, params)
-      } catch (error) {
-        this.report(error)
-      }
+      if (!end.ended) this.run(end.link.agent, () => end.deliver(name, params))
     }
     this.waiting.length = 0
     this.scheduled = false
@@ -155,7 +155,8 @@ function connect ({ registry, mail, translator, username, agent, uuid, readChat 
     protocolVersion: registry.version.version,
     supportFeature: registry.supportFeature,
     readChat,
-    report: mail.report,
+    agent,
+    report: error => mail.report(error, agent),
     post: (end, name, params) => mail.post(end, name, params)
   }
   const client = new ClientEnd(link, agent, uuid)

@@ -28,11 +28,12 @@ class Region {
     this.tick = tick
     this.state = regionalState()
     this.columns = columnsOf(box, origin)
+    // What was thrown, and in whose bot or connection, if that is known: {error, agent}.
     this.faults = []
-    const report = fault => this.faults.push(fault)
+    const report = (error, agent) => this.faults.push({ error, agent })
     this.context = new Context(seed, report)
     this.context.time = tick * TICK_MS
-    this.mail = new Mail(report)
+    this.mail = new Mail((agent, action) => this.context.run(agent, action), report)
     this.translator = new Translator(origin)
     this.bodies = new Map()
     this.recorder = null
@@ -78,10 +79,8 @@ class Region {
 
   /** @throws {Error} the first fault of the server side since the last call */
   raiseFaults () {
-    if (this.faults.length === 0) return
-    const [fault] = this.faults
-    this.faults.length = 0
-    throw fault
+    const [fault] = this.faults.splice(0)
+    if (fault !== undefined) throw fault.error
   }
 }
 

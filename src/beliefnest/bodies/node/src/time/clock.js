@@ -17,14 +17,16 @@ const realSetImmediate = setImmediate
 class Context {
   /**
    * @param {string} seed of this context's random numbers
-   * @param {(error: Error) => void} [report] hears what a timer's callback throws; without it
-   *   `advance` throws that, and what was due after it waits
+   * @param {(error: Error, owner: ?string) => void} [report] hears what a timer's callback throws, and whose
+   *   timer it was; without it `advance` throws that, and what was due after it waits
    */
   constructor (seed, report = rethrow) {
     this.report = report
     this.time = 0
     this.charged = 0
     this.shift = 0
+    // Whose code runs: what it begins, before it first waits for a promise, is its own as well.
+    this.owner = null
     this.random = new Random(seed)
     this.timers = new TimerQueue(() => this.time)
   }
@@ -37,6 +39,18 @@ class Context {
   /** Makes the context's date, which need not rise, that of `ms` after its beginning; what waits goes on waiting. */
   setDate (ms) {
     this.shift = ms - this.time
+  }
+
+  /** Runs `action` as code of an owner; what it throws is reported. */
+  run (owner, action) {
+    this.owner = owner
+    try {
+      action()
+    } catch (error) {
+      this.report(error, owner)
+    } finally {
+      this.owner = null
+    }
   }
 }
 
@@ -101,11 +115,7 @@ function fire (context, timer) {
   context.timers.pop()
   timer.active = false
   if (timer.repeat) context.timers.schedule(timer)
-  try {
-    timer.callback(...timer.args)
-  } catch (error) {
-    context.report(error)
-  }
+  context.run(timer.owner, () => timer.callback(...timer.args))
 }
 
 function rethrow (error) {

@@ -36,7 +36,7 @@ function installDate (clock) {
 function installTimers (clock) {
   const add = (callback, args, delay, repeat) => {
     if (typeof callback !== 'function') throw new TypeError('a timer needs a function to call')
-    return clock.active.timers.add(callback, args, delay, repeat)
+    return clock.active.timers.add(callback, args, delay, repeat, clock.active.owner)
   }
   const clear = timer => { if (timer && typeof timer.close === 'function') timer.close() }
   const functions = {

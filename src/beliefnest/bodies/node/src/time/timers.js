@@ -2,8 +2,9 @@
 /** Virtual timers of one context, fired in order of (time, creation). */
 
 class VirtualTimer {
-  constructor (queue, callback, args, delay, repeat) {
+  constructor (queue, callback, args, delay, repeat, owner) {
     this.queue = queue
+    this.owner = owner
     this.callback = callback
     this.args = args
     this.delay = delay
@@ -31,8 +32,9 @@ class TimerQueue {
     this.created = 0
   }
 
-  add (callback, args, delay, repeat) {
-    const timer = new VirtualTimer(this, callback, args, delay, repeat)
+  /** @param {?string} [owner] whose timer it is */
+  add (callback, args, delay, repeat, owner = null) {
+    const timer = new VirtualTimer(this, callback, args, delay, repeat, owner)
     this.schedule(timer)
     return timer
   }
