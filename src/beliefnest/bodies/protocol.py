@@ -24,7 +24,8 @@ class Fault:
     Attributes:
         message: What went wrong and what to do.
         kind: Kind of failure, as `error`, `skill`, `syntax`, `timeout`, `fuel`, `bot` (all of
-            them are in docs/programs.md), or `killed`: the process behind the world ended, and nothing of the program was kept.
+            them are in docs/programs.md), or `killed`: the process behind the world ended, and
+            nothing of the program was kept.
         line: Line in the program's own text, from 1; None where there is none.
         column: Column in that line, from 1.
         skill: The skill that failed, if one did.
