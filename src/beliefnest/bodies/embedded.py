@@ -118,31 +118,31 @@ class EmbeddedBody:
 
 
 class EmbeddedWorld:
-    """A running Node process, or the next one after it ended; `EmbeddedWorld.start` makes it."""
+    """A Node process, or the next one after it ended; it is started with the first body.
 
-    def __init__(
-        self, seed: int, limits: ProcessLimits, channel: Channel, versions: Mapping[str, str]
-    ) -> None:
+    Args:
+        seed: Drives the random numbers of the world itself.
+        limits: What Node may take.
+    """
+
+    def __init__(self, seed: int, limits: ProcessLimits | None = None) -> None:
         self._seed = seed
-        self._limits = limits
-        self._channel = channel
-        self._versions = versions
+        self._limits = limits or ProcessLimits()
+        self._channel: Channel | None = None
+        self._versions: Mapping[str, str] = {}
         self._names: set[str] = set()
         self._closed = False
 
     @classmethod
     def start(cls, seed: int, limits: ProcessLimits | None = None) -> Self:
-        """Start Node with an empty world.
-
-        Args:
-            seed: Drives the random numbers of the world itself.
-            limits: What Node may take.
+        """Start Node with an empty world, now.
 
         Raises:
             BodyError: Node or the bundle is missing, or the start failed.
         """
-        limits = limits or ProcessLimits()
-        return cls(seed, limits, *_started(seed, limits))
+        world = cls(seed, limits)
+        world._live()
+        return world
 
     @property
     def versions(self) -> Mapping[str, str]:
@@ -151,33 +151,49 @@ class EmbeddedWorld:
 
     @property
     def pid(self) -> int:
-        """Process id of Node."""
-        return self._channel.pid
+        """Process id of Node; it is started if it has not been."""
+        return (self._channel or self._live()).pid
 
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> EmbeddedBody:
         """Make a region, fill it, and let the bots of its agents log in.
 
         If Node has ended, another one is started.
         """
-        if self._closed:
-            raise BodyError("this world was closed; open another one")
-        if self._channel.lost:
-            self._channel.close()
-            self._channel, self._versions = _started(self._seed, self._limits)
-            self._names = set()
+        channel = self._live()
         if name in self._names:
             raise WorldError(f"there is a body {name!r} already")
-        self._channel.request(
+        channel.request(
             "create_region", region=name, seed=seed, **messages.snapshot_message(snapshot)
         )
         names = self._names
         names.add(name)
-        return EmbeddedBody(self._channel, name, snapshot, sink, lambda: names.discard(name))
+        return EmbeddedBody(channel, name, snapshot, sink, lambda: names.discard(name))
+
+    def another(self) -> "EmbeddedWorld":
+        """One more, with a process of its own."""
+        return EmbeddedWorld(self._seed, self._limits)
+
+    def interrupt(self) -> None:
+        """Kill the process, whatever it is doing."""
+        if self._channel is not None:
+            self._channel.kill()
 
     def close(self) -> None:
         """End the process."""
         self._closed = True
-        self._channel.close()
+        if self._channel is not None:
+            self._channel.close()
+
+    def _live(self) -> Channel:
+        """The channel to Node, which is started if none is running."""
+        if self._closed:
+            raise BodyError("this world was closed; open another one")
+        if self._channel is None or self._channel.lost:
+            if self._channel is not None:
+                self._channel.close()
+            self._channel, self._versions = _started(self._seed, self._limits)
+            self._names = set()
+        return self._channel
 
 
 def _started(seed: int, limits: ProcessLimits) -> tuple[Channel, Mapping[str, str]]:

@@ -177,5 +177,11 @@ class World(Protocol):
             BodyError: The world could not be started, or failed.
         """
 
+    def another(self) -> "World":
+        """One more world of the kind, with nothing in it; it is started with its first body."""
+
+    def interrupt(self) -> None:
+        """End what it is doing for another thread, and all its bodies; they are lost."""
+
     def close(self) -> None:
         """End the world and all its bodies."""

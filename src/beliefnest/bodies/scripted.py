@@ -80,5 +80,12 @@ class ScriptedBodies:
         world, self._first = self._first, None
         return ScriptedBody(world or ScriptedWorld.from_snapshot(snapshot), sink)
 
+    def another(self) -> "ScriptedBodies":
+        """One more, with nothing in it."""
+        return ScriptedBodies()
+
+    def interrupt(self) -> None:
+        """Nothing goes on for long."""
+
     def close(self) -> None:
         """Nothing is held open."""

@@ -84,6 +84,15 @@ class LateWorld:
             self._world = open_world(self._name, self._seed, self._limits)
         return self._world.open_body(name, seed, snapshot, sink)
 
+    def another(self) -> World:
+        """One more world of the kind, started with its first body."""
+        return LateWorld(self._name, self._seed, self._limits)
+
+    def interrupt(self) -> None:
+        """End what it is doing for another thread."""
+        if self._world is not None:
+            self._world.interrupt()
+
     def close(self) -> None:
         """End the world if it was started."""
         if self._world is not None:
@@ -149,6 +158,14 @@ class _Lent:
         body = self._world.open_body(name, seed, snapshot, sink)
         self._bodies.append(body)
         return body
+
+    def another(self) -> World:
+        """One more world of the kind, for this nest alone."""
+        return self._world.another()
+
+    def interrupt(self) -> None:
+        """End what it is doing for another thread."""
+        self._world.interrupt()
 
     def close(self) -> None:
         """Give up all bodies."""

@@ -25,11 +25,12 @@ from beliefnest.errors import (
     TickError,
     WorldError,
 )
+from beliefnest.nest.ahead import Outcome, StandIn
 from beliefnest.nest.history import History
 from beliefnest.nest.moments import hidden_at, note_hidden, present, snapshot_at
 from beliefnest.nest.paths import path_text
 from beliefnest.nest.recorder import Recorder
-from beliefnest.nest.runlog import MemoryLog, RunLog
+from beliefnest.nest.runlog import MemoryLog, RunLog, note_programs
 from beliefnest.nest.script import UNDONE
 from beliefnest.nest.setting import Setting
 from beliefnest.nest.views import Blocks, LiveState
@@ -41,7 +42,6 @@ from beliefnest.timeline.journal import (
     TimelineInfo,
     TimelineKey,
 )
-from beliefnest.timeline.records import ProgramRecord
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.values import Items, Position
 
@@ -90,6 +90,8 @@ class Engine:
         self.selected: dict[Path, TimelineKey] = {}
         self._bodies: dict[Path, Body] = {}
         self._recorders: dict[Path, Recorder] = {}
+        self._bodiless: set[Path] = set()
+        self._others: list[World] = []
 
     def begin(self) -> Self:
         """Start the real world's timeline and give it its body."""
@@ -173,18 +175,20 @@ class Engine:
             info = self.journal.info(key)
         return key, self.journal.entries_until(key, tick)
 
+    def seed_of(self, path: Path) -> str:
+        """Seed of a simulator's body."""
+        return f"{self.seed} {path_text(path)}"
+
     def fork(self, path: Path, name: str, tick: int | None) -> None:
         """Begin a branch at the current tick, or at a past one, and select it."""
         self._surviving(lambda: self._fork(path, name, tick))
 
     def _fork(self, path: Path, name: str, tick: int | None) -> None:
-        source = self.info(path)
-        if tick is None:
-            base = ForkPoint(source.key, source.entries, source.head)
-        else:
-            if tick > source.head:
-                raise TickError(f"tick {tick} is in the future; the fork can be at {source.head}")
-            place, entries = self.place_of(source.key, tick)
+        base = present(self.journal, self.controller(path))
+        if tick is not None:
+            if tick > base.tick:
+                raise TickError(f"tick {tick} is in the future; the fork can be at {base.tick}")
+            place, entries = self.place_of(base.timeline, tick)
             base = ForkPoint(place, entries, tick)
         key = TimelineKey(path, name)
         snapshot = snapshot_at(self.journal, self.history, path, base)
@@ -286,7 +290,7 @@ class Engine:
         try:
             with self._recording(path) as body:
                 results = body.run(programs, timeout_ticks)
-                self._note(before, programs, results, noted)
+                note_programs(self.log, before, programs, results, noted)
         except BodyLostError as lost:
             message = (
                 f"nothing of the program is kept, {path_text(path)} is at tick {before.head} as "
@@ -295,35 +299,26 @@ class Engine:
             fault = Fault(message, KILLED)
             results = {agent: ProgramResult(agent, False, fault, 0) for agent in programs}
             with self.log.together():
-                self._note(before, programs, results, {**noted, UNDONE: KILLED})
+                note_programs(self.log, before, programs, results, {**noted, UNDONE: KILLED})
         return results
 
-    def _note(
-        self,
-        before: TimelineInfo,
-        programs: Mapping[str, str],
-        results: Mapping[str, ProgramResult],
-        noted: Mapping[str, str],
-    ) -> None:
-        group = self.log.next_group()
-        for agent, result in results.items():
-            self.log.add_program(
-                ProgramRecord(
-                    path=before.key.path,
-                    branch=before.key.branch,
-                    agent=agent,
-                    code=programs[agent],
-                    tick=before.head,
-                    ok=result.ok,
-                    error=None if result.error is None else str(result.error),
-                    ticks=result.ticks,
-                    group=group,
-                    lines=result.lines,
-                    log=result.log,
-                    unfinished=tuple(map(str, result.unfinished)),
-                    detail={**noted, "entries": str(before.entries)},
-                )
-            )
+    def take_over(
+        self, path: Path, programs: Mapping[str, str], timeout_ticks: int, outcome: Outcome
+    ) -> Mapping[str, ProgramResult]:
+        """Run programs that have run already, in another body that was as this simulator's is."""
+        self._give_up(path)
+        recorder = Recorder(self.journal, self.history, self.selected[path])
+        self._bodies[path], self._recorders[path] = StandIn(outcome, recorder), recorder
+        try:
+            return self.run(path, programs, timeout_ticks)
+        finally:
+            self._give_up(path)
+
+    def others(self, count: int) -> Sequence[World]:
+        """That many worlds like this nest's own; each is started when it is first needed."""
+        while len(self._others) < count:
+            self._others.append(self.world.another())
+        return self._others[:count]
 
     def step(self, path: Path, ticks: int) -> None:
         """Let ticks pass in a body."""
@@ -367,7 +362,8 @@ class Engine:
         """Give up all bodies, the world and the journal."""
         self._bodies.clear()
         try:
-            self.world.close()
+            for world in (*self._others, self.world):
+                world.close()
         finally:
             self.journal.close()
 
@@ -383,16 +379,27 @@ class Engine:
         """
         body = self._bodies.get(key.path)
         try:
-            if body is None:
-                self._open_body(key, snapshot)
-            else:
+            if body is not None:
                 body.become(snapshot)
+            elif key.path not in self._bodiless:
+                self._open_body(key, snapshot)
             yield
         except BaseException:
             self._restore(key.path)
             raise
         self.selected[key.path] = key
-        self._recorders[key.path].key = key
+        if key.path in self._recorders:
+            self._recorders[key.path].key = key
+
+    @contextmanager
+    def without_body(self, path: Path) -> Iterator[None]:
+        """Give a simulator's body up, and make none for a branch that is only selected."""
+        self._give_up(path)
+        self._bodiless.add(path)
+        try:
+            yield
+        finally:
+            self._bodiless.discard(path)
 
     def _restore(self, path: Path) -> None:
         """Make a simulator's body, after a fault, what its timeline says."""
@@ -442,8 +449,7 @@ class Engine:
 
     def _open_body(self, key: TimelineKey, snapshot: Snapshot) -> None:
         recorder = Recorder(self.journal, self.history, key)
-        name = path_text(key.path)
-        seed = f"{self.seed} {name}"
+        name, seed = path_text(key.path), self.seed_of(key.path)
         self._bodies[key.path] = self.world.open_body(name, seed, snapshot, recorder)
         self._recorders[key.path] = recorder
         self.log.add_versions(self.world.versions)

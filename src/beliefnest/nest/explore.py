@@ -1,19 +1,28 @@
 """Trying several programs, each on a branch of its own, from one tick."""
 
-from collections.abc import Callable, Sequence
+import os
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 
 from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import ProgramResult
-from beliefnest.errors import BranchError
+from beliefnest.errors import BranchError, InputError
+from beliefnest.nest.ahead import Outcome, Start, run_ahead
 from beliefnest.nest.engine import Engine
+from beliefnest.nest.moments import present, snapshot_at
+from beliefnest.nest.paths import path_text
 from beliefnest.nest.simulator import Simulator
-from beliefnest.timeline.journal import TimelineKey
+from beliefnest.timeline.journal import ForkPoint, TimelineKey
 
-__all__ = ["Attempt", "Score", "explore"]
+__all__ = ["Attempt", "Exploration", "Score"]
 
 Score = Callable[[Simulator, ProgramResult], float]
 """Says how good it is what a program led to; takes the simulator as the program left it."""
+
+_WORTH_SECONDS = 4.0
+"""What is to be done yet must take at least that long for other processes to be started."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,34 +44,121 @@ class Attempt:
     state: State
 
 
-def explore(
-    engine: Engine,
-    path: tuple[str, ...],
-    agent: str,
-    programs: Sequence[str],
-    score: Score,
-    timeout_ticks: int,
-    name: str,
-) -> tuple[Attempt, ...]:
-    """Run each program from the simulator's present; the simulator ends where it began."""
-    simulator = Simulator(engine, path)
-    branches = [f"{name} {number}" for number in range(1, len(programs) + 1)]
-    taken = {info.key for info in engine.journal.timelines()}
-    for branch in branches:
-        if TimelineKey(path, branch) in taken:
-            raise BranchError(
-                f"{simulator.path} already has a branch {branch!r}; explore under another name"
+@dataclass(frozen=True, slots=True)
+class Exploration:
+    """What is to be tried: each program from the simulator's present.
+
+    Attributes:
+        engine: The nest's.
+        path: The simulator; it ends where it began.
+        agent: Whose bot runs the programs.
+        programs: Their texts.
+        score: Says how good it is what a program led to.
+        timeout_ticks: Ticks after which a program is stopped.
+        name: What the branches are called.
+        processes: How many run programs at the same time; None: as many as the machine has
+            processors, if what is left after the first program would take long enough.
+    """
+
+    engine: Engine
+    path: tuple[str, ...]
+    agent: str
+    programs: Sequence[str]
+    score: Score
+    timeout_ticks: int
+    name: str
+    processes: int | None
+
+    def attempts(self) -> tuple[Attempt, ...]:
+        """Try all programs, in order.
+
+        Raises:
+            BranchError: A branch is there already; nothing was run.
+            InputError: The number of processes is none.
+        """
+        simulator = Simulator(self.engine, self.path)
+        branches = self._branches(simulator)
+        if self.processes is not None and self.processes < 1:
+            raise InputError(f"processes is {self.processes}; give at least 1")
+        before, base = simulator.branch, self._present()
+        decided_at = 1 if self.processes is None else 0
+        attempts: list[Attempt] = []
+        ahead: Mapping[int, Outcome] = {}
+        seconds = 0.0
+        with ExitStack() as stack:
+            stack.callback(simulator.switch, before)
+            for number, branch in enumerate(branches):
+                if number == decided_at:
+                    ahead = self._ahead(stack, base, number, seconds)
+                started = time.perf_counter()
+                simulator.switch(before)
+                # A score may have let the world go on that this simulator follows.
+                outcome = ahead.get(number) if self._present() == base else None
+                simulator.switch(branch)
+                result = self._run(simulator, number, outcome)
+                seconds = time.perf_counter() - started
+                score = float(self.score(simulator, result))
+                attempts.append(
+                    Attempt(self.programs[number], branch, result, score, simulator.state)
+                )
+        return tuple(attempts)
+
+    def _present(self) -> ForkPoint:
+        return present(self.engine.journal, self.engine.controller(self.path))
+
+    def _branches(self, simulator: Simulator) -> Sequence[str]:
+        branches = [f"{self.name} {number}" for number in range(1, len(self.programs) + 1)]
+        taken = {info.key for info in self.engine.journal.timelines()}
+        for branch in branches:
+            if TimelineKey(self.path, branch) in taken:
+                raise BranchError(
+                    f"{simulator.path} already has a branch {branch!r}; explore under another name"
+                )
+        return branches
+
+    def _run(self, simulator: Simulator, number: int, outcome: Outcome | None) -> ProgramResult:
+        code = self.programs[number]
+        if outcome is None:
+            return simulator.run(self.agent, code, self.timeout_ticks)
+        with self.engine.turn:
+            results = self.engine.take_over(
+                self.path, {self.agent: code}, self.timeout_ticks, outcome
             )
-    before = simulator.branch
-    attempts = []
-    try:
-        for program, branch in zip(programs, branches, strict=True):
-            simulator.switch(before)
-            simulator.switch(branch)
-            result = simulator.run(agent, program, timeout_ticks)
-            attempts.append(
-                Attempt(program, branch, result, float(score(simulator, result)), simulator.state)
+        return results[self.agent]
+
+    def _ahead(
+        self, stack: ExitStack, base: ForkPoint, first: int, seconds: float
+    ) -> Mapping[int, Outcome]:
+        """Outcomes of the programs from one on, if it is to be done at the same time.
+
+        Args:
+            stack: Keeps the simulator without a body as long as outcomes are used.
+            base: Where they begin.
+            first: Number of the first of them.
+            seconds: What one took that ran before.
+        """
+        left = range(first, len(self.programs))
+        processes = self.processes
+        if processes is None:
+            processes = _processors() if seconds * len(left) > _WORTH_SECONDS else 1
+        processes = min(processes, len(left))
+        if processes < 2:
+            return {}
+        engine = self.engine
+        with engine.turn:
+            stack.enter_context(engine.without_body(self.path))
+            start = Start(
+                f"{path_text(self.path)} ahead",
+                engine.seed_of(self.path),
+                snapshot_at(engine.journal, engine.history, self.path, base),
             )
-    finally:
-        simulator.switch(before)
-    return tuple(attempts)
+            jobs = {number: {self.agent: self.programs[number]} for number in left}
+            worlds = [engine.world, *engine.others(processes - 1)]
+            return run_ahead(worlds, start, jobs, self.timeout_ticks)
+
+
+def _processors() -> int:
+    """How many processors this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

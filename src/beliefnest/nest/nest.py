@@ -14,7 +14,7 @@ from beliefnest.bodies.worlds import LateWorld, Worlds, open_world
 from beliefnest.errors import BodyError, ProgramError
 from beliefnest.nest.compare import Difference, compare, false_beliefs
 from beliefnest.nest.engine import Engine
-from beliefnest.nest.explore import Attempt, Score, explore
+from beliefnest.nest.explore import Attempt, Exploration, Score
 from beliefnest.nest.paths import parse_path
 from beliefnest.nest.runlog import FileLog
 from beliefnest.nest.saved import decode_start, encode_start
@@ -295,16 +295,24 @@ class Nest:
         score: Score,
         timeout_ticks: int = 1200,
         name: str = "plan",
+        processes: int | None = None,
     ) -> tuple[Attempt, ...]:
         """Try programs in one simulator, each on a branch of its own, from its present.
+
+        Several can run at the same time, in bodies of their own; what comes of it, and what is
+        recorded in which order, is the same as one after the other.
 
         Args:
             path: Belief path of the simulator; it ends on the branch it is on.
             agent: Whose bot runs them.
-            programs: What to try, one after the other.
+            programs: What to try.
             score: Says how good it is what a program led to.
             timeout_ticks: Ticks after which a program is stopped.
             name: What the branches are called: `NAME 1`, `NAME 2` and so on.
+            processes: How many processes run programs at the same time; each further one
+                takes about a second to start, once, and 200 MB as long as the nest is open.
+                None: the first program runs alone; if the others would take more than four
+                seconds, as many as there are processors run them, else they run one by one.
 
         Returns:
             One attempt for each program, in order, with its branch, result and score.
@@ -313,11 +321,19 @@ class Nest:
             PathError: The path or the agent is not there.
             BranchError: There is such a branch already; nothing was run.
             WorldError: The agent's pose is not known there, or the world runs no programs.
+            InputError: `processes` is below 1.
         """
         self[path].child(agent)
-        return explore(
-            self._engine, parse_path(path, self.agents), agent, programs, score, timeout_ticks, name
-        )
+        return Exploration(
+            engine=self._engine,
+            path=parse_path(path, self.agents),
+            agent=agent,
+            programs=tuple(programs),
+            score=score,
+            timeout_ticks=timeout_ticks,
+            name=name,
+            processes=processes,
+        ).attempts()
 
     def play(self, on_progress: Progress | None = None) -> None:
         """Play the scenario's script in the real world, from the first step not played there.

@@ -8,11 +8,12 @@ from contextlib import AbstractContextManager, contextmanager
 from dataclasses import replace
 from typing import Protocol
 
-from beliefnest.timeline.journal import Journal, TimelineKey
+from beliefnest.bodies.protocol import ProgramResult
+from beliefnest.timeline.journal import Journal, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
 from beliefnest.timeline.store import SqliteJournal
 
-__all__ = ["FileLog", "MemoryLog", "RunLog"]
+__all__ = ["FileLog", "MemoryLog", "RunLog", "note_programs"]
 
 Path = tuple[str, ...]
 
@@ -73,12 +74,14 @@ class MemoryLog:
         """Take back what was noted and recorded inside if it raises."""
         selected, versions = self._selected.copy(), self._versions.copy()
         programs, prompts = self._programs.copy(), self._prompts.copy()
+        ever = self._ever
         try:
             with self._journal.together():
                 yield
         except BaseException:
             self._selected, self._versions = selected, versions
             self._programs, self._prompts = programs, prompts
+            self._ever = ever
             raise
 
     def select(self, path: Path, branch: str) -> None:
@@ -190,3 +193,40 @@ class FileLog:
 
     def forgotten(self, path: Path, branch: str) -> None:
         """Nothing to do."""
+
+
+def note_programs(
+    log: RunLog,
+    before: TimelineInfo,
+    programs: Mapping[str, str],
+    results: Mapping[str, ProgramResult],
+    detail: Mapping[str, str],
+) -> None:
+    """Note programs that ran together, with their results.
+
+    Args:
+        log: Where.
+        before: The timeline they ran on, as it was when they began.
+        programs: Their texts by agent.
+        results: What became of them.
+        detail: Further facts of the caller.
+    """
+    group = log.next_group()
+    for agent, result in results.items():
+        log.add_program(
+            ProgramRecord(
+                path=before.key.path,
+                branch=before.key.branch,
+                agent=agent,
+                code=programs[agent],
+                tick=before.head,
+                ok=result.ok,
+                error=None if result.error is None else str(result.error),
+                ticks=result.ticks,
+                group=group,
+                lines=result.lines,
+                log=result.log,
+                unfinished=tuple(map(str, result.unfinished)),
+                detail={**detail, "entries": str(before.entries)},
+            )
+        )

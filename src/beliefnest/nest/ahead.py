@@ -1,0 +1,183 @@
+"""Running programs ahead of their turn, in several processes at once.
+
+What a program does depends on the snapshot, the seed and the tick it begins with, and on nothing
+else. So it can run in any body filled with them, and be recorded when its turn comes.
+"""
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from queue import Empty, SimpleQueue
+from threading import Event
+
+from beliefnest.bodies.protocol import Body, ProgramResult, Sink, World
+from beliefnest.errors import BeliefNestError, BodyError, BodyLostError, WorldError
+from beliefnest.world.frames import Frame, Snapshot
+
+__all__ = ["Outcome", "StandIn", "Start", "run_ahead"]
+
+_LIVES = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """What a body begins with that a program runs in.
+
+    Attributes:
+        name: Name of the body, of no other one in its world.
+        seed: Seed of its random numbers.
+        snapshot: What it is filled with.
+    """
+
+    name: str
+    seed: str
+    snapshot: Snapshot
+
+
+@dataclass(slots=True)
+class Outcome:
+    """What became of programs in a body of their own.
+
+    Attributes:
+        tick: The body's tick in the end.
+        hidden: What went on in it in the end.
+        frames: What it told.
+        results: Results by agent; empty if the call raised.
+        error: What it raised.
+    """
+
+    tick: int
+    hidden: bytes = b""
+    frames: list[Frame] = field(default_factory=list)
+    results: Mapping[str, ProgramResult] = field(default_factory=dict)
+    error: BeliefNestError | None = None
+
+
+class StandIn:
+    """A body in which programs have run already; it can do nothing but run them, once."""
+
+    def __init__(self, outcome: Outcome, sink: Sink) -> None:
+        self._outcome = outcome
+        self._sink = sink
+        self._ran = False
+
+    @property
+    def lost(self) -> bool:
+        """Whether the process ended in which they ran."""
+        return self._ran and isinstance(self._outcome.error, BodyLostError)
+
+    @property
+    def tick(self) -> int:
+        """The body's latest tick."""
+        return self._outcome.tick
+
+    @property
+    def hidden(self) -> bytes:
+        """What goes on in it and nobody can perceive."""
+        return self._outcome.hidden
+
+    def snapshot(self) -> Snapshot:
+        """Raise BodyError: the body is gone."""
+        raise _gone()
+
+    def run(self, programs: Mapping[str, str], timeout_ticks: int) -> Mapping[str, ProgramResult]:
+        """Tell what the programs did; they are those that ran."""
+        self._ran = True
+        for frame in self._outcome.frames:
+            self._sink(frame)
+        if self._outcome.error is not None:
+            raise self._outcome.error
+        return self._outcome.results
+
+    def step(self, ticks: int) -> None:
+        """Raise BodyError: the body is gone."""
+        raise _gone()
+
+    def become(self, snapshot: Snapshot) -> None:
+        """Raise BodyError: the body is gone."""
+        raise _gone()
+
+    def close(self) -> None:
+        """Nothing is held open."""
+
+
+def run_ahead(
+    worlds: Sequence[World],
+    start: Start,
+    jobs: Mapping[int, Mapping[str, str]],
+    timeout_ticks: int,
+) -> Mapping[int, Outcome]:
+    """Run programs, each job in a body of its own, in several worlds at the same time.
+
+    Args:
+        worlds: Where; each does one job after the other.
+        start: What each body begins with.
+        jobs: Programs by agent, by the caller's number.
+        timeout_ticks: Ticks after which programs are stopped.
+
+    Returns:
+        Outcomes by number; those for which no body could be made are left out.
+    """
+    waiting: SimpleQueue[int] = SimpleQueue()
+    for number in jobs:
+        waiting.put(number)
+    outcomes: dict[int, Outcome] = {}
+    stopped = Event()
+
+    def work(world: World) -> None:
+        while not stopped.is_set():
+            try:
+                number = waiting.get_nowait()
+            except Empty:
+                return
+            outcome = _run(world, start, jobs[number], timeout_ticks, stopped)
+            if outcome is None:
+                return
+            outcomes[number] = outcome
+
+    with ThreadPoolExecutor(len(worlds)) as pool:
+        try:
+            list(pool.map(work, worlds))
+        except BaseException:
+            # Nobody waits for what still runs.
+            stopped.set()
+            for world in worlds:
+                world.interrupt()
+            raise
+    return outcomes
+
+
+def _run(
+    world: World,
+    start: Start,
+    programs: Mapping[str, str],
+    timeout_ticks: int,
+    stopped: Event,
+) -> Outcome | None:
+    outcome = Outcome(start.snapshot.tick)
+    body = _opened(world, start, outcome.frames.append, stopped)
+    if body is None:
+        return None
+    try:
+        outcome.results = body.run(programs, timeout_ticks)
+    except BeliefNestError as error:
+        outcome.error = error
+    outcome.tick, outcome.hidden = body.tick, body.hidden
+    body.close()
+    return outcome
+
+
+def _opened(world: World, start: Start, sink: Sink, stopped: Event) -> Body | None:
+    lives = _LIVES
+    while lives > 0 and not stopped.is_set():
+        try:
+            return world.open_body(start.name, start.seed, start.snapshot, sink)
+        except BodyLostError:
+            lives -= 1
+        except (BodyError, WorldError):
+            break
+    return None
+
+
+def _gone() -> BodyError:
+    return BodyError("the body in which the programs ran is gone; another one has to be made")

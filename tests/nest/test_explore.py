@@ -1,0 +1,132 @@
+"""Programs tried at the same time come to what they come to one after the other."""
+
+import sqlite3
+
+import pytest
+from tests.nest.comparing import everything
+
+import beliefnest as bn
+from beliefnest.bodies.channel import Channel
+from beliefnest.bodies.worlds import Worlds
+from beliefnest.nest import explore as exploring
+
+ROOM = {
+    "name": "room",
+    "box": [[0, 0, 0], [8, 4, 8]],
+    "blocks": [{"block": "stone", "fill": [[0, 0, 0], [8, 0, 8]]}],
+    "static_blocks": ["stone"],
+    "containers": [{"block": "chest", "at": [4, 1, 4], "items": {"diamond": 3}}],
+    "agents": {"ann": {"position": [1.5, 1, 1.5]}, "bob": {"position": [6.5, 1, 6.5]}},
+}
+DEADLY = "bot.chat('this kills Node')"
+PROGRAMS = (
+    "await goToPosition(bot, new Vec3(6, 1, 1), 0); bot.chat('here ' + Math.random())",
+    "bot.chat('hm'); await getItemFromChest(bot, new Vec3(4, 1, 4), {emerald: 1})",
+    "await goToPosition(bot, new Vec3(1, 1, 6), 0); for (;;) await bot.waitForTicks(1)",
+    DEADLY,
+    "await getItemFromChest(bot, new Vec3(4, 1, 4), {diamond: 2})",
+    "const oops = ",
+)
+
+
+@pytest.fixture(scope="module")
+def worlds():
+    """Lends one world to all nests here."""
+    with Worlds(7) as there:
+        yield there
+
+
+@pytest.fixture(autouse=True)
+def deadly(monkeypatch):
+    """Let Node die of one of the programs, in whichever process."""
+    request = Channel.request
+
+    def asking(self, op, on_frame=None, **arguments):
+        if DEADLY in arguments.get("programs", {}).values():
+            self.kill()
+        return request(self, op, on_frame, **arguments)
+
+    monkeypatch.setattr(Channel, "request", asking)
+
+
+def explored(worlds, store, path, score, processes, programs=PROGRAMS):
+    """All that comes of it, and of going on afterwards."""
+    scenario = bn.Scenario.from_mapping(ROOM)
+    with bn.Nest.open(scenario, store=store, seed=7, worlds=worlds) as nest:
+        assert nest["/"].run("bob", "await goToPosition(bot, new Vec3(3, 1, 6), 0)").ok
+        attempts = nest.explore(path, "ann", programs, score, 80, processes=processes)
+        branch = nest[path].branch
+        nest[path].switch("plan 5")
+        results = nest[path].run_all({"ann": PROGRAMS[0], "bob": PROGRAMS[4]})
+        told = [(a.program, a.branch, a.result, a.score, everything(a.state)) for a in attempts]
+        held = everything(nest[path].state)
+        used = len(nest._engine._others)
+    with sqlite3.connect(store) as file:
+        dump = list(file.iterdump())
+    return (told, branch, results, held, dump), used
+
+
+def seen(simulator, result):
+    return simulator.tick + len(result.events)
+
+
+def acting(simulator, result):
+    """A score that lets the simulator go on."""
+    simulator.run("ann", "bot.chat('and now?')")
+    return simulator.tick
+
+
+@pytest.mark.parametrize(("path", "score"), [("/", seen), ("/bob", seen), ("/", acting)])
+def test_at_the_same_time_or_in_turn(worlds, tmp_path, path, score):
+    in_turn, none = explored(worlds, tmp_path / "a.bn", path, score, 1)
+    at_once, one = explored(worlds, tmp_path / "b.bn", path, score, 2)
+    assert at_once == in_turn
+    assert (none, one) == (0, 1)
+    kinds = {result.error.kind for _, _, result, _, _ in in_turn[0] if not result.ok}
+    assert kinds >= {"skill", "timeout", "killed", "syntax"}
+
+
+def test_a_score_that_lets_the_world_go_on(worlds, tmp_path):
+    def score(simulator, result):
+        nest_of[simulator.path].step(2)
+        return simulator.tick
+
+    told = []
+    for processes in (1, 3):
+        scenario = bn.Scenario.from_mapping(ROOM)
+        with bn.Nest.open(scenario, seed=7, worlds=worlds) as nest:
+            nest_of = {"/bob": nest["/"]}
+            attempts = nest.explore("/bob", "ann", PROGRAMS[:2] * 2, score, 80, processes=processes)
+            told.append([(a.result, a.score, everything(a.state)) for a in attempts])
+            starts = [info.start for info in nest["/bob"].branches()]
+            assert starts == sorted(set(starts))
+    assert told[0] == told[1]
+
+
+def test_other_processes_are_used_if_it_is_worth_it(worlds, tmp_path, monkeypatch):
+    programs = PROGRAMS[:1] * 5
+    quick, none = explored(worlds, tmp_path / "a.bn", "/", seen, None, programs)
+    monkeypatch.setattr(exploring, "_WORTH_SECONDS", 0.0)
+    monkeypatch.setattr(exploring, "_processors", lambda: 2)
+    long, one = explored(worlds, tmp_path / "b.bn", "/", seen, None, programs)
+    assert (none, one) == (0, 1)
+    assert quick == long
+
+
+def test_an_agent_who_is_not_there(worlds):
+    room = {**ROOM, "perception": {"max_visible_distance": 2}}
+    for processes in (1, 2):
+        scenario = bn.Scenario.from_mapping(room)
+        with bn.Nest.open(scenario, seed=7, worlds=worlds) as nest:
+            with pytest.raises(bn.WorldError, match="ann has no bot"):
+                nest.explore("/bob", "ann", PROGRAMS[:2], seen, processes=processes)
+            assert nest["/bob"].branch == "follow"
+            assert [info.key.branch for info in nest["/bob"].branches()] == ["plan 1"]
+
+
+def test_no_process_at_all_is_refused(worlds):
+    with (
+        bn.Nest.open(bn.Scenario.from_mapping(ROOM), worlds=worlds) as nest,
+        pytest.raises(bn.InputError, match="processes is 0"),
+    ):
+        nest.explore("/", "ann", PROGRAMS, seen, processes=0)
