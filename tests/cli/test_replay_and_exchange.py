@@ -69,6 +69,25 @@ def test_replaying_names_the_first_tick_and_field_that_differ(run, tmp_path, cap
     assert f"differs at tick {frame.tick}, agents.sally.position.0" in told
 
 
+def test_replaying_runs_the_recorded_programs(run, tmp_path, capsys):
+    """A program that is not the one that was recorded shows, at its first tick."""
+    other = tmp_path / "run.bn"
+    other.write_bytes(run.read_bytes())
+    key = TimelineKey(("observer",), "plan 1")
+    with SqliteJournal.open(other) as journal, journal.together():
+        info = journal.info(key)
+        entries = list(journal.entries(key, 0, info.entries))
+        (program,) = [p for p in journal.records.programs() if p.branch == "plan 1"]
+        journal.delete(key)
+        journal.create(key, info.base, info.start)
+        journal.append(key, entries, info.head)
+        journal.records.add_program(replace(program, code="bot.chat('no')"))
+    assert run_command_line(["replay", str(other), "--json"]) == 1
+    told = json.loads(capsys.readouterr().out)
+    (difference,) = [row["difference"] for row in told["timelines"] if row["difference"]]
+    assert (difference["entry"], difference["tick"]) == (0, entries[0].tick)
+
+
 def test_a_run_is_exported_with_beliefs(run, tmp_path, capsys):
     out = tmp_path / "tables"
     command = ["export", str(run), "--path", "/observer/sally", "--out", str(out)]
@@ -77,6 +96,25 @@ def test_a_run_is_exported_with_beliefs(run, tmp_path, capsys):
     last = json.loads((out / "beliefs.jsonl").read_text().splitlines()[-1])
     assert last["state"]["containers"]["-2,-51,-4"]["items"] == {"diamond": 1}
     assert run_command_line([*command, "--format", "csv"]) == 2
+
+
+def test_a_trace_says_what_its_agents_perceive(tmp_path, capsys):
+    trace, store = tmp_path / "told.jsonl", tmp_path / "run.bn"
+    first, *others = TRACE.splitlines(keepends=True)
+    senses = {"perception": {"hearing": {"radius": 3}, "containers": "transparent"}}
+    told = {**json.loads(first), **senses, "static_blocks": ["stone"]}
+    trace.write_text("".join([json.dumps(told) + "\n", *others]))
+    assert run_command_line(["import", str(trace), "--out", str(store)]) == 0
+    with bn.Nest.read(store) as nest:
+        assert nest.setting.perception == bn.Perception(
+            hearing=bn.Radius(3.0), containers="transparent"
+        )
+        assert nest["/sally"].state.containers[(3, 1, 3)].complete
+        assert nest["/sally"].state.blocks[(9, 0, 9)] == "stone"
+    for wrong in ({"perception": {"sight": 3}}, {"static_blocks": ["ston"]}):
+        trace.write_text(json.dumps({**told, **wrong}) + "\n")
+        assert run_command_line(["import", str(trace), "--out", str(tmp_path / "no.bn")]) == 2
+        assert "line 1, the first state" in capsys.readouterr().err
 
 
 def test_a_trace_becomes_a_run(tmp_path, capsys):

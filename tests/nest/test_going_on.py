@@ -1,7 +1,8 @@
 """A simulator whose body is made anew goes on as if it had never stopped, whatever was under way.
 
 Two runs of the same random calls: one is left alone; in the other the body is taken away between
-the calls, by a resume or a visit to another branch. Every frame must be the same.
+the calls, by a resume or a visit to another branch. Every frame must be the same, and so must be
+those of a replay of all of it.
 """
 
 from collections.abc import Iterator
@@ -14,9 +15,11 @@ from hypothesis import strategies as st
 
 import beliefnest as bn
 from beliefnest.bodies.worlds import Worlds
+from beliefnest.nest.replay import replay
 from beliefnest.nest.setting import Setting
 from beliefnest.timeline.compare import first_difference
 from beliefnest.timeline.journal import TimelineKey
+from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, Box
@@ -135,3 +138,9 @@ def test_a_body_made_anew_goes_on_as_before(lent, tmp_path_factory, script):
     finally:
         disturbed.close()
         left_alone.close()
+    with SqliteJournal.read(store) as journal:
+        programs = journal.records.programs()
+        lent_once = other.lend("embedded")
+        for replayed in replay(start(), journal, programs, lent_once, 5):
+            assert replayed.difference is None
+        lent_once.close()

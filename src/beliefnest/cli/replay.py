@@ -3,11 +3,12 @@
 import json
 import sys
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 import msgspec
 
-from beliefnest.bodies.worlds import open_world
+from beliefnest.bodies.worlds import Worlds
 from beliefnest.cli.folder import stores_in
 from beliefnest.errors import InputError
 from beliefnest.nest.paths import path_text
@@ -29,28 +30,32 @@ def replay_runs(run: Path, *, as_json: bool) -> int:
     """
     same = True
     told = []
-    for store in stores_in(run):
-        for replayed in _replayed(store):
-            same = same and replayed.difference is None
-            row = _row(store, replayed)
-            told.append(row)
-            if not as_json:
-                sys.stdout.write(_line(row) + "\n")
+    with ExitStack() as ended:
+        worlds: dict[int, Worlds] = {}
+        for store in stores_in(run):
+            for replayed in _replayed(store, worlds, ended):
+                same = same and replayed.difference is None
+                row = _row(store, replayed)
+                told.append(row)
+                if not as_json:
+                    sys.stdout.write(_line(row) + "\n")
     if as_json:
         sys.stdout.write(json.dumps({"same": same, "timelines": told}, indent=2) + "\n")
     return 0 if same else 1
 
 
-def _replayed(store: Path) -> Iterator[Replayed]:
+def _replayed(store: Path, worlds: dict[int, Worlds], ended: ExitStack) -> Iterator[Replayed]:
     with SqliteJournal.read(store) as journal, journal.unchanging():
         run = journal.records.run()
         setting, name = decode_start(run.setting)
         if name == "scripted":
             raise InputError(
-                f"{store} was told by its user what happens, and ran no programs; "
-                "only runs in the embedded world can be replayed"
+                f"{store} was told by its user what happens, and ran no programs that could be "
+                "run again; only runs in the embedded world can be replayed"
             )
-        world = open_world(name, run.seed)
+        if run.seed not in worlds:
+            worlds[run.seed] = ended.enter_context(Worlds(run.seed))
+        world = worlds[run.seed].lend(name)
         try:
             yield from replay(setting, journal, journal.records.programs(), world, run.seed)
         finally:

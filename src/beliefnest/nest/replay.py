@@ -8,7 +8,7 @@ from beliefnest.bodies.protocol import Body, World
 from beliefnest.errors import StoreError
 from beliefnest.nest.engine import edited
 from beliefnest.nest.history import History
-from beliefnest.nest.moments import snapshot_at
+from beliefnest.nest.moments import hidden_at, snapshot_at
 from beliefnest.nest.paths import path_text
 from beliefnest.nest.script import UNDONE
 from beliefnest.nest.setting import Setting
@@ -45,6 +45,28 @@ class _Call:
     timeout_ticks: int
 
 
+@dataclass(frozen=True, slots=True)
+class _Stops:
+    """Where on a timeline calls that only let time pass have ended.
+
+    Such a call is not noted. Where one ends with nothing under way it makes no difference; where
+    something is, that was kept.
+    """
+
+    journal: Journal
+    key: TimelineKey
+
+    def wait_until(self, body: Body, tick: int) -> None:
+        """Let time pass in a body, in the calls in which it passed."""
+        for stop in range(body.tick + 1, tick + 1):
+            if stop == tick or self._is_one(stop):
+                body.step(stop - body.tick)
+
+    def _is_one(self, tick: int) -> bool:
+        entries = self.journal.entries_until(self.key, tick)
+        return hidden_at(self.journal, ForkPoint(self.key, entries, tick)) != b""
+
+
 def replay(
     setting: Setting,
     journal: Journal,
@@ -79,7 +101,8 @@ def replay(
         first = snapshot_at(journal, history, info.key.path, start)
         recorded = list(journal.entries(info.key, 0, info.entries))
         calls = [_call(list(group)) for _, group in groupby(mine, key=lambda p: p.group)]
-        found = _run_again(world, info, first, recorded, calls, seed)
+        stops = _Stops(journal, info.key)
+        found = _run_again(world, info, first, recorded, calls, seed, stops)
         yield Replayed(info.key, len(mine), first_difference(recorded, found))
 
 
@@ -106,6 +129,7 @@ def _run_again(
     recorded: Sequence[Entry],
     calls: Sequence[_Call],
     seed: int,
+    stops: _Stops,
 ) -> list[Entry]:
     found: list[Entry] = []
 
@@ -120,19 +144,14 @@ def _run_again(
         acts: list[tuple[int, int, Edit | _Call]] = [(e.tick, n, e) for n, e in edits]
         acts += [(call.tick, call.entries, call) for call in calls]
         for tick, _, act in sorted(acts, key=lambda each: each[:2]):
-            _wait_until(body, tick)
+            stops.wait_until(body, tick)
             if isinstance(act, _Call):
                 body.run(act.programs, act.timeout_ticks)
                 continue
             if act.path == info.key.path:
                 body.become(edited(body.snapshot(), act))
             found.append(act)
-        _wait_until(body, info.head)
+        stops.wait_until(body, info.head)
     finally:
         body.close()
     return found
-
-
-def _wait_until(body: Body, tick: int) -> None:
-    if tick > body.tick:
-        body.step(tick - body.tick)

@@ -6,7 +6,6 @@ from beliefnest.nest.engine import MAIN
 from beliefnest.nest.saved import encode_start
 from beliefnest.nest.setting import Setting
 from beliefnest.nest.versions import own_versions
-from beliefnest.perception.options import Perception
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.records import RunRecord
 from beliefnest.timeline.store import SqliteJournal
@@ -15,22 +14,21 @@ from beliefnest.timeline.trace import Trace, record_trace
 __all__ = ["import_trace"]
 
 
-def import_trace(
-    trace: Trace, name: str, store: str | Path, perception: Perception | None = None
-) -> None:
+def import_trace(trace: Trace, name: str, store: str | Path) -> None:
     """Make a run file of a trace; it can be read and resumed as any other.
 
     Args:
         trace: What happened.
         name: What the run is called.
         store: The file, which must not exist.
-        perception: What agents can perceive.
 
     Raises:
         StoreError: The file exists or cannot be written.
     """
     absent = frozenset(trace.agents) - trace.first.agents.keys()
-    setting = Setting(name, trace.first, perception or Perception(), absent=absent)
+    setting = Setting(
+        name, trace.first, trace.perception, static_blocks=trace.static_blocks, absent=absent
+    )
     key = TimelineKey((), MAIN)
     with SqliteJournal.create_file(store) as journal, journal.together():
         journal.records.set_run(

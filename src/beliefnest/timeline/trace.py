@@ -14,6 +14,7 @@ import msgspec
 import numpy as np
 
 from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.perception.options import ContainerMode, Perception
 from beliefnest.timeline.events import event_from
 from beliefnest.timeline.journal import Entry, Journal, TimelineKey
 from beliefnest.world.frames import Frame, Snapshot
@@ -62,10 +63,31 @@ _BlockLine = tuple[int, int, int, str]
 _ContainerLine = tuple[int, int, int, dict[str, int] | None]
 
 
+class _HearingLine(msgspec.Struct, forbid_unknown_fields=True):
+    radius: float
+
+
+class _PerceptionLine(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    max_visible_distance: float | msgspec.UnsetType | None = msgspec.UNSET
+    field_of_view: float | msgspec.UnsetType = msgspec.UNSET
+    hearing: str | _HearingLine | msgspec.UnsetType = msgspec.UNSET
+    containers: ContainerMode | msgspec.UnsetType = msgspec.UNSET
+    transparent_blocks: list[str] | msgspec.UnsetType = msgspec.UNSET
+    negative_evidence: bool | msgspec.UnsetType = msgspec.UNSET
+
+    def value(self, registry: Registry) -> Perception:
+        given = msgspec.to_builtins(self)
+        for name in given.get("transparent_blocks", ()):
+            registry.state_ids(name)
+        return Perception(**given)
+
+
 class _FirstLine(msgspec.Struct, forbid_unknown_fields=True):
     box: tuple[Position, Position]
     agents: dict[str, _AgentLine | None]
     tick: int = 0
+    perception: _PerceptionLine = _PerceptionLine()
+    static_blocks: list[str] = []
     fills: list[tuple[Position, Position, str]] = []
     blocks: list[_BlockLine] = []
     containers: list[_ContainerLine] = []
@@ -96,12 +118,16 @@ class Trace:
     Attributes:
         first: The state it begins in.
         agents: Names of all agents, those who come later included.
+        perception: What agents can perceive.
+        static_blocks: Names of blocks that everybody knows from the start.
         entries: What changed, in order of ticks.
         bad: Lines that were left out.
     """
 
     first: Snapshot
     agents: tuple[str, ...]
+    perception: Perception
+    static_blocks: frozenset[str]
     entries: tuple[Entry, ...]
     bad: tuple[BadLine, ...]
 
@@ -145,7 +171,14 @@ def read_trace(lines: Iterable[bytes], registry: Registry) -> Trace:
             entries.append(reader.frame(_decoded(line, _TickLine)))
         except BeliefNestError as fault:
             bad.append(BadLine(number, str(fault)))
-    return Trace(reader.first, reader.names, tuple(entries), tuple(bad))
+    return Trace(
+        reader.first,
+        reader.names,
+        reader.perception,
+        reader.static_blocks,
+        tuple(entries),
+        tuple(bad),
+    )
 
 
 def record_trace(trace: Trace, journal: Journal, key: TimelineKey) -> None:
@@ -168,6 +201,10 @@ class _Reader:
         if min(self._box.shape) < 1:
             raise InputError(f"box {line.box} is empty; give its lower corner first")
         self.names = tuple(line.agents)
+        self.perception = line.perception.value(registry)
+        for name in line.static_blocks:
+            registry.state_ids(name)
+        self.static_blocks = frozenset(line.static_blocks)
         self._tick = line.tick
         blocks = np.zeros(self._box.shape, dtype=np.int32)
         for low, high, text in line.fills:

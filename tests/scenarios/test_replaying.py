@@ -1,0 +1,24 @@
+"""Every run of a built-in scenario, under each condition, is found the same when run again."""
+
+import json
+
+import pytest
+
+from beliefnest.cli.app import run_command_line
+from beliefnest.scenarios.loading import builtin_names
+from beliefnest.scenarios.scenario import Scenario
+
+
+@pytest.mark.parametrize("name", builtin_names())
+def test_a_replay_finds_no_difference(name, tmp_path, capsys):
+    out = tmp_path / "run"
+    run_command_line(["run", name, "--out", str(out), "--seed", "2"])
+    capsys.readouterr()
+    assert run_command_line(["replay", str(out), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["same"]
+    conditions = Scenario.load_all(name)
+    assert len({row["store"] for row in told["timelines"]}) == len(conditions)
+    probes = sum(len(scenario.probes) for scenario in conditions)
+    assert len(told["timelines"]) >= len(conditions) + probes
+    assert all(row["programs"] > 0 for row in told["timelines"])
