@@ -1,5 +1,7 @@
 """Programs tried at the same time come to what they come to one after the other."""
 
+import os
+import signal
 import sqlite3
 
 import pytest
@@ -122,6 +124,23 @@ def test_an_agent_who_is_not_there(worlds):
                 nest.explore("/bob", "ann", PROGRAMS[:2], seen, processes=processes)
             assert nest["/bob"].branch == "follow"
             assert [info.key.branch for info in nest["/bob"].branches()] == ["plan 1"]
+
+
+def test_an_interrupted_exploration_has_not_happened(worlds, monkeypatch):
+    request, interrupted = Channel.request, []
+
+    def asking(self, op, on_frame=None, **arguments):
+        if op == "run" and not interrupted:
+            interrupted.append(self.pid)
+            os.kill(os.getpid(), signal.SIGINT)
+        return request(self, op, on_frame, **arguments)
+
+    with bn.Nest.open(bn.Scenario.from_mapping(ROOM), seed=7, worlds=worlds) as nest:
+        with monkeypatch.context() as patched, pytest.raises(KeyboardInterrupt):
+            patched.setattr(Channel, "request", asking)
+            nest.explore("/", "ann", [PROGRAMS[2]] * 3, seen, 1_000_000, processes=2)
+        assert [info.key.branch for info in nest["/"].branches()] == ["main"]
+        assert nest["/"].run("ann", PROGRAMS[0]).ok
 
 
 def test_no_process_at_all_is_refused(worlds):
