@@ -70,3 +70,6 @@ bot.chat(JSON.stringify(bot.inventory.slots.map(s => s && [s.name, s.count])) + 
 bot.chat([Math.random(), Date.now(), bot.health, bot.isSleeping, bot.entity.velocity].join(' '))
 // --
 await doNothing(bot); throw new Error('as told')
+// --
+await bot.equip(mcData.itemsByName.clay.id, 'hand'); await bot.equip(mcData.itemsByName.bow.id, 'hand')
+bot.chat('holding ' + bot.quickBarSlot)

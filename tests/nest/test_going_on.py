@@ -46,6 +46,18 @@ PLAIN = {
     (2, 2, 12): "stone",
 }
 INVENTORY = {"dirt": 70, "diamond": 2, "oak_log": 3, "raw_iron": 3, "coal": 2, "bread": 2}
+FULL = INVENTORY | dict.fromkeys(("apple", "arrow", "bone", "book", "bow", "bowl", "clay"), 3)
+"""More than the nine slots at hand."""
+
+EDITS = (
+    ({HOLD: "air"}, {}),
+    ({(10, 5, 10): "sand"}, {}),
+    ({(6, 1, 10): "air"}, {}),
+    ({BUTTON: "air"}, {}),
+    ({FURNACE: "stone"}, {}),
+    ({FURNACE: "furnace[facing=south]"}, {FURNACE: {"coal": 1, "raw_iron": 2}}),
+    ({}, {CHEST: {"dirt": 3, "diamond": 1}}),
+)
 
 WALK = "bot.setControlState('forward', true)"
 ACTS = (Path(__file__).parent / "acts.js").read_text().split("// --\n")[1:]
@@ -67,7 +79,7 @@ calls = st.one_of(
         st.sampled_from([1, 2, 3, 5, 8, 13, 40, 200]),
     ),
 )
-breaks = st.sampled_from(["none", "resume", "away", "past"])
+pauses = st.sampled_from(["none", "resume", "away", "past", *EDITS])
 
 
 def start() -> Setting:
@@ -78,7 +90,7 @@ def start() -> Setting:
         blocks[BOX.index(place)] = registry.state_id(text)
     agents = {
         "sally": AgentState((4.5, 1.0, 5.5), inventory=INVENTORY, food=10),
-        "anne": AgentState((8.5, 1.0, 7.5), yaw=1.0, inventory=INVENTORY, food=10),
+        "anne": AgentState((8.5, 1.0, 7.5), yaw=1.0, inventory=FULL, food=10),
     }
     contents = {CHEST: {"emerald": 3, "dirt": 5}, FURNACE: {}, BARREL: {}}
     return Setting("place", Snapshot(0, BOX, blocks, contents, agents), bn.Perception())
@@ -118,7 +130,7 @@ def entries(nest: bn.Nest) -> list[object]:
 
 # Not made smaller: that takes minutes, and a script of a few calls can be read.
 @settings(phases=[Phase.explicit, Phase.reuse, Phase.generate])
-@given(script=st.lists(st.tuples(calls, breaks), min_size=2, max_size=5))
+@given(script=st.lists(st.tuples(calls, pauses), min_size=2, max_size=5))
 def test_a_body_made_anew_goes_on_as_before(lent, tmp_path_factory, script):
     one, other = lent
     store = tmp_path_factory.mktemp("run") / "run.bn"
@@ -128,10 +140,13 @@ def test_a_body_made_anew_goes_on_as_before(lent, tmp_path_factory, script):
         for number, (call, pause) in enumerate(script):
             told = act(left_alone, call)
             assert act(disturbed, call) == told
-            if pause == "resume":
+            if pause == "resume" or pause in EDITS:
                 disturbed.close()
                 disturbed = bn.Nest.resume(store, worlds=other)
-            elif pause != "none":
+            if pause in EDITS:
+                for nest in (left_alone, disturbed):
+                    nest["/"].edit(*pause)
+            elif pause in ("away", "past"):
                 visit(disturbed, number, disturbed.tick // 2 if pause == "past" else None)
             assert first_difference(entries(left_alone), entries(disturbed)) is None
             assert disturbed.tick == left_alone.tick

@@ -3,6 +3,7 @@
 const { createHash } = require('node:crypto')
 const mineflayer = require('mineflayer')
 const { pathfinder } = require('mineflayer-pathfinder')
+const { equipHeldSlot } = require('./equipping')
 const { chargePathfinder } = require('./pathing')
 
 // mineflayer injects its plugins in a timer of its own, which Node fires after this long.
@@ -28,6 +29,7 @@ function startBot (client, clock) {
   bot.once('inject_allowed', () => {
     bot.loadPlugin(pathfinder)
     chargePathfinder(bot, clock)
+    equipHeldSlot(bot)
   })
   return bot
 }
