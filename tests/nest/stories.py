@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 from math import pi
+from pathlib import Path
 from typing import Any
 
 from hypothesis import strategies as st
@@ -70,7 +71,7 @@ class Stage:
         start: The nest's first tick.
     """
 
-    def __init__(self, story: Story) -> None:
+    def __init__(self, story: Story, store: Path | None = None) -> None:
         self.story = story
         self.world = story.world()
         self.start = self.world.now
@@ -79,6 +80,7 @@ class Stage:
             story.perception(),
             static_blocks=story.static,
             initial_beliefs=story.initial,
+            store=store,
         )
 
     def do(self, act: Act) -> bool:

@@ -4,7 +4,7 @@ import pytest
 
 from beliefnest.errors import BranchError, InputError, TickError
 from beliefnest.timeline.journal import ForkPoint, TimelineInfo, TimelineKey
-from beliefnest.timeline.store import PIECE_ENTRIES
+from beliefnest.timeline.pieces import PIECE_ENTRIES
 from beliefnest.world.frames import Frame
 
 MAIN = TimelineKey((), "main")

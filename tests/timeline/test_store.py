@@ -15,9 +15,10 @@ import pytest
 
 from beliefnest.errors import BranchError, InputError, StoreError
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
+from beliefnest.timeline.pieces import PIECE_ENTRIES
 from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.timeline.schema import APPLICATION_ID, SCHEMA_VERSION
-from beliefnest.timeline.store import PIECE_ENTRIES, SqliteJournal
+from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.values import AgentState, Box
 
@@ -79,7 +80,8 @@ def test_a_second_writer_is_refused_by_file_and_process(run_file):
 def test_a_second_writer_in_another_process_is_refused(run_file):
     code = (
         "import sys; from beliefnest.errors import StoreError\n"
-        "from beliefnest.timeline.store import PIECE_ENTRIES, SqliteJournal\n"
+        "from beliefnest.timeline.pieces import PIECE_ENTRIES\n"
+        "from beliefnest.timeline.store import SqliteJournal\n"
         "try: SqliteJournal.open(sys.argv[1])\n"
         "except StoreError as refusal: print(refusal)"
     )
@@ -211,7 +213,8 @@ FILL = """
 import resource, sys
 from beliefnest.errors import StoreError
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.timeline.store import PIECE_ENTRIES, SqliteJournal
+from beliefnest.timeline.pieces import PIECE_ENTRIES
+from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.frames import Frame
 key = TimelineKey((), "main")
 journal = SqliteJournal.open(sys.argv[1])
@@ -263,7 +266,8 @@ def test_a_full_database_is_told_and_nothing_is_kept(run_file):
 UNPRIVILEGED = """
 import os, sys
 from beliefnest.errors import StoreError
-from beliefnest.timeline.store import PIECE_ENTRIES, SqliteJournal
+from beliefnest.timeline.pieces import PIECE_ENTRIES
+from beliefnest.timeline.store import SqliteJournal
 if os.getuid() == 0:
     os.setuid(65534)
 with SqliteJournal.read(sys.argv[1]) as reader:

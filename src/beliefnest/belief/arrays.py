@@ -1,7 +1,7 @@
 """The arrays that the belief kernel works on.
 
 Cells are indices into a flat array over the box (x slowest, z fastest). A version is a
-row of the pose table: one agent's pose as it was from some tick on. Nodes are the
+row of a pose table: one agent's pose as it was from some tick on. Nodes are the
 simulators below one timeline, shallower ones first; node 0 is the timeline's own.
 """
 
@@ -23,6 +23,7 @@ __all__ = [
     "UNKNOWN",
     "Changes",
     "Facts",
+    "Ints",
     "Nodes",
     "Poses",
     "Senses",

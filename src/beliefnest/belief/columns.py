@@ -1,7 +1,7 @@
-"""Timelines in columns, and the table of poses, as the belief kernel reads them."""
+"""Stretches of timelines in columns, with their poses, as the belief kernel reads them."""
 
 from bisect import bisect_left
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,12 +16,13 @@ from beliefnest.belief.arrays import (
     NOBODY,
     UNKNOWN,
     Facts,
+    Ints,
     Poses,
 )
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState, Box, Event, EventKind, Items, Point, Position
 
-__all__ = ["Columns", "Looks", "Versions", "cell_of", "place_of"]
+__all__ = ["Columns", "Looks", "SavedVersions", "Versions", "cell_of", "place_of"]
 
 _KINDS = {
     EventKind.CHAT: KIND_CHAT,
@@ -57,6 +58,10 @@ class _Column:
     def __len__(self) -> int:
         return self._filled + len(self._waiting)
 
+    def extend(self, rows: Iterable[Any]) -> None:
+        """Add rows."""
+        self._waiting.extend(rows)
+
     def view(self) -> npt.NDArray[Any]:
         """The rows so far."""
         count = len(self)
@@ -84,12 +89,13 @@ class Looks:
 
 
 class Versions:
-    """All poses that agents ever had, in any timeline of a nest, numbered as they came."""
+    """Poses and what goes with them, numbered as they came: those that one stretch needs."""
 
     def __init__(self) -> None:
         self._feet = _Column(np.float64, 3)
         self._angles = _Column(np.float64, 2)
         self._looks = _Column(np.int32)
+        self._told = _Column(np.bool_)
         self._table: list[Looks | None] = [None]
         self._last: dict[str, int] = {}
 
@@ -97,17 +103,39 @@ class Versions:
         return len(self._feet)
 
     def add(self, name: str, agent: AgentState) -> int:
-        """Number of a new version of an agent."""
+        """Number of a new version of an agent, told by the timeline itself."""
         looks = Looks(agent.on_ground, agent.equipment, agent.inventory, agent.health, agent.food)
         last = self._last.get(name, 0)
         if self._table[last] != looks:
             self._table.append(looks)
             last = self._last[name] = len(self._table) - 1
-        return self._add(agent.position, agent.yaw, agent.pitch, last)
+        return self._add(agent.position, agent.yaw, agent.pitch, last, told=True)
 
     def add_pose(self, position: Point, yaw: float, pitch: float) -> int:
         """Number of a pose that nobody was seen in."""
-        return self._add(position, yaw, pitch, 0)
+        return self._add(position, yaw, pitch, 0, told=False)
+
+    def take(self, other: "Versions", numbers: Ints, *, told: bool = True) -> Ints:
+        """Numbers here of versions of another table.
+
+        Args:
+            other: The other table.
+            numbers: Their numbers there.
+            told: Whether what its timeline told is told by the timeline of this table.
+        """
+        table = {0: 0}
+        first = len(self)
+        feet, angles = other._feet.view()[numbers], other._angles.view()[numbers]
+        looks, was_told = other._looks.view()[numbers], other._told.view()[numbers]
+        for number in np.unique(looks).tolist():
+            if number not in table:
+                table[number] = len(self._table)
+                self._table.append(other._table[number])
+        self._feet.extend(feet)
+        self._angles.extend(angles)
+        self._looks.extend([table[number] for number in looks.tolist()])
+        self._told.extend(was_told & told)
+        return np.arange(first, len(self), dtype=np.int32)
 
     def position(self, version: int) -> Point:
         """Feet of a version."""
@@ -123,26 +151,71 @@ class Versions:
         """What goes with a version; None for a pose that nobody was seen in."""
         return self._table[int(self._looks.view()[version])]
 
+    def is_told(self, version: int) -> bool:
+        """Whether the timeline told a version, so that it is not only believed since a fork."""
+        return bool(self._told.view()[version])
+
     def poses(self) -> Poses:
         """The table for the kernel."""
         return Poses(self._feet.view(), self._angles.view())
 
-    def _add(self, position: Point, yaw: float, pitch: float, looks: int) -> int:
+    def saved(self) -> "SavedVersions":
+        """All versions as plain data."""
+        return SavedVersions(
+            self._feet.view().tobytes(),
+            self._angles.view().tobytes(),
+            self._looks.view().tobytes(),
+            self._told.view().tobytes(),
+            self._table,
+        )
+
+    @classmethod
+    def restored(cls, saved: "SavedVersions") -> "Versions":
+        """The table that was saved."""
+        versions = cls()
+        versions._feet.extend(np.frombuffer(saved.feet, np.float64).reshape(-1, 3))
+        versions._angles.extend(np.frombuffer(saved.angles, np.float64).reshape(-1, 2))
+        versions._looks.extend(np.frombuffer(saved.looks, np.int32))
+        versions._told.extend(np.frombuffer(saved.told, np.bool_))
+        versions._table = list(saved.table)
+        return versions
+
+    def _add(self, position: Point, yaw: float, pitch: float, looks: int, *, told: bool) -> int:
         self._feet.append(position)
         self._angles.append((yaw, pitch))
         self._looks.append(looks)
+        self._told.append(told)
         return len(self._feet) - 1
 
 
+@dataclass(frozen=True, slots=True)
+class SavedVersions:
+    """A table of versions as plain data: rows of `Versions` as native bytes, and their looks."""
+
+    feet: bytes
+    angles: bytes
+    looks: bytes
+    told: bytes
+    table: list[Looks | None]
+
+
 class Columns:
-    """The entries of one timeline in columns.
+    """A stretch of one timeline's entries in columns; all numbers are those of the timeline.
+
+    Args:
+        box: The part of space covered.
+        agents: All agents, in the order in which arrays count them.
+        holds: By block state, and at the end for unknown, whether it is a container.
+        first: Number of the first entry of the stretch.
+        first_event: How many events lie before it.
 
     Attributes:
+        first: Number of the first entry.
+        versions: Poses of its agents.
         frames: By entry, the frames that carry contents, dropped items or arrivals that
             the kernel knows nothing of.
-        events: All events, in order.
+        events: The stretch's events, in order.
         acts: By entry, the numbers of its events that are deeds.
-        floor: Versions from this number on are facts of this timeline.
         held: Cells where a container came or went, in order, possibly again.
         item_entries: Entries with dropped items, rising.
         act_entries: Entries with deeds, rising.
@@ -152,20 +225,20 @@ class Columns:
         self,
         box: Box,
         agents: Sequence[str],
-        versions: Versions,
         holds: npt.NDArray[np.bool_],
+        first: int = 0,
+        first_event: int = 0,
     ) -> None:
         self._box = box
         self._holds = holds
-        self.floor = len(versions)
+        self.first = first
+        self._first_event = first_event
+        self.versions = Versions()
         self.held: list[int] = []
         self.item_entries: list[int] = []
         self.act_entries: list[int] = []
         self._effects: list[int] = []
-        self._firsts: dict[str, int] = {}
-        self._first_poses: dict[tuple[str, ...], int] = {}
         self._numbers = {name: number for number, name in enumerate(agents)}
-        self._versions = versions
         self.frames: dict[int, Frame] = {}
         self.events: list[Event] = []
         self.acts: dict[int, list[int]] = {}
@@ -176,25 +249,15 @@ class Columns:
         self._event = [_Column(np.int32) for _ in range(4)]
         self._close_entry()
 
-    def __len__(self) -> int:
-        return len(self._tick)
+    @property
+    def end(self) -> int:
+        """Number of the entry after the last one."""
+        return self.first + len(self._tick)
 
     def extend(self, frames: Iterable[Frame]) -> None:
         """Add frames."""
         for frame in frames:
             self._add(frame)
-
-    def first_version(self, name: str, agent: AgentState) -> int:
-        """Version of an agent at the timeline's beginning, the same whenever it is asked for."""
-        if name not in self._firsts:
-            self._firsts[name] = self._versions.add(name, agent)
-        return self._firsts[name]
-
-    def first_pose(self, key: tuple[str, ...], position: Point) -> int:
-        """Version of a pose that a prior tells, the same whenever it is asked for."""
-        if key not in self._first_poses:
-            self._first_poses[key] = self._versions.add_pose(position, 0.0, 0.0)
-        return self._first_poses[key]
 
     def add_quiet(self, tick: int) -> None:
         """Add an entry in which nothing happens by itself."""
@@ -203,11 +266,22 @@ class Columns:
 
     def tick(self, entry: int) -> int:
         """Tick of an entry."""
-        return int(self._tick.view()[entry])
+        return int(self._tick.view()[entry - self.first])
 
     def events_until(self, entry: int) -> int:
-        """How many events lie before an entry."""
-        return int(self._event_at.view()[entry])
+        """How many of the timeline's events lie before an entry."""
+        return self._first_event + int(self._event_at.view()[entry - self.first])
+
+    def event(self, number: int) -> Event:
+        """An event of the stretch."""
+        return self.events[number - self._first_event]
+
+    def told_since(self, entry: int) -> Iterator[tuple[int, Event]]:
+        """Events from an entry of the stretch on, each with its tick."""
+        at, tick = self._event_at.view(), self._tick.view()
+        for row in range(entry - self.first, len(tick)):
+            for number in range(int(at[row]), int(at[row + 1])):
+                yield int(tick[row]), self.events[number]
 
     def with_effects(self, start: int, stop: int) -> set[int]:
         """Entries start to stop - 1 that change contents, possessions or dropped items."""
@@ -217,7 +291,7 @@ class Columns:
         return set(self._effects[low:high])
 
     def facts(self) -> Facts:
-        """The columns for the kernel."""
+        """The columns for the kernel, which counts entries and events from the stretch's first."""
         agent, version = (column.view() for column in self._pose)
         block_cell, state = (column.view() for column in self._block)
         kind, actor, event_cell, event_to = (column.view() for column in self._event)
@@ -237,13 +311,13 @@ class Columns:
         )
 
     def _add(self, frame: Frame) -> None:
-        entry = len(self)
+        entry = self.end
         if frame.containers or frame.items:
             self.frames[entry] = frame
         if frame.items:
             self.item_entries.append(entry)
         for name, agent in frame.agents.items():
-            version = UNKNOWN if agent is None else self._versions.add(name, agent)
+            version = UNKNOWN if agent is None else self.versions.add(name, agent)
             self._pose[0].append(self._numbers[name])
             self._pose[1].append(version)
         for place, state in frame.blocks.items():
@@ -265,7 +339,8 @@ class Columns:
         if kind == KIND_ACT:
             if entry not in self.acts:
                 self.act_entries.append(entry)
-            self.acts.setdefault(entry, []).append(len(self.events))
+            number = self._first_event + len(self.events)
+            self.acts.setdefault(entry, []).append(number)
         self._event[0].append(kind)
         self._event[1].append(NOBODY if event.actor is None else self._numbers[event.actor])
         self._event[2].append(

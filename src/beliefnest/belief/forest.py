@@ -3,7 +3,6 @@
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import Protocol
 from weakref import WeakSet
 
 import numpy as np
@@ -11,9 +10,10 @@ import numpy.typing as npt
 
 from beliefnest.belief import kernel
 from beliefnest.belief.arrays import Changes, Facts
-from beliefnest.belief.columns import Columns, cell_of
+from beliefnest.belief.columns import Columns, Versions, cell_of
 from beliefnest.belief.entries import SOURCES, Basis, PerceivedEvent, Source
 from beliefnest.belief.ground import Ground
+from beliefnest.belief.hearing import Hearing
 from beliefnest.belief.holdings import (
     NEVER,
     TOUCHES,
@@ -26,6 +26,7 @@ from beliefnest.belief.holdings import (
     witness,
 )
 from beliefnest.belief.plots import Plots
+from beliefnest.belief.story import Reader, Story
 from beliefnest.world.values import Event, Items
 
 __all__ = ["Forest"]
@@ -36,48 +37,72 @@ _BATCH = 4096
 _ITEM_HEIGHT = 0.125
 
 
-class Reader(Protocol):
-    """Somebody who read a state and may read more of it."""
-
-    def keep(self) -> None:
-        """Read now what the forest will not know any more."""
-
-
 class Forest:
-    """Nodes below one timeline after the first `position` entries of its columns.
+    """Nodes below one timeline after its first `position` entries.
 
     Attributes:
-        columns: The timeline's entries.
+        columns: The stretch of the timeline that it is in.
         plots: The nodes' arrays.
         holdings: The nodes' contents, possessions and dropped items.
-        before: What each node perceived before the timeline began.
         position: Entries folded.
         first_vitals: Health and food of agents in node 0 as they were known at a fork.
         facts_tick: Tick at which node 0 was last seen to be as it is; None: not since a fork.
         tick: Tick of the last of them, or of the beginning.
+        hearing: Who perceived which event.
+        looked: By node, the entry after which its owner last perceived what there is.
+        edited: Cells of node 0 that were changed by hand since the last frame.
+        put_by_hand: Nodes and cells of blocks that were, since somebody last looked there.
+        doubtful: Nodes and cells of contents where no container is known, with the block there.
     """
 
-    def __init__(
-        self, ground: Ground, columns: Columns, tick: int, extra: Sequence[int] = ()
-    ) -> None:
-        self.ground = ground
-        self.columns = columns
-        self.plots = Plots(ground, extra)
+    def __init__(self, ground: Ground, story: Story, tick: int, extra: Sequence[int] = ()) -> None:
+        self.ground, self._story = ground, story
+        self.columns = self._nowhere(0, 0)
+        self.plots = Plots(ground, self.columns.versions, extra)
         self.holdings: list[Holdings] = []
-        self.before: list[tuple[PerceivedEvent, ...]] = []
-        self.position = 0
-        self.tick = tick
+        self.position, self.tick = 0, tick
         self.facts_tick: int | None = None
-        self._edited: set[int] = set()
-        self._doubtful: dict[tuple[int, int], int] = {}
+        self.edited: set[int] = set()
+        self.doubtful: dict[tuple[int, int], int] = {}
         self.first_vitals: dict[int, tuple[float | None, float | None]] = {}
-        self._looked: dict[int, int] = {}
-        self._put_by_hand: set[tuple[int, int]] = set()
-        self._heard = np.zeros((64, 1), dtype=np.uint8)
+        self.looked: dict[int, int] = {}
+        self.put_by_hand: set[tuple[int, int]] = set()
+        self.hearing = Hearing()
         self._readers: WeakSet[Reader] = WeakSet()
 
+    @property
+    def versions(self) -> Versions:
+        """The poses that nodes refer to."""
+        return self.plots.versions
+
+    @property
+    def count_of_events(self) -> int:
+        """How many events lie before the forest's position."""
+        return self.columns.events_until(self.position)
+
+    def enter(self, columns: Columns) -> None:
+        """Go over to the stretch of the timeline that the next entries lie in."""
+        self.plots.enter(columns.versions)
+        self.columns = columns
+
+    def leave(self) -> None:
+        """Leave the stretch, and keep of its poses only what nodes refer to."""
+        self.enter(self._nowhere(self.position, self.count_of_events))
+
+    def leap(self, position: int, events: int) -> None:
+        """Take what was folded for the first `position` entries, which have `events` events.
+
+        There is no node but node 0, which perceives all of them.
+        """
+        self._let_read()
+        count = self.count_of_events
+        self.hearing.set(0, count, np.ones(events - count, dtype=np.bool_))
+        self.enter(self._nowhere(position, events))
+        self.position = position
+        self.looked = {0: position - 1}
+
     def advance(self, stop: int) -> None:
-        """Fold entries up to number `stop` (excluded)."""
+        """Fold entries of the stretch up to number `stop` (excluded)."""
         self.plots.track()
         if self.position < stop:
             self._let_read()
@@ -89,28 +114,27 @@ class Forest:
 
     def heard(self, node: int, count: int) -> Iterator[PerceivedEvent]:
         """What a node perceived of the first `count` events, oldest first."""
-        yield from self.before[node]
-        bits = self._heard[:count, node >> 3] >> np.uint8(7 - (node & 7)) & 1
-        ticks = self.columns.facts()
-        for number in np.flatnonzero(bits).tolist():
-            event = self.columns.events[number]
-            entry = int(np.searchsorted(ticks.event_at, number, side="right")) - 1
-            yield PerceivedEvent(int(ticks.tick[entry]), event.kind, event.actor, event.detail)
+        yield from self._story.before(self.plots.path(node))
+        numbers = np.flatnonzero(self.hearing.of(node, count)).tolist()
+        events = self._story.events(numbers[-1] + 1) if numbers else ()
+        for number in numbers:
+            tick, event = events[number]
+            yield PerceivedEvent(tick, event.kind, event.actor, event.detail)
 
-    def read_by(self, reader: "Reader") -> None:
+    def read_by(self, reader: Reader) -> None:
         """Tell a reader before the forest goes on."""
         self._readers.add(reader)
 
     def last_look(self, node: int) -> int:
         """Entry after which a node's owner last perceived what there is; -1: at first."""
-        return self._looked.get(node, -1)
+        return self.looked.get(node, -1)
 
     def block_is_current(self, node: int, cell: int) -> bool:
         """Whether a node's block is backed by a perception in the last entry (5.4)."""
-        ground, nodes, poses = self.ground, self.plots.nodes(), self.ground.versions.poses()
+        ground, nodes, poses = self.ground, self.plots.nodes(), self.versions.poses()
         while node > 0:
             around = self.plots.parent(node)
-            if not self.plots.is_present(node) or (node, cell) in self._put_by_hand:
+            if not self.plots.is_present(node) or (node, cell) in self.put_by_hand:
                 return False
             version = self.plots.version(around, self.plots.owner(node))
             if not kernel.sees_cell(
@@ -125,26 +149,23 @@ class Forest:
         while node > 0 and self.plots.owner(node) == agent:
             node = self.plots.parent(node)
         looks = self.plots.looks_of(0, agent) if node == 0 else None
-        if looks is None or self.plots.version(0, agent) < self.columns.floor:
+        if looks is None or not self.versions.is_told(self.plots.version(0, agent)):
             return self.first_vitals.get(agent, (None, None)) if node == 0 else (None, None)
         return looks.health, looks.food
 
     def adopt(self, other: "Forest", paths: Sequence[Path]) -> None:
         """Take over nodes of a forest that is as far on."""
-        count = self.columns.events_until(self.position)
+        count = self.count_of_events
         self.plots.track()
         other.plots.track()
         for path in paths:
             source = other.plots.index[path]
-            node = self.plots.copy_node(other.plots, source, is_root=False)
+            node = self.plots.copy_node(other.plots, source, is_root=False, told=True)
             self.holdings.append(other.holdings[source].copy())
-            self.before.append(other.before[source])
-            self._looked[node] = other.last_look(source)
-            self._put_by_hand |= {(node, c) for n, c in other._put_by_hand if n == source}
+            self.looked[node] = other.last_look(source)
+            self.put_by_hand |= {(node, c) for n, c in other.put_by_hand if n == source}
             self.doubt_contents(node)
-            self._widen(count)
-            bits = other._heard[:count, source >> 3] >> np.uint8(7 - (source & 7)) & 1
-            self._heard[:count, node >> 3] |= bits << np.uint8(7 - (node & 7))
+            self.hearing.set(node, 0, other.hearing.of(source, count))
         self.plots.link()
 
     def perceive_at_first(self) -> None:
@@ -185,8 +206,8 @@ class Forest:
             holdings.containers[cell] = Content(dict(items), complete=True, basis=basis)
             self._doubt(node, cell)
         if node == 0:
-            self._edited |= {*blocks, *contents}
-        self._put_by_hand |= {(node, cell) for cell in blocks}
+            self.edited |= {*blocks, *contents}
+        self.put_by_hand |= {(node, cell) for cell in blocks}
         self.position += 1
         self.tick = tick
         self._look(self.plots.below(node))
@@ -196,7 +217,7 @@ class Forest:
         content = self.holdings[node].containers[cell]
         if node > 0:
             return content
-        seen = self.facts_tick is not None and cell not in self._edited
+        seen = self.facts_tick is not None and cell not in self.edited
         basis = Basis(self.facts_tick or 0, Source.SEEN) if seen else content.basis
         return Content(content.items, content.complete, basis, self.position - 1)
 
@@ -210,9 +231,14 @@ class Forest:
         known = self.holdings[node].inventories.get(agent)
         if node == 0:
             version, looks = self.plots.version(0, agent), self.plots.looks_of(0, agent)
-            if looks is not None and (known is None or version >= self.columns.floor):
+            if looks is not None and (known is None or self.versions.is_told(version)):
                 return looks.inventory, known is None
         return self.holdings[node].inventories.get(agent, {}), False
+
+    def _nowhere(self, position: int, events: int) -> Columns:
+        """An empty stretch, for who waits in between."""
+        ground = self.ground
+        return Columns(ground.box, ground.agents, ground.holds, position, events)
 
     def _let_read(self) -> None:
         readers, self._readers = list(self._readers), WeakSet()
@@ -234,7 +260,7 @@ class Forest:
     def _has_things(self) -> bool:
         """Whether there is something to be looked at that is no block and no agent."""
         transparent = self.ground.options.containers == "transparent"
-        return transparent or bool(self._doubtful) or any(h.items for h in self.holdings)
+        return transparent or bool(self.doubtful) or any(h.items for h in self.holdings)
 
     def _changes(self, events: int) -> Changes:
         # In one entry every node can change every tracked cell once; see `kernel.fold`.
@@ -246,18 +272,18 @@ class Forest:
         )
 
     def _fold(self, start: int, stop: int) -> int:
-        ground, facts = self.ground, self.columns.facts()
-        first = int(facts.event_at[start])
-        changes = self._changes(int(facts.event_at[stop]) - first)
-        poses = ground.versions.poses()
-        nodes = self.plots.nodes()
+        ground, columns, facts = self.ground, self.columns, self.columns.facts()
+        first = columns.events_until(start)
+        changes = self._changes(columns.events_until(stop) - first)
+        poses, nodes = self.versions.poses(), self.plots.nodes()
         everywhere = np.ones(self.plots.count, dtype=np.bool_)
-        reached = kernel.fold(
-            ground.space, ground.senses, poses, facts, nodes, changes, start, stop, everywhere
+        where = start - columns.first, stop - columns.first
+        reached = columns.first + kernel.fold(
+            ground.space, ground.senses, poses, facts, nodes, changes, *where, everywhere
         )
-        count = int(facts.event_at[reached]) - first
-        self._hear(first, changes.perceived[:count])
-        rows = _by_entry(changes)
+        count = columns.events_until(reached) - first
+        self.hearing.note(first, changes.perceived[:count])
+        rows = _by_entry(changes, columns.first)
         entries = self.columns.with_effects(start, reached) | rows.keys()
         if self._has_things():
             entries.add(start)
@@ -267,50 +293,34 @@ class Forest:
                 for number in self.columns.acts.get(entry, ())
             }
             self.facts_tick = self.columns.tick(entry)
-            self._edited.clear()
-            self._looked = dict.fromkeys(range(self.plots.count), entry)
+            self.edited.clear()
+            self.looked = dict.fromkeys(range(self.plots.count), entry)
             self._happens(entry)
             self._follow(
                 entry, self.columns.tick(entry), rows.get(entry, {}), perceived, everywhere
             )
         self.facts_tick = self.columns.tick(reached - 1)
-        self._edited.clear()
-        self._looked = dict.fromkeys(range(self.plots.count), reached - 1)
-        self._put_by_hand.clear()
+        self.edited.clear()
+        self.looked = dict.fromkeys(range(self.plots.count), reached - 1)
+        self.put_by_hand.clear()
         return reached
 
     def _look(self, below: npt.NDArray[np.bool_]) -> None:
         ground, nodes = self.ground, self.plots.nodes()
         changes = self._changes(0)
-        nothing = np.zeros(0, dtype=np.int32)
-        at = np.zeros(2, dtype=np.int32)
+        nothing, at = np.zeros(0, dtype=np.int32), np.zeros(2, dtype=np.int32)
         facts = Facts(
             np.array([self.tick], dtype=np.int32),
             *(at, nothing, nothing),
             *(at, nothing, nothing),
             *(at, nothing, nothing, nothing, nothing),
         )
-        poses = ground.versions.poses()
+        poses = self.versions.poses()
         kernel.fold(ground.space, ground.senses, poses, facts, nodes, changes, 0, 1, below)
         entry = self.position - 1
-        self._looked.update(dict.fromkeys(np.flatnonzero(below).tolist(), entry))
-        self._put_by_hand = {(node, cell) for node, cell in self._put_by_hand if not below[node]}
-        self._follow(entry, self.tick, _by_entry(changes).get(0, {}), {}, below)
-
-    def _hear(self, first: int, perceived: npt.NDArray[np.bool_]) -> None:
-        self._widen(first + len(perceived))
-        packed = np.packbits(perceived, axis=1)
-        self._heard[first : first + len(perceived), : packed.shape[1]] = packed
-
-    def _widen(self, events: int) -> None:
-        """Make room in `_heard` for events and for all nodes."""
-        height, width = self._heard.shape
-        bytes_needed = -(-self.plots.count // 8)
-        if events > height or bytes_needed > width:
-            size = (max(height, 2 * events if events > height else 0), max(width, bytes_needed))
-            grown = np.zeros(size, dtype=np.uint8)
-            grown[:height, :width] = self._heard
-            self._heard = grown
+        self.looked.update(dict.fromkeys(np.flatnonzero(below).tolist(), entry))
+        self.put_by_hand = {(node, cell) for node, cell in self.put_by_hand if not below[node]}
+        self._follow(entry, self.tick, _by_entry(changes, 0).get(0, {}), {}, below)
 
     def _happens(self, entry: int) -> None:
         """Contents and dropped items of node 0 after an entry."""
@@ -350,7 +360,7 @@ class Forest:
                 names = self.ground.block_name(old), self.ground.container_name(new)
                 basis = Basis(observed_at, SOURCES[source])
                 replaced_block(self.holdings[node], cell, *names, basis)
-            acts = [self.columns.events[n] for n, heard in perceived.items() if heard[node]]
+            acts = [self.columns.event(n) for n, heard in perceived.items() if heard[node]]
             if not which[node] or not (acts or things) or not self.plots.is_present(node):
                 continue
             self._forget(node)
@@ -395,17 +405,17 @@ class Forest:
         """Note a content at a place where a node knows no container."""
         state = self.plots.block(node, cell)
         if node > 0 and cell in self.holdings[node].containers and not self.ground.holds[state]:
-            self._doubtful[node, cell] = state
+            self.doubtful[node, cell] = state
 
     def _forget(self, node: int) -> None:
         """Forget contents at places that are seen to hold no container."""
-        for (doubter, cell), before in list(self._doubtful.items()):
+        for (doubter, cell), before in list(self.doubtful.items()):
             if doubter != node:
                 continue
             state = self.plots.block(node, cell)
             around = self.plots.block(self.plots.parent(node), cell)
             if self.ground.holds[state] or cell not in self.holdings[node].containers:
-                del self._doubtful[node, cell]
+                del self.doubtful[node, cell]
             elif self._is_gone(node, cell) or (
                 before < 0
                 and around >= 0
@@ -413,9 +423,9 @@ class Forest:
                 and self._sees_cell(node, cell)
             ):
                 del self.holdings[node].containers[cell]
-                del self._doubtful[node, cell]
+                del self.doubtful[node, cell]
             else:
-                self._doubtful[node, cell] = state
+                self.doubtful[node, cell] = state
 
     def _is_gone(self, node: int, cell: int) -> bool:
         """Whether the owner of a node perceives now that a cell holds no container."""
@@ -436,7 +446,7 @@ class Forest:
         """Those of some cells that the present owner of a node sees in the simulator around."""
         ground, around = self.ground, self.plots.parent(node)
         version = self.plots.version(around, self.plots.owner(node))
-        nodes, poses = self.plots.nodes(), ground.versions.poses()
+        nodes, poses = self.plots.nodes(), self.versions.poses()
         wanted = np.array([*cells], dtype=np.int64)
         seen = kernel.sees_cells(ground.space, ground.senses, poses, nodes, around, version, wanted)
         return set(wanted[seen].tolist())
@@ -477,14 +487,14 @@ class Forest:
         ground = self.ground
         x, y, z = lying.item.position
         version = self.plots.version(around, self.plots.owner(node))
-        nodes, poses = self.plots.nodes(), ground.versions.poses()
+        nodes, poses = self.plots.nodes(), self.versions.poses()
         place = (x, y + _ITEM_HEIGHT, z)
         return kernel.sees_point(ground.space, ground.senses, poses, nodes, around, version, place)
 
 
-def _by_entry(changes: Changes) -> dict[int, dict[int, list[Sequence[int]]]]:
-    """Rows of changes by entry and node, in order."""
+def _by_entry(changes: Changes, first: int) -> dict[int, dict[int, list[Sequence[int]]]]:
+    """Rows of changes by entry and node, in order, the pass having counted from `first`."""
     rows: dict[int, dict[int, list[Sequence[int]]]] = {}
     for row in changes.rows[: changes.used[0]].tolist():
-        rows.setdefault(row[0], {}).setdefault(row[1], []).append(row)
+        rows.setdefault(first + row[0], {}).setdefault(row[1], []).append(row)
     return rows

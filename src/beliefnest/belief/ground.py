@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.arrays import HEAR_ALL, HEAR_NEAR, HEAR_SEEN, Senses, Space
-from beliefnest.belief.columns import Versions
 from beliefnest.perception.options import Perception, Radius
 from beliefnest.perception.sight import Sight
 from beliefnest.world.registry import Registry
@@ -28,7 +27,6 @@ class Ground:
         options: What agents can perceive.
         registry: Names and shapes of blocks.
         sight: How agents see.
-        versions: All poses that agents ever had.
     """
 
     box: Box
@@ -36,7 +34,6 @@ class Ground:
     options: Perception
     registry: Registry
     sight: Sight
-    versions: Versions
     _tracked: dict[int, None] = field(default_factory=dict)
 
     @property

@@ -6,11 +6,12 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.arrays import UNKNOWN
-from beliefnest.belief.columns import Columns, cell_of
+from beliefnest.belief.columns import cell_of
 from beliefnest.belief.entries import Basis, InitialBelief, Source
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.ground import Ground
 from beliefnest.belief.holdings import NEVER, Content, Holdings, Lying
+from beliefnest.belief.story import Story
 from beliefnest.world.frames import Snapshot
 
 __all__ = ["forked", "planted"]
@@ -20,7 +21,7 @@ Path = tuple[str, ...]
 
 def planted(
     ground: Ground,
-    columns: Columns,
+    story: Story,
     snapshot: Snapshot,
     static_blocks: frozenset[str],
     initial: Sequence[InitialBelief],
@@ -31,14 +32,14 @@ def planted(
 
     Args:
         ground: What the nest stands on.
-        columns: The real world's timeline.
+        story: What happens on the real world's timeline.
         snapshot: The real world at its first tick.
         static_blocks: Names of blocks that everybody knows from the start.
         initial: Further priors, at any depth.
         path: The deepest node.
         extra: Further cells whose basis is to be tracked.
     """
-    forest = Forest(ground, columns, snapshot.tick, extra)
+    forest = Forest(ground, story, snapshot.tick, extra)
     forest.facts_tick = snapshot.tick
     known = _states_of(ground, static_blocks)
     prior = np.where(known[snapshot.blocks], snapshot.blocks, UNKNOWN).astype(np.int32)
@@ -76,7 +77,7 @@ def _plant_world(forest: Forest, snapshot: Snapshot) -> None:
     basis = Basis(snapshot.tick, Source.SEEN)
     plots.set_known_bases(node, basis)
     for name, agent in snapshot.agents.items():
-        version = forest.columns.first_version(name, agent)
+        version = forest.versions.add(name, agent)
         number = ground.numbers[name]
         plots.set_pose(node, number, version, snapshot.tick, current=True)
         plots.set_looks(node, number, version)
@@ -86,7 +87,6 @@ def _plant_world(forest: Forest, snapshot: Snapshot) -> None:
     for key, item in snapshot.items.items():
         holdings.items[key] = Lying(item, basis, -1)
     forest.holdings.append(holdings)
-    forest.before.append(())
 
 
 def _plant_prior(
@@ -100,7 +100,7 @@ def _plant_prior(
         blocks[ground.box.index(place)] = state
     plots.set_blocks(node, blocks)
     for name, position in mine.agents.items():
-        version = forest.columns.first_pose((*path, name), position)
+        version = forest.versions.add_pose(position, 0.0, 0.0)
         plots.set_pose(node, ground.numbers[name], version, tick, current=False)
     holdings = Holdings()
     for place, (items, complete) in mine.containers.items():
@@ -110,13 +110,12 @@ def _plant_prior(
         if ground.container_name(plots.block(node, cell)):
             holdings.containers.setdefault(cell, Content({}, False, basis))
     forest.holdings.append(holdings)
-    forest.before.append(())
     forest.doubt_contents(node)
 
 
 def forked(
     source: Forest,
-    columns: Columns,
+    story: Story,
     root: Path,
     path: Path,
     tick: int,
@@ -129,20 +128,19 @@ def forked(
 
     Args:
         source: The other forest, at the fork.
-        columns: The new timeline.
+        story: What happens on the new timeline.
         root: The simulator that gets a timeline of its own.
         path: The deepest node.
         tick: Tick of the fork.
         extra: Further cells whose basis is to be tracked; the source tracks them too.
     """
-    forest = Forest(source.ground, columns, tick, extra)
+    forest = Forest(source.ground, story, tick, extra)
     source.plots.track()
     for depth in range(len(root), len(path) + 1):
         old = source.plots.index[path[:depth]]
-        node = forest.plots.copy_node(source.plots, old, is_root=depth == len(root))
-        forest.holdings.append(_forked_holdings(source, old, is_root=node == 0))
-        count = source.columns.events_until(source.position)
-        forest.before.append(tuple(source.heard(old, count)))
+        is_root = depth == len(root)
+        node = forest.plots.copy_node(source.plots, old, is_root=is_root, told=False)
+        forest.holdings.append(_forked_holdings(source, old, is_root=is_root))
         forest.doubt_contents(node)
     node = source.plots.index[root]
     for agent in range(len(source.ground.agents)):

@@ -1,6 +1,7 @@
 """The kernel's arrays of the nodes of one forest, growing with the nodes that are asked for."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -8,19 +9,39 @@ import numpy.typing as npt
 
 from beliefnest.belief import kernel
 from beliefnest.belief.arrays import UNKNOWN, Nodes
-from beliefnest.belief.columns import Looks
+from beliefnest.belief.columns import Looks, Versions
 from beliefnest.belief.entries import SOURCES, Basis
 from beliefnest.belief.ground import Ground
 from beliefnest.perception.codes import mark_intruded
 from beliefnest.world.frames import BlockGrid
 
-__all__ = ["Plots"]
+__all__ = ["Plots", "SavedPlot"]
 
 Path = tuple[str, ...]
 Row = npt.NDArray[Any]
 
+_VERSIONED = ("version", "looks", "eye", "tried")
+"""Rows that hold numbers of versions."""
+
 _BY_SPOT = {"watched": 0, "basis_at": UNKNOWN, "basis_source": 0}
 """Rows with a column for each tracked cell, and what stands where nothing is known."""
+
+
+@dataclass(frozen=True, slots=True)
+class SavedPlot:
+    """A node's rows, as native bytes, by their names in `arrays.Nodes`."""
+
+    path: Path
+    blocks: bytes
+    version: bytes
+    looks: bytes
+    seen_at: bytes
+    current: bytes
+    basis_at: bytes
+    basis_source: bytes
+
+
+_SAVED = ("blocks", "version", "looks", "seen_at", "current", "basis_at", "basis_source")
 
 
 class Plots:
@@ -29,10 +50,12 @@ class Plots:
     Attributes:
         index: Number of each node by path; a node's number is above its parent's.
         count: How many nodes there are.
+        versions: The poses that the nodes' versions are numbers of.
     """
 
-    def __init__(self, ground: Ground, extra: Sequence[int] = ()) -> None:
+    def __init__(self, ground: Ground, versions: Versions, extra: Sequence[int] = ()) -> None:
         self._ground = ground
+        self.versions = versions
         self.index: dict[Path, int] = {}
         self.count = 0
         known = set(ground.tracked)
@@ -77,8 +100,27 @@ class Plots:
             self._rows["agent"][node] = self._ground.numbers[path[-1]]
         return node
 
-    def copy_node(self, other: "Plots", source: int, *, is_root: bool) -> int:
-        """A node of other plots as node of these; as node 0 all that it knows is current."""
+    def enter(self, versions: Versions) -> None:
+        """Go over to another table of versions."""
+        numbers = [self._rows[name][: self.count].ravel() for name in _VERSIONED]
+        used = np.unique(np.concatenate(numbers))
+        used = used[used >= 0]
+        table = np.full(len(self.versions) + 1, UNKNOWN, dtype=np.int32)
+        table[used] = versions.take(self.versions, used)
+        for name in _VERSIONED:
+            # The last place of the table is that of -1, which is no version.
+            self._rows[name][: self.count] = table[self._rows[name][: self.count]]
+        self.versions = versions
+
+    def copy_node(self, other: "Plots", source: int, *, is_root: bool, told: bool) -> int:
+        """A node of other plots as node of these; as node 0 all that it knows is current.
+
+        Args:
+            other: The other plots.
+            source: Number of the node there.
+            is_root: Whether it becomes node 0.
+            told: Whether what the other's timeline told is told by the timeline of these.
+        """
         path = other.path(source)
         node = self._grow()
         spots = {cell: spot for spot, cell in enumerate(other.tracked.tolist())}
@@ -91,6 +133,9 @@ class Plots:
                 row[node] = other._rows[name][source]
         for name in ("eye", "scene", "tried"):
             self._rows[name][node] = UNKNOWN
+        for name in ("version", "looks"):
+            row = self._rows[name][node]
+            row[row >= 0] = self.versions.take(other.versions, row[row >= 0], told=told)
         self._rows["geometry"][node] = 0
         self.index[path] = node
         if is_root:
@@ -116,7 +161,7 @@ class Plots:
         for node in range(1, self.count):
             kernel.refresh_pending(nodes, node)
 
-    def set_blocks(self, node: int, blocks: npt.NDArray[np.int32]) -> None:
+    def set_blocks(self, node: int, blocks: npt.NDArray[np.signedinteger[Any]]) -> None:
         """Set all blocks of a node, and its geometry."""
         space = self._ground.space
         self._rows["blocks"][node] = blocks.ravel()
@@ -179,6 +224,27 @@ class Plots:
         # Whoever looks next looks at the new cells too.
         self._rows["eye"][: self.count] = UNKNOWN
 
+    def saved(self, node: int) -> SavedPlot:
+        """What a node holds, as plain data; what it was asked last is not part of that."""
+        row = {name: self._rows[name][node].tobytes() for name in _SAVED}
+        return SavedPlot(self.path(node), **row)
+
+    def restore(self, saved: SavedPlot, tracked: npt.NDArray[np.int32]) -> None:
+        """Add a node that was saved, with what was tracked then; `link` has to follow."""
+        node = self.add(saved.path, self.index.get(saved.path[:-1], UNKNOWN))
+        spots = {cell: spot for spot, cell in enumerate(self._tracked.tolist())}
+        places = [spots[cell] for cell in tracked.tolist()]
+        for name in _SAVED:
+            row = self._rows[name]
+            values = np.frombuffer(getattr(saved, name), dtype=row.dtype)
+            if name == "blocks":
+                self.set_blocks(node, values.reshape(self._ground.box.shape))
+            elif name in _BY_SPOT:
+                row[node] = _BY_SPOT[name]
+                row[node, places] = values
+            else:
+                row[node] = values
+
     @property
     def tracked(self) -> npt.NDArray[np.int32]:
         """Cells whose basis is tracked."""
@@ -212,7 +278,7 @@ class Plots:
     def looks_of(self, node: int, agent: int) -> Looks | None:
         """What goes with an agent's believed pose; None if it is unknown or nobody was seen."""
         version = self.version(node, agent)
-        return None if version < 0 else self._ground.versions.looks(version)
+        return None if version < 0 else self.versions.looks(version)
 
     def seen_at(self, node: int, agent: int) -> int:
         """Tick that an agent's believed pose rests on."""

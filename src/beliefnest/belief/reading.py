@@ -28,6 +28,7 @@ class Reading:
     Attributes:
         path: The node.
         tick: Tick of the last entry it rests on.
+        count_of_events: How many events of the timeline lie before it.
     """
 
     def __init__(self, forest: Forest, path: Path) -> None:
@@ -35,14 +36,13 @@ class Reading:
         self.tick = forest.tick
         self._forest = forest
         self._node = forest.plots.index[path]
-        self._position = forest.position
+        self.count_of_events = forest.count_of_events
         self._last_look = forest.last_look(self._node)
         forest.read_by(self)
 
     def keep(self) -> None:
         """Read what the forest will not know any more once it goes on."""
         self.blocks, self.agents, self.containers, self.items  # noqa: B018 - cached when read
-        self.count_of_events  # noqa: B018
 
     @cached_property
     def blocks(self) -> BlockGrid:
@@ -80,11 +80,6 @@ class Reading:
     def items(self) -> Mapping[int, DroppedItem]:
         """Dropped items last seen."""
         return {n: lying.item for n, lying in self._forest.holdings[self._node].items.items()}
-
-    @cached_property
-    def count_of_events(self) -> int:
-        """How many events lie before this reading."""
-        return self._forest.columns.events_until(self._position)
 
     def events(self) -> tuple[PerceivedEvent, ...]:
         """All perceived events, oldest first."""
@@ -129,7 +124,7 @@ class Reading:
 
     def _agent(self, number: int) -> AgentBelief:
         forest, node = self._forest, self._node
-        plots, versions = forest.plots, forest.ground.versions
+        plots, versions = forest.plots, forest.plots.versions
         inventory, complete = forest.inventory(node, number)
         looks = (
             versions.looks(plots.looks(node, number)) if plots.looks(node, number) >= 0 else None

@@ -242,7 +242,7 @@ def _take(engine: Engine, trace: _Trace, step: Step, element: Element) -> None:
 def _feet(forest: Forest, path: Path) -> Point | None:
     """Where the owner of a node stands in the simulator around it."""
     version = forest.plots.version(forest.plots.index[path[:-1]], forest.ground.numbers[path[-1]])
-    return None if version < 0 else forest.ground.versions.position(version)
+    return None if version < 0 else forest.versions.position(version)
 
 
 def _missed(

@@ -1,21 +1,28 @@
 """From the journal alone to any node of any timeline, at any of its entries.
 
 Follow-mode beliefs are pure functions of the control timelines (semantics, section 6). For
-the head of every timeline one forest is kept, with the nodes that someone asked for; a
-node asked for late, or for the past, is folded from the timeline's beginning.
+the head of every timeline one forest is kept, with the nodes that someone asked for, and
+every few thousand entries it is saved as a checkpoint; further forests, for the past, are
+folded from the checkpoint before, or from the timeline's beginning where there is none.
 """
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 
-from beliefnest.belief.columns import Columns, Versions, cell_of
-from beliefnest.belief.entries import Basis
+from beliefnest.belief.columns import Columns, cell_of
+from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.ground import Ground
 from beliefnest.belief.planting import forked, planted
 from beliefnest.belief.reading import Reading
+from beliefnest.errors import StoreError
+from beliefnest.nest.checkpoints import Checkpoints, Pace
+from beliefnest.nest.eventlog import EventLog
 from beliefnest.nest.setting import Setting
 from beliefnest.perception.sight import Sight
-from beliefnest.timeline.journal import Edit, Journal, TimelineKey
+from beliefnest.timeline.journal import Edit, Entry, Journal, Sift, TimelineKey
+from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 
@@ -24,6 +31,7 @@ __all__ = ["History", "ground_of"]
 Path = tuple[str, ...]
 
 _PASTS = 4
+_STRETCHES = 8
 
 
 def ground_of(setting: Setting) -> Ground:
@@ -34,7 +42,37 @@ def ground_of(setting: Setting) -> Ground:
         registry, options.max_visible_distance, options.field_of_view, options.transparent_blocks
     )
     agents = tuple(sorted({*setting.snapshot.agents, *setting.absent}))
-    return Ground(setting.snapshot.box, agents, options, registry, sight, Versions())
+    return Ground(setting.snapshot.box, agents, options, registry, sight)
+
+
+@dataclass
+class _Stretch:
+    """Some entries of a timeline: columns, and by number the edits among them."""
+
+    columns: Columns
+    edits: dict[int, Edit] = field(default_factory=dict)
+
+    def add(self, entry: Frame | Edit) -> None:
+        if isinstance(entry, Edit):
+            self.edits[self.columns.end] = entry
+            self.columns.add_quiet(entry.tick)
+        else:
+            self.columns.extend([entry])
+
+    def fold(self, forest: Forest, stop: int) -> None:
+        """Fold entries up to number `stop` into a forest that is in this stretch."""
+        box = forest.ground.box
+        for number in sorted(n for n in self.edits if forest.position <= n < stop):
+            forest.advance(number)
+            edit = self.edits[number]
+            node = forest.plots.index.get(edit.path)
+            if node is None:
+                forest.skip(edit.tick)
+            else:
+                blocks = {cell_of(box, place): state for place, state in edit.blocks.items()}
+                contents = {cell_of(box, place): items for place, items in edit.containers.items()}
+                forest.edit(node, blocks, contents, edit.tick)
+        forest.advance(stop)
 
 
 class History:
@@ -43,14 +81,17 @@ class History:
     Args:
         journal: The timelines.
         setting: What the nest started from.
+        pace: How often checkpoints are made, and how much is read at once.
     """
 
-    def __init__(self, journal: Journal, setting: Setting) -> None:
+    def __init__(self, journal: Journal, setting: Setting, pace: Pace | None = None) -> None:
         self._journal = journal
         self._setting = setting
+        self._pace = Pace() if pace is None else pace
         self.ground = ground_of(setting)
-        self._columns: dict[TimelineKey, Columns] = {}
-        self._edits: dict[TimelineKey, dict[int, Edit]] = {}
+        self._checkpoints = Checkpoints(journal, setting, self.ground, self._pace)
+        self._stretches: dict[tuple[TimelineKey, int], _Stretch] = {}
+        self._logs: dict[TimelineKey, EventLog] = {}
         self._heads: dict[TimelineKey, Forest] = {}
         self._pasts: list[tuple[TimelineKey, Forest]] = []
 
@@ -68,7 +109,7 @@ class History:
         """One forest with a node, after `first` entries of a timeline, then one more, to `last`.
 
         It is the caller's own, and the same object each time. What blocks rest on is known
-        in it for cells that hold containers and for those of `extra`.
+        in it for those of `extra`, for which the timeline is folded from its beginning.
         """
         forest = self._walk(key, path, first, extra)
         yield forest
@@ -77,8 +118,17 @@ class History:
             yield forest
 
     def note(self, key: TimelineKey) -> None:
-        """Read what came to a timeline, so that who asks for a belief need not wait for it."""
-        self._load(key)
+        """Keep up with a timeline, so that who asks for a belief need not wait for long."""
+        head, count = self._heads.get(key), self._journal.info(key).entries
+        if count - (0 if head is None else head.position) >= self._pace.lag:
+            head = self._head(key, key.path, count)
+            self._checkpoints.keep(key, head)
+
+    def close(self) -> None:
+        """Leave checkpoints at the heads of timelines, so that who resumes begins there."""
+        for key, head in self._heads.items() if self._journal.writable else ():
+            self._advance(key, head, self._journal.info(key).entries)
+            self._checkpoints.keep_last(key, head)
 
     def block_bases(
         self, key: TimelineKey, path: Path, position: int, cells: Sequence[int]
@@ -103,29 +153,49 @@ class History:
 
     def forget(self, key: TimelineKey) -> None:
         """Drop what is remembered of a timeline that was deleted or renamed."""
-        for remembered in (self._columns, self._edits, self._heads):
-            remembered.pop(key, None)
+        self._stretches = {at: kept for at, kept in self._stretches.items() if at[0] != key}
+        self._logs.pop(key, None)
+        self._heads.pop(key, None)
+        self._checkpoints.forget(key)
         self._pasts = [(other, forest) for other, forest in self._pasts if other != key]
 
     def _forest(self, key: TimelineKey, path: Path, position: int) -> Forest:
         """A forest with a node, after some entries of a timeline."""
-        self._load(key)
         if position == self._journal.info(key).entries:
             return self._head(key, path, position)
+        forest = self._past(key, path, position)
+        after = 0 if forest is None else forest.position
+        saved = self._checkpoints.before(key, position, self._log(key), path, after)
+        forest = saved or forest or self._begun(key, path)
+        pasts = [past for past in self._pasts if past[1] is not forest]
+        self._pasts = [(key, forest), *pasts][:_PASTS]
+        self._advance(key, forest, position)
+        return forest
+
+    def _past(self, key: TimelineKey, path: Path, position: int) -> Forest | None:
+        """The last forest at hand with a node that lies no later than a position."""
+        found = None
         for other, forest in self._pasts:
             if other == key and path in forest.plots.index and forest.position <= position:
-                self._advance(key, forest, position)
-                return forest
-        forest = self._walk(key, path, position)
-        self._pasts = [(key, forest), *self._pasts][:_PASTS]
-        return forest
+                # Only a forest without beliefs can leap.
+                near = position - forest.position <= self._pace.lag
+                fits = near or path != key.path or forest.plots.count == 1
+                if fits and (found is None or forest.position > found.position):
+                    found = forest
+        return found
 
     def _head(self, key: TimelineKey, path: Path, count: int) -> Forest:
         head = self._heads.get(key)
         if head is None:
-            head = self._heads[key] = self._walk(key, path, count)
-            return head
-        self._advance(key, head, count)
+            head = self._checkpoints.before(key, count, self._log(key))
+            head = self._heads[key] = head or self._begun(key, path)
+        while head.position < count:
+            far = count if head.plots.count == 1 else head.position + self._pace.every
+            self._advance(key, head, min(count, far))
+            if head.position < count:
+                # It is a long way; who asks for the past need not go it again.
+                with suppress(StoreError):
+                    self._checkpoints.keep(key, head)
         if path not in head.plots.index:
             late = self._walk(key, path, count)
             start = len(key.path)
@@ -136,62 +206,99 @@ class History:
     def _walk(
         self, key: TimelineKey, path: Path, position: int, extra: Sequence[int] = ()
     ) -> Forest:
-        """A forest of a node and those around it, folded from a timeline's beginning."""
-        self._load(key)
+        """A new forest of a node and those around it, after some entries of a timeline."""
+        forest = None
+        if not extra:
+            forest = self._checkpoints.before(key, position, self._log(key), path)
+        forest = forest or self._begun(key, path, extra)
+        self._advance(key, forest, position)
+        return forest
+
+    def _begun(self, key: TimelineKey, path: Path, extra: Sequence[int] = ()) -> Forest:
+        """A forest of a node and those around it, at a timeline's beginning."""
         base = self._journal.info(key).base
+        log = self._log(key)
         if base is None:
             setting = self._setting
-            forest = planted(
+            return planted(
                 self.ground,
-                self._columns[key],
+                log,
                 setting.snapshot,
                 setting.static_blocks,
                 setting.initial_beliefs,
                 path,
                 extra,
             )
-        else:
-            source = (
-                self._walk(base.timeline, path, base.entries, extra)
-                if extra
-                else self._forest(base.timeline, path, base.entries)
-            )
-            forest = forked(source, self._columns[key], key.path, path, base.tick, extra)
-        self._advance(key, forest, position)
-        return forest
+        source = (
+            self._walk(base.timeline, path, base.entries, extra)
+            if extra
+            else self._forest(base.timeline, path, base.entries)
+        )
+        return forked(source, log, key.path, path, base.tick, extra)
 
-    def _load(self, key: TimelineKey) -> None:
-        """Read what came to a timeline in the journal."""
-        info = self._journal.info(key)
-        if key not in self._columns:
-            if info.base is not None:
-                # Versions at the fork have lower numbers than those of the new timeline.
-                self._forest(info.base.timeline, key.path, info.base.entries)
-            ground = self.ground
-            self._columns[key] = Columns(ground.box, ground.agents, ground.versions, ground.holds)
-            self._edits[key] = {}
-        columns = self._columns[key]
-        if len(columns) == info.entries:
-            return
-        held = len(columns.held)
-        for entry in self._journal.entries(key, len(columns), info.entries):
-            if isinstance(entry, Edit):
-                self._edits[key][len(columns)] = entry
-                columns.add_quiet(entry.tick)
-            else:
-                columns.extend([entry])
-        self.ground.track(columns.held[held:])
+    def _log(self, key: TimelineKey) -> EventLog:
+        if key not in self._logs:
+            self._logs[key] = EventLog(self._journal, key, lambda path: self._before(key, path))
+        return self._logs[key]
+
+    def _before(self, key: TimelineKey, path: Path) -> Sequence[PerceivedEvent]:
+        """What a node perceived before a timeline began."""
+        base = self._journal.info(key).base
+        return () if base is None else self.reading(base.timeline, path, base.entries).events()
 
     def _advance(self, key: TimelineKey, forest: Forest, position: int) -> None:
-        for number in sorted(n for n in self._edits[key] if forest.position <= n < position):
-            forest.advance(number)
-            edit = self._edits[key][number]
-            node = forest.plots.index.get(edit.path)
-            if node is None:
-                forest.skip(edit.tick)
-            else:
-                box = self.ground.box
-                blocks = {cell_of(box, place): state for place, state in edit.blocks.items()}
-                contents = {cell_of(box, place): items for place, items in edit.containers.items()}
-                forest.edit(node, blocks, contents, edit.tick)
-        forest.advance(position)
+        """Fold entries of a timeline into a forest, up to a position."""
+        if forest.plots.count == 1 and position - forest.position > self._pace.lag:
+            self._leap(key, forest, position)
+        while forest.position < position:
+            stretch = self._stretch(key, forest.position, position)
+            if forest.columns is not stretch.columns:
+                forest.enter(stretch.columns)
+            stretch.fold(forest, min(position, stretch.columns.end))
+
+    def _leap(self, key: TimelineKey, forest: Forest, position: int) -> None:
+        """Bring a forest without beliefs to a position, past entries that only tell of agents.
+
+        What they told last is all that is left of them in the end.
+        """
+        first, last = forest.position, position
+        while last > first and isinstance(self._entry(key, last - 1), Edit):
+            last -= 1
+        stretch = self._new_stretch(first, forest.count_of_events)
+        for _, entry in self._journal.sifted(key, first, last, Sift.CHANGES):
+            bare = replace(entry, agents={}, events=()) if isinstance(entry, Frame) else entry
+            stretch.add(bare)
+        if last > first:
+            agents = self._journal.agents_after(key, last)
+            stretch.add(Frame(self._entry(key, last - 1).tick, agents))
+        for entry in self._journal.entries(key, last, position):
+            stretch.add(entry)
+        self.ground.track(stretch.columns.held)
+        forest.enter(stretch.columns)
+        stretch.fold(forest, stretch.columns.end)
+        forest.leap(position, self._journal.events_until(key, position))
+
+    def _entry(self, key: TimelineKey, number: int) -> Entry:
+        return next(self._journal.entries(key, number, number + 1))
+
+    def _stretch(self, key: TimelineKey, position: int, wanted: int) -> _Stretch:
+        """The stretch that an entry lies in, read as far as is wanted."""
+        number = position // self._pace.stretch
+        first, end = number * self._pace.stretch, (number + 1) * self._pace.stretch
+        stretch = self._stretches.pop((key, number), None)
+        if stretch is None:
+            stretch = self._new_stretch(first, self._journal.events_until(key, first))
+        self._stretches[key, number] = stretch
+        while len(self._stretches) > _STRETCHES:
+            del self._stretches[next(iter(self._stretches))]
+        columns = stretch.columns
+        held = len(columns.held)
+        for entry in self._journal.entries(key, columns.end, min(end, wanted)):
+            stretch.add(entry)
+        self.ground.track(columns.held[held:])
+        self._log(key).take(columns)
+        return stretch
+
+    def _new_stretch(self, first: int, first_event: int) -> _Stretch:
+        ground = self.ground
+        return _Stretch(Columns(ground.box, ground.agents, ground.holds, first, first_event))

@@ -76,7 +76,7 @@ def value_in(forest: Forest, path: Path, element: Element) -> Value:
     node, ground = forest.plots.index[path], forest.ground
     if isinstance(element.where, str):
         version = forest.plots.version(node, ground.numbers[element.where])
-        return None if version < 0 else ground.versions.position(version)
+        return None if version < 0 else forest.versions.position(version)
     cell = cell_of(ground.box, element.where)
     if element.kind == "block":
         state = forest.plots.block(node, cell)

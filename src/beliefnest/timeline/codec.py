@@ -19,6 +19,7 @@ from beliefnest.world.values import AgentState, Box, DroppedItem, Event, Items, 
 
 __all__ = [
     "decode",
+    "decode_agents",
     "decode_entry",
     "decode_snapshot",
     "decode_ticks",
@@ -71,6 +72,7 @@ def _plain(value: object) -> object:
 _ENCODER = msgspec.msgpack.Encoder(enc_hook=_plain)
 _ENTRY = msgspec.msgpack.Decoder(_FrameEntry | _EditEntry)
 _ENTRY_TICK = msgspec.msgpack.Decoder(_FrameTick | _EditTick)
+_AGENTS = msgspec.msgpack.Decoder(dict[str, AgentState | None])
 _PIECES = msgspec.msgpack.Decoder(list[msgspec.Raw])
 
 
@@ -115,6 +117,14 @@ def decode_entry(data: bytes | msgspec.Raw) -> Entry:
     except (msgspec.MsgspecError, UnicodeDecodeError) as fault:
         raise StoreError(f"stored bytes are no entry of a timeline: {fault}") from fault
     return cast(Entry, _with_tuples(entry))
+
+
+def decode_agents(data: bytes) -> dict[str, AgentState | None]:
+    """Agents by name from the bytes `encode` made of them; StoreError if they are none."""
+    try:
+        return _AGENTS.decode(data)
+    except (msgspec.MsgspecError, UnicodeDecodeError) as fault:
+        raise StoreError(f"stored bytes are no agents: {fault}") from fault
 
 
 def join(entries: Iterable[bytes | msgspec.Raw]) -> bytes:

@@ -5,14 +5,16 @@ where its base lies on another timeline, or at the world's first snapshot. Only 
 stored: every follow-mode belief is computed from it.
 """
 
+from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
 from typing import Protocol
 
 from beliefnest.errors import BranchError, InputError, TickError
 from beliefnest.world.frames import Frame
-from beliefnest.world.values import Items, Position
+from beliefnest.world.values import AgentState, Items, Position
 
 __all__ = [
     "FOLLOW",
@@ -21,6 +23,7 @@ __all__ = [
     "ForkPoint",
     "Journal",
     "MemoryJournal",
+    "Sift",
     "TimelineInfo",
     "TimelineKey",
     "branch_carries",
@@ -29,6 +32,8 @@ __all__ = [
     "check_append",
     "check_base",
     "check_place",
+    "count_of_events",
+    "is_found",
     "lineage",
     "path_text",
 ]
@@ -55,6 +60,16 @@ class Edit:
 
 
 Entry = Frame | Edit
+
+
+class Sift(StrEnum):
+    """What makes an entry one of those that are looked for."""
+
+    EVENTS = "events"
+    """It is a frame with events."""
+
+    CHANGES = "changes"
+    """It changes blocks, contents or dropped items, or is an edit."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -93,6 +108,20 @@ class TimelineInfo:
     head: int
     entries: int = 0
     description: str = ""
+
+
+def is_found(entry: Entry, what: Sift) -> bool:
+    """Whether an entry is one of those that are looked for."""
+    if isinstance(entry, Edit):
+        return what is Sift.CHANGES
+    if what is Sift.EVENTS:
+        return bool(entry.events)
+    return bool(entry.blocks or entry.containers or entry.items)
+
+
+def count_of_events(entry: Entry) -> int:
+    """How many events an entry has."""
+    return 0 if isinstance(entry, Edit) else len(entry.events)
 
 
 def path_text(path: tuple[str, ...]) -> str:
@@ -176,6 +205,10 @@ def check_place(info: TimelineInfo, entries: int) -> None:
 class Journal(Protocol):
     """Where timelines are kept. One writer; what a call did is kept once it returns."""
 
+    @property
+    def writable(self) -> bool:
+        """Whether it takes anything; who only looks at it leaves no checkpoints either."""
+
     def timelines(self) -> Sequence[TimelineInfo]:
         """All timelines, in order of creation."""
 
@@ -212,6 +245,24 @@ class Journal(Protocol):
 
     def entries_until(self, key: TimelineKey, tick: int) -> int:
         """How many entries lie at `tick` or before; BranchError as above."""
+
+    def sifted(
+        self, key: TimelineKey, start: int, stop: int, what: Sift
+    ) -> Iterator[tuple[int, Entry]]:
+        """Those of entries start to stop - 1 that are looked for, with their numbers.
+
+        Takes time in proportion to what is found, hardly to what is passed over. BranchError
+        as above.
+        """
+
+    def events_until(self, key: TimelineKey, entries: int) -> int:
+        """How many events the first `entries` entries have; BranchError as above."""
+
+    def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
+        """What the first `entries` entries told last of each agent that they tell of.
+
+        Takes the same time however many entries these are. BranchError as above.
+        """
 
     def rename(self, key: TimelineKey, name: str) -> None:
         """Give a timeline's branch another name; timelines based on it follow.
@@ -276,7 +327,13 @@ class MemoryJournal:
     def __init__(self) -> None:
         self._infos: dict[TimelineKey, TimelineInfo] = {}
         self._entries: dict[TimelineKey, list[Entry]] = {}
+        self._found: dict[TimelineKey, _Found] = {}
         self._checkpoints: dict[TimelineKey, dict[tuple[str, int], bytes]] = {}
+
+    @property
+    def writable(self) -> bool:
+        """It is."""
+        return True
 
     def timelines(self) -> Sequence[TimelineInfo]:
         """All timelines, in order of creation."""
@@ -296,6 +353,7 @@ class MemoryJournal:
             check_base(key, base, self.info(base.timeline).entries)
         self._infos[key] = TimelineInfo(key, base, start, start)
         self._entries[key] = []
+        self._found[key] = _Found()
         self._checkpoints[key] = {}
 
     def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:
@@ -303,6 +361,7 @@ class MemoryJournal:
         info = self.info(key)
         check_append(info, entries, head)
         self._entries[key].extend(entries)
+        self._found[key].extend(entries, info.entries)
         self._infos[key] = replace(info, head=head, entries=info.entries + len(entries))
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
@@ -321,6 +380,30 @@ class MemoryJournal:
                 high = middle
         return low
 
+    def sifted(
+        self, key: TimelineKey, start: int, stop: int, what: Sift
+    ) -> Iterator[tuple[int, Entry]]:
+        """Those of entries start to stop - 1 that are looked for, with their numbers."""
+        entries, numbers = self._entries[self.info(key).key], self._found[key].numbers[what]
+        low, high = bisect_left(numbers, start), bisect_left(numbers, stop)
+        return iter([(number, entries[number]) for number in numbers[low:high]])
+
+    def events_until(self, key: TimelineKey, entries: int) -> int:
+        """How many events the first `entries` entries have."""
+        found = self._found[self.info(key).key]
+        before = bisect_left(found.numbers[Sift.EVENTS], entries)
+        return found.events[before - 1] if before else 0
+
+    def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
+        """What the first `entries` entries told last of each agent that they tell of."""
+        there, agents = self._entries[self.info(key).key], {}
+        for name, numbers in self._found[key].agents.items():
+            before = bisect_left(numbers, entries)
+            entry = there[numbers[before - 1]] if before else None
+            if isinstance(entry, Frame):
+                agents[name] = entry.agents[name]
+        return agents
+
     def rename(self, key: TimelineKey, name: str) -> None:
         """Give a timeline's branch another name; timelines based on it follow."""
         old = self.info(key)
@@ -335,6 +418,7 @@ class MemoryJournal:
             infos[changed.key] = changed
         self._infos = infos
         self._entries[new_key] = self._entries.pop(key)
+        self._found[new_key] = self._found.pop(key)
         self._checkpoints[new_key] = self._checkpoints.pop(key)
 
     def delete(self, key: TimelineKey) -> None:
@@ -345,7 +429,7 @@ class MemoryJournal:
         ]
         if based:
             raise branch_carries(key, based)
-        del self._infos[key], self._entries[key], self._checkpoints[key]
+        del self._infos[key], self._entries[key], self._found[key], self._checkpoints[key]
 
     def describe(self, key: TimelineKey, description: str) -> None:
         """Set a timeline's description."""
@@ -379,3 +463,31 @@ class MemoryJournal:
 
     def close(self) -> None:
         """Nothing is held open."""
+
+
+class _Found:
+    """Which entries of a timeline in memory are looked for, rising.
+
+    Attributes:
+        numbers: Of entries, by what is looked for.
+        events: How many events there are up to each entry with events.
+        agents: Entries that tell of an agent, by name.
+    """
+
+    def __init__(self) -> None:
+        self.numbers: dict[Sift, list[int]] = {what: [] for what in Sift}
+        self.events: list[int] = []
+        self.agents: dict[str, list[int]] = {}
+
+    def extend(self, entries: Sequence[Entry], first: int) -> None:
+        """Take in entries, from number `first` on."""
+        for number, entry in enumerate(entries, start=first):
+            for what in Sift:
+                if is_found(entry, what):
+                    self.numbers[what].append(number)
+            count = count_of_events(entry)
+            if count:
+                self.events.append(count + (self.events[-1] if self.events else 0))
+            if isinstance(entry, Frame):
+                for name in entry.agents:
+                    self.agents.setdefault(name, []).append(number)

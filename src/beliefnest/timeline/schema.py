@@ -9,7 +9,7 @@ __all__ = ["APPLICATION_ID", "SCHEMA_VERSION", "SMALL_TABLES", "STATEMENTS"]
 APPLICATION_ID = 0x42656C4E
 """Marks an SQLite file as a run ("BelN")."""
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 SMALL_TABLES = ("timeline", "meta", "selected", "program", "prompt")
 """Tables whose structure is checked whenever a file is opened; the others can be large."""
@@ -32,7 +32,9 @@ STATEMENTS = (
         UNIQUE (path, branch)
     )""",
     "CREATE INDEX timeline_by_base ON timeline (base)",
-    # Entries `first` to `first + count - 1` of a timeline; see codec.join.
+    # Entries `first` to `first + count - 1` of a timeline; see codec.join. How many events they
+    # have, how many of them change more than agents, and, where they are compressed, what is
+    # known of every agent after them.
     """CREATE TABLE piece (
         id INTEGER PRIMARY KEY,
         timeline INTEGER NOT NULL,
@@ -40,12 +42,17 @@ STATEMENTS = (
         count INTEGER NOT NULL,
         first_tick INTEGER NOT NULL,
         last_tick INTEGER NOT NULL,
+        events INTEGER NOT NULL,
+        changes INTEGER NOT NULL,
+        agents BLOB NOT NULL,
         compressed INTEGER NOT NULL,
         body BLOB NOT NULL,
         seal INTEGER NOT NULL,
         UNIQUE (timeline, first)
     )""",
     "CREATE INDEX piece_by_tick ON piece (timeline, last_tick, first)",
+    "CREATE INDEX piece_with_events ON piece (timeline, first, events) WHERE events > 0",
+    "CREATE INDEX piece_with_changes ON piece (timeline, first) WHERE changes > 0",
     # A state after the first `entries` entries of a timeline, compressed; whose, says `name`.
     """CREATE TABLE keyframe (
         id INTEGER PRIMARY KEY,

@@ -1,25 +1,23 @@
 """A journal in one SQLite file per run.
 
-Entries lie in pieces: one uncompressed piece for each call of `append`, joined into
-compressed pieces of `PIECE_ENTRIES` as soon as there are enough. So every call is durable
-when it returns, and a past entry is reached by unpacking one piece.
+Entries lie in pieces (`timeline/pieces.py`), so that every call is durable when it returns and
+a past entry is reached by unpacking one piece.
 """
 
-from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import msgspec
 import zstandard
 
-from beliefnest.errors import StoreError
+from beliefnest.errors import BranchError, StoreError
 from beliefnest.timeline import codec
 from beliefnest.timeline.database import Database, Row, checked, seal
 from beliefnest.timeline.journal import (
     Entry,
     ForkPoint,
+    Sift,
     TimelineInfo,
     TimelineKey,
     branch_carries,
@@ -30,13 +28,12 @@ from beliefnest.timeline.journal import (
     check_place,
     path_text,
 )
+from beliefnest.timeline.pieces import Pieces, decompressed
 from beliefnest.timeline.records import Records, path_from, path_to
 from beliefnest.world.frames import Snapshot
+from beliefnest.world.values import AgentState
 
-__all__ = ["PIECE_ENTRIES", "SqliteJournal"]
-
-PIECE_ENTRIES = 128
-"""Entries of one compressed piece: larger ones hardly pack better and are slower to read from."""
+__all__ = ["SqliteJournal"]
 
 _FACTS = "facts"
 """Name of the checkpoints that are snapshots of the timeline's own simulator."""
@@ -47,7 +44,6 @@ _COMPRESSION = 1
 _COLUMNS = (
     "id, path, branch, base, base_entries, base_tick, start, head, entries, packed, description"
 )
-_PIECE = "timeline, first, count, first_tick, last_tick, compressed, body"
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +92,7 @@ class SqliteJournal:
         self._database = database
         self._packer = zstandard.ZstdCompressor(level=_COMPRESSION)
         self._unpacker = zstandard.ZstdDecompressor()
+        self._pieces = Pieces(database, self._packer, self._unpacker)
         self.records = Records(database)
 
     @classmethod
@@ -138,6 +135,11 @@ class SqliteJournal:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+    @property
+    def writable(self) -> bool:
+        """Whether it was opened to go on with it."""
+        return self._database.writable
 
     @property
     def path(self) -> Path:
@@ -203,26 +205,35 @@ class SqliteJournal:
             check_append(_info(row, None), entries, head)
             packed = row.packed
             if encoded:
-                packed = self._add_pieces(row, encoded, [entry.tick for entry in entries])
+                packed = self._pieces.add(row.id, row.entries, row.packed, encoded, entries)
             self._write(replace(row, head=head, entries=row.entries + len(encoded), packed=packed))
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
         """Entries number start to stop - 1, oldest first."""
-        row = self._row(key)
-        return self._entries_of(row, start, min(stop, row.entries))
+        return self._entries_of(self._row(key), start, stop)
 
     def entries_until(self, key: TimelineKey, tick: int) -> int:
         """How many entries lie at `tick` or before."""
         row = self._row(key)
-        found = self._database.row(
-            f"SELECT {_PIECE}, seal FROM piece WHERE timeline = ? AND last_tick > ? "
-            "ORDER BY last_tick, first LIMIT 1",
-            (row.id, tick),
-        )
-        if found is None:
-            return row.entries
-        first, pieces = self._unpacked(found)
-        return first + bisect_right(codec.decode_ticks(pieces), tick)
+        found = self._pieces.entries_until(row.id, tick)
+        return row.entries if found is None else found
+
+    def sifted(
+        self, key: TimelineKey, start: int, stop: int, what: Sift
+    ) -> Iterator[tuple[int, Entry]]:
+        """Those of entries start to stop - 1 that are looked for, with their numbers."""
+        row = self._row(key)
+        return self._pieces.sifted(row.id, start, min(stop, row.entries), what)
+
+    def events_until(self, key: TimelineKey, entries: int) -> int:
+        """How many events the first `entries` entries have."""
+        with self._database.unchanging():
+            return self._pieces.events_until(self._row(key).id, entries)
+
+    def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
+        """What the first `entries` entries told last of each agent that they tell of."""
+        with self._database.unchanging():
+            return self._pieces.agents_after(self._row(key).id, entries)
 
     def rename(self, key: TimelineKey, name: str) -> None:
         """Give a timeline's branch another name; what names it follows."""
@@ -318,6 +329,12 @@ class SqliteJournal:
         """Close the file and let another writer have it; closing twice is allowed."""
         self._database.close()
 
+    def _entries_of(self, row: _TimelineRow, start: int, stop: int) -> Iterator[Entry]:
+        for piece in self._pieces.raw(
+            row.id, start, min(stop, row.entries), lambda: self._gone(row)
+        ):
+            yield codec.decode_entry(piece)
+
     def _timeline_rows(self, where: str, *values: object) -> Iterator[_TimelineRow]:
         rows = self._database.rows(f"SELECT {_COLUMNS}, seal FROM timeline {where}", values)
         for row in rows:
@@ -352,81 +369,12 @@ class SqliteJournal:
             (*values, seal(*values)),
         )
 
-    def _add_pieces(self, row: _TimelineRow, encoded: Sequence[bytes], ticks: Sequence[int]) -> int:
-        """Write encoded entries behind a timeline's; returns how many lie in packed pieces."""
-        loose = row.entries - row.packed
-        if loose + len(encoded) < PIECE_ENTRIES:
-            self._write_piece(row.id, row.entries, encoded, ticks, compressed=False)
-            return row.packed
-        tail = list(self._raw_entries(row, row.packed, row.entries))
-        times = [*codec.decode_ticks(tail), *ticks]
-        pieces = [*tail, *(msgspec.Raw(entry) for entry in encoded)]
-        self._database.execute(
-            "DELETE FROM piece WHERE timeline = ? AND first >= ?", (row.id, row.packed)
-        )
-        for at in range(0, len(pieces), PIECE_ENTRIES):
-            part = slice(at, at + PIECE_ENTRIES)
-            full = len(pieces) - at >= PIECE_ENTRIES
-            self._write_piece(row.id, row.packed + at, pieces[part], times[part], compressed=full)
-        return row.packed + len(pieces) - len(pieces) % PIECE_ENTRIES
-
-    def _write_piece(
-        self,
-        timeline: int,
-        first: int,
-        encoded: Sequence[bytes | msgspec.Raw],
-        ticks: Sequence[int],
-        *,
-        compressed: bool,
-    ) -> None:
-        body = codec.join(encoded)
-        if compressed:
-            body = self._packer.compress(body)
-        values = (timeline, first, len(encoded), ticks[0], ticks[-1], int(compressed), body)
-        self._database.execute(
-            f"INSERT INTO piece ({_PIECE}, seal) VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
-            (*values, seal(*values)),
-        )
-
-    def _entries_of(self, row: _TimelineRow, start: int, stop: int) -> Iterator[Entry]:
-        for piece in self._raw_entries(row, start, stop):
-            yield codec.decode_entry(piece)
-
-    def _raw_entries(self, row: _TimelineRow, start: int, stop: int) -> Iterator[msgspec.Raw]:
-        # One query for each piece: a writer may join pieces while a reader is between two.
-        while start < stop:
-            found = self._database.row(
-                f"SELECT {_PIECE}, seal FROM piece WHERE timeline = ? AND first <= ? "
-                "ORDER BY first DESC LIMIT 1",
-                (row.id, start),
-            )
-            if found is None and not self._database.rows(
-                "SELECT id FROM timeline WHERE id = ?", (row.id,)
-            ):
-                raise branch_missing(row.key, (other.branch for other in self._beside(row.key)))
-            first, pieces = (0, []) if found is None else self._unpacked(found)
-            part = pieces[start - first : stop - first]
-            if not part:
-                raise StoreError(
-                    f"{self.path} is damaged; restore it from a copy "
-                    f"(entry {start} of {row.key} is not there)"
-                )
-            yield from part
-            start += len(part)
-
-    def _unpacked(self, row: Row) -> tuple[int, list[msgspec.Raw]]:
-        """Number of a piece's first entry, and its encoded entries."""
-        _, first, count, _, _, compressed, body = checked(row, self.path, "entries")
-        pieces = codec.split(self._decompressed(body) if compressed else body)
-        if len(pieces) != count:
-            raise StoreError(f"{self.path} is damaged; {len(pieces)} of {count} entries are there")
-        return first, pieces
-
     def _decompressed(self, body: bytes) -> bytes:
-        try:
-            return self._unpacker.decompress(body)
-        except zstandard.ZstdError as fault:
-            raise StoreError(f"{self.path} is damaged; restore it from a copy ({fault})") from fault
+        return decompressed(self._unpacker, body, self.path)
+
+    def _gone(self, row: _TimelineRow) -> BranchError:
+        """The error for a timeline that was deleted while it was read."""
+        return branch_missing(row.key, (other.branch for other in self._beside(row.key)))
 
     def _check_timelines(self) -> None:
         """Check that every timeline has its base and its last entry."""

@@ -1,0 +1,28 @@
+"""What a forest needs of others: who tells what happens, and who reads it."""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from beliefnest.belief.entries import PerceivedEvent
+from beliefnest.world.values import Event
+
+__all__ = ["Reader", "Story"]
+
+Path = tuple[str, ...]
+
+
+class Story(Protocol):
+    """What happens on a timeline, for those who list it; folding does without."""
+
+    def events(self, count: int) -> Sequence[tuple[int, Event]]:
+        """The first events of the timeline, `count` of them or more, each with its tick."""
+
+    def before(self, path: Path) -> Sequence[PerceivedEvent]:
+        """What a node perceived before the timeline began, oldest first."""
+
+
+class Reader(Protocol):
+    """Somebody who read a state and may read more of it."""
+
+    def keep(self) -> None:
+        """Read now what the forest will not know any more."""

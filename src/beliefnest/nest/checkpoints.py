@@ -1,0 +1,139 @@
+"""Saved forests of a journal's timelines: written now and then, trusted only where they fit.
+
+A checkpoint is a cache. Its name carries a digest of all that a forest follows from besides
+the journal: the setting, and the program that folds; under another name nobody looks.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
+from hashlib import blake2b
+from importlib.resources import files
+
+from beliefnest.belief.forest import Forest
+from beliefnest.belief.ground import Ground
+from beliefnest.belief.story import Story
+from beliefnest.nest.saved import encode_start
+from beliefnest.nest.saving import restored, saved
+from beliefnest.nest.setting import Setting
+from beliefnest.timeline.journal import Journal, TimelineKey
+from beliefnest.version import VERSION
+
+__all__ = ["Checkpoints", "Pace"]
+
+Path = tuple[str, ...]
+
+_ROOMS = ("world", "perception", "belief", "nest")
+"""Where the program is that decides what a forest holds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """How often something is done, in entries of a timeline.
+
+    Attributes:
+        every: Entries between two checkpoints, at least.
+        lag: Entries that are folded on demand, without looking for a checkpoint.
+        stretch: Entries that are held in columns at once.
+        budget: Bytes of checkpoints for each entry, at most.
+    """
+
+    every: int = 2048
+    lag: int = 256
+    stretch: int = 1024
+    budget: int = 256
+
+
+@dataclass(frozen=True, slots=True)
+class _Kept:
+    """The last checkpoint of a timeline: its place, its size in bytes, how many nodes it has."""
+
+    place: int = 0
+    size: int = 0
+    nodes: int = 0
+
+
+class Checkpoints:
+    """Saved forests of the timelines of one journal.
+
+    Args:
+        journal: Where they are kept; one that cannot be written to is only read.
+        setting: What the nest started from.
+        ground: What its nodes stand on.
+        pace: How often they are written.
+    """
+
+    def __init__(self, journal: Journal, setting: Setting, ground: Ground, pace: Pace) -> None:
+        self._journal = journal
+        self._setting = setting
+        self._ground = ground
+        self._pace = pace
+        self._kept: dict[TimelineKey, _Kept] = {}
+
+    def before(
+        self,
+        key: TimelineKey,
+        position: int,
+        story: Story,
+        path: Path | None = None,
+        after: int = 0,
+    ) -> Forest | None:
+        """The last saved forest of a timeline between two positions; None if there is none.
+
+        Args:
+            key: The timeline.
+            position: Where it may lie at most.
+            story: What happens on the timeline.
+            path: A node that has to be in it, and the only one wanted with those around it;
+                None: all nodes that were saved.
+            after: Where it does not lie any more.
+        """
+        if position - after <= self._pace.lag:
+            return None
+        found = self._journal.nearest_checkpoint(key, self._name, position)
+        if found is None or found[0] <= after:
+            return None
+        forest = restored(self._ground, story, found[1], path)
+        if forest is not None and path is None:
+            self._kept[key] = _Kept(found[0], len(found[1]), forest.plots.count)
+        return forest
+
+    def keep(self, key: TimelineKey, forest: Forest) -> None:
+        """Save a forest if that is due."""
+        kept = self._kept.get(key, _Kept())
+        due = max(self._pace.every, kept.size // self._pace.budget)
+        if forest.position - kept.place >= due:
+            self._save(key, forest)
+
+    def keep_last(self, key: TimelineKey, forest: Forest) -> None:
+        """Save the last forest of a timeline, unless it is as good as saved or soon folded."""
+        kept = self._kept.get(key, _Kept())
+        news = forest.position - kept.place > self._pace.lag or forest.plots.count != kept.nodes
+        if forest.position > self._pace.lag and news:
+            self._save(key, forest)
+
+    def forget(self, key: TimelineKey) -> None:
+        """Drop what is remembered of a timeline that was deleted or renamed."""
+        self._kept.pop(key, None)
+
+    def _save(self, key: TimelineKey, forest: Forest) -> None:
+        if self._journal.writable:
+            body = saved(forest)
+            self._journal.put_checkpoint(key, self._name, forest.position, body)
+            self._kept[key] = _Kept(forest.position, len(body), forest.plots.count)
+
+    @cached_property
+    def _name(self) -> str:
+        start = encode_start(replace(self._setting, name="", script=()), "")
+        return f"beliefs {blake2b(start, digest_size=16, key=_program()).hexdigest()}"
+
+
+@cache
+def _program() -> bytes:
+    """A digest of the program that folds, so that another one does not trust what it left."""
+    digest = blake2b(VERSION.encode(), digest_size=16)
+    for room in _ROOMS:
+        sources = files("beliefnest").joinpath(room).iterdir()
+        for source in sorted(sources, key=lambda each: each.name):
+            if source.name.endswith(".py"):
+                digest.update(source.read_bytes())
+    return digest.digest()

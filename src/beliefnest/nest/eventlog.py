@@ -1,0 +1,58 @@
+"""The events of a timeline, read from its journal when somebody lists them."""
+
+from collections.abc import Callable, Sequence
+
+from beliefnest.belief.columns import Columns
+from beliefnest.belief.entries import PerceivedEvent
+from beliefnest.timeline.journal import Journal, Sift, TimelineKey
+from beliefnest.world.frames import Frame
+from beliefnest.world.values import Event
+
+__all__ = ["EventLog"]
+
+Path = tuple[str, ...]
+
+
+class EventLog:
+    """All events of one timeline so far, and what nodes perceived before it began.
+
+    Args:
+        journal: Where the timeline is kept.
+        key: The timeline.
+        before: Says what a node perceived before the timeline began.
+    """
+
+    def __init__(
+        self,
+        journal: Journal,
+        key: TimelineKey,
+        before: Callable[[Path], Sequence[PerceivedEvent]],
+    ) -> None:
+        self._journal = journal
+        self._key = key
+        self._work_out = before
+        self._before: dict[Path, Sequence[PerceivedEvent]] = {}
+        self._events: list[tuple[int, Event]] = []
+        self._entries = 0
+
+    def events(self, count: int) -> Sequence[tuple[int, Event]]:
+        """The first `count` events or more, each with its tick."""
+        if len(self._events) < count:
+            stop = self._journal.info(self._key).entries
+            for _, entry in self._journal.sifted(self._key, self._entries, stop, Sift.EVENTS):
+                if isinstance(entry, Frame):
+                    self._events.extend((entry.tick, event) for event in entry.events)
+            self._entries = stop
+        return self._events
+
+    def before(self, path: Path) -> Sequence[PerceivedEvent]:
+        """What a node perceived before the timeline began, oldest first."""
+        if path not in self._before:
+            self._before[path] = self._work_out(path)
+        return self._before[path]
+
+    def take(self, columns: Columns) -> None:
+        """Take over the events of a stretch, where it goes on from what is known."""
+        if columns.first <= self._entries < columns.end:
+            self._events.extend(columns.told_since(self._entries))
+            self._entries = columns.end

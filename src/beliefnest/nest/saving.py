@@ -1,0 +1,113 @@
+"""Forests as bytes, so that a timeline need not be folded from its beginning.
+
+What is saved is what the next entries need. What a forest knows besides, to ask less often
+(who looked from where, what is pending), is worked out anew.
+"""
+
+import msgspec
+import numpy as np
+
+from beliefnest.belief.columns import Columns, SavedVersions, Versions
+from beliefnest.belief.forest import Forest
+from beliefnest.belief.ground import Ground
+from beliefnest.belief.holdings import Holdings
+from beliefnest.belief.plots import SavedPlot
+from beliefnest.belief.story import Story
+from beliefnest.timeline import codec
+
+__all__ = ["restored", "saved"]
+
+Path = tuple[str, ...]
+
+
+class _Node(msgspec.Struct, forbid_unknown_fields=True):
+    plot: SavedPlot
+    holdings: Holdings
+    heard: bytes
+    looked: int
+    put_by_hand: list[int]
+    doubtful: dict[int, int]
+
+
+class _Saved(msgspec.Struct, forbid_unknown_fields=True):
+    position: int
+    events: int
+    tick: int
+    facts_tick: int | None
+    edited: list[int]
+    first_vitals: dict[int, tuple[float | None, float | None]]
+    tracked: bytes
+    versions: SavedVersions
+    nodes: list[tuple[Path, msgspec.Raw]]
+
+
+def saved(forest: Forest) -> bytes:
+    """Bytes of a forest, which leaves the stretch it is in; `restored` is the inverse."""
+    forest.leave()
+    count, plots = forest.count_of_events, forest.plots
+    nodes = []
+    for path, node in plots.index.items():
+        body = _Node(
+            plots.saved(node),
+            forest.holdings[node],
+            np.packbits(forest.hearing.of(node, count)).tobytes(),
+            forest.last_look(node),
+            sorted(cell for other, cell in forest.put_by_hand if other == node),
+            {cell: s for (other, cell), s in sorted(forest.doubtful.items()) if other == node},
+        )
+        nodes.append((path, msgspec.Raw(codec.encode(body))))
+    return codec.encode(
+        _Saved(
+            position=forest.position,
+            events=count,
+            tick=forest.tick,
+            facts_tick=forest.facts_tick,
+            edited=sorted(forest.edited),
+            first_vitals=forest.first_vitals,
+            tracked=plots.tracked.tobytes(),
+            versions=forest.versions.saved(),
+            nodes=nodes,
+        )
+    )
+
+
+def restored(ground: Ground, story: Story, data: bytes, path: Path | None = None) -> Forest | None:
+    """A forest from the bytes of `saved`, made on the same ground.
+
+    Args:
+        ground: What the nest stands on.
+        story: What happens on the forest's timeline.
+        data: The bytes.
+        path: The deepest node wanted; None: all there are.
+
+    Returns:
+        The forest, with the nodes down to that one; None if it is not among those saved.
+
+    Raises:
+        StoreError: The bytes hold no forest.
+    """
+    body = codec.decode(data, _Saved)
+    nodes = [node for node in body.nodes if path is None or path[: len(node[0])] == node[0]]
+    if path is not None and all(other != path for other, _ in nodes):
+        return None
+    tracked = np.frombuffer(body.tracked, dtype=np.int32)
+    ground.track(tracked.tolist())
+    forest = Forest(ground, story, body.tick)
+    columns = Columns(ground.box, ground.agents, ground.holds, body.position, body.events)
+    columns.versions = Versions.restored(body.versions)
+    forest.enter(columns)
+    forest.position = body.position
+    forest.facts_tick = body.facts_tick
+    forest.edited = set(body.edited)
+    forest.first_vitals = body.first_vitals
+    for number, (_, raw) in enumerate(nodes):
+        node = codec.decode(bytes(raw), _Node)
+        forest.plots.restore(node.plot, tracked)
+        forest.holdings.append(node.holdings)
+        heard = np.unpackbits(np.frombuffer(node.heard, dtype=np.uint8), count=body.events)
+        forest.hearing.set(number, 0, heard.astype(np.bool_))
+        forest.looked[number] = node.looked
+        forest.put_by_hand |= {(number, cell) for cell in node.put_by_hand}
+        forest.doubtful |= {(number, cell): state for cell, state in node.doubtful.items()}
+    forest.plots.link()
+    return forest

@@ -1,0 +1,226 @@
+"""Entries of timelines in a run file, in pieces.
+
+One uncompressed piece for each call that adds, joined into compressed pieces of
+`PIECE_ENTRIES` as soon as there are enough: every call is durable when it returns, and a past
+entry is reached by unpacking one piece. Each piece says what its entries hold, so that those
+that are looked for are found without reading the others.
+"""
+
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+
+import msgspec
+import zstandard
+
+from beliefnest.errors import BranchError, StoreError
+from beliefnest.timeline import codec
+from beliefnest.timeline.database import Database, Row, checked, seal
+from beliefnest.timeline.journal import Entry, Sift, count_of_events, is_found
+from beliefnest.world.frames import Frame
+from beliefnest.world.values import AgentState
+
+__all__ = ["PIECE_ENTRIES", "Pieces", "decompressed"]
+
+PIECE_ENTRIES = 128
+"""Entries of one compressed piece: larger ones hardly pack better and are slower to read from."""
+
+_COLUMNS = (
+    "timeline, first, count, first_tick, last_tick, events, changes, agents, compressed, body"
+)
+
+
+def decompressed(unpacker: zstandard.ZstdDecompressor, body: bytes, path: Path) -> bytes:
+    """Unpacked bytes of a value of the file `path`; StoreError if they are damaged."""
+    try:
+        return unpacker.decompress(body)
+    except zstandard.ZstdError as fault:
+        raise StoreError(f"{path} is damaged; restore it from a copy ({fault})") from fault
+
+
+class Pieces:
+    """The pieces of all timelines of a file, which are named by their rows' ids."""
+
+    def __init__(
+        self,
+        database: Database,
+        packer: zstandard.ZstdCompressor,
+        unpacker: zstandard.ZstdDecompressor,
+    ) -> None:
+        self._database = database
+        self._packer = packer
+        self._unpacker = unpacker
+
+    def add(
+        self,
+        timeline: int,
+        count: int,
+        packed: int,
+        encoded: Sequence[bytes],
+        entries: Sequence[Entry],
+    ) -> int:
+        """Write entries behind the `count` ones of a timeline, `packed` of which are compressed.
+
+        Returns how many are compressed then; the caller opens the transaction.
+        """
+        if count - packed + len(encoded) < PIECE_ENTRIES:
+            self._write(timeline, count, encoded, entries, None)
+            return packed
+        tail = list(self.raw(timeline, packed, count))
+        pieces = [*tail, *encoded]
+        there = [*(codec.decode_entry(piece) for piece in tail), *entries]
+        agents = self._agents_before(timeline, packed)
+        self._database.execute(
+            "DELETE FROM piece WHERE timeline = ? AND first >= ?", (timeline, packed)
+        )
+        for at in range(0, len(pieces), PIECE_ENTRIES):
+            part = slice(at, at + PIECE_ENTRIES)
+            full = len(pieces) - at >= PIECE_ENTRIES
+            if full:
+                _follow(agents, there[part])
+            known = agents if full else None
+            self._write(timeline, packed + at, pieces[part], there[part], known)
+        return packed + len(pieces) - len(pieces) % PIECE_ENTRIES
+
+    def raw(
+        self,
+        timeline: int,
+        start: int,
+        stop: int,
+        gone: Callable[[], BranchError] | None = None,
+    ) -> Iterator[msgspec.Raw]:
+        """Encoded entries start to stop - 1; `gone` makes the error for a deleted timeline."""
+        # One query for each piece: a writer may join pieces while a reader is between two.
+        while start < stop:
+            found = self._piece(timeline, "first <= ? ORDER BY first DESC", start)
+            if found is None and gone is not None and not self._has(timeline):
+                raise gone()
+            first, pieces = (0, []) if found is None else self._unpacked(found)
+            part = pieces[start - first : stop - first]
+            if not part:
+                raise StoreError(
+                    f"{self._database.path} is damaged; restore it from a copy "
+                    f"(entry {start} of timeline {timeline} is not there)"
+                )
+            yield from part
+            start += len(part)
+
+    def entries_until(self, timeline: int, tick: int) -> int | None:
+        """How many entries lie at a tick or before; None: all."""
+        found = self._piece(timeline, "last_tick > ? ORDER BY last_tick, first", tick)
+        if found is None:
+            return None
+        first, pieces = self._unpacked(found)
+        return first + bisect_right(codec.decode_ticks(pieces), tick)
+
+    def sifted(
+        self, timeline: int, start: int, stop: int, what: Sift
+    ) -> Iterator[tuple[int, Entry]]:
+        """Those of entries start to stop - 1 that are looked for, with their numbers."""
+        while start < stop:
+            # No piece has more entries than that, so that the index leads to the first one.
+            found = self._piece(
+                timeline,
+                f"first > ? AND first + count > ? AND first < ? AND {what} > 0 ORDER BY first",
+                start - PIECE_ENTRIES,
+                start,
+                stop,
+            )
+            if found is None:
+                return
+            first, pieces = self._unpacked(found)
+            last = min(stop, first + len(pieces))
+            for number in range(max(start, first), last):
+                entry = codec.decode_entry(pieces[number - first])
+                if is_found(entry, what):
+                    yield number, entry
+            start = last
+
+    def events_until(self, timeline: int, entries: int) -> int:
+        """How many events the first `entries` entries have; the caller sees one state."""
+        whole = self._database.row(
+            "SELECT coalesce(sum(events), 0) FROM piece "
+            "WHERE timeline = ? AND first < ? AND first + count <= ? AND events > 0",
+            (timeline, entries, entries),
+        )
+        count = 0 if whole is None else int(whole[0])
+        last = self._piece(timeline, "first < ? ORDER BY first DESC", entries)
+        first, pieces = (0, []) if last is None else self._unpacked(last)
+        if first + len(pieces) > entries:
+            part = (codec.decode_entry(piece) for piece in pieces[: entries - first])
+            count += sum(map(count_of_events, part))
+        return count
+
+    def agents_after(self, timeline: int, entries: int) -> Mapping[str, AgentState | None]:
+        """What entries told last of each agent that they tell of; the caller sees one state."""
+        last = self._piece(timeline, "first <= ? AND compressed ORDER BY first DESC", entries - 1)
+        first = 0
+        agents: dict[str, AgentState | None] = {}
+        if last is not None:
+            first, count = last[1], last[2]
+            if first + count <= entries:
+                first += count
+            agents = self._agents_before(timeline, first)
+        _follow(agents, map(codec.decode_entry, self.raw(timeline, first, entries)))
+        return agents
+
+    def _agents_before(self, timeline: int, first: int) -> dict[str, AgentState | None]:
+        """What the compressed piece before an entry, if there is one, knows of agents."""
+        found = self._piece(timeline, "first < ? ORDER BY first DESC", first)
+        if found is None:
+            return {}
+        known = checked(found, self._database.path, "entries")[7]
+        return codec.decode_agents(self._decompressed(known))
+
+    def _has(self, timeline: int) -> bool:
+        return bool(self._database.rows("SELECT id FROM timeline WHERE id = ?", (timeline,)))
+
+    def _piece(self, timeline: int, where: str, *values: int) -> Row | None:
+        return self._database.row(
+            f"SELECT {_COLUMNS}, seal FROM piece WHERE timeline = ? AND {where} LIMIT 1",
+            (timeline, *values),
+        )
+
+    def _write(
+        self,
+        timeline: int,
+        first: int,
+        encoded: Sequence[bytes | msgspec.Raw],
+        entries: Sequence[Entry],
+        agents: Mapping[str, AgentState | None] | None,
+    ) -> None:
+        """Write a piece; compressed, with what is known of agents after it, unless that is None."""
+        body, known = codec.join(encoded), b""
+        if agents is not None:
+            body = self._packer.compress(body)
+            known = self._packer.compress(codec.encode(agents))
+        counts = (
+            sum(count_of_events(entry) for entry in entries),
+            sum(is_found(entry, Sift.CHANGES) for entry in entries),
+        )
+        ticks = (entries[0].tick, entries[-1].tick)
+        packed = int(agents is not None)
+        values = (timeline, first, len(encoded), *ticks, *counts, known, packed, body)
+        self._database.execute(
+            f"INSERT INTO piece ({_COLUMNS}, seal) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+            (*values, seal(*values)),
+        )
+
+    def _unpacked(self, row: Row) -> tuple[int, list[msgspec.Raw]]:
+        """Number of a piece's first entry, and its encoded entries."""
+        path = self._database.path
+        _, first, count, *_, compressed, body = checked(row, path, "entries")
+        pieces = codec.split(self._decompressed(body) if compressed else body)
+        if len(pieces) != count:
+            raise StoreError(f"{path} is damaged; {len(pieces)} of {count} entries are there")
+        return first, pieces
+
+    def _decompressed(self, body: bytes) -> bytes:
+        return decompressed(self._unpacker, body, self._database.path)
+
+
+def _follow(agents: dict[str, AgentState | None], entries: Iterable[Entry]) -> None:
+    """Bring what is known of agents up to date."""
+    for entry in entries:
+        if isinstance(entry, Frame):
+            agents.update(entry.agents)
