@@ -8,13 +8,18 @@ A process of `test_kill_nest.py`; `calls` is what it does, also for the model in
 import random
 import sys
 from collections.abc import Iterator, Sequence
+from unittest.mock import patch
 
 import beliefnest as bn
 from beliefnest.llm import Answer, Message, Sampling
+from beliefnest.nest.checkpoints import Pace
 
 BOX = ((0, 0, 0), (6, 2, 6))
 CHEST = (3, 0, 3)
 AGENTS = {"ann": (1.5, 0.0, 1.5), "bob": (5.5, 0.0, 5.5)}
+OFTEN = patch("beliefnest.nest.history.Pace", lambda: Pace(every=2, lag=1, stretch=3))
+"""Makes nests that leave checkpoints every few entries, as others do in long runs."""
+
 PATHS = ("/", "/ann", "/ann/bob", "/bob")
 
 
@@ -64,7 +69,9 @@ def calls(nest: bn.Nest, seed: int) -> Iterator[None]:
 
 def main(store: str, seed: str) -> None:
     """Act until killed."""
-    for _ in calls(nest_in(store), int(seed)):
+    with OFTEN:
+        nest = nest_in(store)
+    for _ in calls(nest, int(seed)):
         sys.stdout.buffer.write(b".")
         sys.stdout.buffer.flush()
 

@@ -1,7 +1,10 @@
 """A nest with checkpoints at random places holds what one without any holds."""
 
+import sqlite3
 import tempfile
+from contextlib import closing, contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from unittest.mock import patch
 
 from hypothesis import given
@@ -12,8 +15,13 @@ from tests.nest.stories import CONTAINERS, NAMES, Stage, Stories
 
 import beliefnest as bn
 from beliefnest.nest.checkpoints import Pace
+from beliefnest.timeline.store import SqliteJournal
 
 PATHS = ["/" + "/".join(path) for path in paths_to(NAMES, 2)]
+BOX = ((0, 0, 0), (7, 3, 7))
+TICKS = 110
+PACE_USED = Pace(every=20, lag=5, stretch=16)
+PACE = patch("beliefnest.nest.history.Pace", lambda: PACE_USED)
 PACES = st.builds(Pace, every=st.integers(1, 4), lag=st.integers(0, 2), stretch=st.integers(1, 4))
 PATH = st.sampled_from(PATHS)
 PLACES = [*CONTAINERS, (3, 0, 3), (0, 1, 4)]
@@ -111,3 +119,101 @@ def test_checkpoints_change_no_answer(data):
             assert everything(other.state) == everything(one.state)
         finally:
             twins.close()
+
+
+def walked(store, ticks):
+    """A run in which ann and bob walk about and talk; /ann/bob was asked for."""
+    world = bn.ScriptedWorld(BOX, agents={"ann": (1.5, 0.0, 1.5), "bob": (5.5, 0.0, 5.5)})
+    with PACE:
+        nest = bn.Nest(world, static_blocks=["air"], store=store)
+    assert nest["/ann/bob"].state.agents
+    for tick in range(ticks):
+        with world.tick():
+            world.place_agent("ann", (tick % 7 + 0.5, 0.0, tick % 5 + 0.5))
+            if tick % 20 == 0:
+                world.say("bob", f"tick {tick}")
+    return nest
+
+
+def resumed(store):
+    with PACE:
+        return bn.Nest.resume(store)
+
+
+def kept(store):
+    with closing(sqlite3.connect(store)) as connection:
+        return connection.execute("SELECT name, entries FROM keyframe ORDER BY id").fetchall()
+
+
+def test_a_resumed_run_reads_little_of_what_was(tmp_path):
+    with walked(tmp_path / "run.bn", TICKS) as nest:
+        expected = shown_here(nest)
+    with resumed(tmp_path / "run.bn") as nest, counted_entries() as count:
+        assert nest["/ann/bob"].state.agents == expected["/ann/bob"]["agents"]
+        assert nest["/"].state.agents == expected["/"]["agents"]
+        assert count.read <= 2 * PACE_USED.every
+        assert shown_here(nest) == expected
+
+
+def test_a_past_tick_is_reached_by_few_entries(tmp_path):
+    walked(tmp_path / "run.bn", TICKS).close()
+    with PACE:
+        reading = bn.Nest.read(tmp_path / "run.bn")
+    with reading, counted_entries() as count:
+        for path in ("/", "/ann/bob"):
+            before = count.read
+            assert reading.at(TICKS - 3 * PACE_USED.every // 2)[path].state.agents
+            assert count.read - before <= 2 * PACE_USED.every
+
+
+def test_without_its_checkpoints_a_run_holds_the_same(tmp_path):
+    with walked(tmp_path / "run.bn", TICKS) as nest:
+        expected = shown_here(nest)
+    assert len(kept(tmp_path / "run.bn")) >= TICKS // PACE_USED.every
+    with closing(sqlite3.connect(tmp_path / "run.bn")) as connection, connection:
+        connection.execute("DELETE FROM keyframe")
+    with resumed(tmp_path / "run.bn") as nest:
+        assert shown_here(nest) == expected
+
+
+def test_checkpoints_of_another_program_are_left_alone(tmp_path):
+    with walked(tmp_path / "run.bn", TICKS) as nest:
+        expected = shown_here(nest)
+    left = kept(tmp_path / "run.bn")
+    other = patch("beliefnest.nest.checkpoints._program", lambda: b"another")
+    with other, counted_entries() as count, resumed(tmp_path / "run.bn") as nest:
+        assert shown_here(nest) == expected
+        assert count.read >= TICKS
+    assert kept(tmp_path / "run.bn")[: len(left)] == left
+    assert {name for name, _ in kept(tmp_path / "run.bn")} > {name for name, _ in left}
+
+
+def test_readers_leave_none(tmp_path):
+    nest = walked(tmp_path / "run.bn", TICKS)
+    with nest, PACE, bn.Nest.read(tmp_path / "run.bn") as reading:
+        left = kept(tmp_path / "run.bn")
+        assert reading["/bob/ann"].state.agents
+    assert kept(tmp_path / "run.bn")[: len(left)] == left
+    with PACE, bn.Nest.read(tmp_path / "run.bn") as reading:
+        left = kept(tmp_path / "run.bn")
+        assert reading["/bob/ann"].state.agents
+        assert kept(tmp_path / "run.bn") == left
+
+
+def shown_here(nest):
+    return {path: shown(nest[path].state) for path in ("/", "/ann", "/ann/bob")}
+
+
+@contextmanager
+def counted_entries():
+    """Counts entries that are read one after the other."""
+    count = SimpleNamespace(read=0)
+    read = SqliteJournal.entries
+
+    def counting(*args):
+        for entry in read(*args):
+            count.read += 1
+            yield entry
+
+    with patch.object(SqliteJournal, "entries", counting):
+        yield count

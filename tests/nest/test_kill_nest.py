@@ -8,7 +8,7 @@ from itertools import islice
 from pathlib import Path
 
 import pytest
-from tests.nest.acting_nest import PATHS, calls, nest_in
+from tests.nest.acting_nest import OFTEN, PATHS, calls, nest_in
 from tests.nest.comparing import everything
 from tests.profiles import at_night
 
@@ -51,6 +51,8 @@ def test_a_killed_nest_is_resumed_where_it_was(tmp_path, seed):
         before = held(model)
         next(going)
         after = held(model)
-        with bn.Nest.resume(store) as nest:
+        with OFTEN:
+            nest = bn.Nest.resume(store)
+        with nest:
             found = held(nest)
             assert found in (before, after)

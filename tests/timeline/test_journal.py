@@ -3,7 +3,7 @@
 import pytest
 
 from beliefnest.errors import BranchError, InputError, TickError
-from beliefnest.timeline.journal import ForkPoint, TimelineInfo, TimelineKey
+from beliefnest.timeline.journal import ForkPoint, Sift, TimelineInfo, TimelineKey
 from beliefnest.timeline.pieces import PIECE_ENTRIES
 from beliefnest.world.frames import Frame
 
@@ -55,6 +55,34 @@ def test_reading_goes_on_while_pieces_are_joined(journal, make_history):
     first = [next(reading), next(reading)]
     journal.append(MAIN, [Frame(tick) for tick in range(101, 500)], 500)
     assert [*first, *reading] == entries
+
+
+@pytest.mark.parametrize("step", [1, 50, 1000])
+def test_what_is_looked_for_is_found(journal, make_history, step):
+    entries = make_history(3 * PIECE_ENTRIES)
+    begin(journal, entries, step)
+    with_events = [n for n, e in enumerate(entries) if isinstance(e, Frame) and e.events]
+    changing = [n for n, e in enumerate(entries) if e.blocks or e.containers]
+    for start, stop in ((0, 10**6), (0, 0), (1, 2), (100, 130), (127, 128), (300, 10**6)):
+        for what, numbers in ((Sift.EVENTS, with_events), (Sift.CHANGES, changing)):
+            found = list(journal.sifted(MAIN, start, stop, what))
+            assert found == [(n, entries[n]) for n in numbers if start <= n < stop]
+
+
+@pytest.mark.parametrize("step", [1, 50, 1000])
+def test_what_a_prefix_comes_to(journal, make_history, step):
+    entries = make_history(3 * PIECE_ENTRIES)
+    begin(journal, entries, step)
+    agents, events = {}, 0
+    for number, entry in enumerate(entries):
+        if number % 31 in (0, 1, 4):
+            assert journal.agents_after(MAIN, number) == agents
+            assert journal.events_until(MAIN, number) == events
+        if isinstance(entry, Frame):
+            agents |= entry.agents
+            events += len(entry.events)
+    assert journal.agents_after(MAIN, len(entries)) == agents
+    assert journal.events_until(MAIN, len(entries)) == events
 
 
 def test_entries_until_counts_ticks_included(journal, make_history):

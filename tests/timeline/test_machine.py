@@ -9,7 +9,7 @@ from hypothesis.stateful import Bundle, RuleBasedStateMachine, invariant, rule
 from tests.profiles import at_night
 
 from beliefnest.errors import BranchError, TickError
-from beliefnest.timeline.journal import Edit, ForkPoint, TimelineInfo, TimelineKey
+from beliefnest.timeline.journal import Edit, ForkPoint, Sift, TimelineInfo, TimelineKey
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
@@ -156,6 +156,18 @@ class StoreMachine(RuleBasedStateMachine):
         if row is not None:
             until = sum(entry.tick <= tick for entry in row["entries"])
             assert self.journal.entries_until(key, tick) == until
+
+    @rule(key=keys, start=st.integers(0, 400), length=st.integers(0, 300))
+    def look_for(self, key, start, length):
+        row = self.model.find(key)
+        if row is not None:
+            stop = start + length
+            edits = [(n, e) for n, e in enumerate(row["entries"]) if isinstance(e, Edit)]
+            found = list(self.journal.sifted(key, start, stop, Sift.CHANGES))
+            assert found == [(n, e) for n, e in edits if start <= n < stop]
+            frames = [e for e in row["entries"][:stop] if isinstance(e, Frame)]
+            last = frames[-1].agents if frames else {}
+            assert self.journal.agents_after(key, min(stop, len(row["entries"]))) == last
 
     @invariant()
     def timelines_agree(self):

@@ -1,9 +1,11 @@
 """Saved forests of a journal's timelines: written now and then, trusted only where they fit.
 
-A checkpoint is a cache. Its name carries a digest of all that a forest follows from besides
-the journal: the setting, and the program that folds; under another name nobody looks.
+A checkpoint is a cache: without any, every answer is the same. Its name carries a digest of all
+that a forest follows from besides the journal: the setting, and the program that folds; under
+another name nobody looks.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from hashlib import blake2b
@@ -12,6 +14,7 @@ from importlib.resources import files
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.ground import Ground
 from beliefnest.belief.story import Story
+from beliefnest.errors import StoreError
 from beliefnest.nest.saved import encode_start
 from beliefnest.nest.saving import restored, saved
 from beliefnest.nest.setting import Setting
@@ -67,7 +70,7 @@ class Checkpoints:
         self._setting = setting
         self._ground = ground
         self._pace = pace
-        self._kept: dict[TimelineKey, _Kept] = {}
+        self._kept: dict[tuple[TimelineKey, bool], _Kept] = {}
 
     def before(
         self,
@@ -89,42 +92,60 @@ class Checkpoints:
         """
         if position - after <= self._pace.lag:
             return None
-        found = self._journal.nearest_checkpoint(key, self._name, position)
+        found = self._journal.nearest_checkpoint(key, self._name(beliefs=True), position)
+        if path == key.path or (path is None and found is None):
+            world = self._journal.nearest_checkpoint(key, self._name(beliefs=False), position)
+            if found is None or (world is not None and world[0] > found[0]):
+                found = world
         if found is None or found[0] <= after:
             return None
         forest = restored(self._ground, story, found[1], path)
         if forest is not None and path is None:
-            self._kept[key] = _Kept(found[0], len(found[1]), forest.plots.count)
+            self._note(key, forest, found[1])
         return forest
 
     def keep(self, key: TimelineKey, forest: Forest) -> None:
         """Save a forest if that is due."""
-        kept = self._kept.get(key, _Kept())
+        kept = self._last(key, forest)
         due = max(self._pace.every, kept.size // self._pace.budget)
         if forest.position - kept.place >= due:
             self._save(key, forest)
 
     def keep_last(self, key: TimelineKey, forest: Forest) -> None:
         """Save the last forest of a timeline, unless it is as good as saved or soon folded."""
-        kept = self._kept.get(key, _Kept())
+        kept = self._last(key, forest)
         news = forest.position - kept.place > self._pace.lag or forest.plots.count != kept.nodes
         if forest.position > self._pace.lag and news:
             self._save(key, forest)
 
     def forget(self, key: TimelineKey) -> None:
         """Drop what is remembered of a timeline that was deleted or renamed."""
-        self._kept.pop(key, None)
+        self._kept = {at: kept for at, kept in self._kept.items() if at[0] != key}
 
     def _save(self, key: TimelineKey, forest: Forest) -> None:
         if self._journal.writable:
             body = saved(forest)
-            self._journal.put_checkpoint(key, self._name, forest.position, body)
-            self._kept[key] = _Kept(forest.position, len(body), forest.plots.count)
+            # What was recorded is safe; without this one it is folded for longer, that is all.
+            with suppress(StoreError):
+                name = self._name(beliefs=forest.plots.count > 1)
+                self._journal.put_checkpoint(key, name, forest.position, body)
+            self._note(key, forest, body)
+
+    def _note(self, key: TimelineKey, forest: Forest, body: bytes) -> None:
+        count = forest.plots.count
+        self._kept[key, count > 1] = _Kept(forest.position, len(body), count)
+
+    def _last(self, key: TimelineKey, forest: Forest) -> _Kept:
+        return self._kept.get((key, forest.plots.count > 1), _Kept())
+
+    def _name(self, *, beliefs: bool) -> str:
+        """Name of checkpoints with beliefs, or with nothing but the timeline's own simulator."""
+        return f"{'beliefs' if beliefs else 'world'} {self._origin}"
 
     @cached_property
-    def _name(self) -> str:
+    def _origin(self) -> str:
         start = encode_start(replace(self._setting, name="", script=()), "")
-        return f"beliefs {blake2b(start, digest_size=16, key=_program()).hexdigest()}"
+        return blake2b(start, digest_size=16, key=_program()).hexdigest()
 
 
 @cache

@@ -154,9 +154,9 @@ def _held_now(engine: Engine, path: Path, place: Place, element: Element) -> dic
         node = path[:depth]
         basis, current = _ground_of(engine, place, forest, node, element)
         block = None
-        for cell in cells:
-            state = forest.plots.block(forest.plots.index[node], cell)
-            block = history.ground.block_name(state)
+        if not isinstance(element.where, str):
+            cell = cell_of(history.ground.box, element.where)
+            block = history.ground.block_name(forest.plots.block(forest.plots.index[node], cell))
         events = Reading(forest, node).events()
         held[node] = _Held(value_in(forest, node, element), block, basis, current, events)
     return held

@@ -7,7 +7,6 @@ folded from the checkpoint before, or from the timeline's beginning where there 
 """
 
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 from beliefnest.belief.columns import Columns, cell_of
@@ -16,7 +15,6 @@ from beliefnest.belief.forest import Forest
 from beliefnest.belief.ground import Ground
 from beliefnest.belief.planting import forked, planted
 from beliefnest.belief.reading import Reading
-from beliefnest.errors import StoreError
 from beliefnest.nest.checkpoints import Checkpoints, Pace
 from beliefnest.nest.eventlog import EventLog
 from beliefnest.nest.setting import Setting
@@ -121,8 +119,7 @@ class History:
         """Keep up with a timeline, so that who asks for a belief need not wait for long."""
         head, count = self._heads.get(key), self._journal.info(key).entries
         if count - (0 if head is None else head.position) >= self._pace.lag:
-            head = self._head(key, key.path, count)
-            self._checkpoints.keep(key, head)
+            self._head(key, key.path, count)
 
     def close(self) -> None:
         """Leave checkpoints at the heads of timelines, so that who resumes begins there."""
@@ -188,14 +185,15 @@ class History:
         head = self._heads.get(key)
         if head is None:
             head = self._checkpoints.before(key, count, self._log(key))
-            head = self._heads[key] = head or self._begun(key, path)
+        if head is None or (head.plots.count == 1 and path != key.path):
+            # Folded as the head it leaves checkpoints on the way, other than a late node.
+            head = self._begun(key, path)
+        self._heads[key] = head
         while head.position < count:
             far = count if head.plots.count == 1 else head.position + self._pace.every
             self._advance(key, head, min(count, far))
-            if head.position < count:
-                # It is a long way; who asks for the past need not go it again.
-                with suppress(StoreError):
-                    self._checkpoints.keep(key, head)
+            # Where it was a long way, who asks for the past need not go it again.
+            self._checkpoints.keep(key, head)
         if path not in head.plots.index:
             late = self._walk(key, path, count)
             start = len(key.path)

@@ -8,7 +8,7 @@ from beliefnest.belief.entries import PerceivedEvent
 from beliefnest.belief.forest import Forest
 from beliefnest.nest.explanation import Contents, Element, Value
 from beliefnest.nest.history import History
-from beliefnest.timeline.journal import Edit, Journal, TimelineKey
+from beliefnest.timeline.journal import Edit, Journal, Sift, TimelineKey
 from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box
@@ -53,8 +53,10 @@ class Step:
 
 
 def cells_of(element: Element, box: Box) -> Sequence[int]:
-    """Cells whose basis has to be followed besides those of containers."""
-    return () if isinstance(element.where, str) else (cell_of(box, element.where),)
+    """Cells whose basis has to be followed; contents carry theirs along."""
+    if isinstance(element.where, str) or element.kind == "container":
+        return ()
+    return (cell_of(box, element.where),)
 
 
 def steps_since(
@@ -115,7 +117,11 @@ def last_change(
     path = place.key.path
     held: object = _bare(value_in(next(history.steps(place.key, path, 0, 0)), path, element))
     last = None
-    for entry in journal.entries(place.key, 0, place.entries):
+    entries = journal.entries(place.key, 0, place.entries)
+    if element.kind != "agent":
+        found = journal.sifted(place.key, 0, place.entries, Sift.CHANGES)
+        entries = (entry for _, entry in found)
+    for entry in entries:
         if isinstance(entry, Edit) and entry.path != path:
             continue
         told = _told(entry, element, history.ground.registry, held)

@@ -21,6 +21,7 @@ __all__ = [
     "decode",
     "decode_agents",
     "decode_entry",
+    "decode_last_agents",
     "decode_snapshot",
     "decode_ticks",
     "encode",
@@ -53,6 +54,18 @@ class _EditTick(msgspec.Struct, tag="edit", array_like=True):
     value: _Tick
 
 
+class _Told(msgspec.Struct):
+    agents: dict[str, msgspec.Raw] = {}
+
+
+class _FrameTold(msgspec.Struct, tag="frame", array_like=True):
+    value: _Told
+
+
+class _EditTold(msgspec.Struct, tag="edit", array_like=True):
+    value: _Told
+
+
 class _SnapshotBody(msgspec.Struct, forbid_unknown_fields=True):
     tick: int
     low: Position
@@ -72,6 +85,7 @@ def _plain(value: object) -> object:
 _ENCODER = msgspec.msgpack.Encoder(enc_hook=_plain)
 _ENTRY = msgspec.msgpack.Decoder(_FrameEntry | _EditEntry)
 _ENTRY_TICK = msgspec.msgpack.Decoder(_FrameTick | _EditTick)
+_ENTRY_TOLD = msgspec.msgpack.Decoder(_FrameTold | _EditTold)
 _AGENTS = msgspec.msgpack.Decoder(dict[str, AgentState | None])
 _PIECES = msgspec.msgpack.Decoder(list[msgspec.Raw])
 
@@ -125,6 +139,17 @@ def decode_agents(data: bytes) -> dict[str, AgentState | None]:
         return _AGENTS.decode(data)
     except (msgspec.MsgspecError, UnicodeDecodeError) as fault:
         raise StoreError(f"stored bytes are no agents: {fault}") from fault
+
+
+def decode_last_agents(entries: Iterable[msgspec.Raw]) -> dict[str, AgentState | None]:
+    """What encoded entries tell last of each agent; StoreError if one is no entry."""
+    told: dict[str, msgspec.Raw] = {}
+    try:
+        for entry in entries:
+            told.update(_ENTRY_TOLD.decode(entry).value.agents)
+    except msgspec.MsgspecError as fault:
+        raise StoreError(f"stored bytes are no entries of a timeline: {fault}") from fault
+    return decode_agents(_ENCODER.encode(told))
 
 
 def join(entries: Iterable[bytes | msgspec.Raw]) -> bytes:

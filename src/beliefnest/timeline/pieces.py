@@ -7,7 +7,7 @@ that are looked for are found without reading the others.
 """
 
 from bisect import bisect_right
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import msgspec
@@ -77,7 +77,9 @@ class Pieces:
             part = slice(at, at + PIECE_ENTRIES)
             full = len(pieces) - at >= PIECE_ENTRIES
             if full:
-                _follow(agents, there[part])
+                for entry in there[part]:
+                    if isinstance(entry, Frame):
+                        agents.update(entry.agents)
             known = agents if full else None
             self._write(timeline, packed + at, pieces[part], there[part], known)
         return packed + len(pieces) - len(pieces) % PIECE_ENTRIES
@@ -161,8 +163,7 @@ class Pieces:
             if first + count <= entries:
                 first += count
             agents = self._agents_before(timeline, first)
-        _follow(agents, map(codec.decode_entry, self.raw(timeline, first, entries)))
-        return agents
+        return agents | codec.decode_last_agents(self.raw(timeline, first, entries))
 
     def _agents_before(self, timeline: int, first: int) -> dict[str, AgentState | None]:
         """What the compressed piece before an entry, if there is one, knows of agents."""
@@ -217,10 +218,3 @@ class Pieces:
 
     def _decompressed(self, body: bytes) -> bytes:
         return decompressed(self._unpacker, body, self._database.path)
-
-
-def _follow(agents: dict[str, AgentState | None], entries: Iterable[Entry]) -> None:
-    """Bring what is known of agents up to date."""
-    for entry in entries:
-        if isinstance(entry, Frame):
-            agents.update(entry.agents)

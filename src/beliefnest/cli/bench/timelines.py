@@ -3,15 +3,21 @@
 import itertools
 import math
 import random
+import resource
+import sqlite3
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from contextlib import closing
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from beliefnest.belief.view import State
 from beliefnest.cli.bench.figures import Figure, median_seconds
 from beliefnest.errors import StoreError
+from beliefnest.nest.history import History
 from beliefnest.nest.nest import Nest
+from beliefnest.nest.paths import parse_path
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.timeline.store import SqliteJournal
@@ -32,6 +38,7 @@ _WALK = 20_000
 """Ticks of the walk that is recorded over and over; longer than any piece that is packed."""
 
 _TRIES = 101
+_LOOKS = 31
 _SWITCHES = 21
 _STROLL = {
     "stone": "await goToPosition(bot, new Vec3(0, -51, 5))",
@@ -41,33 +48,52 @@ _STROLL = {
 
 _FIELD = ((-100, 0, -100), (100, 2, 100))
 _MAIN = TimelineKey((), "main")
+_DEEP = "/agent0/agent1"
 _SINGLES = TimelineKey((), "single")
 
 
 def measure() -> Sequence[Figure]:
-    """A million ticks of eight agents that walk, recorded and then used."""
+    """A million ticks of eight agents that walk, recorded and then used.
+
+    They walk in an open field that everybody knows. What is recorded goes to the journal a
+    thousand ticks at a time, and is noted by the nest's history, as in a long call of a nest; two
+    beliefs were asked for at the beginning.
+    """
     walk = list(_walk())
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "run.bn"
-        agents = dict.fromkeys(walk[0].agents, (0.5, 1.0, 0.5))
-        Nest(ScriptedWorld(_FIELD, agents=agents), store=path).close()
-        with SqliteJournal.open(path) as journal:
-            batched = _recorded(journal, walk)
+        recorded = _recorded(path, walk)
         size = path.stat().st_size / 1e6
         with SqliteJournal.open(path) as journal:
             figures = [
-                Figure("ticks recorded, in batches", batched, "1/s", 20_000.0, at_least=True),
+                Figure(
+                    "ticks recorded, in batches", recorded.alone, "1/s", 20_000.0, at_least=True
+                ),
+                Figure("the same, following two beliefs", recorded.followed, "1/s"),
+                Figure("memory that the last 9/10 of them take", recorded.memory, "MB"),
                 Figure("ticks recorded, one at a time", _one_by_one(journal, walk), "1/s"),
                 Figure("file of 10^6 ticks", size, "MB", 400.0),
                 Figure("fork after 10^6 ticks", _fork(journal) * 1e3, "ms", 1.0),
                 Figure("entries of a past tick of 10^6", _read(journal, walk) * 1e3, "ms", 20.0),
                 Figure("opening a file of 10^6 ticks", _open(path) * 1e3, "ms"),
             ]
+        figures += [
+            Figure("reality at a past tick of 10^6", _look_back(path, "/") * 1e3, "ms", 20.0),
+            Figure("a belief then, two deep", _look_back(path, _DEEP) * 1e3, "ms"),
+            Figure("resume of 10^6 ticks, to reality's state", _resume(path, "/"), "s", 2.0),
+            Figure("resume of 10^6 ticks, to a belief two deep", _resume(path, _DEEP), "s", 2.0),
+        ]
+        _drop_checkpoints(path)
+        figures += [
+            Figure(
+                "reality at a past tick, no checkpoint", _look_back(path, "/") * 1e3, "ms", 20.0
+            ),
+            Figure("resume to reality's state, no checkpoint", _resume(path, "/"), "s", 2.0),
+        ]
         switched = _switch(Path(folder) / "switched.bn")
         return [
             *figures,
             Figure("switch of a body, 20 blocks, 3 agents", switched * 1e3, "ms", 150.0),
-            Figure("resume of 10^6 ticks, to reality's state", _resume(path), "s", 2.0),
         ]
 
 
@@ -75,16 +101,17 @@ def _walk() -> Iterator[Frame]:
     chance = random.Random(0)
     held = {"diamond": 1, "bread": 12, "iron_pickaxe": 1}
     worn = {"main_hand": "iron_pickaxe"}
-    poses = [[chance.uniform(-99, 99), chance.uniform(-99, 99), 0.0] for _ in range(_AGENTS)]
+    edge = _FIELD[1][0]
+    poses = [[chance.uniform(-edge, edge) for _ in range(2)] + [0.0] for _ in range(_AGENTS)]
     for tick in range(1, _WALK + 1):
         agents = {}
         for number, pose in enumerate(poses):
             pose[2] += chance.gauss(0, 0.1)
-            pose[0] -= math.sin(pose[2]) * _STEP
-            pose[1] -= math.cos(pose[2]) * _STEP
+            pose[0] = min(max(pose[0] - math.sin(pose[2]) * _STEP, -edge), edge)
+            pose[1] = min(max(pose[1] - math.cos(pose[2]) * _STEP, -edge), edge)
             x, z, yaw = (round(value, 6) for value in pose)
             agents[f"agent{number}"] = AgentState(
-                (x, -51.0, z), yaw, 0.0, equipment=worn, inventory=held
+                (x, 1.0, z), yaw, 0.0, equipment=worn, inventory=held
             )
         yield Frame(tick, agents)
 
@@ -93,15 +120,45 @@ def _later(walk: Sequence[Frame], tick: int) -> Frame:
     return replace(walk[tick % len(walk)], tick=tick)
 
 
-def _recorded(journal: SqliteJournal, walk: Sequence[Frame]) -> float:
-    """Ticks a second."""
-    spent = 0.0
-    for start in range(1, _TICKS + 1, _BATCH):
-        frames = [_later(walk, tick) for tick in range(start, start + _BATCH)]
-        started = time.perf_counter()
-        journal.append(_MAIN, frames, frames[-1].tick)
-        spent += time.perf_counter() - started
-    return _TICKS / spent
+@dataclass(frozen=True, slots=True)
+class _Recorded:
+    """Ticks a second, of the journal alone and with the history that follows; megabytes."""
+
+    alone: float
+    followed: float
+    memory: float
+
+
+def _recorded(path: Path, walk: Sequence[Frame]) -> _Recorded:
+    """Record the long run."""
+    agents = {name: agent.position for name, agent in walk[0].agents.items() if agent is not None}
+    world = ScriptedWorld(_FIELD, agents=agents)
+    with Nest(world, static_blocks=["air"], store=path) as nest:
+        setting = nest.setting
+    alone = followed = 0.0
+    with SqliteJournal.open(path) as journal:
+        history = History(journal, setting)
+        history.reading(_MAIN, parse_path(_DEEP, tuple(agents)))
+        for start in range(1, _TICKS + 1, _BATCH):
+            frames = [_later(walk, tick) for tick in range(start, start + _BATCH)]
+            started = time.perf_counter()
+            journal.append(_MAIN, frames, frames[-1].tick)
+            alone += time.perf_counter() - started
+            history.note(_MAIN)
+            followed += time.perf_counter() - started
+            if start <= _TICKS // 10:
+                memory = _peak_megabytes()
+        history.close()
+    return _Recorded(_TICKS / alone, _TICKS / followed, _peak_megabytes() - memory)
+
+
+def _peak_megabytes() -> float:
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
+
+
+def _drop_checkpoints(path: Path) -> None:
+    with closing(sqlite3.connect(path)) as connection, connection:
+        connection.execute("DELETE FROM keyframe")
 
 
 def _one_by_one(journal: SqliteJournal, walk: Sequence[Frame]) -> float:
@@ -151,10 +208,23 @@ def _switch(store: Path) -> float:
         return median_seconds(lambda: world.switch(next(names)), _SWITCHES)
 
 
-def _resume(store: Path) -> float:
-    """Seconds from the file of a long run to the state of its real world."""
+def _resume(store: Path, path: str) -> float:
+    """Seconds from the file of a long run to the state of a simulator."""
     started = time.perf_counter()
     with Nest.resume(store) as nest:
-        if nest["/"].state.agents["agent0"].position is None:
-            raise StoreError("an agent of the real world has no position")
+        _check(nest[path].state)
         return time.perf_counter() - started
+
+
+def _look_back(store: Path, path: str) -> float:
+    """Seconds to the state of a simulator at a past tick of a long run."""
+    chance = random.Random(2)
+    with Nest.read(store) as nest:
+        return median_seconds(
+            lambda: _check(nest.at(chance.randrange(1, _TICKS))[path].state), _LOOKS
+        )
+
+
+def _check(state: State) -> None:
+    if state.agents["agent0"].position is None and state.owner is None:
+        raise StoreError("an agent of a long run has no position")
