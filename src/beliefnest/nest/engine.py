@@ -10,7 +10,7 @@ needed. The call under way has not happened: it is made again, but for programs,
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from threading import RLock
 from typing import Self, TypeVar
@@ -364,6 +364,9 @@ class Engine:
         try:
             for world in (*self._others, self.world):
                 world.close()
+            # Whoever reads the run without checkpoints gets the same, later.
+            with suppress(StoreError):
+                self.history.close()
         finally:
             self.journal.close()
 
@@ -474,6 +477,7 @@ class Engine:
             raise
         finally:
             recorder.batched = False
+        recorder.keep_up()
 
 
 def edited(snapshot: Snapshot, edit: Edit) -> Snapshot:

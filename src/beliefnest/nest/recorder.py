@@ -28,7 +28,10 @@ class Recorder:
         self._tick = frame.tick
         if not frame.is_empty:
             self._frames.append(frame)
-        if not self.batched or len(self._frames) >= _BATCH:
+        if not self.batched:
+            self.flush()
+            self.keep_up()
+        elif len(self._frames) >= _BATCH:
             self.flush()
 
     def flush(self, tick: int | None = None) -> None:
@@ -37,7 +40,10 @@ class Recorder:
         if head is not None:
             frames, self._frames, self._tick = self._frames, [], None
             self._journal.append(self.key, frames, head)
-            self._history.note(self.key)
+
+    def keep_up(self) -> None:
+        """Let the history follow what was written, once that is safe."""
+        self._history.note(self.key)
 
     def drop(self) -> None:
         """Forget what was taken, because the journal has taken it back or never had it."""
