@@ -50,8 +50,9 @@ def _replayed(store: Path, worlds: dict[int, Worlds], ended: ExitStack) -> Itera
         setting, name = decode_start(run.setting)
         if name == "scripted":
             raise InputError(
-                f"{store} was told by its user what happens, and ran no programs that could be "
-                "run again; only runs in the embedded world can be replayed"
+                f"{store} holds no programs that could be run again: what happens in a scripted "
+                "world, a suite's story or an imported trace is told by its user, so that nothing "
+                "could differ; only runs in the embedded world can be replayed"
             )
         if run.seed not in worlds:
             worlds[run.seed] = ended.enter_context(Worlds(run.seed))
