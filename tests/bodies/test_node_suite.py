@@ -5,12 +5,13 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from tests.profiles import at_night
 
 from beliefnest.bodies.node_files import node_path
 
 NODE_ROOM = Path(__file__).parents[2] / "src" / "beliefnest" / "bodies" / "node"
 FILES = sorted(path.relative_to(NODE_ROOM) for path in (NODE_ROOM / "test").rglob("*.test.js"))
-SECONDS = 300
+SECONDS = at_night(7200, 300)
 
 
 def test_there_are_javascript_tests() -> None:

@@ -1,5 +1,6 @@
 'use strict'
 const { blockPosition, count: checkCount, item: checkItem, show } = require('./lib/arguments')
+const { answered } = require('./lib/answers')
 const { walkToUse } = require('./lib/walking')
 const { countOf } = require('./lib/inventory')
 
@@ -64,6 +65,7 @@ module.exports = {
     try {
       await bot.craft(recipe, times, table)
     } finally {
+      await answered(context)
       const made = countOf(bot, item) - before
       if (made > 0) emit({ kind: 'craft_item', detail: { items: { [item.name]: made } } })
     }

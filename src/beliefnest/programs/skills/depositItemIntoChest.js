@@ -2,9 +2,10 @@
 const { blockPosition, items: checkItems, show } = require('./lib/arguments')
 const { withContainer, move } = require('./lib/chests')
 
-function shortfall (position, item, wanted, { there, room, moved }) {
-  const found = there < wanted ? `the inventory holds ${there}` : `the chest has room for ${room}`
-  return `${wanted} ${item.name} to be put into the chest at ${show(position)}, ${found}; ${moved} put in`
+function shortfall (position, { item, count, there, room, moved }) {
+  const reason = there < count ? `the inventory holds ${there}` : `the chest has room for ${room}`
+  const found = Math.min(there, room) < count ? reason : 'somebody else put something in at the same time'
+  return `${count} ${item.name} to be put into the chest at ${show(position)}, ${found}; ${moved} put in`
 }
 
 module.exports = {
@@ -20,13 +21,8 @@ module.exports = {
   async run (context, chestPosition, items) {
     const position = blockPosition(context, 'chestPosition', chestPosition)
     const wanted = checkItems(context, 'items', items)
-    const missing = []
-    await withContainer(context, position, async window => {
-      for (const [item, count] of wanted) {
-        const outcome = await move(context, window, 'inventory', 'chest', item, count)
-        if (outcome.moved < count) missing.push(shortfall(position, item, count, outcome))
-      }
-    })
+    const outcomes = await withContainer(context, position, window => move(context, window, 'inventory', 'chest', wanted))
+    const missing = outcomes.filter(({ moved, count }) => moved < count).map(outcome => shortfall(position, outcome))
     if (missing.length) context.fail(`${missing.join('; ')}. Get more first, or put in less.`)
   }
 }

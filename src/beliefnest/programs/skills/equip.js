@@ -1,7 +1,7 @@
 'use strict'
 const { item: checkItem, show } = require('./lib/arguments')
 const { stackOf } = require('./lib/inventory')
-const { ticks } = require('./lib/waiting')
+const { answered } = require('./lib/answers')
 
 const PLACES = ['hand', 'off-hand', 'head', 'torso', 'legs', 'feet']
 
@@ -22,7 +22,10 @@ module.exports = {
     const slot = () => bot.getEquipmentDestSlot(destination)
     if (bot.inventory.slots[slot()]?.type === item.id) return
     await bot.equip(stackOf(context, item), destination)
-    await ticks(1)
-    if (bot.inventory.slots[slot()]?.type !== item.id) fail(`${name} does not go there: ${destination} takes something else.`)
+    await answered(context)
+    if (bot.inventory.slots[slot()]?.type === item.id) return
+    const { inventory } = bot
+    if (inventory.selectedItem) await bot.putSelectedItemRange(inventory.inventoryStart, inventory.inventoryEnd, inventory, null)
+    fail(`${name} does not go there: ${destination} takes something else.`)
   }
 }

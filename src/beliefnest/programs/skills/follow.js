@@ -6,6 +6,17 @@ const { ticks } = require('./lib/waiting')
 
 const SLACK = 1
 
+/** The goal by itself lets the other go as far again before the way is looked for anew. */
+function closely (goal) {
+  goal.hasChanged = () => {
+    const { x, y, z } = goal.entity.position.floored()
+    if (x === goal.x && y === goal.y && z === goal.z) return false
+    Object.assign(goal, { x, y, z })
+    return true
+  }
+  return goal
+}
+
 module.exports = {
   name: 'follow',
   signature: 'follow(bot, otherName, number=100, dist=2)',
@@ -22,11 +33,12 @@ module.exports = {
     const body = bodyOf(context, 'otherName', otherName)
     const duration = checkCount(context, 'number', number)
     const near = distance(context, 'dist', dist)
-    bot.pathfinder.setGoal(new goals.GoalFollow(body, near), true)
+    bot.pathfinder.setGoal(closely(new goals.GoalFollow(body, near)), true)
     await ticks(duration)
     bot.pathfinder.setGoal(null)
     await settle(bot)
-    const away = bot.entity.position.distanceTo(body.position)
+    // The pathfinder, too, counts from block to block.
+    const away = bot.entity.position.floored().distanceTo(body.position.floored())
     if (away > near + SLACK) fail(`${otherName} is ${away.toFixed(1)} blocks away after ${duration} ticks. Follow longer, or there is no way on foot.`)
   }
 }

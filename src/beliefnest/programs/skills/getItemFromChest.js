@@ -2,9 +2,10 @@
 const { blockPosition, items: checkItems, show } = require('./lib/arguments')
 const { withContainer, move } = require('./lib/chests')
 
-function shortfall (position, item, wanted, { there, room, moved }) {
-  const found = there < wanted ? `it holds ${there}` : `there was room for ${room} in the inventory`
-  return `${wanted} ${item.name} asked for from the chest at ${show(position)}, ${found}; ${moved} taken`
+function shortfall (position, { item, count, there, room, moved }) {
+  const reason = there < count ? `it holds ${there}` : `there was room for ${room} in the inventory`
+  const found = Math.min(there, room) < count ? reason : 'somebody else took from it at the same time'
+  return `${count} ${item.name} asked for from the chest at ${show(position)}, ${found}; ${moved} taken`
 }
 
 module.exports = {
@@ -20,13 +21,8 @@ module.exports = {
   async run (context, chestPosition, items) {
     const position = blockPosition(context, 'chestPosition', chestPosition)
     const wanted = checkItems(context, 'items', items)
-    const missing = []
-    await withContainer(context, position, async window => {
-      for (const [item, count] of wanted) {
-        const outcome = await move(context, window, 'chest', 'inventory', item, count)
-        if (outcome.moved < count) missing.push(shortfall(position, item, count, outcome))
-      }
-    })
+    const outcomes = await withContainer(context, position, window => move(context, window, 'chest', 'inventory', wanted))
+    const missing = outcomes.filter(({ moved, count }) => moved < count).map(outcome => shortfall(position, outcome))
     if (missing.length) context.fail(`${missing.join('; ')}. Ask for what is there, or look elsewhere.`)
   }
 }

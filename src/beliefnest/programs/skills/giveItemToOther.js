@@ -11,25 +11,22 @@ const PICKUP_TICKS = 200
 const CHEST_HEIGHT = 1
 
 /** Watches who picks up the items of a kind that appear from now on. */
-function watch (bot, item) {
+function watch ({ bot, listen }, item) {
+  const { entity: own } = bot
   const lying = new Map()
   const taken = []
   const onDrop = entity => {
     const dropped = entity.getDroppedItem()
-    if (dropped?.type === item.id && entity.position.distanceTo(bot.entity.position) < NEAR * 2) lying.set(entity.id, dropped.count)
+    if (dropped?.type === item.id && entity.position.distanceTo(own.position) < NEAR * 2) lying.set(entity.id, dropped.count)
   }
   const onCollect = (collector, { id }) => {
     if (!lying.has(id)) return
     taken.push({ by: collector.username, count: lying.get(id) })
     lying.delete(id)
   }
-  bot.on('itemDrop', onDrop)
-  bot.on('playerCollect', onCollect)
+  const ends = [listen('itemDrop', onDrop), listen('playerCollect', onCollect)]
   const takenBy = name => taken.filter(({ by }) => by === name).reduce((sum, { count }) => sum + count, 0)
-  const stop = () => {
-    bot.removeListener('itemDrop', onDrop)
-    bot.removeListener('playerCollect', onCollect)
-  }
+  const stop = () => ends.forEach(end => end())
   return { takenBy, stop, over: number => taken.reduce((sum, { count }) => sum + count, 0) >= number }
 }
 
@@ -55,7 +52,7 @@ module.exports = {
     await bot.lookAt(body.position.offset(0, CHEST_HEIGHT, 0), true)
     // The server hears of the look one tick later.
     await ticks(2)
-    const watcher = watch(bot, item)
+    const watcher = watch(context, item)
     try {
       await bot.toss(item.id, null, wanted)
       await until(() => watcher.over(wanted), PICKUP_TICKS)

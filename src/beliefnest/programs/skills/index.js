@@ -4,6 +4,7 @@
  * `{name, signature, description, parameters, example, run(context, ...args)}`; `args` are the
  * arguments of the signature without `bot`, which is `context.bot`.
  */
+const { numbers } = require('./lib/answers')
 const { SkillError } = require('./lib/errors')
 
 const SKILLS = [
@@ -48,10 +49,14 @@ const SKILLS = [
  * @returns {Object<string, Function>} by name; each rejects with an Error that has `skill`
  */
 function bindSkills ({ bot, emit, Vec3, goals, signal }) {
-  return Object.fromEntries(SKILLS.map(skill => [skill.name, bind(skill, { bot, emit, Vec3, goals }, signal)]))
+  const body = { bot, emit, Vec3, goals, nextNumber: numbers() }
+  return Object.fromEntries(SKILLS.map(skill => [skill.name, bind(skill, body, signal)]))
 }
 
-/** The bot and `emit`, until the signal is aborted; whoever uses them then fails. */
+/**
+ * The bot and `emit`, until the signal is aborted; whoever uses them then fails. `listen(event, listener)`
+ * gives a function that ends it, at any time.
+ */
 function untilAborted ({ bot, emit }, signal, fail) {
   const check = () => { if (signal?.aborted) fail('the program that called it has ended') }
   return {
@@ -64,6 +69,10 @@ function untilAborted ({ bot, emit }, signal, fail) {
     emit (event) {
       check()
       emit(event)
+    },
+    listen (event, listener) {
+      bot.on(event, listener)
+      return () => bot.removeListener(event, listener)
     }
   }
 }

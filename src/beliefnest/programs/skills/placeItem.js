@@ -1,5 +1,6 @@
 'use strict'
 const { blockPosition, item: checkItem, show } = require('./lib/arguments')
+const { answered } = require('./lib/answers')
 const { canUse, walk, viewpoint } = require('./lib/walking')
 const { hold, stackOf } = require('./lib/inventory')
 
@@ -61,5 +62,6 @@ module.exports = {
     await walkToPlace(context, place, reference)
     await hold(context, item)
     await put(context, reference, place, name)
+    await answered(context)
   }
 }

@@ -1,9 +1,8 @@
 'use strict'
 const { blockPosition, count: checkCount, show } = require('./lib/arguments')
 const { walkToUse } = require('./lib/walking')
-const { ticks, until } = require('./lib/waiting')
-
-const ANSWER_TICKS = 10
+const { answered } = require('./lib/answers')
+const { ticks } = require('./lib/waiting')
 
 module.exports = {
   name: 'sleep',
@@ -28,9 +27,10 @@ module.exports = {
     await walkToUse(context, position, 'the bed')
     if (bed().getProperties().occupied) fail(`somebody lies in the bed at ${show(position)}. Wait, or find another one.`)
     await bot.activateBlock(bed())
-    if (!await until(() => bot.isSleeping, ANSWER_TICKS)) fail(`the bed at ${show(position)} cannot be slept in now.`)
+    await answered(context)
+    if (!bot.isSleeping) fail(`the bed at ${show(position)} cannot be slept in now.`)
     await ticks(duration)
     await bot.wake()
-    await until(() => !bot.isSleeping, ANSWER_TICKS)
+    await answered(context)
   }
 }

@@ -1,12 +1,13 @@
 'use strict'
 const { blockPosition, count: checkCount, item: checkItem, show } = require('./lib/arguments')
+const { answered } = require('./lib/answers')
 const { walkToUse } = require('./lib/walking')
 const { countOf, contents } = require('./lib/inventory')
 const { ticks, until } = require('./lib/waiting')
 
 const FURNACES = ['furnace', 'blast_furnace', 'smoker']
-const ANSWER_TICKS = 5
-const ITEM_TICKS = 250
+const LIGHTING_TICKS = 2
+const ITEM_TICKS = 600
 
 function checkAmount ({ bot, fail }, item, wanted) {
   if (countOf(bot, item) < wanted) {
@@ -29,38 +30,59 @@ function checkEmpty ({ fail }, furnace, item, fuel) {
   if (output) fail(`${output.count} ${output.name} lie in the furnace. Take them out first.`)
 }
 
+/** The furnace has had time to light or go out, and the bot knows. */
+async function nextTicks (context) {
+  await answered(context)
+  await ticks(LIGHTING_TICKS)
+  await answered(context)
+}
+
 /** Puts one piece of fuel in; fails if the furnace does not take it. */
-async function feed ({ bot, fail }, furnace, fuel) {
+async function feed (context, furnace, fuel) {
+  const { bot, fail } = context
   await furnace.putFuel(fuel.id, null, 1)
-  await ticks(ANSWER_TICKS)
+  await nextTicks(context)
   if (!furnace.selectedItem) return
   await bot.putSelectedItemRange(furnace.inventoryStart, furnace.inventoryEnd, furnace, null)
   fail(`${fuel.name} does not burn. Use a fuel such as coal or planks.`)
 }
 
-/** Smelts what lies in the furnace, with a piece of fuel always ready; returns how many came out. */
+/** Smelts what lies in the furnace, with a piece of fuel always ready, until the fuel runs out. */
 async function smelt (context, furnace, position, item, fuel, wanted) {
   const { bot, fail } = context
   const done = () => furnace.outputItem()?.count ?? 0
   const lit = () => bot.blockAt(position).getProperties().lit
-  const needsFuel = () => !furnace.fuelItem() && countOfWindow(furnace, fuel) > 0
+  const needsFuel = () => !furnace.fuelItem() && countOfWindow(furnace, fuel.id) > 0
   while (done() < wanted) {
+    checkOpen(context, furnace)
     if (needsFuel()) await feed(context, furnace, fuel)
     if (!lit() && furnace.fuelItem()) fail(`${item.name} cannot be smelted in a ${bot.blockAt(position).name}. Try another kind of furnace.`)
-    if (!lit()) return done()
+    if (!lit()) return
     const before = done()
     const went = await until(() => done() > before || needsFuel() || !lit(), ITEM_TICKS)
     if (!went) fail(`nothing came out of the furnace for ${ITEM_TICKS} ticks.`)
+    if (!lit()) await nextTicks(context)
   }
-  return done()
 }
 
-const countOfWindow = (window, item) => window.countRange(window.inventoryStart, window.inventoryEnd, item.id, null)
+const countOfWindow = (window, type) => window.countRange(window.inventoryStart, window.inventoryEnd, type, null)
 
-async function emptyFurnace (furnace) {
+// Without it clicks meant for the furnace would go to the inventory.
+function checkOpen ({ bot, fail }, furnace) {
+  if (bot.currentWindow !== furnace) fail('the furnace was closed before everything was taken out.')
+}
+
+/** Takes everything out; returns the item that was made, or null, and how many of it came out. */
+async function emptyFurnace (context, furnace) {
+  checkOpen(context, furnace)
   if (furnace.inputItem()) await furnace.takeInput()
   if (furnace.fuelItem()) await furnace.takeFuel()
-  return furnace.outputItem() ? furnace.takeOutput() : null
+  const output = furnace.outputItem()
+  if (!output) return null
+  const before = countOfWindow(furnace, output.type)
+  await furnace.takeOutput()
+  await answered(context)
+  return { name: output.name, count: countOfWindow(furnace, output.type) - before }
 }
 
 module.exports = {
@@ -91,13 +113,15 @@ module.exports = {
       checkEmpty(context, furnace, item, fuel)
       await furnace.putInput(item.id, null, wanted)
       try {
-        made = await smelt(context, furnace, position, item, fuel, wanted)
+        await smelt(context, furnace, position, item, fuel, wanted)
       } finally {
-        const output = await emptyFurnace(furnace)
+        const output = await emptyFurnace(context, furnace)
+        made = output?.count ?? 0
         if (output) emit({ kind: 'smelt_item', detail: { items: { [output.name]: output.count } } })
       }
     } finally {
-      await furnace.close()
+      if (bot.currentWindow === furnace) await furnace.close()
+      await answered(context)
     }
     if (made < wanted) fail(`${made} of ${wanted} ${item.name} were smelted, then the ${fuel.name} ran out. Get more fuel.`)
   }

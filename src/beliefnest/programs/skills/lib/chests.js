@@ -1,6 +1,7 @@
 'use strict'
 /** Opening a chest as a player does, and moving counted items between it and the inventory. */
 const { show } = require('./arguments')
+const { answered } = require('./answers')
 const { walkToUse } = require('./walking')
 
 const CONTAINERS = ['chest', 'trapped_chest', 'barrel']
@@ -30,7 +31,8 @@ async function withContainer (context, position, action) {
   try {
     return await action(window)
   } finally {
-    await bot.closeWindow(window)
+    if (bot.currentWindow === window) await bot.closeWindow(window)
+    await answered(context)
   }
 }
 
@@ -47,28 +49,36 @@ const partsOf = window => ({
   inventory: [window.inventoryStart, window.inventoryEnd]
 })
 
+function transfer (bot, window, [sourceStart, sourceEnd], [destStart, destEnd], item, count) {
+  return bot.transfer({ window, itemType: item.id, metadata: null, count, sourceStart, sourceEnd, destStart, destEnd })
+}
+
+/** How many of an item the bot has, on the cursor too. */
+function owned (window, item) {
+  const { selectedItem } = window
+  return window.countRange(...partsOf(window).inventory, item.id, null) + (selectedItem?.type === item.id ? selectedItem.count : 0)
+}
+
 /**
- * Moves up to `wanted` of an item from one part of a window ("chest", "inventory") to the other.
- * @returns {Promise<{there: number, room: number, moved: number}>}
+ * Moves up to so many of each item from one part of a window ("chest", "inventory") to the other.
+ * @param {[object, number][]} wanted
+ * @returns {Promise<{item: object, count: number, there: number, room: number, moved: number}[]>} `moved` is
+ *   what the server let through: somebody else may look into the same chest
  */
-async function move ({ bot }, window, from, to, item, wanted) {
+async function move (context, window, from, to, wanted) {
+  const { bot, fail } = context
   const parts = partsOf(window)
-  const there = window.countRange(...parts[from], item.id, null)
-  const room = roomFor(window, ...parts[to], item)
-  const moved = Math.min(wanted, there, room)
-  if (moved > 0) {
-    await bot.transfer({
-      window,
-      itemType: item.id,
-      metadata: null,
-      count: moved,
-      sourceStart: parts[from][0],
-      sourceEnd: parts[from][1],
-      destStart: parts[to][0],
-      destEnd: parts[to][1]
-    })
+  const outcomes = []
+  for (const [item, count] of wanted) {
+    const there = window.countRange(...parts[from], item.id, null)
+    const room = roomFor(window, ...parts[to], item)
+    outcomes.push({ item, count, there, room, before: owned(window, item) })
+    const possible = Math.min(count, there, room)
+    if (possible > 0) await transfer(bot, window, parts[from], parts[to], item, possible)
   }
-  return { there, room, moved }
+  await answered(context)
+  if (bot.currentWindow !== window) fail('the chest was closed while items were moved. Open it again.')
+  return outcomes.map(({ before, ...outcome }) => ({ ...outcome, moved: Math.abs(owned(window, outcome.item) - before) }))
 }
 
 module.exports = { withContainer, move }

@@ -3,13 +3,13 @@
  * Going through wooden doors and gates, which the pathfinder takes for walls: when it
  * finds no way, the bot goes through the door that lies best, and looks for the way again.
  */
+const { answered } = require('./answers')
 const { until } = require('./waiting')
 
 const DOOR = /^(?!iron_).*(_door|_fence_gate)$/
 const FAR = 48
 const MOST = 16
 const STEP_TICKS = 40
-const ANSWER_TICKS = 10
 
 /** The two places beside a door, in its passage. */
 function sidesOf (block) {
@@ -34,7 +34,8 @@ async function stepThrough (bot, far) {
   return arrived()
 }
 
-async function passDoor (bot, goals, position) {
+async function passDoor (context, position) {
+  const { bot, goals } = context
   const block = () => bot.blockAt(position)
   const sides = sidesOf(block())
   for (const [near, far] of [sides, [...sides].reverse()]) {
@@ -42,8 +43,11 @@ async function passDoor (bot, goals, position) {
     const { status } = bot.pathfinder.getPathTo(bot.pathfinder.movements, goal)
     if (status !== 'success') continue
     await bot.pathfinder.goto(goal)
-    if (!block().getProperties().open) await bot.activateBlock(block())
-    if (!await until(() => block().getProperties().open, ANSWER_TICKS)) continue
+    if (!block().getProperties().open) {
+      await bot.activateBlock(block())
+      await answered(context)
+    }
+    if (!block().getProperties().open) continue
     if (await stepThrough(bot, far)) return true
   }
   return false
@@ -54,11 +58,11 @@ async function passDoor (bot, goals, position) {
  * @param {Set<string>} tried positions of doors, added to
  * @returns {Promise<boolean>} whether it went through one
  */
-async function passOneDoor ({ bot, goals }, target, tried) {
-  for (const position of doorsBy(bot, target)) {
+async function passOneDoor (context, target, tried) {
+  for (const position of doorsBy(context.bot, target)) {
     if (tried.has(String(position))) continue
     tried.add(String(position))
-    if (await passDoor(bot, goals, position)) return true
+    if (await passDoor(context, position)) return true
   }
   return false
 }

@@ -1,9 +1,7 @@
 'use strict'
 const { blockPosition, show } = require('./arguments')
 const { walkToUse } = require('./walking')
-const { until } = require('./waiting')
-
-const ANSWER_TICKS = 20
+const { answered } = require('./answers')
 
 /** Goes to a lever and brings it into a state; does nothing if it is in it already. */
 async function switchLever (context, leverPosition, powered) {
@@ -20,8 +18,8 @@ async function switchLever (context, leverPosition, powered) {
   await walkToUse(context, position, 'the lever')
   if (lever().getProperties().powered === powered) return
   await bot.activateBlock(lever())
-  const done = await until(() => lever().getProperties().powered === powered, ANSWER_TICKS)
-  if (!done) fail(`the lever at ${show(position)} did not move. Go nearer and try again.`)
+  await answered(context)
+  if (lever().getProperties().powered !== powered) fail(`the lever at ${show(position)} did not move. Go nearer and try again.`)
 }
 
 module.exports = { switchLever }

@@ -2,11 +2,12 @@
 /** Breaking blocks with the best tool at hand, and picking up what falls out. */
 const { show } = require('./arguments')
 const { centreOf, walk, walkToUse } = require('./walking')
-const { until, ticks } = require('./waiting')
+const { answered } = require('./answers')
+const { until } = require('./waiting')
 
 const NEAR = 2.5
-const POP_TICKS = 3
 const PICKUP_TICKS = 100
+const MOST_TRIES = 3
 
 function findBlock ({ bot, fail }, position, name) {
   const block = bot.blockAt(position)
@@ -43,8 +44,17 @@ async function pickUp (context, entity) {
   const at = entity.position.floored()
   const near = () => gone() || bot.entity.position.distanceTo(entity.position) < 1
   await walk(context, new goals.GoalNear(at.x, at.y, at.z, 0.5), near, entity.position, 'what was dropped')
-  if (await until(gone, PICKUP_TICKS)) return
+  if (await until(gone, PICKUP_TICKS)) return answered(context)
   fail(`${entity.getDroppedItem()?.name ?? 'an item'} was left lying at ${show(at)}: the inventory has no room for it. Put something away first.`)
+}
+
+/** Digs until the server agrees: one that is late says that the block was not dug for long enough. */
+async function digOut (context, { name, position }) {
+  const { bot } = context
+  for (let tries = 0; tries < MOST_TRIES && bot.blockAt(position).name === name; tries++) {
+    await bot.dig(bot.blockAt(position), true)
+    await answered(context)
+  }
 }
 
 /** Goes to a block, mines it and picks up what it drops. */
@@ -55,8 +65,7 @@ async function mine (context, position, name) {
   const block = findBlock(context, position, name)
   await takeTool(context, block)
   const before = new Set(itemsNear(bot, centreOf(position)).map(({ id }) => id))
-  await bot.dig(block, true)
-  await ticks(POP_TICKS)
+  await digOut(context, block)
   if (bot.blockAt(position).name === name) context.fail(`${name} at ${show(position)} is still there: it was not mined long enough. Try again.`)
   for (const entity of itemsNear(bot, centreOf(position)).filter(({ id }) => !before.has(id))) {
     await pickUp(context, entity)

@@ -9,6 +9,7 @@ require('../../src/prepare').prepare()
 const { Vec3 } = require('vec3')
 const { Session } = require('../../src/session')
 const { agent, floor, BOX } = require('../harness')
+const { everything } = require('./everything')
 
 const FLOOR = BOX[0][1] + 1
 const LIMIT = 2000
@@ -37,7 +38,7 @@ function worldOf (regions, frames) {
   const at = (x, y, z) => region.toServer([x, y, z])
 
   async function until (condition) {
-    for (let count = 0; !condition(); count++) {
+    for (let count = 0; !await condition(); count++) {
       if (count === LIMIT) throw new Error(`not within ${LIMIT} ticks: ${condition}`)
       await regions.tick(region)
     }
@@ -62,21 +63,8 @@ function worldOf (regions, frames) {
     container: (x, y, z) => serv.containers.get(at(x, y, z)),
     block: (x, y, z) => serv.blocks.at(at(x, y, z)),
     has: name => players[name].possessions().inventory,
-    everything: () => everything(serv)
+    everything: () => everything(serv, () => true)
   }
-}
-
-/** Name to count of all there is: in containers, inventories, on cursors and on the ground. */
-function everything (serv) {
-  const total = {}
-  const add = counts => Object.entries(counts).forEach(([name, count]) => {
-    total[name] = (total[name] ?? 0) + count
-  })
-  const everywhere = () => true
-  serv.containers.positions(everywhere).forEach(position => add(serv.containers.get(position)))
-  serv.players.forEach(player => add(player.possessions().inventory))
-  serv.itemEntities(everywhere).forEach(({ item }) => add({ [item.name]: item.count }))
-  return total
 }
 
 module.exports = { agent, inWorld, FLOOR, Vec3 }

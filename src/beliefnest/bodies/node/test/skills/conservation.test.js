@@ -7,6 +7,8 @@ const { agent, withSkills, FLOOR, Vec3 } = require('./harness')
 const CHESTS = [[3, FLOOR, 3], [4, FLOOR, 3], [-5, FLOOR, -2]]
 const TABLE = [-3, FLOOR, 4]
 const STEPS = 60
+// Sixty skills take minutes of real time.
+const TOO_LONG = process.env.BELIEFNEST_SKILLS_OVER === 'tcp' && process.env.BELIEFNEST_NIGHTLY !== '1'
 /** What a thing is worth in planks: crafting changes kinds, never this. */
 const WORTH = { oak_log: 4, oak_planks: 1, stick: 0.5, crafting_table: 4, chest: 8 }
 const PLACED = ['dirt', 'oak_log']
@@ -33,21 +35,14 @@ function generator (seed) {
 }
 
 /** Worth of wood, and counts of everything else, placed blocks included. */
-function balance (world) {
+async function balance (world) {
   const total = { wood: 0 }
   const add = (name, count) => {
     if (name in WORTH) total.wood += WORTH[name] * count
     else total[name] = (total[name] ?? 0) + count
   }
-  Object.entries(world.everything()).forEach(([name, count]) => add(name, count))
-  for (let x = -11; x <= 11; x++) {
-    for (let y = FLOOR; y <= FLOOR + 2; y++) {
-      for (let z = -11; z <= 11; z++) {
-        const { name } = world.block(x, y, z)
-        if (PLACED.includes(name)) add(name, 1)
-      }
-    }
-  }
+  Object.entries(await world.everything()).forEach(([name, count]) => add(name, count))
+  Object.entries(await world.countBlocks(PLACED)).forEach(([name, count]) => add(name, count))
   return Object.entries(total).sort()
 }
 
@@ -72,10 +67,10 @@ function randomCall ({ below, pick }, other) {
 }
 
 for (const seed of [1, 2]) {
-  test(`skills conserve items, whether they end, fail or are stopped (seed ${seed})`, async () => {
+  test(`skills conserve items, whether they end, fail or are stopped (seed ${seed})`, { skip: TOO_LONG }, async () => {
     await withSkills(setting, async world => {
       const random = generator(seed)
-      const before = balance(world)
+      const before = await balance(world)
       const done = new Map()
       for (let step = 0; step < STEPS; step++) {
         const name = random.pick(['sally', 'anne'])
@@ -88,9 +83,9 @@ for (const seed of [1, 2]) {
         }
         await world.during(run)
         await world.ticks(1)
-        assert.deepEqual(balance(world), before, `${step}: ${name} ${skill} ${JSON.stringify(args)}`)
+        assert.deepEqual(await balance(world), before, `${step}: ${name} ${skill} ${JSON.stringify(args)}`)
       }
-      assert.ok(done.size >= 6, `too few kinds of skills succeeded: ${[...done.keys()]}`)
+      if (world.isVirtual) assert.ok(done.size >= 6, `too few kinds of skills succeeded: ${[...done.keys()]}`)
     })
   })
 }

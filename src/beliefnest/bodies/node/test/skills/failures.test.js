@@ -41,7 +41,7 @@ test('a place where somebody stands, and a block that does not come back', async
     const { bots: { sally } } = world
     assert.match(await message(world, 'placeItem', sally, 'dirt', new Vec3(3, FLOOR, 0)), /somebody stands there/)
     assert.match(await message(world, 'givePlacedItemBack', sally, 'glass', SPOT), /glass was removed, but it did not come back/)
-    assert.equal(world.has('sally').dirt, 1)
+    assert.equal((await world.has('sally')).dirt, 1)
   })
 })
 

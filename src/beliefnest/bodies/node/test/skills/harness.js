@@ -1,17 +1,60 @@
 'use strict'
-/** Worlds of the plugins' tests, with the skills of every bot and what they emitted. */
-const plugins = require('../plugins/harness')
+/**
+ * Worlds with the skills of every bot and what they emitted. The same tests run in both kinds of
+ * worlds: embedded.js, and over TCP if ../tcp/skills.test.js loads them.
+ */
+const { inWorld } = process.env.BELIEFNEST_SKILLS_OVER === 'tcp' ? require('../tcp/shared') : require('./embedded')
 const { goals } = require('mineflayer-pathfinder')
+const { Vec3 } = require('vec3')
 const { bindSkills } = require('../../../../programs/skills')
+const { stopBot } = require('../../src/bots/bot')
+const { Runner } = require('../../src/runner')
+const { createSandbox } = require('../../src/sandbox')
+const { scopeOf } = require('../../src/scope')
+const { agent, BOX } = require('../harness')
 
+const FLOOR = BOX[0][1] + 1
+
+/**
+ * Runs `body(world)` where there is a stone floor; see embedded.js for what a world offers.
+ * @param {object} setting `agents` (AGENT by name), `blocks` ([x, y, z, name, properties]),
+ *   `containers` ([x, y, z, ITEMS]), `box` (inclusive corners), `signal` of the skills
+ */
 async function withSkills ({ signal, ...setting }, body) {
-  await plugins.inWorld(setting, async world => {
+  const defaults = { agents: { sally: agent([0.5, FLOOR, 0.5]) }, blocks: [], containers: [], box: BOX }
+  await inWorld({ ...defaults, ...setting }, async world => {
     const emitted = []
     const skills = Object.fromEntries(Object.entries(world.bots).map(([name, bot]) => [name, bindSkills({
-      bot, goals, Vec3: plugins.Vec3, signal, emit: event => emitted.push({ actor: name, ...event })
+      bot, goals, Vec3, signal, emit: event => emitted.push({ actor: name, ...event })
     })]))
-    await body({ ...world, skills, emitted })
+    await body({ ...world, skills, emitted, run: programsOf(world, emitted) })
   })
+}
+
+/**
+ * @returns {(programs: Object<string, string>, timeoutTicks?: number) => Promise<Object<string, object>>} runs
+ *   programs of several agents together in the sandbox, as a region does; gives RESULT by agent
+ */
+function programsOf ({ bots, nextTick }, emitted) {
+  const region = { tick: 0, faults: [], body: name => ({ bot: bots[name] }), emit: event => emitted.push(event) }
+  const regions = {
+    get: () => region,
+    resumed: (_, action) => action(),
+    async tick (_, before) {
+      await nextTick()
+      region.tick += 1
+      await before()
+    },
+    bodies: { rest: (_, agents) => agents.forEach(name => stopBot(bots[name])) },
+    clock: { advance: nextTick }
+  }
+  const sandbox = createSandbox()
+  const runner = new Runner(regions, request => sandbox.run(request), scopeOf)
+  return async (programs, timeoutTicks = 2000) => {
+    const { results } = await runner.run('', programs, timeoutTicks)
+    if (region.faults.length > 0) throw region.faults[0].error
+    return results
+  }
 }
 
 /** What a promise is rejected with, once time has passed. */
@@ -24,4 +67,4 @@ async function failure (world, promise) {
   throw new Error('it did not fail')
 }
 
-module.exports = { ...plugins, withSkills, failure }
+module.exports = { agent, failure, withSkills, FLOOR, Vec3 }

@@ -46,11 +46,11 @@ test('levers are switched once, and only levers', async () => {
     const position = new Vec3(...lever)
     await world.during(skills.sally.turnOnLever(sally, position))
     await world.during(skills.sally.turnOnLever(sally, position))
-    assert.equal(world.block(...lever).properties.powered, true)
+    assert.equal((await world.block(...lever)).properties.powered, true)
     await world.during(skills.sally.turnOffLever(sally, position))
     await world.ticks(1)
-    assert.equal(world.block(...lever).properties.powered, false)
-    assert.deepEqual(world.events('use_lever').map(({ detail }) => detail.powered), [true, false])
+    assert.equal((await world.block(...lever)).properties.powered, false)
+    assert.deepEqual((await world.events('use_lever')).map(({ detail }) => detail.powered), [true, false])
     const error = await failure(world, skills.sally.turnOnLever(sally, new Vec3(0, FLOOR - 1, 3)))
     assert.match(error.message, /no lever at \(0, -52, 3\), but stone/)
   })
@@ -61,7 +61,7 @@ test('a lever behind a wall is not used through it', async () => {
     const { bots: { sally }, skills } = world
     const error = await failure(world, skills.sally.turnOnLever(sally, new Vec3(6, FLOOR, 6)))
     assert.match(error.message, /could not reach the lever/)
-    assert.equal(world.block(6, FLOOR, 6).properties.powered, false)
+    assert.equal((await world.block(6, FLOOR, 6)).properties.powered, false)
   })
 })
 

@@ -15,12 +15,14 @@ test('a skill does nothing more once its program has ended', async () => {
   }, async world => {
     const { bots: { sally }, skills: { sally: own } } = world
     const smelting = own.smeltItem(sally, 'raw_iron', 'coal', new Vec3(...FURNACE), 2)
-    await world.until(() => world.block(...FURNACE).properties.lit)
+    await world.until(async () => (await world.block(...FURNACE)).properties.lit)
     abort.abort()
     stopBot(sally)
     await assert.rejects(world.during(smelting), { skill: 'smeltItem', message: /program that called it has ended/ })
+    const held = await world.has('sally')
     await world.ticks(500)
-    assert.deepEqual(world.container(...FURNACE), { iron_ingot: 2 })
-    assert.deepEqual([world.has('sally'), world.emitted, sally.currentWindow], [{ coal: 1 }, [], null])
+    assert.equal((await world.container(...FURNACE)).iron_ingot, 2)
+    assert.deepEqual(await world.everything(), { coal: 1, iron_ingot: 2 })
+    assert.deepEqual([await world.has('sally'), world.emitted, sally.currentWindow], [held, [], null])
   })
 })

@@ -1,10 +1,25 @@
 'use strict'
 /**
  * What a mined block drops, after minecraft-data: `drops` of the block (what it always drops),
- * with the counts of its loot table; nothing where the tool in hand cannot harvest it.
+ * with the counts of its loot table; nothing where the tool in hand cannot harvest it. What
+ * minecraft-data reads wrongly of the loot tables (a bonus as a count, limits, no count at all) is
+ * as the game's own tables have it.
  */
 
 const DOUBLE_SLAB = 2
+/** Least and most, without fortune; after data/minecraft/loot_tables/blocks of Java Edition 1.20.4. */
+const COUNTS = [
+  [/^(deepslate_)?(coal|diamond|emerald|iron|gold)_ore$|^nether_quartz_ore$/, [1, 1]],
+  [/^(deepslate_)?copper_ore$/, [2, 5]],
+  [/^(deepslate_)?lapis_ore$/, [4, 9]],
+  [/^(deepslate_)?redstone_ore$/, [4, 5]],
+  [/^nether_gold_ore$/, [2, 6]],
+  [/^glowstone$/, [2, 4]],
+  [/^melon$/, [3, 7]],
+  [/^sea_lantern$/, [2, 3]],
+  [/^amethyst_cluster$/, [4, 4]],
+  [/^chorus_plant$/, [0, 1]],
+]
 
 function countOf ([low, high], random) {
   const least = low ?? 1
@@ -43,10 +58,12 @@ function dropsOf (registry, { name, properties }, tool, random) {
   if (data.harvestTools && !data.harvestTools[tool?.type]) return []
   const silkTouch = Boolean(tool?.enchants?.some((enchant) => enchant.name === 'silk_touch'))
   const entries = applicable(registry.blockLoot[name]?.drops ?? [], properties, silkTouch)
+  const corrected = COUNTS.find(([pattern]) => pattern.test(name))?.[1]
   return [...new Set(sureNames(registry, data, entries, silkTouch))].map((item) => {
-    const range = entries.find((entry) => entry.item === item)?.stackSizeRange ?? [1, 1]
+    const listed = entries.find((entry) => entry.item === item)?.stackSizeRange ?? [1, 1]
+    const range = item === name ? listed : corrected ?? listed
     return { name: item, count: slabCount(properties, countOf(range, random)) }
-  })
+  }).filter(({ name: item, count }) => item !== 'air' && count > 0)
 }
 
 module.exports = { dropsOf }

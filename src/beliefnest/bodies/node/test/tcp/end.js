@@ -1,0 +1,50 @@
+'use strict'
+/** The server's end of a connection over TCP, as `serv.join` takes it (see src/net/transport.js). */
+const { EventEmitter } = require('node:events')
+
+class TcpEnd extends EventEmitter {
+  /**
+   * @param {import('minecraft-protocol').Client} client that has reached the `play` state
+   * @param {(action: () => any) => any} inside runs an action in the region of the player
+   * @param {(error: Error) => void} report hears what a packet's handlers throw
+   */
+  constructor (client, inside, report) {
+    super()
+    this.setMaxListeners(0)
+    this.client = client
+    this.username = client.username
+    this.uuid = client.uuid
+    this.latency = 0
+    this.report = report
+    client.on('packet', (params, { name, state }) => {
+      if (state === 'play') inside(() => this.deliver(name, params))
+    })
+    client.on('error', error => { if (!client.ended) report(error) })
+    client.on('end', reason => inside(() => this.emit('end', reason)))
+  }
+
+  supportFeature (feature) {
+    return this.client.supportFeature(feature)
+  }
+
+  deliver (name, params) {
+    for (const listener of this.listeners(name)) {
+      try {
+        const result = listener.call(this, params)
+        if (result instanceof Promise) result.catch(this.report)
+      } catch (error) {
+        this.report(error)
+      }
+    }
+  }
+
+  write (name, params) {
+    if (!this.client.ended) this.client.write(name, params)
+  }
+
+  end (reason) {
+    this.client.end(reason)
+  }
+}
+
+module.exports = { TcpEnd }
