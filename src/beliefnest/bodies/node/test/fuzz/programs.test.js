@@ -22,6 +22,7 @@ const FLOOR = BOX[0][1] + 1
 const BOXED = [BOX[0], [BOX[1][0], BOX[1][1] + 1, BOX[1][2]]]
 const SEEDS = process.env.BELIEFNEST_NIGHTLY === '1' ? 250 : 3
 const RUNS = 5
+const SETTLING_TICKS = 60
 const FURNACES = [[5, FLOOR, -4, 'furnace'], [-7, FLOOR, 5, 'smoker']]
 const BLOCKS = [
   ...FURNACES,
@@ -125,6 +126,8 @@ describe('random programs', () => {
 
   /** After anything, an ordinary program runs, and its bot knows what it has and where it is. */
   async function checkMinds (region) {
+    // What was tossed can be picked up by now, and is not in the very tick in which bots look.
+    await perform({ op: 'step', region, ticks: SETTLING_TICKS })
     const { results } = await perform({ op: 'run', region, programs: Object.fromEntries(AGENTS.map(name => [name, LOOK])), timeout_ticks: 40 })
     const { agents } = await perform({ op: 'snapshot', region })
     for (const name of AGENTS) {
