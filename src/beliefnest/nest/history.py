@@ -19,7 +19,7 @@ from beliefnest.nest.checkpoints import Checkpoints, Pace
 from beliefnest.nest.eventlog import EventLog
 from beliefnest.nest.setting import Setting
 from beliefnest.perception.sight import Sight
-from beliefnest.timeline.journal import Edit, Entry, Journal, Sift, TimelineKey
+from beliefnest.timeline.journal import Edit, Entry, ForkPoint, Journal, Sift, TimelineKey
 from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
@@ -236,12 +236,13 @@ class History:
 
     def _log(self, key: TimelineKey) -> EventLog:
         if key not in self._logs:
-            self._logs[key] = EventLog(self._journal, key, lambda path: self._before(key, path))
+            # Looked up now: events may be listed after the journal was closed.
+            base = self._journal.info(key).base
+            self._logs[key] = EventLog(self._journal, key, lambda path: self._before(base, path))
         return self._logs[key]
 
-    def _before(self, key: TimelineKey, path: Path) -> Sequence[PerceivedEvent]:
-        """What a node perceived before a timeline began."""
-        base = self._journal.info(key).base
+    def _before(self, base: ForkPoint | None, path: Path) -> Sequence[PerceivedEvent]:
+        """What a node perceived before the timeline began that lies on a base."""
         return () if base is None else self.reading(base.timeline, path, base.entries).events()
 
     def _advance(self, key: TimelineKey, forest: Forest, position: int) -> None:
