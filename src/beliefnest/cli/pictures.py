@@ -21,6 +21,7 @@ _DEEDS: Mapping[EventKind, str] = {
     EventKind.MINE_BLOCK: "mines the block at {place}",
     EventKind.PLACE_BLOCK: "places a block at {place}",
     EventKind.USE_LEVER: "uses the lever at {place}",
+    EventKind.PRESS_BUTTON: "presses the button at {place}",
     EventKind.GIVE_ITEM_TO_OTHER: "gives {items} to {other}",
     EventKind.RECEIVE_ITEM_FROM_OTHER: "receives {items} from {other}",
 }

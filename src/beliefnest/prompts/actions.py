@@ -21,6 +21,7 @@ ACTION_NAMES: Mapping[EventKind, str] = {
     EventKind.DEPOSIT_ITEM_INTO_CHEST: "depositItemIntoChest",
     EventKind.OPEN_CONTAINER: "openContainer",
     EventKind.USE_LEVER: "useLever",
+    EventKind.PRESS_BUTTON: "pressButton",
     EventKind.GIVE_ITEM_TO_OTHER: "giveItemToOther",
     EventKind.RECEIVE_ITEM_FROM_OTHER: "receiveItemFromOther",
     EventKind.EMOTE: "emote",
@@ -33,6 +34,7 @@ _POSITION_LABELS: Mapping[EventKind, str] = {
     EventKind.DEPOSIT_ITEM_INTO_CHEST: "chest",
     EventKind.OPEN_CONTAINER: "chest",
     EventKind.USE_LEVER: "lever",
+    EventKind.PRESS_BUTTON: "button",
     EventKind.CRAFT_ITEM: "crafting_table",
     EventKind.SMELT_ITEM: "furnace",
 }

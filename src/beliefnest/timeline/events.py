@@ -24,6 +24,7 @@ REQUIRED: Mapping[EventKind, tuple[str, ...]] = MappingProxyType(
         EventKind.DEPOSIT_ITEM_INTO_CHEST: ("position", "items"),
         EventKind.OPEN_CONTAINER: ("position",),
         EventKind.USE_LEVER: ("position",),
+        EventKind.PRESS_BUTTON: ("position",),
         EventKind.GIVE_ITEM_TO_OTHER: ("other", "items"),
         EventKind.RECEIVE_ITEM_FROM_OTHER: ("other", "items"),
         EventKind.EMOTE: ("name",),

@@ -88,6 +88,7 @@ class EventKind(StrEnum):
     DEPOSIT_ITEM_INTO_CHEST = "deposit_item_into_chest"
     OPEN_CONTAINER = "open_container"
     USE_LEVER = "use_lever"
+    PRESS_BUTTON = "press_button"
     GIVE_ITEM_TO_OTHER = "give_item_to_other"
     RECEIVE_ITEM_FROM_OTHER = "receive_item_from_other"
     EMOTE = "emote"
@@ -103,8 +104,8 @@ class Event:
         actor: The agent who did it; None for a block update nobody is named for.
         detail: The part a witness sees. By kind: `text` (chat, think), `to` (chat that is
             whispered to one agent; absent where it is said aloud), `position` of a block
-            (mine_block, place_block, use_lever, containers, block_update), `block` (a block
-            state text), `items` (name -> count), `other` (an agent), `powered` (use_lever),
+            (mine_block, place_block, use_lever, press_button, containers, block_update), `block` (a
+            block state text), `items` (name -> count), `other` (an agent), `powered` (use_lever),
             `name` (emote), `destination` (move_to, a point).
     """
 

@@ -17,6 +17,7 @@ const SKILLS = [
   require('./smeltItem'),
   require('./turnOnLever'),
   require('./turnOffLever'),
+  require('./pressButton'),
   require('./giveItemToOther'),
   require('./receiveItemFromOther'),
   require('./givePlacedItemBack'),

@@ -1,5 +1,5 @@
 'use strict'
-const { switchLever } = require('./lib/levers')
+const { switchLever } = require('./lib/switches')
 
 module.exports = {
   name: 'turnOffLever',

@@ -25,6 +25,7 @@ module.exports.server = (serv) => {
     if (block.properties.powered) return true
     const stone = /^(stone|polished_blackstone)_button$/.test(block.name)
     serv.blocks.set(position, serv.blocks.stateWith(block, { powered: true }), player)
+    player.emitEvent({ kind: 'press_button', detail: { position: listOf(position) } })
     serv.after(stone ? STONE_BUTTON_TICKS : WOODEN_BUTTON_TICKS, position, 'release')
     return true
   }

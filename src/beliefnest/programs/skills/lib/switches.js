@@ -1,0 +1,57 @@
+'use strict'
+const { blockPosition, show } = require('./arguments')
+const { walkToUse } = require('./walking')
+const { answered } = require('./answers')
+const { until } = require('./waiting')
+
+// A wooden button comes out again after 30 ticks.
+const PRESSED_TICKS = 40
+
+const LEVER = { called: 'lever', is: name => name === 'lever' }
+const BUTTON = { called: 'button', is: name => name.endsWith('_button') }
+
+/** Goes to a lever and brings it into a state; does nothing if it is in it already. */
+async function switchLever (context, leverPosition, powered) {
+  const { bot, fail } = context
+  const { position, block } = await goTo(context, leverPosition, LEVER)
+  if (block().getProperties().powered === powered) return
+  await bot.activateBlock(block())
+  await answered(context)
+  if (block().getProperties().powered !== powered) fail(`the lever at ${show(position)} did not move. Go nearer and try again.`)
+}
+
+/** Goes to a button and presses it; one that is pressed already is waited for first. */
+async function pressButton (context, buttonPosition) {
+  const { bot, fail } = context
+  const { position, block } = await goTo(context, buttonPosition, BUTTON)
+  const pressed = () => block().getProperties().powered
+  if (!await until(() => !pressed(), PRESSED_TICKS)) fail(`the button at ${show(position)} stays pressed. Try again later.`)
+  let moved = false
+  // A button that the server is slow to tell of may be out again by then.
+  const stop = context.listen(`blockUpdate:${position}`, () => { moved ||= pressed() })
+  try {
+    await bot.activateBlock(block())
+    await answered(context)
+  } finally {
+    stop()
+  }
+  if (!moved) fail(`the button at ${show(position)} did not move. Go nearer and try again.`)
+}
+
+/** Walks to a switch; `block` looks it up, and fails if it is no such switch any more. */
+async function goTo (context, place, { called, is }) {
+  const { bot, fail } = context
+  const position = blockPosition(context, 'position', place)
+  const block = () => {
+    const found = bot.blockAt(position)
+    if (found === null || !is(found.name)) {
+      fail(`there is no ${called} at ${show(position)}, but ${found ? found.name : 'nothing that is loaded'}. Give the position of a ${called}.`)
+    }
+    return found
+  }
+  block()
+  await walkToUse(context, position, `the ${called}`)
+  return { position, block }
+}
+
+module.exports = { pressButton, switchLever }

@@ -1,0 +1,14 @@
+'use strict'
+const { pressButton } = require('./lib/switches')
+
+module.exports = {
+  name: 'pressButton',
+  signature: 'pressButton(bot, position)',
+  description: 'Go to the button and press it; it comes out again by itself.',
+  parameters: [
+    { name: 'bot', type: 'Bot', description: 'your own bot' },
+    { name: 'position', type: 'Vec3', description: 'position of the button' }
+  ],
+  example: 'await pressButton(bot, new Vec3(3, -50, 0))',
+  run: pressButton
+}
