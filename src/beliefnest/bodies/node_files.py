@@ -62,5 +62,7 @@ def node_command(limits: ProcessLimits | None = None) -> list[str]:
         "--allow-worker",
         "--no-warnings",
         f"--max-old-space-size={heap}",
+        # Programs are short: the interpreter's parts are worth optimising after a few of them.
+        "--wasm-tiering-budget=10000",
         str(bundle),
     ]

@@ -48,8 +48,8 @@ def _empty() -> Figure:
 def _containment() -> Sequence[Figure]:
     """What the sandbox adds to a walk of four legs, beside the same calls of skills without one.
 
-    Processor time inside Node, walks by turns, the median over pairs; then as a part of what a
-    user waits for, who gets the walk recorded in a run file.
+    Inside Node, walks by turns, the median over pairs; then as a part of what a user waits for,
+    who gets the walk recorded in a run file.
     """
     command = [*node_command(), "containment", str(_WARM + _PAIRS)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
