@@ -58,6 +58,7 @@ class Plots:
         self.versions = versions
         self.index: dict[Path, int] = {}
         self.count = 0
+        self._linked = 1
         known = set(ground.tracked)
         others = [cell for cell in extra if cell not in known]
         tracked = self._tracked = np.array([*ground.tracked, *others], dtype=np.int32)
@@ -150,7 +151,7 @@ class Plots:
         return next(path for path, number in self.index.items() if number == node)
 
     def link(self) -> None:
-        """Connect the nodes and compare each with its parent, after some were added."""
+        """Connect the nodes and compare those that were added with their parents."""
         parent = self._rows["parent"][: self.count]
         order = np.argsort(parent, kind="stable").astype(np.int32)
         self._child = order[np.searchsorted(parent[order], 0) :]
@@ -158,8 +159,9 @@ class Plots:
             np.int32
         )
         nodes = self.nodes()
-        for node in range(1, self.count):
+        for node in range(self._linked, self.count):
             kernel.refresh_pending(nodes, node)
+        self._linked = max(self.count, 1)
 
     def set_blocks(self, node: int, blocks: npt.NDArray[np.signedinteger[Any]]) -> None:
         """Set all blocks of a node, and its geometry."""

@@ -43,7 +43,7 @@ class Pace:
     every: int = 2048
     lag: int = 256
     stretch: int = 1024
-    budget: int = 256
+    budget: int = 128
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ What is saved is what the next entries need. What a forest knows besides, to ask
 
 import msgspec
 import numpy as np
+import zstandard
 
 from beliefnest.belief.columns import Columns, SavedVersions, Versions
 from beliefnest.belief.forest import Forest
@@ -13,11 +14,14 @@ from beliefnest.belief.ground import Ground
 from beliefnest.belief.holdings import Holdings
 from beliefnest.belief.plots import SavedPlot
 from beliefnest.belief.story import Story
+from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
 
 __all__ = ["restored", "saved"]
 
 Path = tuple[str, ...]
+
+_LEVEL = 1
 
 
 class _Node(msgspec.Struct, forbid_unknown_fields=True):
@@ -38,13 +42,15 @@ class _Saved(msgspec.Struct, forbid_unknown_fields=True):
     first_vitals: dict[int, tuple[float | None, float | None]]
     tracked: bytes
     versions: SavedVersions
-    nodes: list[tuple[Path, msgspec.Raw]]
+    nodes: list[tuple[Path, bytes]]
 
 
 def saved(forest: Forest) -> bytes:
     """Bytes of a forest, which leaves the stretch it is in; `restored` is the inverse."""
     forest.leave()
     count, plots = forest.count_of_events, forest.plots
+    # Many nodes with all their blocks take a lot of memory, so each is packed by itself.
+    packer = zstandard.ZstdCompressor(level=_LEVEL)
     nodes = []
     for path, node in plots.index.items():
         body = _Node(
@@ -55,7 +61,7 @@ def saved(forest: Forest) -> bytes:
             sorted(cell for other, cell in forest.put_by_hand if other == node),
             {cell: s for (other, cell), s in sorted(forest.doubtful.items()) if other == node},
         )
-        nodes.append((path, msgspec.Raw(codec.encode(body))))
+        nodes.append((path, packer.compress(codec.encode(body))))
     return codec.encode(
         _Saved(
             position=forest.position,
@@ -100,8 +106,8 @@ def restored(ground: Ground, story: Story, data: bytes, path: Path | None = None
     forest.facts_tick = body.facts_tick
     forest.edited = set(body.edited)
     forest.first_vitals = body.first_vitals
-    for number, (_, raw) in enumerate(nodes):
-        node = codec.decode(bytes(raw), _Node)
+    for number, (_, packed) in enumerate(nodes):
+        node = codec.decode(_unpacked(packed), _Node)
         forest.plots.restore(node.plot, tracked)
         forest.holdings.append(node.holdings)
         heard = np.unpackbits(np.frombuffer(node.heard, dtype=np.uint8), count=body.events)
@@ -111,3 +117,10 @@ def restored(ground: Ground, story: Story, data: bytes, path: Path | None = None
         forest.doubtful |= {(number, cell): state for cell, state in node.doubtful.items()}
     forest.plots.link()
     return forest
+
+
+def _unpacked(packed: bytes) -> bytes:
+    try:
+        return zstandard.ZstdDecompressor().decompress(packed)
+    except zstandard.ZstdError as fault:
+        raise StoreError(f"stored bytes are no node of a forest: {fault}") from fault
