@@ -85,6 +85,26 @@ def test_what_a_prefix_comes_to(journal, make_history, step):
     assert journal.events_until(MAIN, len(entries)) == events
 
 
+def test_what_is_undone_is_not_found(journal, make_history):
+    entries = make_history(60)
+    begin(journal, entries[:20])
+    last = entries[-1].tick
+    with pytest.raises(ZeroDivisionError), journal.together():
+        journal.append(MAIN, entries[20:], last)
+        journal.create(PLAN, ForkPoint(MAIN, 40, entries[39].tick), entries[39].tick)
+        raise ZeroDivisionError
+    later = [Frame(entry.tick) for entry in entries[20:25]]
+    journal.append(MAIN, later, later[-1].tick)
+    kept = TimelineKey((), "kept")
+    journal.create(kept, None, 0)
+    journal.append(kept, [*entries[:20], *later], later[-1].tick)
+    for what in Sift:
+        assert list(journal.sifted(MAIN, 0, 25, what)) == list(journal.sifted(kept, 0, 25, what))
+    for number in range(26):
+        assert journal.agents_after(MAIN, number) == journal.agents_after(kept, number)
+        assert journal.events_until(MAIN, number) == journal.events_until(kept, number)
+
+
 def test_entries_until_counts_ticks_included(journal, make_history):
     entries = make_history(300)
     begin(journal, entries, 5)

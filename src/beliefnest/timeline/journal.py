@@ -451,14 +451,16 @@ class MemoryJournal:
     @contextmanager
     def together(self) -> Iterator[None]:
         """Do all that is done inside or, if it raises, none of it."""
-        infos, entries = self._infos.copy(), self._entries.copy()
+        infos, entries, found = self._infos.copy(), self._entries.copy(), self._found.copy()
         checkpoints = {key: there.copy() for key, there in self._checkpoints.items()}
         try:
             yield
         except BaseException:
             for key, info in infos.items():
                 del entries[key][info.entries :]
-            self._infos, self._entries, self._checkpoints = infos, entries, checkpoints
+                found[key].cut(info.entries)
+            self._infos, self._entries, self._found = infos, entries, found
+            self._checkpoints = checkpoints
             raise
 
     def close(self) -> None:
@@ -491,3 +493,9 @@ class _Found:
             if isinstance(entry, Frame):
                 for name in entry.agents:
                     self.agents.setdefault(name, []).append(number)
+
+    def cut(self, length: int) -> None:
+        """Forget the entries from number `length` on."""
+        for numbers in (*self.numbers.values(), *self.agents.values()):
+            del numbers[bisect_left(numbers, length) :]
+        del self.events[len(self.numbers[Sift.EVENTS]) :]
