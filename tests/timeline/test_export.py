@@ -11,7 +11,8 @@ import pytest
 
 from beliefnest.errors import BranchError, InputError
 from beliefnest.timeline.export import FORMATS, export
-from beliefnest.timeline.journal import Edit, ForkPoint, MemoryJournal, TimelineKey
+from beliefnest.timeline.journal import Edit, ForkPoint, TimelineKey
+from beliefnest.timeline.memory import MemoryJournal
 from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.timeline.tables import TABLES, BeliefRow, program_row, prompt_row, run_row
 from beliefnest.world.frames import Frame, Snapshot

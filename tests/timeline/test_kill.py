@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from tests.profiles import at_night
 
-from beliefnest.timeline.journal import MemoryJournal
+from beliefnest.timeline.memory import MemoryJournal
 from beliefnest.timeline.store import SqliteJournal
 
 WRITER = Path(__file__).with_name("killed_writer.py")

@@ -25,7 +25,7 @@ from beliefnest.nest.ticks import tick_of
 from beliefnest.nest.turns import in_turn
 from beliefnest.nest.versions import own_versions
 from beliefnest.perception.options import Perception
-from beliefnest.timeline.journal import MemoryJournal
+from beliefnest.timeline.memory import MemoryJournal
 from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.scripted import ScriptedWorld

@@ -9,7 +9,7 @@ from beliefnest.cli.bench.figures import Figure, median_seconds
 from beliefnest.errors import BodyError
 from beliefnest.nest.engine import Engine
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.timeline.journal import MemoryJournal
+from beliefnest.timeline.memory import MemoryJournal
 
 __all__ = ["measure"]
 
