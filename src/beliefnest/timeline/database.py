@@ -16,8 +16,15 @@ from typing import Any
 import msgspec
 
 from beliefnest.errors import StoreError
+from beliefnest.files import open_regular
 from beliefnest.timeline.lock import WriterLock
-from beliefnest.timeline.schema import APPLICATION_ID, SCHEMA_VERSION, SMALL_TABLES, STATEMENTS
+from beliefnest.timeline.schema import (
+    APPLICATION_ID,
+    SCHEMA_VERSION,
+    SMALL_TABLES,
+    STATEMENTS,
+    expected_schema,
+)
 
 __all__ = ["Database", "Row", "checked", "seal"]
 
@@ -49,6 +56,9 @@ _FAULTS = {
 }
 _REFUSALS = (sqlite3.Error, OverflowError, UnicodeDecodeError)
 """What a statement can raise: damage can lie in texts, which SQLite itself does not look into."""
+
+_COMPANIONS = ("-wal", "-shm", "-journal", "-lock")
+"""Ends of the names of files that may lie beside a run file and are read with it."""
 
 _PRIMARY_CODE = 0xFF
 """The part of an SQLite error code that names the kind of fault."""
@@ -92,6 +102,7 @@ class Database:
         Raises:
             StoreError: There is a file of that name, or it cannot be made or written.
         """
+        _check_regular(path)
         database = cls._locked(path, "rwc")
         with database.closed_on_fault():
             if path.stat().st_size > 0:
@@ -268,6 +279,21 @@ class Database:
                 f"{self.path} has the format {found} and this program reads {SCHEMA_VERSION}; "
                 f"use {'an older' if older else 'a newer'} version of beliefnest"
             )
+        self._check_schema()
+
+    def _check_schema(self) -> None:
+        """Refuse a file that defines anything else: a view has no end, a trigger acts."""
+        expected = expected_schema()
+        found = self.rows(
+            "SELECT type, name, tbl_name, sql FROM sqlite_master LIMIT ?", [len(expected) + 1]
+        )
+        if set(found) != expected:
+            other = sorted({(str(kind), str(name)) for kind, name, *_ in expected ^ set(found)})
+            told = ", ".join(f"{kind} {name!r}" for kind, name in other[:5])
+            raise StoreError(
+                f"{self.path} is not as this program writes runs ({told} differ); "
+                "restore it from a copy"
+            )
 
     def _fault(self, fault: Exception) -> StoreError:
         if not self._open:
@@ -294,12 +320,15 @@ def _is_unshareable(fault: StoreError) -> bool:
 def _connected(path: Path, mode: str) -> sqlite3.Connection:
     try:
         # Readers hand a connection from thread to thread; SQLite itself is built serialised.
-        return sqlite3.connect(
+        connection = sqlite3.connect(
             f"{path.resolve().as_uri()}?mode={mode}",
             uri=True,
             isolation_level=None,
             check_same_thread=False,
         )
+        # What a file defines gets none of the functions that could act on something else.
+        connection.execute("PRAGMA trusted_schema = OFF")
+        return connection
     except sqlite3.Error as fault:
         raise StoreError(
             f"{path} cannot be opened ({fault}); check path and permissions"
@@ -308,9 +337,10 @@ def _connected(path: Path, mode: str) -> sqlite3.Connection:
 
 def _recognise_start(path: Path) -> None:
     """Check by its first bytes that a file is SQLite's and whole."""
+    _check_regular(path)
     settled = not _wal(path).exists()
     try:
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             header = file.read(_HEADER_BYTES)
             size = path.stat().st_size
     except FileNotFoundError as fault:
@@ -326,6 +356,15 @@ def _recognise_start(path: Path) -> None:
     # With a write-ahead log beside it, the rest of the file may still lie in there.
     if settled and size < _page_size(header) * int.from_bytes(header[28:32], "big"):
         raise StoreError(f"{path} {_DAMAGED} (its end is missing)")
+
+
+def _check_regular(path: Path) -> None:
+    """Refuse a file, or one beside it, that SQLite would open and wait for."""
+    real = path.resolve()
+    for each in (real, *(real.with_name(real.name + end) for end in _COMPANIONS)):
+        if each.exists() and not each.is_file():
+            what = "give the file of a run" if each == real else "remove it"
+            raise StoreError(f"{each} cannot be read: it is not a regular file; {what}")
 
 
 def _page_size(header: bytes) -> int:

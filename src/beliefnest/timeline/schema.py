@@ -4,7 +4,10 @@ Every row carries `seal`, a checksum of its other columns, because SQLite itself
 notice a flipped bit inside a value.
 """
 
-__all__ = ["APPLICATION_ID", "SCHEMA_VERSION", "SMALL_TABLES", "STATEMENTS"]
+import sqlite3
+from contextlib import closing
+
+__all__ = ["APPLICATION_ID", "SCHEMA_VERSION", "SMALL_TABLES", "STATEMENTS", "expected_schema"]
 
 APPLICATION_ID = 0x42656C4E
 """Marks an SQLite file as a run ("BelN")."""
@@ -88,3 +91,14 @@ STATEMENTS = (
         seal INTEGER NOT NULL
     )""",
 )
+
+
+def expected_schema() -> frozenset[tuple[object, ...]]:
+    """What a run file defines: kind, name, table and text, as `sqlite_master` lists them.
+
+    Tables that SQLite makes of its own accord are in it.
+    """
+    with closing(sqlite3.connect(":memory:")) as connection:
+        for statement in STATEMENTS:
+            connection.execute(statement)
+        return frozenset(connection.execute("SELECT type, name, tbl_name, sql FROM sqlite_master"))
