@@ -29,14 +29,11 @@ def open_regular(path: Path) -> BinaryIO:
     """
     # Not to wait for whoever might write into a FIFO; it changes nothing for regular files.
     descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NONBLOCK)
-    try:
-        mode = os.fstat(descriptor).st_mode
-        if not stat.S_ISREG(mode):
-            raise OSError(errno.EINVAL, f"{_kind(mode)}, not a regular file", str(path))
-        return os.fdopen(descriptor, "rb")
-    except BaseException:
+    mode = os.fstat(descriptor).st_mode
+    if not stat.S_ISREG(mode):
         os.close(descriptor)
-        raise
+        raise OSError(errno.EINVAL, f"{_kind(mode)}, not a regular file", str(path))
+    return os.fdopen(descriptor, "rb")
 
 
 def read_regular(path: Path, longest: int = _LONGEST) -> bytes:
@@ -53,7 +50,7 @@ def read_regular(path: Path, longest: int = _LONGEST) -> bytes:
 
 
 def read_regular_text(path: Path, longest: int = _LONGEST) -> str:
-    """All of a file as text, line ends as `\\n`.
+    """All of a file as text, its line ends as those of Unix.
 
     Raises:
         OSError: As `read_regular`.

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from beliefnest.errors import InputError
+from beliefnest.files import read_regular_text
 from beliefnest.scenarios.outcome import ProbeOutcome
 from beliefnest.scenarios.reading import templates_file
 from beliefnest.scenarios.scenario import Scenario
@@ -179,7 +180,7 @@ def kept_scenario_file(out: Path | None, wanted: str) -> Path | None:
     if out is None or not (out / _SCENARIO).is_file() or not wanted.endswith((".yaml", ".yml")):
         return None
     try:
-        written = Path(wanted).read_text(encoding="utf-8")
+        written = read_regular_text(Path(wanted))
     except FileNotFoundError:
         return out / _SCENARIO
     except (OSError, UnicodeDecodeError):
@@ -217,7 +218,7 @@ def _check_same(path: Path, settings: Mapping[str, object], scenario: Scenario) 
 
 def _read(file: Path) -> dict[str, Any]:
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
+        content = json.loads(read_regular_text(file))
     except (OSError, ValueError) as error:
         raise InputError(f"{file} cannot be read: {error}; name another folder") from None
     if not isinstance(content, dict):

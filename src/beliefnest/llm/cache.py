@@ -9,6 +9,7 @@ from typing import Literal
 import msgspec
 
 from beliefnest.errors import ModelError
+from beliefnest.files import read_regular
 from beliefnest.llm.exchange import Exchange, decode_exchange, encode_exchange, request_key
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
 
@@ -59,7 +60,7 @@ class CachedModel:
 
 def _read(path: Path) -> Exchange | None:
     try:
-        return decode_exchange(path.read_bytes())
+        return decode_exchange(read_regular(path))
     except FileNotFoundError:
         return None
     except msgspec.MsgspecError as error:

@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 
 from beliefnest.errors import ModelError
+from beliefnest.files import read_regular
 from beliefnest.llm.exchange import Exchange, decode_exchange, encode_exchange
 from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
@@ -132,6 +133,6 @@ def load_replay(name: str, path: Path) -> ReplayModel:
 
 def _content(name: str, path: Path) -> bytes:
     try:
-        return path.read_bytes()
+        return read_regular(path)
     except OSError as error:
         raise ModelError(f"{name}: the file cannot be read: {error}") from None

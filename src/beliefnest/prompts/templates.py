@@ -5,6 +5,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from beliefnest.errors import TemplateError
+from beliefnest.files import read_regular_text
 from beliefnest.prompts.text import nearest
 
 __all__ = ["BUILT_IN_TEMPLATES", "Template", "built_in_template", "load_template"]
@@ -46,6 +47,6 @@ def load_template(path: Path) -> Template:
         TemplateError: The file cannot be read.
     """
     try:
-        return Template(str(path), path.read_text(encoding="utf-8"))
+        return Template(str(path), read_regular_text(path))
     except (OSError, UnicodeDecodeError) as error:
         raise TemplateError(f"template {path} cannot be read: {error}") from None

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from beliefnest.belief.entries import InitialBelief
+from beliefnest.files import read_regular_text
 from beliefnest.nest.paths import parse_path
 from beliefnest.nest.setting import Setting, Step
 from beliefnest.perception.options import Perception
@@ -244,7 +245,7 @@ class _Builder:
             return self._document.templates[name]
         file = self._document.folder / name
         try:
-            return file.read_text(encoding="utf-8")
+            return read_regular_text(file)
         except (OSError, UnicodeDecodeError) as error:
             raise self._document.fault(path, f"{file} cannot be read: {error}") from None
 

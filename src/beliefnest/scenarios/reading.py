@@ -10,10 +10,13 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
 from beliefnest.errors import ScenarioError
+from beliefnest.files import read_regular_text
 from beliefnest.scenarios.document import Document, Node
 
 __all__ = ["parse_yaml", "read_yaml", "templates_file"]
 
+_LONGEST = 4 * 2**20
+"""Bytes of a scenario file."""
 _MAX_VALUES = 200_000
 _MAX_DEPTH = 40
 
@@ -61,7 +64,7 @@ def parse_yaml(text: str, source: str) -> Document:
 
 def _text(path: Path) -> str:
     try:
-        return path.read_text(encoding="utf-8")
+        return read_regular_text(path, _LONGEST)
     except OSError as error:
         raise ScenarioError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:

@@ -328,11 +328,11 @@ def _connected(path: Path, mode: str) -> sqlite3.Connection:
         )
         # What a file defines gets none of the functions that could act on something else.
         connection.execute("PRAGMA trusted_schema = OFF")
-        return connection
     except sqlite3.Error as fault:
         raise StoreError(
             f"{path} cannot be opened ({fault}); check path and permissions"
         ) from fault
+    return connection
 
 
 def _recognise_start(path: Path) -> None:

@@ -14,6 +14,7 @@ import msgspec
 import numpy as np
 
 from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.files import open_regular
 from beliefnest.perception.options import ContainerMode, Perception
 from beliefnest.timeline.events import event_from
 from beliefnest.timeline.journal import Entry, Journal, TimelineKey
@@ -139,7 +140,7 @@ def load_trace(path: Path, registry: Registry) -> Trace:
         InputError: The file cannot be read or has bad lines; the message tells which.
     """
     try:
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             trace = read_trace(file, registry)
     except OSError as fault:
         raise InputError(f"{path} cannot be read ({fault.strerror}); check the path") from fault

@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 
 from beliefnest.errors import InputError
+from beliefnest.files import read_regular
 from beliefnest.scenarios.stories.playing import check_question
 from beliefnest.scenarios.stories.questions import Question, parse_question
 from beliefnest.scenarios.stories.story import Story, read_story
@@ -59,7 +60,7 @@ def read_items(path: Path) -> tuple[StoryItems, ...]:
             cannot be understood; the message names the row, and the line of the story.
     """
     try:
-        rows = msgspec.json.decode(path.read_bytes(), type=list[_Row])
+        rows = msgspec.json.decode(read_regular(path), type=list[_Row])
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}; give a JSON file") from None
     except (msgspec.DecodeError, UnicodeDecodeError) as error:

@@ -1,0 +1,52 @@
+"""Files that a person names: regular ones only, whoever reads them."""
+
+import os
+
+import pytest
+
+from beliefnest.errors import BeliefNestError
+from beliefnest.files import read_regular, read_regular_text
+from beliefnest.llm import resolve_model
+from beliefnest.prompts.templates import load_template
+from beliefnest.scenarios import Scenario
+from beliefnest.scenarios.stories.data import read_items
+from beliefnest.timeline.trace import load_trace
+from beliefnest.world.registry import Registry
+
+READERS = {
+    "scenario": lambda path: Scenario.load(str(path)),
+    "stories": read_items,
+    "template": load_template,
+    "trace": lambda path: load_trace(path, Registry.load()),
+    "script": lambda path: resolve_model(f"scripted:{path}", {}),
+    "recording": lambda path: resolve_model(f"replay:{path}", {}),
+}
+
+
+@pytest.fixture(params=["fifo", "folder", "device"])
+def odd(request, tmp_path):
+    path = tmp_path / "odd.yaml"
+    if request.param == "fifo":
+        os.mkfifo(path)
+    elif request.param == "folder":
+        path.mkdir()
+    else:
+        path.symlink_to("/dev/zero")
+    return path
+
+
+@pytest.mark.parametrize("reader", READERS.values(), ids=READERS)
+def test_what_is_no_regular_file_is_refused(reader, odd):
+    with pytest.raises(BeliefNestError, match=r"it is a (FIFO|folder|device)") as fault:
+        reader(odd)
+    assert str(odd) in str(fault.value)
+    assert "\n" not in str(fault.value)
+
+
+def test_a_file_is_read_up_to_its_bound(tmp_path):
+    path = tmp_path / "file"
+    path.write_bytes(b"a\r\nb")
+    assert read_regular(path, 4) == b"a\r\nb"
+    assert read_regular_text(path) == "a\nb"
+    with pytest.raises(OSError, match="longer than 3 bytes"):
+        read_regular(path, 3)
