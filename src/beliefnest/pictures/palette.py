@@ -1,0 +1,125 @@
+"""The look of agents and of what is false, stale or unknown: one for all that is looked at.
+
+Pictures, the page, the terminal and plots take their colours, letters and words from here.
+Colours are those of Okabe and Ito ("Color Universal Design", 2008), which eyes of every kind
+tell apart; none of them is ever the only mark.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+__all__ = [
+    "AGENT_COLOURS",
+    "INK",
+    "MARKS",
+    "PAPER",
+    "QUIET",
+    "AgentLook",
+    "Mark",
+    "MarkLook",
+    "age_text",
+    "agent_looks",
+    "mix",
+]
+
+INK = "#2b2a33"
+PAPER = "#fcfbf8"
+QUIET = "#6a6870"
+
+AGENT_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#F0E442", "#4D4D4D")
+"""Blue, orange, bluish green, purple, sky blue, yellow, grey. Vermillion is left for falsehood."""
+
+_DARK = frozenset({"#0072B2", "#009E73", "#4D4D4D"})
+
+
+@dataclass(frozen=True, slots=True)
+class AgentLook:
+    """How one agent looks, wherever it is shown.
+
+    Attributes:
+        name: The agent.
+        colour: `#RRGGBB`.
+        ink: The colour of letters on `colour`.
+        badge: The shortest beginning of its name that no other agent has, capitalised.
+        rings: Rings around its disc, which tell agents of one colour apart; 0 for the first seven.
+    """
+
+    name: str
+    colour: str
+    ink: str
+    badge: str
+    rings: int
+
+
+class Mark(StrEnum):
+    """What can be said of a thing in a belief."""
+
+    CURRENT = "current"
+    STALE = "stale"
+    UNKNOWN = "unknown"
+    INCOMPLETE = "incomplete"
+    FALSE = "false"
+
+
+@dataclass(frozen=True, slots=True)
+class MarkLook:
+    """How a mark looks.
+
+    Attributes:
+        colour: `#RRGGBB`.
+        sign: The sign that stands for it; empty: it needs none.
+        style: How lines around it are drawn: `solid`, `dashed`, `dotted` or `double`.
+        words: What it says, for legends and labels that are read aloud.
+    """
+
+    colour: str
+    sign: str
+    style: str
+    words: str
+
+
+MARKS: Mapping[Mark, MarkLook] = {
+    Mark.CURRENT: MarkLook(INK, "", "solid", "perceived at this tick"),
+    Mark.STALE: MarkLook(QUIET, "~", "dashed", "remembered, not perceived at this tick"),
+    Mark.UNKNOWN: MarkLook(QUIET, "?", "dotted", "not known"),
+    Mark.INCOMPLETE: MarkLook(QUIET, "+?", "dotted", "perhaps more in it"),
+    Mark.FALSE: MarkLook("#D55E00", "\u00d7", "double", "false"),
+}
+
+
+def agent_looks(agents: Iterable[str]) -> dict[str, AgentLook]:
+    """Agent to look; give all agents of the run, so that a look is the same in all of it."""
+    names = sorted(set(agents))
+    looks = {}
+    for number, name in enumerate(names):
+        colour = AGENT_COLOURS[number % len(AGENT_COLOURS)]
+        looks[name] = AgentLook(
+            name=name,
+            colour=colour,
+            ink="#FFFFFF" if colour in _DARK else "#000000",
+            badge=_badge(name, names),
+            rings=number // len(AGENT_COLOURS),
+        )
+    return looks
+
+
+def age_text(ticks: int) -> str:
+    """How old a memory is, for people."""
+    return "1 tick ago" if ticks == 1 else f"{ticks} ticks ago"
+
+
+def mix(first: str, second: str, share: float) -> str:
+    """The colour `share` of the way from one `#RRGGBB` to another."""
+    one, other = bytes.fromhex(first[1:]), bytes.fromhex(second[1:])
+    return "#" + bytes(round(a + (b - a) * share) for a, b in zip(one, other, strict=True)).hex()
+
+
+def _badge(name: str, names: list[str]) -> str:
+    """At most three letters: longer beginnings end with a number among those that share it."""
+    for length in (1, 2, 3):
+        beginning = name[:length].lower()
+        if sum(other[:length].lower() == beginning for other in names) == 1:
+            return name[:1].upper() + name[1:length]
+    alike = [other for other in names if other[:1].lower() == name[:1].lower()]
+    return f"{name[:1].upper()}{alike.index(name) + 1}"
