@@ -213,9 +213,15 @@ def _started(seed: int, limits: ProcessLimits) -> tuple[Channel, Mapping[str, st
 def _difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
     """What has to change for one snapshot to become another, as arguments of `apply`."""
     low = after.box.low
-    places = np.argwhere(before.blocks != after.blocks).tolist()
+    other = before.blocks != after.blocks
+    places = np.argwhere(other).tolist()
     gone = before.containers.keys() - after.containers.keys()
-    contents = {p: i for p, i in after.containers.items() if before.containers.get(p) != i}
+    # A container that is put in place of another one begins empty.
+    contents = {
+        place: items
+        for place, items in after.containers.items()
+        if before.containers.get(place) != items or other[after.box.index(place)]
+    }
     agents: dict[str, Any] = dict.fromkeys(before.agents.keys() - after.agents.keys())
     for name, agent in after.agents.items():
         if before.agents.get(name) != agent:

@@ -11,7 +11,6 @@ needed. The call under way has not happened: it is made again, but for programs,
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import replace
 from threading import RLock
 from typing import Self, TypeVar
 
@@ -45,7 +44,7 @@ from beliefnest.timeline.journal import (
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.values import Items, Position
 
-__all__ = ["MAIN", "Engine", "edited"]
+__all__ = ["MAIN", "Engine"]
 
 Path = tuple[str, ...]
 
@@ -343,20 +342,27 @@ class Engine:
         blocks: Mapping[Position, int],
         containers: Mapping[Position, Items],
     ) -> None:
-        info = self.info(path)
-        edit = Edit(info.head, path, blocks, containers)
-        if path not in self._bodies:
-            self._append_edit(info.key, edit)
-            return
-        with self._embodied(info.key, edited(self._recorded(info.key), edit)):
-            self._append_edit(info.key, edit)
+        key = self.info(path).key
+        try:
+            with self.log.together():
+                self._append_edit(key, Edit(self.info(path).head, path, blocks, containers))
+                if path in self._bodies:
+                    self._bodies[path].become(self._recorded(key))
+        except BaseException:
+            self._forget_undone()
+            self._restore(path)
+            raise
 
     def _append_edit(self, key: TimelineKey, edit: Edit) -> None:
         # What goes on in the body goes on after an edit.
         hidden = hidden_at(self.journal, present(self.journal, key))
-        with self.log.together():
-            self.journal.append(key, [edit], edit.tick)
-            note_hidden(self.journal, present(self.journal, key), hidden)
+        self.journal.append(key, [edit], edit.tick)
+        note_hidden(self.journal, present(self.journal, key), hidden)
+
+    def _forget_undone(self) -> None:
+        """Forget what was read of timelines while a call was under way that did not happen."""
+        for info in self.journal.timelines():
+            self.history.forget(info.key)
 
     def close(self) -> None:
         """Give up all bodies, the world and the journal."""
@@ -473,19 +479,9 @@ class Engine:
             raise
         except BaseException:
             recorder.drop()
+            self._forget_undone()
             self._restore(path)
             raise
         finally:
             recorder.batched = False
         recorder.keep_up()
-
-
-def edited(snapshot: Snapshot, edit: Edit) -> Snapshot:
-    """A body's state after an edit; unknown blocks are air there."""
-    blocks = snapshot.blocks.copy()
-    for place, state in edit.blocks.items():
-        blocks[snapshot.box.index(place)] = max(state, 0)
-    contents = {p: i for p, i in snapshot.containers.items() if p not in edit.blocks}
-    return replace(
-        snapshot, tick=edit.tick, blocks=blocks, containers={**contents, **edit.containers}
-    )

@@ -48,6 +48,3 @@ class Recorder:
     def drop(self) -> None:
         """Forget what was taken, because the journal has taken it back or never had it."""
         self._frames, self._tick = [], None
-        # What is based on this timeline may have read on in it.
-        for info in self._journal.timelines():
-            self._history.forget(info.key)

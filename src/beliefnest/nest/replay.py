@@ -6,7 +6,6 @@ from itertools import groupby
 
 from beliefnest.bodies.protocol import Body, World
 from beliefnest.errors import StoreError
-from beliefnest.nest.engine import edited
 from beliefnest.nest.history import History
 from beliefnest.nest.moments import hidden_at, snapshot_at
 from beliefnest.nest.paths import path_text
@@ -46,25 +45,31 @@ class _Call:
 
 
 @dataclass(frozen=True, slots=True)
-class _Stops:
-    """Where on a timeline calls that only let time pass have ended.
-
-    Such a call is not noted. Where one ends with nothing under way it makes no difference; where
-    something is, that was kept.
-    """
+class _Recorded:
+    """One timeline as it was recorded."""
 
     journal: Journal
-    key: TimelineKey
+    history: History
+    info: TimelineInfo
+
+    def after(self, entries: int, tick: int) -> Snapshot:
+        """What its body was like after some of its entries."""
+        moment = ForkPoint(self.info.key, entries, tick)
+        return snapshot_at(self.journal, self.history, self.info.key.path, moment)
 
     def wait_until(self, body: Body, tick: int) -> None:
-        """Let time pass in a body, in the calls in which it passed."""
+        """Let time pass in a body, in the calls in which it passed.
+
+        A call that only let time pass is not noted. Where one ends with nothing under way it makes
+        no difference; where something is, that was kept.
+        """
         for stop in range(body.tick + 1, tick + 1):
-            if stop == tick or self._is_one(stop):
+            if stop == tick or self._is_stop(stop):
                 body.step(stop - body.tick)
 
-    def _is_one(self, tick: int) -> bool:
-        entries = self.journal.entries_until(self.key, tick)
-        return hidden_at(self.journal, ForkPoint(self.key, entries, tick)) != b""
+    def _is_stop(self, tick: int) -> bool:
+        entries = self.journal.entries_until(self.info.key, tick)
+        return hidden_at(self.journal, ForkPoint(self.info.key, entries, tick)) != b""
 
 
 def replay(
@@ -97,13 +102,10 @@ def replay(
             for p in programs
             if (p.path, p.branch) == (info.key.path, info.key.branch) and UNDONE not in p.detail
         ]
-        start = ForkPoint(info.key, 0, info.start)
-        first = snapshot_at(journal, history, info.key.path, start)
-        recorded = list(journal.entries(info.key, 0, info.entries))
+        entries = list(journal.entries(info.key, 0, info.entries))
         calls = [_call(list(group)) for _, group in groupby(mine, key=lambda p: p.group)]
-        stops = _Stops(journal, info.key)
-        found = _run_again(world, info, first, recorded, calls, seed, stops)
-        yield Replayed(info.key, len(mine), first_difference(recorded, found))
+        found = _run_again(world, _Recorded(journal, history, info), entries, calls, seed)
+        yield Replayed(info.key, len(mine), first_difference(entries, found))
 
 
 def _call(group: Sequence[ProgramRecord]) -> _Call:
@@ -124,12 +126,10 @@ def _call(group: Sequence[ProgramRecord]) -> _Call:
 
 def _run_again(
     world: World,
-    info: TimelineInfo,
-    first: Snapshot,
-    recorded: Sequence[Entry],
+    recorded: _Recorded,
+    entries: Sequence[Entry],
     calls: Sequence[_Call],
     seed: int,
-    stops: _Stops,
 ) -> list[Entry]:
     found: list[Entry] = []
 
@@ -137,21 +137,22 @@ def _run_again(
         if not frame.is_empty:
             found.append(frame)
 
+    info = recorded.info
     name = path_text(info.key.path)
-    body = world.open_body(name, f"{seed} {name}", first, take)
+    body = world.open_body(name, f"{seed} {name}", recorded.after(0, info.start), take)
     try:
-        edits = [(n, e) for n, e in enumerate(recorded) if isinstance(e, Edit)]
+        edits = [(n, e) for n, e in enumerate(entries) if isinstance(e, Edit)]
         acts: list[tuple[int, int, Edit | _Call]] = [(e.tick, n, e) for n, e in edits]
         acts += [(call.tick, call.entries, call) for call in calls]
-        for tick, _, act in sorted(acts, key=lambda each: each[:2]):
-            stops.wait_until(body, tick)
+        for tick, number, act in sorted(acts, key=lambda each: each[:2]):
+            recorded.wait_until(body, tick)
             if isinstance(act, _Call):
                 body.run(act.programs, act.timeout_ticks)
                 continue
             if act.path == info.key.path:
-                body.become(edited(body.snapshot(), act))
+                body.become(recorded.after(number + 1, act.tick))
             found.append(act)
-        stops.wait_until(body, info.head)
+        recorded.wait_until(body, info.head)
     finally:
         body.close()
     return found

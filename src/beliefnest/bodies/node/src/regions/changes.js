@@ -19,7 +19,7 @@ function applyContainers (serv, region, containers) {
   for (const [x, y, z, items] of containers) {
     const position = region.toServer([x, y, z])
     if (items !== null) {
-      orBadRequest(() => serv.containers.set(position, items))
+      orBadRequest(() => serv.containers.set(position, items), `contents at (${x}, ${y}, ${z}): `)
     } else if (serv.containers.get(position) !== null) {
       throw new BadRequest(`a container stands at (${x}, ${y}, ${z}), which was to have none; change its block`)
     }
@@ -40,12 +40,12 @@ function applyItems (serv, region, items) {
   }
 }
 
-/** Runs what may refuse its arguments with a RangeError. */
-function orBadRequest (action) {
+/** Runs what may refuse its arguments with a RangeError; `where` says which. */
+function orBadRequest (action, where = '') {
   try {
     return action()
   } catch (error) {
-    if (error instanceof RangeError) throw new BadRequest(error.message)
+    if (error instanceof RangeError) throw new BadRequest(where + error.message)
     throw error
   }
 }

@@ -4,8 +4,6 @@ const { isDeepStrictEqual } = require('node:util')
 const { countByName, equal, rowsOf, slotsOf, stacksOf } = require('./items')
 const { byPlace, keyOf, listOf, vecOf } = require('./positions')
 
-const show = ({ x, y, z }) => `(${x}, ${y}, ${z})`
-
 /**
  * What containers hold, by block position; each half of a double chest holds its own 27 slots.
  * A container is whatever block has a kind declared with `define`.
@@ -70,11 +68,11 @@ class ContainerStore {
   set (position, counts) {
     const kind = this.kindAt(position)
     if (kind === undefined) {
-      throw new RangeError(`no container at ${show(position)}: the block there is ${this.serv.blocks.at(position).name}`)
+      throw new RangeError(`there is no container, but ${this.serv.blocks.at(position).name}`)
     }
     const arranged = this.arranged(kind, counts)
     if (arranged === null) {
-      throw new RangeError(`the items given do not fit into the ${kind.size} slots of the ${kind.name} at ${show(position)}`)
+      throw new RangeError(`the items given do not fit into the ${kind.size} slots of the ${kind.name}`)
     }
     this.fill(position, arranged)
     this.touch(position)
