@@ -100,7 +100,7 @@ class Rules:
         """Whether an event of `around` is perceived (3, 5.2, 5.5)."""
         if "to" in event.detail and me not in (event.actor, event.detail["to"]):
             return False
-        if event.kind is EventKind.CHAT and self.options.hearing == "global":
+        if event.kind is EventKind.CHAT and (self.options.hearing == "global" or event.actor == me):
             return True
         if view is None or event.kind is EventKind.THINK:
             return view is not None and event.actor == me

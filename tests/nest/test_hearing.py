@@ -42,6 +42,28 @@ def test_5_5_sight_a_listener_must_be_present():
     assert chat(nest, "/observer/sally") == ((1, "anne", "one"),)
 
 
+def test_5_5_an_utterance_is_credited_to_its_speaker_whom_nobody_sees():
+    """The observer hears Sally through the wall, and Carl as well, whom it sees."""
+    agents = {"observer": (4.5, 0, 1.5), "sally": (6.5, 0, 1.5), "carl": (3.5, 0, 1.5)}
+    world, nest = nest_of(agents, CLOSED, hearing={"radius": 5})
+    world.say("sally", "hello")
+    assert not nest["/observer"].state.agents["sally"].current
+    for path in ("/observer", "/observer/sally", "/sally", "/carl/sally"):
+        assert chat(nest, path) == ((1, "sally", "hello"),), path
+    for path in ("/observer/carl", "/observer/sally/carl", "/observer/carl/sally"):
+        assert chat(nest, path) == (), path
+
+
+def test_5_5_a_whisper_is_credited_to_its_speaker_by_who_perceives_it():
+    agents = {"anne": (4.5, 0, 1.5), "sally": (6.5, 0, 1.5), "carl": (3.5, 0, 1.5)}
+    world, nest = nest_of(agents, CLOSED, hearing={"radius": 5})
+    world.whisper("sally", "anne", "psst")
+    for path in ("/anne", "/sally", "/anne/sally"):
+        assert chat(nest, path) == ((1, "sally", "psst"),), path
+    for path in ("/carl", "/carl/sally", "/anne/carl", "/anne/sally/anne"):
+        assert chat(nest, path) == (), path
+
+
 @pytest.mark.parametrize(("distance", "heard"), [(3.0, True), (3.01, False)])
 def test_5_5_radius_is_measured_from_feet_to_feet_and_inclusive(distance, heard):
     agents = {"a": (1.5, 0, 1.5), "b": (1.5 + distance, 0, 1.5)}

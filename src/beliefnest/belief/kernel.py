@@ -314,16 +314,17 @@ def _absent(
 ) -> None:
     """An owner that is not present is credited with common ground alone (5.2, 5.5).
 
-    A whisper is common ground of the two whose it is, wherever it was perceived.
+    Common ground are its own utterances, and with global hearing all that are for it to hear.
     """
     nodes.current[node, :] = False
     nodes.eye[node] = UNKNOWN
     nodes.watched[node, :] = False
-    if senses.hearing != HEAR_ALL:
-        return
+    me = _whole(nodes.agent[node])
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
-        is_speech = facts.event_kind[event] == KIND_CHAT
-        if is_speech and _is_for(facts, event, _whole(nodes.agent[node])):
+        if facts.event_kind[event] == KIND_CHAT and (
+            facts.event_actor[event] == me
+            or (senses.hearing == HEAR_ALL and _is_for(facts, event, me))
+        ):
             heard = changes.perceived[event - first_event, nodes.parent[node]]
             changes.perceived[event - first_event, node] = heard
 
