@@ -1,40 +1,44 @@
 # Shortcuts for working on BeliefNest, inside an environment with `pip install -e ".[dev]"`.
-.PHONY: test nightly check format schema notices picture bench ci
+.PHONY: help test nightly check format schema notices picture docs bench ci
+
+help: ## What can be made
+	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /: /' | column -t -s: -o '  '
 
 NODE = $(shell python -c 'from beliefnest.bodies.node_files import node_path; print(node_path())')
 
-test:
+test: ## The tests, as CI runs them
 	pytest
 
-# Every property with many examples, every kill and damage with many seeds: takes hours.
-nightly:
+nightly: ## The tests with many more examples, kills and damages; takes hours
 	BELIEFNEST_NIGHTLY=1 pytest
 
-check:
+check: ## Linters and type checkers
 	ruff check
 	ruff format --check
 	mypy
 	lint-imports
 	cd src/beliefnest/bodies/node && $(NODE) node_modules/eslint/bin/eslint.js .
 
-format:
+format: ## Lay out the code
 	ruff format
 	ruff check --fix
 
-schema:
+schema: ## docs/scenario.schema.json from the types
 	python tools/scenario_schema.py
 
-notices:
+notices: ## THIRD_PARTY_NOTICES.md from what is bundled
 	python tools/third_party_notices.py
 
-# The picture of the README, made by the program itself.
-picture:
+picture: ## The picture of the README, made by the program itself
 	rm -rf build/picture
 	beliefnest run sally-anne --out build/picture
 	cp build/picture/picture.png docs/img/sally-anne.png
 
-bench:
+docs: ## The documentation site, in build/site; a broken link is an error
+	NO_MKDOCS_2_WARNING=1 mkdocs build --quiet --strict
+
+bench: ## Measure, beside the figures to reach
 	beliefnest bench
 
-ci:
+ci: ## Everything in a fresh environment, as CI does
 	.ci/run

@@ -1,4 +1,4 @@
-"""The pages about timelines and programs do what they say, their examples one after the other."""
+"""Pages do what they say, their examples one after the other."""
 
 import re
 from pathlib import Path
@@ -6,9 +6,10 @@ from pathlib import Path
 import pytest
 
 DOCS = Path(__file__).parents[2] / "docs"
+PAGES = ("coming-from-mineflayer.md", "programs.md", "python.md", "timelines.md")
 
 
-@pytest.mark.parametrize("page", ["timelines.md", "programs.md"])
+@pytest.mark.parametrize("page", PAGES)
 def test_examples_print_what_the_page_says(
     page: str,
     capsys: pytest.CaptureFixture[str],

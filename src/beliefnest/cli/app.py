@@ -9,6 +9,7 @@ import typer
 
 from beliefnest.cli.text import printable
 from beliefnest.errors import BeliefNestError
+from beliefnest.version import VERSION
 
 __all__ = ["app", "run_command_line"]
 
@@ -52,10 +53,28 @@ def run_command_line(arguments: Sequence[str]) -> int:
     return status if isinstance(status, int) else 0
 
 
+def _print_version(asked: bool) -> None:
+    if asked:
+        print(f"beliefnest {VERSION}")  # noqa: T201
+        raise typer.Exit
+
+
 def _fail(message: str, status: int) -> int:
     line = printable(" ".join(message.split()))
     print(f"beliefnest: {line}", file=sys.stderr)  # noqa: T201
     return status
+
+
+@app.callback()
+def common(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", help="Print the version.", callback=_print_version, is_eager=True
+        ),
+    ] = False,
+) -> None:
+    """What every command shares."""
 
 
 @app.command()

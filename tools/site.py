@@ -1,0 +1,235 @@
+"""Hook of the documentation site: pages written from the code, and those beside `docs/`.
+
+Pages of the reference are made while the site is built, so that they cannot be older than the
+code they describe. Papers beside `docs/` become pages below `project/`; links are followed there.
+"""
+
+import inspect
+import re
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+import click
+import typer
+from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.exceptions import PluginError
+from mkdocs.structure.files import File, Files
+from mkdocs.structure.pages import Page
+
+import beliefnest
+from beliefnest import errors
+from beliefnest.cli.app import app
+from beliefnest.scenarios.format import schema
+from beliefnest.world.values import EventKind
+
+ROOT = Path(__file__).parents[1]
+PAPERS = ("CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "LICENSE", "THIRD_PARTY_NOTICES.md")
+NAMES_OF_KINDS = {"class": "Classes", "function": "Functions", "value": "Values"}
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add the pages that are not in `docs/`."""
+    pages: dict[str, Callable[[], str]] = {
+        "reference/python.md": python_page,
+        "reference/commands.md": commands_page,
+        "reference/scenario.md": scenario_page,
+        "reference/events.md": events_page,
+        "reference/errors.md": errors_page,
+    }
+    for name, write in pages.items():
+        files.append(File.generated(config, name, content=write()))
+    for paper in [*(ROOT / each for each in PAPERS), *sorted((ROOT / "design").glob("*.md"))]:
+        name = project_page(paper)
+        files.append(File.generated(config, name, content=paper.read_text(encoding="utf-8")))
+    for example in sorted((ROOT / "examples").glob("*.py")):
+        files.append(File.generated(config, project_page(example), abs_src_path=str(example)))
+    return files
+
+
+def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
+    """Let links between papers, which are relative to the repository, lead to their pages."""
+    source = page.file.src_uri
+    place = (
+        PurePosixPath(source).relative_to("project")
+        if source.startswith("project/")
+        else PurePosixPath("docs", source)
+    )
+    here = PurePosixPath(source).parent
+
+    def lead(match: re.Match[str]) -> str:
+        target, anchor = match[1], match[2] or ""
+        if "://" in target or not target:
+            return match[0]
+        path = (ROOT / place.parent / target).resolve()
+        if not path.is_relative_to(ROOT) or not path.exists():
+            return match[0]
+        inside = path.relative_to(ROOT)
+        page_name = (
+            inside.relative_to("docs").as_posix()
+            if inside.parts[0] == "docs"
+            else project_page(path)
+        )
+        if files.get_file_from_path(page_name) is None:
+            # A file of the repository that is no page: its name has to do.
+            return f"](#{anchor})" if path.is_dir() else match[0]
+        return f"]({_relative(page_name, here)}{anchor})"
+
+    return re.sub(r"\]\(([^)#\s]*)(#[^)\s]*)?\)", lead, markdown)
+
+
+def project_page(file: Path) -> str:
+    """Name of the page of a paper beside `docs/`."""
+    name = file.relative_to(ROOT).as_posix()
+    return f"project/{name}" if "." in name else f"project/{name}.md"
+
+
+def _relative(target: str, here: PurePosixPath) -> str:
+    up = len(here.parts)
+    return "/".join([".."] * up + [target])
+
+
+def python_page() -> str:
+    """Every public name with its docstring."""
+    groups: dict[str, list[str]] = {kind: [] for kind in NAMES_OF_KINDS}
+    for name in sorted(beliefnest.__all__):
+        value = getattr(beliefnest, name)
+        if inspect.isclass(value) and issubclass(value, Exception):
+            continue
+        if not inspect.getdoc(value):
+            raise PluginError(f"beliefnest.{name} is public and has no docstring")
+        kind = "class" if inspect.isclass(value) else "function" if callable(value) else "value"
+        home = getattr(value, "__module__", None)
+        groups[kind].append(f"::: {home}.{value.__qualname__}" if home else f"### {name}")
+    lines = [
+        "# From Python",
+        "",
+        "`import beliefnest as bn`; everything below is `bn.NAME`. Positions are scenario",
+        "coordinates in blocks, y up; angles are Mineflayer's radians; 20 ticks are a second.",
+        "Errors have [a page of their own](errors.md).",
+        "",
+    ]
+    for kind, title in NAMES_OF_KINDS.items():
+        if groups[kind]:
+            lines += [f"## {title}", "", *(f"{each}\n" for each in groups[kind])]
+    return "\n".join(lines)
+
+
+def commands_page() -> str:
+    """Every command with its arguments and options, as the command line itself describes them."""
+    command = typer.main.get_command(app)
+    lines = [
+        "# Commands",
+        "",
+        "Results go to stdout, progress to stderr. The exit status is 0 if everything was as the",
+        "scenario expects, 1 if something was not, 2 for wrong input (one line says what and",
+        "where), 3 if a world or a model failed.",
+    ]
+    subcommands: Mapping[str, click.Command] = getattr(command, "commands", {})
+    for name, sub in sorted(subcommands.items()):
+        lines += ["", f"## {name}", "", sub.help or "", "", *_parameters(name, sub)]
+    return "\n".join(lines)
+
+
+def _parameters(name: str, command: Any) -> Iterator[str]:
+    arguments = [each for each in command.params if each.param_type_name == "argument"]
+    usage = " ".join(
+        each.name.upper() if each.required else f"[{each.name.upper()}]" for each in arguments
+    )
+    yield f"`beliefnest {name} {usage} [OPTIONS]`".replace("  ", " ")
+    yield ""
+    yield "| argument or option | default | meaning |"
+    yield "|---|---|---|"
+    for each in command.params:
+        is_argument = each.param_type_name == "argument"
+        label = each.name.upper() if is_argument else ", ".join([*each.opts, *each.secondary_opts])
+        default = "" if each.default in (None, (), []) or is_argument else f"`{each.default}`"
+        yield f"| `{label}` | {default} | {each.help or ''} |"
+
+
+def scenario_page() -> str:
+    """Every key of a scenario file, from its schema."""
+    defs = schema()["$defs"]
+    lines = [
+        "# Keys of a scenario file",
+        "",
+        "The same as [the JSON schema](../scenario.schema.json), to read. How the keys are used is",
+        "shown in [Writing a scenario](../scenarios.md).",
+    ]
+    for name, entry in defs.items():
+        if name.endswith("Override"):
+            continue
+        lines += ["", f"## {_title(name)}", "", entry.get("description", ""), ""]
+        lines += ["| key | type | default | meaning |", "|---|---|---|---|"]
+        required = set(entry.get("required", ()))
+        for key, value in entry.get("properties", {}).items():
+            default = "required" if key in required else _short(value.get("default"))
+            lines.append(
+                f"| `{key}` | {_type(value)} | {default} | {value.get('description', '')} |"
+            )
+    return "\n".join(lines)
+
+
+def _title(name: str) -> str:
+    words = re.findall(r"[A-Z][a-z]*", name)
+    return " ".join(words[:-1] if words[-1] in ("Entry", "File") else words) or name
+
+
+def _short(default: object) -> str:
+    if default in ("", [], {}):
+        return "none"
+    return "none" if default is None else "" if isinstance(default, dict) else f"`{default}`"
+
+
+def _type(value: Mapping[str, Any]) -> str:
+    if "$ref" in value:
+        title = _title(value["$ref"].rsplit("/", 1)[-1])
+        return f"[{title}](#{title.lower().replace(' ', '-')})"
+    if "anyOf" in value:
+        return " or ".join(_type(each) for each in value["anyOf"])
+    if "enum" in value:
+        return " or ".join(f"`{each}`" for each in value["enum"])
+    if "prefixItems" in value:
+        return "[" + ", ".join(_type(each) for each in value["prefixItems"]) + "]"
+    inside = value.get("items") or value.get("additionalProperties")
+    if isinstance(inside, dict):
+        return ("list of " if "items" in value else "mapping to ") + _type(inside)
+    return str(value.get("type", "anything"))
+
+
+def events_page() -> str:
+    """Every kind of event, with the names that prompts use."""
+    from beliefnest.prompts.actions import ACTION_NAMES
+
+    lines = [
+        "# Events",
+        "",
+        "What can happen during a tick (`state.events`, `result.events`, exported tables).",
+        "",
+        "| kind | in prompts |",
+        "|---|---|",
+    ]
+    lines += [f"| `{kind.value}` | {_code(ACTION_NAMES.get(kind))} |" for kind in EventKind]
+    return "\n".join([*lines, "", "::: beliefnest.world.values.Event", ""])
+
+
+def _code(text: str | None) -> str:
+    return f"`{text}`" if text else ""
+
+
+def errors_page() -> str:
+    """Every error that is raised on purpose."""
+    lines = [
+        "# Errors",
+        "",
+        "All derive from `bn.BeliefNestError`. A message says what was found, where, and what to",
+        "do. The status is what the command line ends with.",
+        "",
+        "| error | status | when |",
+        "|---|---|---|",
+    ]
+    for name in errors.__all__:
+        error = getattr(errors, name)
+        when = " ".join((inspect.getdoc(error) or "").split())
+        lines.append(f"| `bn.{name}` | {error.exit_status} | {when} |")
+    return "\n".join(lines)
