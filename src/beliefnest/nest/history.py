@@ -115,6 +115,25 @@ class History:
             self._advance(key, forest, position)
             yield forest
 
+    def walk(self, key: TimelineKey, paths: Sequence[Path]) -> Forest:
+        """A forest with several nodes at a timeline's beginning; it is the caller's own.
+
+        `advance` takes it on.
+        """
+        first, *others = paths
+        forest = self._begun(key, first)
+        for path in others:
+            if path not in forest.plots.index:
+                start = len(key.path)
+                chain = [path[:depth] for depth in range(start, len(path) + 1)]
+                other = self._begun(key, path)
+                forest.adopt(other, [node for node in chain if node not in forest.plots.index])
+        return forest
+
+    def advance(self, key: TimelineKey, forest: Forest, position: int) -> None:
+        """Take a forest of `walk` on to a number of entries of its timeline."""
+        self._advance(key, forest, position)
+
     def note(self, key: TimelineKey) -> None:
         """Keep up with a timeline, so that who asks for a belief need not wait for long."""
         head, count = self._heads.get(key), self._journal.info(key).entries

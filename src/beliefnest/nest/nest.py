@@ -16,6 +16,7 @@ from beliefnest.nest.compare import Difference, compare, false_beliefs
 from beliefnest.nest.engine import Engine
 from beliefnest.nest.explore import Attempt, Exploration, Score
 from beliefnest.nest.paths import parse_path
+from beliefnest.nest.reader import Reader
 from beliefnest.nest.runlog import FileLog
 from beliefnest.nest.saved import decode_start, encode_start
 from beliefnest.nest.script import STEP, steps_played
@@ -220,6 +221,11 @@ class Nest:
     def agents(self) -> tuple[str, ...]:
         """Names of all agents, sorted."""
         return self._engine.agents
+
+    @property
+    def reader(self) -> Reader:
+        """What viewers read of the nest, on any of its timelines."""
+        return Reader(self._engine)
 
     @property
     def tick(self) -> int:

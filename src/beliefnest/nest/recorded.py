@@ -9,6 +9,7 @@ from beliefnest.nest.engine import MAIN, Engine
 from beliefnest.nest.nest import Past
 from beliefnest.nest.overtime import Moment, over_time
 from beliefnest.nest.paths import parse_path
+from beliefnest.nest.reader import Reader
 from beliefnest.nest.runlog import FileLog
 from beliefnest.nest.saved import decode_start
 from beliefnest.nest.setting import Setting
@@ -82,6 +83,11 @@ class RecordedNest:
     def agents(self) -> tuple[str, ...]:
         """Names of all agents, sorted."""
         return self._engine.agents
+
+    @property
+    def reader(self) -> Reader:
+        """What viewers read of the run, on any of its timelines."""
+        return Reader(self._engine)
 
     def versions(self) -> Sequence[Mapping[str, str]]:
         """Program to version, when the run began and whenever it was resumed with others."""

@@ -1,0 +1,127 @@
+"""What viewers read of a nest beside states: timelines, nodes over time, reasons, looks."""
+
+from collections.abc import Sequence
+from copy import copy
+
+from beliefnest.belief.forest import Forest
+from beliefnest.nest.engine import Engine
+from beliefnest.nest.explain import element_of, explain
+from beliefnest.nest.explanation import Explanation, Sighting
+from beliefnest.nest.history import History
+from beliefnest.nest.looks import look_at_agent, look_at_block
+from beliefnest.nest.setting import Setting
+from beliefnest.timeline.journal import Entry, TimelineInfo, TimelineKey
+from beliefnest.timeline.records import ProgramRecord, PromptRecord
+from beliefnest.world.values import Position
+
+__all__ = ["Reader"]
+
+Path = tuple[str, ...]
+
+
+class Reader:
+    """Reads one nest, live or recorded, on any of its timelines; it changes nothing.
+
+    Attributes:
+        history: From the journal to any node.
+    """
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self.history: History = engine.history
+
+    @property
+    def setting(self) -> Setting:
+        """What the nest started from."""
+        return self._engine.setting
+
+    @property
+    def agents(self) -> tuple[str, ...]:
+        """Names of all agents, sorted."""
+        return self._engine.agents
+
+    @property
+    def seed(self) -> int:
+        """Drives every random number."""
+        return self._engine.seed
+
+    def timelines(self) -> Sequence[TimelineInfo]:
+        """All timelines, in order of creation."""
+        with self._engine.turn:
+            return tuple(self._engine.journal.timelines())
+
+    def selected(self) -> set[TimelineKey]:
+        """The timelines that simulators in control mode are on."""
+        with self._engine.turn:
+            return set(self._engine.selected.values())
+
+    def programs(self) -> Sequence[ProgramRecord]:
+        """All programs that ran, in order of their end."""
+        with self._engine.turn:
+            return tuple(self._engine.log.programs())
+
+    def prompts(self) -> Sequence[PromptRecord]:
+        """All requests to models with what came of them, in order."""
+        with self._engine.turn:
+            return tuple(self._engine.log.prompts())
+
+    def entries(self, key: TimelineKey, start: int, stop: int) -> Sequence[Entry]:
+        """Entries of a timeline, from number `start` to before `stop`."""
+        with self._engine.turn:
+            return tuple(self._engine.journal.entries(key, start, stop))
+
+    def walk(self, key: TimelineKey, paths: Sequence[Path]) -> Forest:
+        """A forest with nodes of a timeline, at its beginning; `advance` takes it on."""
+        with self._engine.turn:
+            return self.history.walk(key, paths)
+
+    def advance(self, key: TimelineKey, forest: Forest, position: int) -> None:
+        """Take a forest of `walk` on to a number of entries of its timeline."""
+        with self._engine.turn:
+            self.history.advance(key, forest, position)
+
+    def explain(
+        self,
+        key: TimelineKey,
+        path: Path,
+        tick: int,
+        *,
+        container: Position | None = None,
+        agent: str | None = None,
+        block: Position | None = None,
+    ) -> Explanation:
+        """As `Simulator.explain`, of a node on any timeline, at any tick of it.
+
+        Raises:
+            InputError: None of the three was given, or several were.
+            PathError: There is no such agent.
+            PositionError: The position is outside the box.
+            TickError: The tick is in the future or before the start.
+        """
+        with self._engine.turn:
+            element = element_of(self._engine, container, agent, block)
+            return explain(self._on(key), path, tick, element)
+
+    def look(
+        self, key: TimelineKey, path: Path, tick: int, viewer: str, target: str | Position
+    ) -> Sighting | None:
+        """The look of an agent at another or at a block, in a simulator; None: it is nowhere."""
+        with self._engine.turn:
+            reading = self._on(key).reading(path, tick)
+            if reading.agents[viewer].position is None:
+                return None
+            box = self.setting.snapshot.box
+            if isinstance(target, str):
+                return look_at_agent(reading, box, viewer, target)
+            return look_at_block(reading, box, viewer, target)
+
+    def _on(self, key: TimelineKey) -> Engine:
+        """The engine with the simulator of a timeline on it, and nobody below it on another."""
+        engine = copy(self._engine)
+        above = {
+            path: other
+            for path, other in self._engine.selected.items()
+            if key.path[: len(path)] == path
+        }
+        engine.selected = {**above, key.path: key}
+        return engine
