@@ -7,10 +7,13 @@ import errno
 import os
 import stat
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, TypeVar
 
-__all__ = ["open_regular", "read_regular", "read_regular_text"]
+import msgspec
 
+__all__ = ["decode_json", "open_regular", "read_regular", "read_regular_text"]
+
+_T = TypeVar("_T")
 _LONGEST = 64 * 2**20
 _KINDS = (
     (stat.S_ISDIR, "it is a folder"),
@@ -58,6 +61,20 @@ def read_regular_text(path: Path, longest: int = _LONGEST) -> str:
     """
     text = read_regular(path, longest).decode()
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def decode_json(content: bytes | str, form: type[_T]) -> _T:
+    """A value of a form from JSON.
+
+    Raises:
+        msgspec.DecodeError: The content is no JSON, is nested without end, or has another form.
+    """
+    try:
+        return msgspec.json.decode(content, type=form)
+    except RecursionError:
+        raise msgspec.DecodeError("it is nested too deep") from None
+    except UnicodeError as fault:
+        raise msgspec.DecodeError(f"it is no UTF-8 text: {fault}") from None
 
 
 def _kind(mode: int) -> str:

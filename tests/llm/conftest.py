@@ -226,6 +226,19 @@ class Handler(BaseHTTPRequestHandler):
 
 @pytest.fixture
 def fake() -> Iterator[FakeOpenAI]:
+    with serving() as served:
+        yield served
+
+
+@pytest.fixture(scope="module")
+def neighbour() -> Iterator[FakeOpenAI]:
+    """One server for all examples of a property."""
+    with serving() as served:
+        yield served
+
+
+@contextlib.contextmanager
+def serving() -> Iterator[FakeOpenAI]:
     served = FakeOpenAI()
 
     class Bound(Handler):

@@ -219,7 +219,7 @@ def _check_same(path: Path, settings: Mapping[str, object], scenario: Scenario) 
 def _read(file: Path) -> dict[str, Any]:
     try:
         content = json.loads(read_regular_text(file))
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise InputError(f"{file} cannot be read: {error}; name another folder") from None
     if not isinstance(content, dict):
         raise InputError(f"{file} is not the report of a run; name another folder")

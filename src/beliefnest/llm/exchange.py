@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import msgspec
 
+from beliefnest.files import decode_json
 from beliefnest.llm.messages import Message, Sampling, Usage
 
 __all__ = ["Exchange", "decode_exchange", "encode_exchange", "request_key"]
@@ -45,4 +46,4 @@ def decode_exchange(line: bytes) -> Exchange:
     Raises:
         msgspec.MsgspecError: The line is not an exchange.
     """
-    return msgspec.json.decode(line, type=Exchange)
+    return decode_json(line, Exchange)

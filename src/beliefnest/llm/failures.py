@@ -4,6 +4,7 @@ from collections.abc import Iterable
 
 from beliefnest.errors import ModelError
 from beliefnest.llm.messages import Usage
+from beliefnest.world.texts import on_one_line
 
 __all__ = ["TransientModelError", "UnusableAnswerError", "excerpt", "without_secrets"]
 
@@ -36,7 +37,7 @@ class UnusableAnswerError(ModelError):
 
 def excerpt(text: str) -> str:
     """The beginning of a text, on one line, for a message."""
-    line = " ".join(text[: 2 * _LONGEST_EXCERPT].split())
+    line = on_one_line(text[: 2 * _LONGEST_EXCERPT])
     cut = len(text) > 2 * _LONGEST_EXCERPT or len(line) > _LONGEST_EXCERPT
     return f"{line[:_LONGEST_EXCERPT]}..." if cut else line
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 
 from beliefnest.errors import ModelError
-from beliefnest.files import read_regular
+from beliefnest.files import decode_json, read_regular
 from beliefnest.llm.exchange import Exchange, decode_exchange, encode_exchange
 from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
@@ -109,7 +109,7 @@ def load_script(name: str, path: Path) -> ScriptedModel:
         ModelError: The file cannot be read or is not a list of texts.
     """
     try:
-        answers = msgspec.json.decode(_content(name, path), type=list[str])
+        answers = decode_json(_content(name, path), list[str])
     except msgspec.MsgspecError as error:
         raise ModelError(f"{path} is not a JSON list of answers: {error}") from None
     return ScriptedModel(name, deque(answers))

@@ -5,8 +5,9 @@ from collections.abc import Callable, Coroutine, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from beliefnest.errors import ModelError
+from beliefnest.errors import BeliefNestError, ModelError
 from beliefnest.llm.clock import Clock
+from beliefnest.llm.connecting import TooManyBytesError, bounded_client
 from beliefnest.llm.failures import (
     TransientModelError,
     UnusableAnswerError,
@@ -15,8 +16,10 @@ from beliefnest.llm.failures import (
 )
 from beliefnest.llm.messages import Answer, Message, Sampling, Usage
 from beliefnest.llm.providers import Endpoint
+from beliefnest.world.texts import is_well_formed
 
 if TYPE_CHECKING:
+    import httpx2
     from pydantic_ai.messages import ModelMessage, ModelResponse
     from pydantic_ai.models import Model as ChatModel
     from pydantic_ai.settings import ModelSettings
@@ -25,6 +28,15 @@ __all__ = ["AnswerLimits", "RemoteModel"]
 
 _CHARACTERS_PER_TOKEN = 4
 """For servers that do not say what they counted; a low guess would let a limit slip."""
+
+_BYTES_PER_CHARACTER = 512
+"""What a stream may send for each character of an answer: a piece may hold a single letter."""
+
+_BYTES_BESIDES = 2**20
+"""What a stream may send besides."""
+
+_MOST_TOKENS = 10**9
+"""What a server may say it counted; with more a guess is used instead."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,21 +87,46 @@ class RemoteModel:
             return _run(lambda: self._ask(messages, sampling))
         except (AgentRunError, UserError) as error:
             _refuse(self, error)
+        except BeliefNestError:
+            raise
+        except Exception as error:  # noqa: BLE001  # whatever a server's nonsense lets a library raise
+            raise self._unreadable(messages, error) from None
+
+    def _unreadable(self, messages: Sequence[Message], error: Exception) -> UnusableAnswerError:
+        found: BaseException | None = error
+        while found is not None and not isinstance(found, TooManyBytesError):
+            found = found.__cause__ or found.__context__
+        what = str(found) if found else f"{type(error).__name__}: {error}"
+        return UnusableAnswerError(
+            f"{self.name} at {self.endpoint.url} gave an answer that cannot be read "
+            f"({excerpt(_clean(self, what))}); ask again or use another model",
+            _guessed_usage(self, messages, 0),
+        )
 
     async def _ask(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
+        import asyncio
+
         from pydantic_ai.direct import model_request_stream
 
-        model = _chat_model(self.endpoint, self.model)
-        settings = _settings(sampling, self.limits.seconds)
-        end = self.clock.now() + self.limits.seconds
-        async with model:
-            request = model_request_stream(model, _history(messages), model_settings=settings)
-            async with request as stream:
+        seconds = self.limits.seconds
+        settings = _settings(sampling, seconds)
+        end = self.clock.now() + seconds
+        longest = _BYTES_BESIDES + _BYTES_PER_CHARACTER * self.limits.characters
+        try:
+            # A stream without an event would never reach the clock.
+            async with (
+                asyncio.timeout(seconds),
+                bounded_client(seconds, longest) as client,
+                _chat_model(self.endpoint, self.model, client) as model,
+                model_request_stream(model, _history(messages), model_settings=settings) as stream,
+            ):
                 received = 0
                 async for event in stream:
                     received += _length(event)
                     self._hold_limits(messages, received, end)
                 return _answer(self, messages, stream.get())
+        except TimeoutError:
+            raise UnusableAnswerError(_too_slow(self), _guessed_usage(self, messages, 0)) from None
 
     def _hold_limits(self, messages: Sequence[Message], received: int, end: float) -> None:
         """Give up an answer that is too long, or later than `end` on the clock."""
@@ -126,32 +163,39 @@ def _run(ask: Callable[[], Coroutine[Any, Any, Answer]]) -> Answer:
         return pool.submit(lambda: asyncio.run(ask())).result()
 
 
-def _chat_model(endpoint: Endpoint, model: str) -> "ChatModel":
+def _chat_model(endpoint: Endpoint, model: str, client: "httpx2.AsyncClient") -> "ChatModel":
     key, url = endpoint.key.value, endpoint.url
     match endpoint.provider.protocol:
         case "anthropic":
             from pydantic_ai.models.anthropic import AnthropicModel
             from pydantic_ai.providers.anthropic import AnthropicProvider
 
-            return AnthropicModel(model, provider=AnthropicProvider(api_key=key, base_url=url))
+            return AnthropicModel(
+                model, provider=AnthropicProvider(api_key=key, base_url=url, http_client=client)
+            )
         case "google":
             from pydantic_ai.models.google import GoogleModel
             from pydantic_ai.providers.google import GoogleProvider
 
-            return GoogleModel(model, provider=GoogleProvider(api_key=key or "", base_url=url))
+            return GoogleModel(
+                model,
+                provider=GoogleProvider(api_key=key or "", base_url=url, http_client=client),
+            )
         case "openai":
             from pydantic_ai.models.openai import OpenAIChatModel
             from pydantic_ai.providers.openai import OpenAIProvider
 
             # Chat completions and not the newer responses: only these take a seed.
-            openai = OpenAIProvider(api_key=key or "none", base_url=url)
+            openai = OpenAIProvider(api_key=key or "none", base_url=url, http_client=client)
             return OpenAIChatModel(model, provider=openai)
         case "compatible":
             from pydantic_ai.models.openai import OpenAIChatModel
             from pydantic_ai.providers.openai_compatible import OpenAICompatibleProvider
 
             name = endpoint.provider.name
-            compatible = OpenAICompatibleProvider(name, base_url=url, api_key=key)
+            compatible = OpenAICompatibleProvider(
+                name, base_url=url, api_key=key, http_client=client
+            )
             return OpenAIChatModel(model, provider=compatible)
 
 
@@ -228,6 +272,11 @@ def _answer(model: RemoteModel, messages: Sequence[Message], response: "ModelRes
             "raise max_output_tokens or ask for less",
             usage,
         )
+    if not is_well_formed(text):
+        raise UnusableAnswerError(
+            f"{model.name} gave an answer with half a character in it; ask again",
+            usage,
+        )
     if not text.strip():
         raise UnusableAnswerError(
             f"{model.name} gave an empty answer; ask again or use another model", usage
@@ -237,10 +286,16 @@ def _answer(model: RemoteModel, messages: Sequence[Message], response: "ModelRes
 
 def _usage(model: RemoteModel, messages: Sequence[Message], response: "ModelResponse") -> Usage:
     counted = response.usage
-    if not (counted.input_tokens or counted.output_tokens):
+    tokens = (counted.input_tokens, counted.output_tokens)
+    # The library hands on what the server said, whatever that is.
+    if not any(tokens) or not all(_is_count(each) for each in tokens):
         return _guessed_usage(model, messages, len(response.text or ""))
     cost = 0.0 if model.endpoint.provider.free else _cost(response)
     return Usage(1, counted.input_tokens, counted.output_tokens, cost)
+
+
+def _is_count(value: object) -> bool:
+    return isinstance(value, int) and 0 <= value <= _MOST_TOKENS
 
 
 def _guessed_usage(model: RemoteModel, messages: Sequence[Message], received: int) -> Usage:
@@ -256,7 +311,8 @@ def _guessed_tokens(characters: int) -> int:
 def _cost(response: "ModelResponse") -> float | None:
     """US dollars by the library's price list; None for a model that is not on it."""
     try:
-        return float(response.cost().total_price)
+        price = float(response.cost().total_price)
+        return price if math.isfinite(price) and price >= 0 else None
     except (LookupError, ValueError, AssertionError):
         return None
 

@@ -10,7 +10,7 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
 from beliefnest.errors import ScenarioError
-from beliefnest.files import read_regular_text
+from beliefnest.files import decode_json, read_regular_text
 from beliefnest.scenarios.document import Document, Node
 
 __all__ = ["parse_yaml", "read_yaml", "templates_file"]
@@ -73,7 +73,7 @@ def _text(path: Path) -> str:
 
 def _templates(path: Path) -> dict[str, str]:
     try:
-        return msgspec.json.decode(_text(path), type=dict[str, str])
+        return decode_json(_text(path), dict[str, str])
     except msgspec.MsgspecError as error:
         raise ScenarioError(f"{path}: is no mapping from names to texts: {error}") from None
 

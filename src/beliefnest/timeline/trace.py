@@ -14,7 +14,7 @@ import msgspec
 import numpy as np
 
 from beliefnest.errors import BeliefNestError, InputError
-from beliefnest.files import open_regular
+from beliefnest.files import decode_json, open_regular
 from beliefnest.perception.options import ContainerMode, Perception
 from beliefnest.timeline.events import event_from
 from beliefnest.timeline.journal import Entry, Journal, TimelineKey
@@ -315,6 +315,6 @@ class _Reader:
 
 def _decoded(line: bytes, kind: Any) -> Any:
     try:
-        return msgspec.json.decode(line, type=kind)
-    except (msgspec.MsgspecError, UnicodeDecodeError) as fault:
+        return decode_json(line, kind)
+    except msgspec.MsgspecError as fault:
         raise InputError(str(fault)) from fault

@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.files import read_regular
+from beliefnest.files import decode_json, read_regular
 from beliefnest.scenarios.stories.playing import check_question
 from beliefnest.scenarios.stories.questions import Question, parse_question
 from beliefnest.scenarios.stories.story import Story, read_story
@@ -60,10 +60,10 @@ def read_items(path: Path) -> tuple[StoryItems, ...]:
             cannot be understood; the message names the row, and the line of the story.
     """
     try:
-        rows = msgspec.json.decode(read_regular(path), type=list[_Row])
+        rows = decode_json(read_regular(path), list[_Row])
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}; give a JSON file") from None
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+    except msgspec.DecodeError as error:
         raise InputError(
             f"{path}: {error}; give an array of rows with 'story', 'question' and 'answer'"
         ) from None
