@@ -29,11 +29,11 @@ if TYPE_CHECKING:
         UnknownNameError,
         WorldError,
     )
-    from beliefnest.nest.compare import Difference, Pose
-    from beliefnest.nest.explanation import Contents, Explanation
-    from beliefnest.nest.explore import Attempt
-    from beliefnest.nest.nest import Nest
-    from beliefnest.nest.simulator import Simulator
+    from beliefnest.nest.acting.exploration import Attempt
+    from beliefnest.nest.explain.comparison import Difference, Pose
+    from beliefnest.nest.explain.explanation import Contents, Explanation
+    from beliefnest.nest.face.nest import Nest
+    from beliefnest.nest.face.simulator import Simulator
     from beliefnest.perception.options import Perception, Radius
     from beliefnest.scenarios import Scenario
     from beliefnest.world.scripted import ScriptedWorld
@@ -73,20 +73,20 @@ __all__ = [
 ]
 
 _HOMES = {
-    "Attempt": "beliefnest.nest.explore",
-    "Contents": "beliefnest.nest.explanation",
-    "Difference": "beliefnest.nest.compare",
-    "Explanation": "beliefnest.nest.explanation",
+    "Attempt": "beliefnest.nest.acting.exploration",
+    "Contents": "beliefnest.nest.explain.explanation",
+    "Difference": "beliefnest.nest.explain.comparison",
+    "Explanation": "beliefnest.nest.explain.explanation",
     "InitialBelief": "beliefnest.belief.entries",
-    "Nest": "beliefnest.nest.nest",
+    "Nest": "beliefnest.nest.face.nest",
     "Perception": "beliefnest.perception.options",
-    "Pose": "beliefnest.nest.compare",
+    "Pose": "beliefnest.nest.explain.comparison",
     "ProcessLimits": "beliefnest.bodies.limits",
     "ProgramResult": "beliefnest.bodies.protocol",
     "Radius": "beliefnest.perception.options",
     "Scenario": "beliefnest.scenarios",
     "ScriptedWorld": "beliefnest.world.scripted",
-    "Simulator": "beliefnest.nest.simulator",
+    "Simulator": "beliefnest.nest.face.simulator",
 }
 
 

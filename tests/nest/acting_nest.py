@@ -12,12 +12,12 @@ from unittest.mock import patch
 
 import beliefnest as bn
 from beliefnest.llm import Answer, Message, Sampling
-from beliefnest.nest.checkpoints import Pace
+from beliefnest.nest.past.checkpoints import Pace
 
 BOX = ((0, 0, 0), (6, 2, 6))
 CHEST = (3, 0, 3)
 AGENTS = {"ann": (1.5, 0.0, 1.5), "bob": (5.5, 0.0, 5.5)}
-OFTEN = patch("beliefnest.nest.history.Pace", lambda: Pace(every=2, lag=1, stretch=3))
+OFTEN = patch("beliefnest.nest.past.history.Pace", lambda: Pace(every=2, lag=1, stretch=3))
 """Makes nests that leave checkpoints every few entries, as others do in long runs."""
 
 PATHS = ("/", "/ann", "/ann/bob", "/bob")

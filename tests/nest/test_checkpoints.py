@@ -13,14 +13,14 @@ from tests.nest.comparing import everything, values
 from tests.nest.stories import CONTAINERS, NAMES, Stage, Stories
 
 import beliefnest as bn
-from beliefnest.nest.checkpoints import Pace
+from beliefnest.nest.past.checkpoints import Pace
 from beliefnest.timeline.store import SqliteJournal
 
 PATHS = ["/", "/ann", "/bob", "/ann/bob", "/bob/cat/ann"]
 BOX = ((0, 0, 0), (7, 3, 7))
 TICKS = 110
 PACE_USED = Pace(every=20, lag=5, stretch=16)
-PACE = patch("beliefnest.nest.history.Pace", lambda: PACE_USED)
+PACE = patch("beliefnest.nest.past.history.Pace", lambda: PACE_USED)
 PACES = st.builds(Pace, every=st.integers(1, 4), lag=st.integers(0, 2), stretch=st.integers(1, 4))
 PATH = st.sampled_from(PATHS)
 PLACES = [*CONTAINERS, (3, 0, 3), (0, 1, 4)]
@@ -39,7 +39,7 @@ class Twins:
 
     def __init__(self, story, folder, pace):
         self.plain = Stage(story)
-        self.pace = patch("beliefnest.nest.history.Pace", lambda: pace)
+        self.pace = patch("beliefnest.nest.past.history.Pace", lambda: pace)
         self.file = Path(folder) / "run.bn"
         with self.pace:
             self.stored = Stage(story, self.file)
@@ -182,7 +182,7 @@ def test_checkpoints_of_another_program_are_left_alone(tmp_path):
     with walked(tmp_path / "run.bn", TICKS) as nest:
         expected = shown_here(nest)
     left = kept(tmp_path / "run.bn")
-    other = patch("beliefnest.nest.checkpoints._program", lambda: b"another")
+    other = patch("beliefnest.nest.past.checkpoints._program", lambda: b"another")
     with other, counted_entries() as count, resumed(tmp_path / "run.bn") as nest:
         assert shown_here(nest) == expected
         assert count.read >= TICKS

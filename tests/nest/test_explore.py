@@ -10,7 +10,7 @@ from tests.nest.comparing import everything
 import beliefnest as bn
 from beliefnest.bodies.channel import Channel
 from beliefnest.bodies.worlds import Worlds
-from beliefnest.nest import explore as exploring
+from beliefnest.nest.acting import exploration as exploring
 
 ROOM = {
     "name": "room",

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 
 import beliefnest as bn
 from beliefnest.bodies.worlds import Worlds
-from beliefnest.nest.replay import replay
-from beliefnest.nest.setting import Setting
+from beliefnest.nest.acting.replay import replay
+from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.compare import first_difference
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.store import SqliteJournal

@@ -14,7 +14,7 @@ import beliefnest as bn
 from beliefnest.bodies.channel import Channel
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.cli.app import run_command_line
-from beliefnest.nest.recorder import Recorder
+from beliefnest.nest.acting.frame_recorder import FrameRecorder
 
 ROOM = {
     "name": "room",
@@ -95,7 +95,7 @@ def world_of(nest):
 def at_a_frame(monkeypatch, act, number=1) -> Iterator[None]:
     """Do something in another thread once that many frames have come, and wait for it."""
     seen = []
-    take = Recorder.__call__
+    take = FrameRecorder.__call__
 
     def watched(self, frame):
         take(self, frame)
@@ -106,7 +106,7 @@ def at_a_frame(monkeypatch, act, number=1) -> Iterator[None]:
             thread.join()
 
     with monkeypatch.context() as patched:
-        patched.setattr(Recorder, "__call__", watched)
+        patched.setattr(FrameRecorder, "__call__", watched)
         yield
     assert len(seen) >= number
 
@@ -252,7 +252,7 @@ def test_a_call_that_is_interrupted_has_not_happened(opened, monkeypatch, undist
     with opened() as nest:
         prepare(nest)
         with monkeypatch.context() as patched, pytest.raises(KeyboardInterrupt):
-            patched.setattr(Recorder, "__call__", interrupt)
+            patched.setattr(FrameRecorder, "__call__", interrupt)
             nest["/"].run("ann", TO_AND_FRO, timeout_ticks=LONG)
         assert (go_on(nest), held(nest), frames(nest)) == undisturbed
 

@@ -6,7 +6,7 @@ from tests.nest.places import BOX, GAP, MEETING, WEST
 import beliefnest as bn
 from beliefnest.errors import ModelError
 from beliefnest.llm import Answer, Message, Sampling, Usage, ask_for_program
-from beliefnest.nest import nest as nest_module
+from beliefnest.nest.face import nest as nest_module
 from beliefnest.timeline.journal import TimelineKey
 
 AGENTS = {"observer": WEST, "sally": MEETING, "anne": GAP}

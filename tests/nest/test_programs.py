@@ -7,7 +7,7 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.bodies.protocol import Unfinished
-from beliefnest.nest.recorded import RecordedNest
+from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.world.values import Event, EventKind
 
 

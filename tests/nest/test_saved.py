@@ -6,8 +6,8 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.errors import StoreError
-from beliefnest.nest.saved import decode_start, encode_start
-from beliefnest.nest.setting import Setting, Step
+from beliefnest.nest.past.setting import Setting, Step
+from beliefnest.nest.past.setting_codec import decode_start, encode_start
 from beliefnest.scenarios import Scenario
 from beliefnest.world.scripted import ScriptedWorld
 

@@ -10,7 +10,7 @@ from beliefnest.bodies.scripted import ScriptedBodies
 from beliefnest.errors import UnknownNameError
 from beliefnest.world.frames import Snapshot
 
-__all__ = ["WORLDS", "LateWorld", "Worlds", "check_world", "open_world"]
+__all__ = ["WORLDS", "LazyWorld", "Worlds", "check_world", "open_world"]
 
 WORLDS = ("embedded", "scripted")
 """Names of the worlds."""
@@ -50,7 +50,7 @@ def check_world(name: str) -> None:
         raise UnknownNameError(f"there is no world {name!r}; there are {', '.join(WORLDS)}")
 
 
-class LateWorld:
+class LazyWorld:
     """A world that is started when its first body is opened.
 
     Args:
@@ -86,7 +86,7 @@ class LateWorld:
 
     def another(self) -> World:
         """One more world of the kind, started with its first body."""
-        return LateWorld(self._name, self._seed, self._limits)
+        return LazyWorld(self._name, self._seed, self._limits)
 
     def interrupt(self) -> None:
         """End what it is doing for another thread."""
@@ -138,10 +138,10 @@ class Worlds:
         """
         if name not in self._worlds:
             self._worlds[name] = open_world(name, self._seed, self._limits)
-        return _Lent(self._worlds[name])
+        return _SharedWorld(self._worlds[name])
 
 
-class _Lent:
+class _SharedWorld:
     """A world for one nest only."""
 
     def __init__(self, world: World) -> None:

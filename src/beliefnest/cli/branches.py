@@ -11,9 +11,9 @@ from rich.tree import Tree
 
 from beliefnest.cli.console import stdout
 from beliefnest.cli.folder import stores_in
-from beliefnest.nest.paths import path_text
 from beliefnest.timeline.journal import TimelineInfo, TimelineKey
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.world.paths import path_text
 
 __all__ = ["show_branches"]
 

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from beliefnest.nest.nest import Progress as OnProgress
+from beliefnest.nest.face.nest import Progress as OnProgress
 
 __all__ = ["progress_on", "stdout"]
 

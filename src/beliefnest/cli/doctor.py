@@ -103,7 +103,7 @@ def _sight() -> str:
 
 
 def _world() -> str:
-    from beliefnest.nest.nest import Nest
+    from beliefnest.nest.face.nest import Nest
     from beliefnest.scenarios.scenario import Scenario
 
     started = time.perf_counter()

@@ -4,12 +4,12 @@ from collections.abc import Mapping
 
 from beliefnest.belief.entries import PerceivedEvent
 from beliefnest.belief.view import State
-from beliefnest.nest.nest import Nest
-from beliefnest.nest.paths import parse_path, path_text
+from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Arrives, Hears, Scenario, Stands
 from beliefnest.timeline.journal import Journal
 from beliefnest.viewer.scene import Caption, Row, Scene, decisive_tick, read_scene, read_trails
+from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.values import EventKind, Position
 
 __all__ = ["container_name", "point_text", "read_outcome_scene", "state_row", "titled"]

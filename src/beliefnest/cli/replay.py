@@ -11,10 +11,10 @@ import msgspec
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.cli.folder import stores_in
 from beliefnest.errors import InputError
-from beliefnest.nest.paths import path_text
-from beliefnest.nest.replay import Replayed, replay
-from beliefnest.nest.saved import decode_start
+from beliefnest.nest.acting.replay import Replayed, replay
+from beliefnest.nest.past.setting_codec import decode_start
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.world.paths import path_text
 
 __all__ = ["replay_runs"]
 

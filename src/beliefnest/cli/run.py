@@ -24,7 +24,7 @@ from beliefnest.llm.budget import Budget, RunLimits
 from beliefnest.llm.cache import CacheMode
 from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.llm.resolve import Connection, open_model, resolve_model
-from beliefnest.nest.nest import Nest
+from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.outcome import Outcome
 from beliefnest.scenarios.running import Asking, run_scenario
 from beliefnest.scenarios.scenario import Scenario

@@ -18,7 +18,7 @@ from beliefnest.cli.pictures import container_name, point_text, state_row, title
 from beliefnest.cli.report import state_json
 from beliefnest.cli.text import printable
 from beliefnest.errors import InputError
-from beliefnest.nest.recorded import RecordedNest
+from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.prompts.templates import Template, built_in_template, load_template
 from beliefnest.scenarios.loading import kept_scenario
 from beliefnest.scenarios.scenario import Scenario

@@ -1,1 +1,1 @@
-"""Simulators, paths, modes, and beliefs folded from timelines."""
+"""Simulators of beliefs: their recorded past, their bodies, explanations, and their face."""

@@ -8,8 +8,7 @@ import numpy as np
 
 from beliefnest.belief.entries import InitialBelief
 from beliefnest.files import read_regular_text
-from beliefnest.nest.paths import parse_path
-from beliefnest.nest.setting import Setting, Step
+from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.perception.options import Perception
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.format import (
@@ -41,6 +40,7 @@ from beliefnest.scenarios.space import (
     entry_mask,
 )
 from beliefnest.world.frames import Snapshot
+from beliefnest.world.paths import parse_path
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 

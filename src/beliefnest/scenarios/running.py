@@ -7,15 +7,15 @@ from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.llm.asking import NoUsableProgramError, Prompt, ask_for_program
 from beliefnest.llm.messages import Model, Sampling, Usage
-from beliefnest.nest.nest import Nest, Progress
-from beliefnest.nest.paths import parse_path, path_text
-from beliefnest.nest.simulator import Simulator
+from beliefnest.nest.face.nest import Nest, Progress
+from beliefnest.nest.face.simulator import Simulator
 from beliefnest.programs import skills
 from beliefnest.prompts import Template, built_in_template
 from beliefnest.prompts.rendering import LAST_ERROR
 from beliefnest.scenarios.judging import arrives, is_held, opened_by, opens
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Arrives, Opens, Probe, Scenario
+from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.values import Point, Position
 
 __all__ = ["Asking", "run_scenario"]

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from beliefnest.nest.setting import Setting
+from beliefnest.nest.past.setting import Setting
 from beliefnest.world.values import Items, Point, Position
 
 __all__ = ["Arrives", "Expectation", "Hears", "Holds", "Opens", "Probe", "Scenario", "Stands"]

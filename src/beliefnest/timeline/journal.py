@@ -13,6 +13,7 @@ from typing import Protocol
 
 from beliefnest.errors import BranchError, InputError, TickError
 from beliefnest.world.frames import Frame
+from beliefnest.world.paths import path_text
 from beliefnest.world.values import AgentState, Items, Position
 
 __all__ = [
@@ -33,7 +34,6 @@ __all__ = [
     "count_of_events",
     "is_found",
     "lineage",
-    "path_text",
 ]
 
 FOLLOW = "follow"
@@ -120,11 +120,6 @@ def is_found(entry: Entry, what: Sift) -> bool:
 def count_of_events(entry: Entry) -> int:
     """How many events an entry has."""
     return 0 if isinstance(entry, Edit) else len(entry.events)
-
-
-def path_text(path: tuple[str, ...]) -> str:
-    """A path as users write it."""
-    return "/" + "/".join(path)
 
 
 def branch_missing(key: TimelineKey, names: Iterable[str]) -> BranchError:

@@ -26,11 +26,11 @@ from beliefnest.timeline.journal import (
     check_append,
     check_base,
     check_place,
-    path_text,
 )
 from beliefnest.timeline.pieces import Pieces, decompressed
 from beliefnest.timeline.records import Records, path_from, path_to
 from beliefnest.world.frames import Snapshot
+from beliefnest.world.paths import path_text
 from beliefnest.world.values import AgentState
 
 __all__ = ["SqliteJournal"]

@@ -10,9 +10,10 @@ from typing import Any, Literal
 
 import numpy as np
 
-from beliefnest.timeline.journal import Entry, TimelineInfo, TimelineKey, path_text
+from beliefnest.timeline.journal import Entry, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.paths import path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, DroppedItem, Items, Position
 

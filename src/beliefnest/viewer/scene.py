@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.view import State
-from beliefnest.nest.nest import Nest, Past
+from beliefnest.nest.face.nest import Nest, Past
 from beliefnest.timeline.journal import Journal
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry

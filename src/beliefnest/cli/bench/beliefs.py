@@ -14,7 +14,7 @@ import numpy as np
 
 from beliefnest.cli.bench.figures import Figure
 from beliefnest.errors import BodyError
-from beliefnest.nest.nest import Nest
+from beliefnest.nest.face.nest import Nest
 from beliefnest.perception.options import Perception
 from beliefnest.perception.sight import Geometry, Sight
 from beliefnest.world.registry import Registry

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from beliefnest.cli.bench.figures import Figure, median_seconds
-from beliefnest.nest.nest import Nest
+from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario
 
 __all__ = ["measure"]

@@ -12,7 +12,7 @@ from beliefnest.bodies.node_files import node_command
 from beliefnest.cli.bench import restore
 from beliefnest.cli.bench.figures import Figure, median_seconds
 from beliefnest.errors import BodyError
-from beliefnest.nest.nest import Nest
+from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.values import TICKS_PER_SECOND
 

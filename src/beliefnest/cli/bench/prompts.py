@@ -10,7 +10,7 @@ from pathlib import Path
 
 from beliefnest.cli.bench.figures import Figure, median_seconds
 from beliefnest.errors import BodyError
-from beliefnest.nest.nest import Nest
+from beliefnest.nest.face.nest import Nest
 from beliefnest.perception.options import Perception
 from beliefnest.prompts import built_in_template
 from beliefnest.world.scripted import ScriptedWorld

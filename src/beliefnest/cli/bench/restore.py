@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from beliefnest.bodies.embedded import EmbeddedWorld
 from beliefnest.cli.bench.figures import Figure, median_seconds
 from beliefnest.errors import BodyError
-from beliefnest.nest.engine import Engine
+from beliefnest.nest.acting.engine import Engine
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.memory import MemoryJournal
 

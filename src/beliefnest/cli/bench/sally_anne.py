@@ -11,7 +11,7 @@ from pathlib import Path
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.cli.bench.figures import Figure, median_seconds
 from beliefnest.errors import BodyError
-from beliefnest.nest.nest import Nest
+from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.values import TICKS_PER_SECOND
 

@@ -15,13 +15,13 @@ from pathlib import Path
 from beliefnest.belief.view import State
 from beliefnest.cli.bench.figures import Figure, median_seconds
 from beliefnest.errors import StoreError
-from beliefnest.nest.history import History
-from beliefnest.nest.nest import Nest
-from beliefnest.nest.paths import parse_path
+from beliefnest.nest.face.nest import Nest
+from beliefnest.nest.past.history import History
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.frames import Frame
+from beliefnest.world.paths import parse_path
 from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.values import AgentState
 

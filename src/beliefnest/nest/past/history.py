@@ -15,9 +15,9 @@ from beliefnest.belief.forest import Forest
 from beliefnest.belief.ground import Ground
 from beliefnest.belief.planting import forked, planted
 from beliefnest.belief.reading import Reading
-from beliefnest.nest.checkpoints import Checkpoints, Pace
-from beliefnest.nest.eventlog import EventLog
-from beliefnest.nest.setting import Setting
+from beliefnest.nest.past.checkpoints import Checkpoints, Pace
+from beliefnest.nest.past.event_log import EventLog
+from beliefnest.nest.past.setting import Setting
 from beliefnest.perception.sight import Sight
 from beliefnest.timeline.journal import Edit, Entry, ForkPoint, Journal, Sift, TimelineKey
 from beliefnest.world.frames import Frame

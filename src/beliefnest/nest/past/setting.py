@@ -5,11 +5,14 @@ from dataclasses import dataclass, field
 
 from beliefnest.belief.entries import InitialBelief
 from beliefnest.errors import InputError, PathError
-from beliefnest.nest.paths import parse_path, path_text
 from beliefnest.perception.options import Perception
 from beliefnest.world.frames import Snapshot
+from beliefnest.world.paths import parse_path, path_text
 
-__all__ = ["Setting", "Step"]
+__all__ = ["MAIN", "Setting", "Step"]
+
+MAIN = "main"
+"""Name of the real world's first branch."""
 
 
 @dataclass(frozen=True, slots=True)

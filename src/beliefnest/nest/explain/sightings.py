@@ -8,16 +8,16 @@ import numpy as np
 
 from beliefnest.belief.entries import AgentBelief
 from beliefnest.belief.reading import Reading
-from beliefnest.nest.explanation import Sighting, View
+from beliefnest.nest.explain.explanation import Sighting, View
 from beliefnest.perception.sight import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT, Geometry
 from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position
 
-__all__ = ["look_at_agent", "look_at_block"]
+__all__ = ["sighting_of_agent", "sighting_of_block"]
 
 _Sees = Callable[[Geometry], bool]
 
 
-def look_at_block(reading: Reading, box: Box, viewer: str, place: Position) -> Sighting:
+def sighting_of_block(reading: Reading, box: Box, viewer: str, place: Position) -> Sighting:
     """The look of an agent of known pose at a block, inside a simulator."""
     here = reading.agents[viewer]
     cells = np.array([place])
@@ -35,7 +35,7 @@ def look_at_block(reading: Reading, box: Box, viewer: str, place: Position) -> S
     return _with_blocker(look, reading, box, without, _eye(here), [centre])
 
 
-def look_at_agent(reading: Reading, box: Box, viewer: str, other: str) -> Sighting:
+def sighting_of_agent(reading: Reading, box: Box, viewer: str, other: str) -> Sighting:
     """The look of an agent of known pose at another, inside a simulator."""
     here, there = reading.agents[viewer], reading.agents[other]
     if there.position is None:

@@ -5,16 +5,16 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from beliefnest.errors import ModelError
-from beliefnest.nest.engine import Engine
+from beliefnest.nest.acting.engine import Engine
 from beliefnest.timeline.records import PromptRecord
 
 if TYPE_CHECKING:  # Models take long to import, and few nests have one.
     from beliefnest.llm.messages import Answer, Message, Model, Sampling
 
-__all__ = ["NotingModel"]
+__all__ = ["RecordingModel"]
 
 
-class NotingModel:
+class RecordingModel:
     """A model asked from one simulator, for one conversation.
 
     Each request is noted with its answer, or with the model's error, once that is there.

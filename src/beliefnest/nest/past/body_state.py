@@ -6,7 +6,7 @@ any other moment, and where a belief is forked, nothing is under way.
 
 from dataclasses import replace
 
-from beliefnest.nest.history import History
+from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import ForkPoint, Journal, TimelineKey
 from beliefnest.world.frames import Snapshot
 

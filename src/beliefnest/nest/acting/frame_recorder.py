@@ -1,15 +1,15 @@
 """What a body tells, on its way to the timeline it is on."""
 
-from beliefnest.nest.history import History
+from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import Journal, TimelineKey
 from beliefnest.world.frames import Frame
 
-__all__ = ["Recorder"]
+__all__ = ["FrameRecorder"]
 
 _BATCH = 256
 
 
-class Recorder:
+class FrameRecorder:
     """Takes a body's frames and appends them to the timeline it is on.
 
     Each frame is written at once, but while a call is under way, when `batched` is set.

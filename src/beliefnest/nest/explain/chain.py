@@ -8,19 +8,8 @@ from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.reading import Reading
 from beliefnest.errors import InputError, PathError, PositionError
-from beliefnest.nest.engine import Engine
-from beliefnest.nest.explanation import (
-    Absence,
-    Element,
-    Explanation,
-    Fact,
-    Level,
-    Missed,
-    Sighting,
-    Value,
-)
-from beliefnest.nest.looks import look_at_agent, look_at_block
-from beliefnest.nest.tracing import (
+from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.explain.element_history import (
     Place,
     Step,
     cells_of,
@@ -30,6 +19,17 @@ from beliefnest.nest.tracing import (
     touches,
     value_in,
 )
+from beliefnest.nest.explain.explanation import (
+    Absence,
+    Element,
+    Explanation,
+    Fact,
+    Level,
+    Missed,
+    Sighting,
+    Value,
+)
+from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
 from beliefnest.timeline.journal import Edit
 from beliefnest.world.values import Point, Position
 
@@ -287,7 +287,7 @@ def _absence(engine: Engine, forest: Forest, path: Path) -> Absence:
         return Absence(last_seen, None)
     outer = Reading(forest, around[:-1])
     box = engine.history.ground.box
-    return Absence(last_seen, look_at_agent(outer, box, around[-1], path[-1]))
+    return Absence(last_seen, sighting_of_agent(outer, box, around[-1], path[-1]))
 
 
 def _sightings(
@@ -300,13 +300,13 @@ def _sightings(
     """The looks that would have told a change: at who did it, and at the element."""
     box = engine.history.ground.box
     if isinstance(element.where, str):
-        return (look_at_agent(around, box, viewer, element.where),)
+        return (sighting_of_agent(around, box, viewer, element.where),)
     actors: list[str] = []
     if element.kind == "container":
         actors = sorted({act.actor for act in acts if act.actor is not None})
     return (
-        *(look_at_agent(around, box, viewer, actor) for actor in actors),
-        look_at_block(around, box, viewer, element.where),
+        *(sighting_of_agent(around, box, viewer, actor) for actor in actors),
+        sighting_of_block(around, box, viewer, element.where),
     )
 
 

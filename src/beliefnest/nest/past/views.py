@@ -11,7 +11,7 @@ from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, Perce
 from beliefnest.belief.reading import Reading
 from beliefnest.belief.view import BlockView, State
 from beliefnest.errors import PositionError
-from beliefnest.nest.history import History
+from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.values import Box, DroppedItem, EventKind, Position

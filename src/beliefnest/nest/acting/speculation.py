@@ -14,7 +14,7 @@ from beliefnest.bodies.protocol import Body, ProgramResult, Sink, World
 from beliefnest.errors import BeliefNestError, BodyError, BodyLostError, WorldError
 from beliefnest.world.frames import Frame, Snapshot
 
-__all__ = ["Outcome", "StandIn", "Start", "run_ahead"]
+__all__ = ["Outcome", "SpeculatedBody", "Start", "speculate"]
 
 _LIVES = 3
 
@@ -53,7 +53,7 @@ class Outcome:
     error: BeliefNestError | None = None
 
 
-class StandIn:
+class SpeculatedBody:
     """A body in which programs have run already; it can do nothing but run them, once."""
 
     def __init__(self, outcome: Outcome, sink: Sink) -> None:
@@ -101,7 +101,7 @@ class StandIn:
         """Nothing is held open."""
 
 
-def run_ahead(
+def speculate(
     worlds: Sequence[World],
     start: Start,
     jobs: Mapping[int, Mapping[str, str]],

@@ -8,8 +8,8 @@ import numpy as np
 
 from beliefnest.belief.entries import AgentBelief, Source
 from beliefnest.belief.reading import Reading
-from beliefnest.nest.engine import Engine
-from beliefnest.nest.explanation import Contents
+from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.explain.explanation import Contents
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Point, Position

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Concatenate, ParamSpec, Protocol, TypeVar
 
-from beliefnest.nest.engine import Engine
+from beliefnest.nest.acting.engine import Engine
 
 __all__ = ["in_turn"]
 

@@ -12,15 +12,15 @@ from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.bodies.scripted import ScriptedBody
 from beliefnest.errors import BranchError, InputError, PathError, PositionError, WorldError
-from beliefnest.nest.engine import Engine
-from beliefnest.nest.explain import element_of, explain
-from beliefnest.nest.explanation import Explanation
-from beliefnest.nest.noting import NotingModel
-from beliefnest.nest.paths import normalised, path_text
-from beliefnest.nest.ticks import tick_of, whole
-from beliefnest.nest.turns import in_turn
+from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.explain.chain import element_of, explain
+from beliefnest.nest.explain.explanation import Explanation
+from beliefnest.nest.face.recording_model import RecordingModel
+from beliefnest.nest.face.ticks import tick_of, whole
+from beliefnest.nest.face.turns import in_turn
 from beliefnest.prompts import Template, render
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
+from beliefnest.world.paths import normalised, path_text
 from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.values import TICKS_PER_SECOND, Items, Position
 
@@ -311,7 +311,7 @@ class Simulator(_Seen):
             model: Who is asked.
             detail: Facts to keep with every request, as `task`.
         """
-        return NotingModel(model, self._engine, self._path, detail)
+        return RecordingModel(model, self._engine, self._path, detail)
 
     @in_turn
     def step(self, ticks: int = 1) -> None:

@@ -24,15 +24,14 @@ from beliefnest.errors import (
     TickError,
     WorldError,
 )
-from beliefnest.nest.ahead import Outcome, StandIn
-from beliefnest.nest.history import History
-from beliefnest.nest.moments import hidden_at, note_hidden, present, snapshot_at
-from beliefnest.nest.paths import path_text
-from beliefnest.nest.recorder import Recorder
-from beliefnest.nest.runlog import MemoryLog, RunLog, note_programs
-from beliefnest.nest.script import UNDONE
-from beliefnest.nest.setting import Setting
-from beliefnest.nest.views import Blocks, LiveState
+from beliefnest.nest.acting.frame_recorder import FrameRecorder
+from beliefnest.nest.acting.script import UNDONE
+from beliefnest.nest.acting.speculation import Outcome, SpeculatedBody
+from beliefnest.nest.past.body_state import hidden_at, note_hidden, present, snapshot_at
+from beliefnest.nest.past.history import History
+from beliefnest.nest.past.run_log import MemoryLog, RunLog, note_programs
+from beliefnest.nest.past.setting import MAIN, Setting
+from beliefnest.nest.past.views import Blocks, LiveState
 from beliefnest.timeline.journal import (
     FOLLOW,
     Edit,
@@ -42,14 +41,12 @@ from beliefnest.timeline.journal import (
     TimelineKey,
 )
 from beliefnest.world.frames import Snapshot
+from beliefnest.world.paths import path_text
 from beliefnest.world.values import Items, Position
 
-__all__ = ["MAIN", "Engine"]
+__all__ = ["Engine"]
 
 Path = tuple[str, ...]
-
-MAIN = "main"
-"""Name of the real world's first branch."""
 
 _LIVES = 3
 """How many processes a call may use up."""
@@ -88,7 +85,7 @@ class Engine:
         self.history = History(journal, setting)
         self.selected: dict[Path, TimelineKey] = {}
         self._bodies: dict[Path, Body] = {}
-        self._recorders: dict[Path, Recorder] = {}
+        self._recorders: dict[Path, FrameRecorder] = {}
         self._bodiless: set[Path] = set()
         self._others: list[World] = []
 
@@ -306,8 +303,8 @@ class Engine:
     ) -> Mapping[str, ProgramResult]:
         """Run programs that have run already, in another body that was as this simulator's is."""
         self._give_up(path)
-        recorder = Recorder(self.journal, self.history, self.selected[path])
-        self._bodies[path], self._recorders[path] = StandIn(outcome, recorder), recorder
+        recorder = FrameRecorder(self.journal, self.history, self.selected[path])
+        self._bodies[path], self._recorders[path] = SpeculatedBody(outcome, recorder), recorder
         try:
             return self.run(path, programs, timeout_ticks)
         finally:
@@ -457,7 +454,7 @@ class Engine:
             body.close()
 
     def _open_body(self, key: TimelineKey, snapshot: Snapshot) -> None:
-        recorder = Recorder(self.journal, self.history, key)
+        recorder = FrameRecorder(self.journal, self.history, key)
         name, seed = path_text(key.path), self.seed_of(key.path)
         self._bodies[key.path] = self.world.open_body(name, seed, snapshot, recorder)
         self._recorders[key.path] = recorder

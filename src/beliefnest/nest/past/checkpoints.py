@@ -5,19 +5,21 @@ that a forest follows from besides the journal: the setting, and the program tha
 another name nobody looks.
 """
 
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from hashlib import blake2b
 from importlib.resources import files
+from importlib.resources.abc import Traversable
 
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.ground import Ground
 from beliefnest.belief.story import Story
 from beliefnest.errors import StoreError
-from beliefnest.nest.saved import encode_start
-from beliefnest.nest.saving import restored, saved
-from beliefnest.nest.setting import Setting
+from beliefnest.nest.past.forest_codec import restored, saved
+from beliefnest.nest.past.setting import Setting
+from beliefnest.nest.past.setting_codec import encode_start
 from beliefnest.timeline.journal import Journal, TimelineKey
 from beliefnest.version import VERSION
 
@@ -25,7 +27,7 @@ __all__ = ["Checkpoints", "Pace"]
 
 Path = tuple[str, ...]
 
-_ROOMS = ("world", "perception", "belief", "nest")
+_ROOMS = ("world", "perception", "belief", "nest/past")
 """Where the program is that decides what a forest holds."""
 
 
@@ -153,8 +155,15 @@ def _program() -> bytes:
     """A digest of the program that folds, so that another one does not trust what it left."""
     digest = blake2b(VERSION.encode(), digest_size=16)
     for room in _ROOMS:
-        sources = files("beliefnest").joinpath(room).iterdir()
-        for source in sorted(sources, key=lambda each: each.name):
-            if source.name.endswith(".py"):
-                digest.update(source.read_bytes())
+        for source in _sources(files("beliefnest").joinpath(room)):
+            digest.update(source.read_bytes())
     return digest.digest()
+
+
+def _sources(room: Traversable) -> Iterator[Traversable]:
+    """Python files of a room and of those in it, in order of names."""
+    for each in sorted(room.iterdir(), key=lambda each: each.name):
+        if each.is_dir():
+            yield from _sources(each)
+        elif each.name.endswith(".py"):
+            yield each

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from copy import copy
 
 from beliefnest.belief.forest import Forest
-from beliefnest.nest.engine import Engine
-from beliefnest.nest.explain import element_of, explain
-from beliefnest.nest.explanation import Explanation, Sighting
-from beliefnest.nest.history import History
-from beliefnest.nest.looks import look_at_agent, look_at_block
-from beliefnest.nest.setting import Setting
+from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.explain.chain import element_of, explain
+from beliefnest.nest.explain.explanation import Explanation, Sighting
+from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
+from beliefnest.nest.past.history import History
+from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.journal import Entry, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
 from beliefnest.world.values import Position
@@ -112,8 +112,8 @@ class Reader:
                 return None
             box = self.setting.snapshot.box
             if isinstance(target, str):
-                return look_at_agent(reading, box, viewer, target)
-            return look_at_block(reading, box, viewer, target)
+                return sighting_of_agent(reading, box, viewer, target)
+            return sighting_of_block(reading, box, viewer, target)
 
     def _on(self, key: TimelineKey) -> Engine:
         """The engine with the simulator of a timeline on it, and nobody below it on another."""

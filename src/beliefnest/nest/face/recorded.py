@@ -5,18 +5,18 @@ from pathlib import Path
 from typing import Self
 
 from beliefnest.bodies.scripted import ScriptedBodies
-from beliefnest.nest.engine import MAIN, Engine
-from beliefnest.nest.nest import Past
-from beliefnest.nest.overtime import Moment, over_time
-from beliefnest.nest.paths import parse_path
-from beliefnest.nest.reader import Reader
-from beliefnest.nest.runlog import FileLog
-from beliefnest.nest.saved import decode_start
-from beliefnest.nest.setting import Setting
-from beliefnest.nest.simulator import PastSimulator
+from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.face.nest import Past
+from beliefnest.nest.face.reader import Reader
+from beliefnest.nest.face.simulator import PastSimulator
+from beliefnest.nest.past.over_time import Moment, over_time
+from beliefnest.nest.past.run_log import FileLog
+from beliefnest.nest.past.setting import MAIN, Setting
+from beliefnest.nest.past.setting_codec import decode_start
 from beliefnest.timeline.journal import FOLLOW, Journal, TimelineKey, lineage
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.world.paths import parse_path
 
 __all__ = ["RecordedNest"]
 

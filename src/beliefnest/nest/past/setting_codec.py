@@ -6,7 +6,7 @@ import msgspec
 
 from beliefnest.belief.entries import InitialBelief
 from beliefnest.errors import StoreError
-from beliefnest.nest.setting import Setting, Step
+from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.perception.options import ContainerMode, Perception, Radius
 from beliefnest.timeline import codec
 

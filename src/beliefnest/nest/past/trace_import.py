@@ -2,10 +2,9 @@
 
 from pathlib import Path
 
-from beliefnest.nest.engine import MAIN
-from beliefnest.nest.saved import encode_start
-from beliefnest.nest.setting import Setting
-from beliefnest.nest.versions import own_versions
+from beliefnest.nest.past.setting import MAIN, Setting
+from beliefnest.nest.past.setting_codec import encode_start
+from beliefnest.nest.past.versions import own_versions
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.records import RunRecord
 from beliefnest.timeline.store import SqliteJournal

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beliefnest.belief.view import State
-from beliefnest.nest.engine import Engine
+from beliefnest.nest.acting.engine import Engine
 from beliefnest.timeline.journal import Journal, TimelineInfo, TimelineKey
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry

@@ -202,6 +202,6 @@ class Explanation:
     before: "Explanation | None" = None
 
     def __str__(self) -> str:
-        from beliefnest.nest.wording import explanation_text
+        from beliefnest.nest.explain.wording import explanation_text
 
         return explanation_text(self)

@@ -10,29 +10,29 @@ from beliefnest.belief.entries import InitialBelief
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.protocol import World
 from beliefnest.bodies.scripted import ScriptedBodies
-from beliefnest.bodies.worlds import LateWorld, Worlds, open_world
+from beliefnest.bodies.worlds import LazyWorld, Worlds, open_world
 from beliefnest.errors import BodyError, ProgramError
-from beliefnest.nest.compare import Difference, compare, false_beliefs
-from beliefnest.nest.engine import Engine
-from beliefnest.nest.explore import Attempt, Exploration, Score
-from beliefnest.nest.paths import parse_path
-from beliefnest.nest.reader import Reader
-from beliefnest.nest.runlog import FileLog
-from beliefnest.nest.saved import decode_start, encode_start
-from beliefnest.nest.script import STEP, steps_played
-from beliefnest.nest.setting import Setting, Step
-from beliefnest.nest.simulator import PastSimulator, Simulator
-from beliefnest.nest.ticks import tick_of
-from beliefnest.nest.turns import in_turn
-from beliefnest.nest.versions import own_versions
+from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.acting.exploration import Attempt, Exploration, Score
+from beliefnest.nest.acting.script import STEP, steps_played
+from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs
+from beliefnest.nest.face.reader import Reader
+from beliefnest.nest.face.simulator import PastSimulator, Simulator
+from beliefnest.nest.face.ticks import tick_of
+from beliefnest.nest.face.turns import in_turn
+from beliefnest.nest.past.run_log import FileLog
+from beliefnest.nest.past.setting import Setting, Step
+from beliefnest.nest.past.setting_codec import decode_start, encode_start
+from beliefnest.nest.past.versions import own_versions
 from beliefnest.perception.options import Perception
 from beliefnest.timeline.memory import MemoryJournal
 from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.world.paths import parse_path
 from beliefnest.world.scripted import ScriptedWorld
 
 if TYPE_CHECKING:
-    from beliefnest.nest.recorded import RecordedNest
+    from beliefnest.nest.face.recorded import RecordedNest
 
 __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 
@@ -157,7 +157,7 @@ class Nest:
         try:
             run = journal.records.run()
             setting, world = decode_start(run.setting)
-            late = LateWorld(world, run.seed, limits) if worlds is None else worlds.lend(world)
+            late = LazyWorld(world, run.seed, limits) if worlds is None else worlds.lend(world)
             engine = Engine(setting, journal, late, run.seed, FileLog(journal)).resume()
             engine.log.add_versions(own_versions())
             return cls._of(engine)
@@ -172,7 +172,7 @@ class Nest:
         Raises:
             StoreError: There is no such run, or it cannot be read.
         """
-        from beliefnest.nest.recorded import RecordedNest
+        from beliefnest.nest.face.recorded import RecordedNest
 
         return RecordedNest.read(store)
 

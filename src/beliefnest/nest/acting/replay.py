@@ -6,15 +6,15 @@ from itertools import groupby
 
 from beliefnest.bodies.protocol import Body, World
 from beliefnest.errors import StoreError
-from beliefnest.nest.history import History
-from beliefnest.nest.moments import hidden_at, snapshot_at
-from beliefnest.nest.paths import path_text
-from beliefnest.nest.script import UNDONE
-from beliefnest.nest.setting import Setting
+from beliefnest.nest.acting.script import UNDONE
+from beliefnest.nest.past.body_state import hidden_at, snapshot_at
+from beliefnest.nest.past.history import History
+from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.compare import Difference, first_difference
 from beliefnest.timeline.journal import Edit, Entry, ForkPoint, Journal, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import ProgramRecord
 from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.paths import path_text
 
 __all__ = ["Replayed", "replay"]
 

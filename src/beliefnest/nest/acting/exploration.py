@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.errors import BranchError, InputError
-from beliefnest.nest.ahead import Outcome, Start, run_ahead
-from beliefnest.nest.engine import Engine
-from beliefnest.nest.moments import present, snapshot_at
-from beliefnest.nest.paths import path_text
-from beliefnest.nest.simulator import Simulator
+from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.acting.speculation import Outcome, Start, speculate
+from beliefnest.nest.face.simulator import Simulator
+from beliefnest.nest.past.body_state import present, snapshot_at
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
+from beliefnest.world.paths import path_text
 
 __all__ = ["Attempt", "Exploration", "Score"]
 
@@ -154,7 +154,7 @@ class Exploration:
             )
             jobs = {number: {self.agent: self.programs[number]} for number in left}
             worlds = [engine.world, *engine.others(processes - 1)]
-            return run_ahead(worlds, start, jobs, self.timeout_ticks)
+            return speculate(worlds, start, jobs, self.timeout_ticks)
 
 
 def _processors() -> int:

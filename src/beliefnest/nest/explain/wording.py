@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from beliefnest.belief.entries import Basis, PerceivedEvent, Source
-from beliefnest.nest.explanation import (
+from beliefnest.nest.explain.explanation import (
     Contents,
     Element,
     Explanation,
@@ -14,7 +14,7 @@ from beliefnest.nest.explanation import (
     Value,
     View,
 )
-from beliefnest.nest.paths import path_text
+from beliefnest.world.paths import path_text
 from beliefnest.world.values import EventKind, Items
 
 __all__ = ["explanation_text"]

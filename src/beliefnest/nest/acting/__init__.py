@@ -1,0 +1,1 @@
+"""What acts in a world and is recorded: bodies, programs, trials, replays."""

@@ -1,0 +1,1 @@
+"""What users of a nest hold in their hands."""

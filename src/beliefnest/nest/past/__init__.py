@@ -1,0 +1,1 @@
+"""What was recorded, and any state of any simulator from it."""
