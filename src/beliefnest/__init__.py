@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from beliefnest.nest.face.simulator import Simulator
     from beliefnest.perception.options import Perception, Radius
     from beliefnest.scenarios import Scenario
+    from beliefnest.world.claims import Claim, ClaimKind
     from beliefnest.world.scripted import ScriptedWorld
 
 __version__ = VERSION
@@ -45,6 +46,8 @@ __all__ = [
     "BeliefNestError",
     "BodyError",
     "BranchError",
+    "Claim",
+    "ClaimKind",
     "Contents",
     "Difference",
     "Explanation",
@@ -74,6 +77,8 @@ __all__ = [
 
 _HOMES = {
     "Attempt": "beliefnest.nest.acting.exploration",
+    "Claim": "beliefnest.world.claims",
+    "ClaimKind": "beliefnest.world.claims",
     "Contents": "beliefnest.nest.explain.explanation",
     "Difference": "beliefnest.nest.explain.comparison",
     "Explanation": "beliefnest.nest.explain.explanation",

@@ -131,6 +131,7 @@ class EmbeddedWorld:
         self._channel: Channel | None = None
         self._versions: Mapping[str, str] = {}
         self._names: set[str] = set()
+        self._agents: set[str] = set()
         self._closed = False
 
     @classmethod
@@ -162,8 +163,14 @@ class EmbeddedWorld:
         channel = self._live()
         if name in self._names:
             raise WorldError(f"there is a body {name!r} already")
+        # In a belief somebody may be missing whom one can speak of all the same.
+        self._agents |= snapshot.agents.keys()
         channel.request(
-            "create_region", region=name, seed=seed, **messages.snapshot_message(snapshot)
+            "create_region",
+            region=name,
+            seed=seed,
+            known=sorted(self._agents),
+            **messages.snapshot_message(snapshot),
         )
         names = self._names
         names.add(name)
@@ -171,7 +178,9 @@ class EmbeddedWorld:
 
     def another(self) -> "EmbeddedWorld":
         """One more, with a process of its own."""
-        return EmbeddedWorld(self._seed, self._limits)
+        other = EmbeddedWorld(self._seed, self._limits)
+        other._agents |= self._agents
+        return other
 
     def interrupt(self) -> None:
         """Kill the process, whatever it is doing."""

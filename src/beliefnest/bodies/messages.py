@@ -7,7 +7,8 @@ import msgspec
 import numpy as np
 
 from beliefnest.bodies.protocol import Fault, ProgramResult, Unfinished
-from beliefnest.errors import BodyError
+from beliefnest.errors import BeliefNestError, BodyError
+from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.values import (
     AgentState,
@@ -73,6 +74,8 @@ class _Event(msgspec.Struct, frozen=True):
             key: tuple(value) if isinstance(value, list) else value
             for key, value in self.detail.items()
         }
+        if "claims" in detail:
+            detail["claims"] = tuple(claim.plain() for claim in _claims(detail["claims"]))
         return Event(self.kind, self.actor, detail)
 
 
@@ -219,6 +222,13 @@ def results_of(
     """
     got = _converted(message, dict[str, _Result])
     return {agent: result.value(agent, happened) for agent, result in got.items()}
+
+
+def _claims(told: Any) -> tuple[Claim, ...]:
+    try:
+        return claims_from_plain(told)
+    except BeliefNestError as fault:
+        raise BodyError(f"Node sent claims that are none: {fault}") from fault
 
 
 def _converted(message: Any, kind: type[Any]) -> Any:

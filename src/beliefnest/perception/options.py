@@ -7,9 +7,10 @@ from typing import Literal
 
 from beliefnest.errors import InputError
 
-__all__ = ["ContainerMode", "Hearing", "Perception", "Radius"]
+__all__ = ["ContainerMode", "Hearing", "Perception", "Radius", "Testimony"]
 
 ContainerMode = Literal["opaque", "transparent"]
+Testimony = Literal["none", "accept", "informed"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +61,13 @@ class Perception:
         transparent_blocks: Names of further blocks that do not block sight.
         negative_evidence: Whether a believed pose becomes unknown when its place is
             seen to be empty.
+        testimony: How hearers take claims (semantics, section 8): `none` (the text alone is
+            known), `accept` (whatever is heard is believed), or `informed` (if the hearer could
+            not look, and the speaker had a chance to learn it).
+        grace: Ticks that a speaker has to be out of a hearer's sight before it may have learnt
+            something, under `informed`.
+        sincere: Whether speakers are taken to believe what they say; if not, a hearer who does
+            not take a claim up does not credit the speaker with it either, under `informed`.
 
     Raises:
         InputError: An option is out of range or of the wrong kind.
@@ -71,6 +79,9 @@ class Perception:
     containers: ContainerMode = "opaque"
     transparent_blocks: Iterable[str] = ()
     negative_evidence: bool = False
+    testimony: Testimony = "none"
+    grace: int = 100
+    sincere: bool = True
 
     def __post_init__(self) -> None:
         distance = self.max_visible_distance
@@ -84,5 +95,11 @@ class Perception:
             raise InputError(
                 f"containers is {self.containers!r}; it must be 'opaque' or 'transparent'"
             )
+        if self.testimony not in ("none", "accept", "informed"):
+            raise InputError(
+                f"testimony is {self.testimony!r}; it must be 'none', 'accept' or 'informed'"
+            )
+        if not isinstance(self.grace, int) or isinstance(self.grace, bool) or self.grace < 0:
+            raise InputError(f"grace is {self.grace!r}; it must be a whole number of ticks from 0")
         object.__setattr__(self, "hearing", _hearing(self.hearing))
         object.__setattr__(self, "transparent_blocks", tuple(sorted(set(self.transparent_blocks))))

@@ -208,6 +208,9 @@ class _Builder:
                 containers=entry.containers,
                 transparent_blocks=entry.transparent_blocks,
                 negative_evidence=entry.negative_evidence,
+                testimony=entry.testimony,
+                grace=entry.grace,
+                sincere=entry.sincere,
             )
 
     def _initial_belief(self, number: int, entry: InitialBeliefEntry) -> InitialBelief:

@@ -116,6 +116,19 @@ class PerceptionEntry(_Entry, frozen=True):
     negative_evidence: Annotated[
         bool, _note("Whether a place seen empty makes a pose believed there unknown.")
     ] = False
+    testimony: Annotated[
+        Literal["none", "accept", "informed"],
+        _note(
+            "How hearers take claims: none, all, or those of who may know better than one can see."
+        ),
+    ] = "none"
+    grace: Annotated[
+        int,
+        msgspec.Meta(ge=0, description="Ticks out of sight after which a speaker may know better."),
+    ] = 100
+    sincere: Annotated[
+        bool, _note("Whether speakers are taken to believe what is not believed of them.")
+    ] = True
 
 
 class _BelievedContainerEntry(_Entry, frozen=True):

@@ -7,6 +7,7 @@ from typing import Any
 import msgspec
 
 from beliefnest.errors import InputError
+from beliefnest.world.claims import claims_from_plain
 from beliefnest.world.values import Event, EventKind, Point, Position
 
 __all__ = ["REQUIRED", "event_from"]
@@ -44,6 +45,7 @@ class _Detail(msgspec.Struct, forbid_unknown_fields=True):
     name: str | msgspec.UnsetType = msgspec.UNSET
     destination: Point | msgspec.UnsetType = msgspec.UNSET
     to: str | msgspec.UnsetType = msgspec.UNSET
+    claims: list[dict[str, Any]] | msgspec.UnsetType = msgspec.UNSET
 
 
 def event_from(
@@ -77,6 +79,10 @@ def event_from(
         raise InputError(f"event {kind!r} lacks the detail {', '.join(missing)}")
     if "to" in values and known is not EventKind.CHAT:
         raise InputError(f"event {kind!r} has the detail 'to', which only a whispered chat has")
+    if "claims" in values:
+        if known is not EventKind.CHAT:
+            raise InputError(f"event {kind!r} has the detail 'claims', which only a chat has")
+        values["claims"] = tuple(claim.plain() for claim in claims_from_plain(values["claims"]))
     for name in (actor, values.get("other"), values.get("to")):
         if name is not None and name not in agents:
             raise InputError(f"event {kind!r} names an unknown agent {name!r}")

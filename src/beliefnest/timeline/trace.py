@@ -15,9 +15,10 @@ import numpy as np
 
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.files import decode_json, open_regular
-from beliefnest.perception.options import ContainerMode, Perception
+from beliefnest.perception.options import ContainerMode, Perception, Testimony
 from beliefnest.timeline.events import event_from
 from beliefnest.timeline.journal import Entry, Journal, TimelineKey
+from beliefnest.world.claims import claims_of
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import (
@@ -75,6 +76,9 @@ class _PerceptionLine(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     containers: ContainerMode | msgspec.UnsetType = msgspec.UNSET
     transparent_blocks: list[str] | msgspec.UnsetType = msgspec.UNSET
     negative_evidence: bool | msgspec.UnsetType = msgspec.UNSET
+    testimony: Testimony | msgspec.UnsetType = msgspec.UNSET
+    grace: int | msgspec.UnsetType = msgspec.UNSET
+    sincere: bool | msgspec.UnsetType = msgspec.UNSET
 
     def value(self, registry: Registry) -> Perception:
         given = msgspec.to_builtins(self)
@@ -310,7 +314,10 @@ class _Reader:
         return AgentState(**given) if before is None else replace(before, **given)
 
     def _event(self, line: _EventLine) -> Event:
-        return event_from(line.kind, line.actor, line.detail, self.names)
+        event = event_from(line.kind, line.actor, line.detail, self.names)
+        for claim in claims_of(event):
+            claim.check(self._box, self.names)
+        return event
 
 
 def _decoded(line: bytes, kind: Any) -> Any:

@@ -6,13 +6,15 @@ and changes nothing.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from beliefnest.errors import BeliefNestError, WorldError
+from beliefnest.errors import BeliefNestError, InputError, WorldError
+from beliefnest.world.claims import Claim, with_claims
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import (
@@ -225,18 +227,18 @@ class ScriptedWorld:
             place = self._container(position)
             pending.events.append(Event(EventKind.OPEN_CONTAINER, name, {"position": place}))
 
-    def say(self, name: str, text: str) -> None:
-        """An agent speaks."""
-        self._utter(EventKind.CHAT, name, text)
+    def say(self, name: str, text: str, claims: Iterable[Claim] = ()) -> None:
+        """An agent speaks; what it says has the structure of `claims`."""
+        self._utter(EventKind.CHAT, name, text, claims)
 
-    def whisper(self, name: str, other: str, text: str) -> None:
-        """An agent speaks to one other agent; nobody else perceives that."""
+    def whisper(self, name: str, other: str, text: str, claims: Iterable[Claim] = ()) -> None:
+        """An agent speaks to one other agent; nobody else perceives that. Claims as in `say`."""
         with self._act() as pending:
             if name == other:
                 raise WorldError(f"{name} cannot whisper to itself")
             self._agent(name)
             self._agent(other)
-            detail = {"text": str(text), "to": other}
+            detail = self._claiming({"text": str(text), "to": other}, claims)
             pending.events.append(Event(EventKind.CHAT, name, detail))
 
     def think(self, name: str, text: str) -> None:
@@ -278,10 +280,18 @@ class ScriptedWorld:
             pending.containers.add(place)
             pending.events.append(Event(kind, name, {"position": place, "items": moved}))
 
-    def _utter(self, kind: EventKind, name: str, text: str) -> None:
+    def _utter(self, kind: EventKind, name: str, text: str, claims: Iterable[Claim] = ()) -> None:
         with self._act() as pending:
             self._agent(name)
-            pending.events.append(Event(kind, name, {"text": str(text)}))
+            detail = self._claiming({"text": str(text)}, claims)
+            pending.events.append(Event(kind, name, detail))
+
+    def _claiming(self, detail: dict[str, Any], claims: Iterable[Claim]) -> dict[str, Any]:
+        """An utterance's detail with its claims, which speak of what there is here."""
+        try:
+            return with_claims(detail, claims, self._box, self._facts.agents)
+        except InputError as fault:
+            raise WorldError(str(fault)) from None
 
     @contextmanager
     def _act(self) -> Iterator[_Pending]:

@@ -7,7 +7,7 @@ import msgspec
 from beliefnest.belief.entries import InitialBelief
 from beliefnest.errors import StoreError
 from beliefnest.nest.past.setting import Setting, Step
-from beliefnest.perception.options import ContainerMode, Perception, Radius
+from beliefnest.perception.options import ContainerMode, Perception, Radius, Testimony
 from beliefnest.timeline import codec
 
 __all__ = ["decode_start", "encode_start"]
@@ -19,13 +19,16 @@ class _Form(msgspec.Struct):
     form: int
 
 
-class _Perception(msgspec.Struct, forbid_unknown_fields=True):
+class _Perception(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
     max_visible_distance: float | None
     field_of_view: float
     hearing: Literal["global", "sight"] | float
     containers: ContainerMode
     transparent_blocks: tuple[str, ...]
     negative_evidence: bool
+    testimony: Testimony = "none"
+    grace: int = 100
+    sincere: bool = True
 
 
 class _Start(msgspec.Struct, forbid_unknown_fields=True):
@@ -101,6 +104,9 @@ def _perception_to(options: Perception) -> _Perception:
         containers=options.containers,
         transparent_blocks=tuple(options.transparent_blocks),
         negative_evidence=options.negative_evidence,
+        testimony=options.testimony,
+        grace=options.grace,
+        sincere=options.sincere,
     )
 
 
@@ -113,4 +119,7 @@ def _perception_from(stored: _Perception) -> Perception:
         containers=stored.containers,
         transparent_blocks=stored.transparent_blocks,
         negative_evidence=stored.negative_evidence,
+        testimony=stored.testimony,
+        grace=stored.grace,
+        sincere=stored.sincere,
     )

@@ -1,4 +1,5 @@
 'use strict'
+const { claims: checked, PARAMETER } = require('./lib/claims')
 const { speech } = require('./lib/speech')
 const { ticks } = require('./lib/waiting')
 
@@ -6,15 +7,20 @@ const LONGEST = 256
 
 module.exports = {
   name: 'say',
-  signature: 'say(bot, msg)',
-  description: 'Say something aloud, in at most 256 characters.',
+  signature: 'say(bot, msg, claims=[])',
+  description: 'Say something aloud, in at most 256 characters. What it states can be given as claims as well, ' +
+    'such as [located("diamond", new Vec3(2, -51, -4))]; hearers may come to believe those.',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
-    { name: 'msg', type: 'string', description: 'what to say' }
+    { name: 'msg', type: 'string', description: 'what to say' },
+    PARAMETER
   ],
-  example: 'await say(bot, "Hello, Anne!")',
-  async run (context, msg) {
-    context.bot.chat(speech(context, 'msg', msg, LONGEST))
+  example: 'await say(bot, "Hello, Anne! The diamond is here.", [located("diamond", new Vec3(2, -51, -4))])',
+  async run (context, msg, claims) {
+    const text = speech(context, 'msg', msg, LONGEST)
+    const told = checked(context, claims)
+    if (told.length > 0) context.emit({ kind: 'claims', detail: { text, claims: told } })
+    context.bot.chat(text)
     await ticks(1)
   }
 }

@@ -1,5 +1,6 @@
 'use strict'
 const { otherAgent } = require('./lib/arguments')
+const { claims: checked, PARAMETER } = require('./lib/claims')
 const { speech } = require('./lib/speech')
 const { ticks } = require('./lib/waiting')
 
@@ -8,16 +9,21 @@ const LONGEST = 230
 
 module.exports = {
   name: 'whisper',
-  signature: 'whisper(bot, otherName, msg)',
-  description: `Say something to one other agent alone, in at most ${LONGEST} characters. Nobody else perceives it.`,
+  signature: 'whisper(bot, otherName, msg, claims=[])',
+  description: `Say something to one other agent alone, in at most ${LONGEST} characters. Nobody else perceives it. Claims as for say.`,
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'otherName', type: 'string', description: 'who is to hear it' },
-    { name: 'msg', type: 'string', description: 'what to say' }
+    { name: 'msg', type: 'string', description: 'what to say' },
+    PARAMETER
   ],
-  example: 'await whisper(bot, "anne", "The diamond is in the left chest.")',
-  async run (context, otherName, msg) {
-    context.bot.whisper(otherAgent(context, 'otherName', otherName), speech(context, 'msg', msg, LONGEST))
+  example: 'await whisper(bot, "anne", "The diamond is in the left chest.", [located("diamond", new Vec3(2, -51, -4))])',
+  async run (context, otherName, msg, claims) {
+    const to = otherAgent(context, 'otherName', otherName)
+    const text = speech(context, 'msg', msg, LONGEST)
+    const told = checked(context, claims)
+    if (told.length > 0) context.emit({ kind: 'claims', detail: { text, to, claims: told } })
+    context.bot.whisper(to, text)
     await ticks(1)
   }
 }

@@ -1,5 +1,6 @@
 'use strict'
 /** Collects what changes in a region during a tick, and makes frames of it. */
+const { Claims } = require('./claims')
 const { agentStates, changedContainers, itemStates } = require('./facts')
 
 // Details of events that say where something is.
@@ -10,6 +11,7 @@ class Recorder {
     this.serv = serv
     this.region = region
     this.known = { agents: new Map(), items: new Map() }
+    this.claims = new Claims(region)
     this.clear()
   }
 
@@ -19,7 +21,8 @@ class Recorder {
   }
 
   event ({ kind, actor, detail }) {
-    this.events.push({ kind, actor, detail })
+    if (kind === 'claims') this.claims.expect(actor, detail)
+    else this.events.push(this.claims.completed({ kind, actor, detail }))
   }
 
   /** An event of a server plugin, whose places are in server coordinates. */

@@ -19,13 +19,15 @@ class Region {
    * @param {import('./box').Box} options.box
    * @param {{x: number, z: number}} options.origin from the allotment
    * @param {number} options.tick the tick that has ended
+   * @param {string[]} options.known names of the agents that can be spoken of here
    */
-  constructor ({ name, seed, box, origin, tick }) {
+  constructor ({ name, seed, box, origin, tick, known }) {
     this.name = name
     this.seed = seed
     this.box = box
     this.origin = origin
     this.tick = tick
+    this.known = new Set(known)
     this.state = regionalState()
     this.columns = columnsOf(box, origin)
     // What was thrown, and in whose bot or connection, if that is known: {error, agent}.
@@ -51,7 +53,11 @@ class Region {
     return body
   }
 
-  /** An event of this tick; positions in `detail` are scenario coordinates. */
+  /**
+   * An event of this tick; positions in `detail` are scenario coordinates. The kind `claims` is none of its own:
+   * it is what the actor's next utterance of `detail.text` claims.
+   * @throws {Error} if a claim speaks of what is not here
+   */
   emit (event) {
     this.recorder.event(event)
   }

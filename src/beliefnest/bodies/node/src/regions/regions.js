@@ -53,12 +53,12 @@ class Regions {
   }
 
   /** @returns {Promise<object>} SNAPSHOT of the new region, once every bot stands in it */
-  async create ({ region: name, seed, box: corners, tick, blocks, containers, agents, items, hidden }) {
+  async create ({ region: name, seed, box: corners, tick, blocks, containers, agents, items, hidden, known = Object.keys(agents) }) {
     if (this.byName.has(name)) throw new BadRequest(`there already is a region ${name}`)
     const box = new Box(...corners)
     requireHeight(this.serv, box)
     const states = statesOf(blocks, box)
-    const region = new Region({ name, seed, box, origin: this.allotment.take(box), tick })
+    const region = new Region({ name, seed, box, origin: this.allotment.take(box), tick, known })
     region.recorder = new Recorder(this.serv, region)
     this.byName.set(name, region)
     try {

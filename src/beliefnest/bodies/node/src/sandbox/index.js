@@ -8,7 +8,7 @@ const { describeOutcome } = require('./outcome')
 
 const DEFAULTS = { fuel: 250_000_000, memory: 64 * 2 ** 20 }
 const MAX_FUEL = 2_000_000_000
-const GUEST_NAMES = ['Vec3', 'goals', 'Movements']
+const GUEST_NAMES = ['Vec3', 'goals', 'Movements', 'located', 'absent', 'positionOf', 'blockAt']
 
 /**
  * Compiles the interpreter, once for any number of runs.
@@ -32,7 +32,8 @@ function createSandbox (options = {}, alive = () => {}) {
  * @param {string} request.code the body of an async function, or one whole function of `bot`
  * @param {object} request.bot a Mineflayer bot; the program reaches of it what policy/ names
  * @param {Object<string, *>} request.scope skills by name (functions of the host), and `mcData`;
- *   other values are not handed over. Vec3, goals and Movements are the guest's own.
+ *   other values are not handed over. Vec3, goals, Movements and what makes
+ *   claims are the guest's own.
  * @param {AbortSignal} [request.signal] ends the program when aborted
  * @returns {Promise<{ok: boolean, error: ?{message: string, line: ?number, column: ?number, skill: ?string,
  *   kind: string}, lines: number[], log: {level: string, text: string}[],

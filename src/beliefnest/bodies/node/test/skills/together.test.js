@@ -175,6 +175,19 @@ test('whispering reaches one, and is no command of operators', async () => {
   })
 })
 
+test('who speaks tells beforehand what the words claim', async () => {
+  await withSkills(both({}), async world => {
+    const { bots: { sally }, skills: { sally: own } } = world
+    await world.during(own.say(sally, 'Here!', [{ kind: 'located', item: 'diamond', place: new Vec3(0.5, -50, 3.5) }]))
+    await world.during(own.whisper(sally, 'anne', 'Open!', [{ kind: 'block', state: 'oak_door[open=true]', place: new Vec3(1, -51, 3) }]))
+    assert.deepEqual(world.emitted, [
+      { actor: 'sally', kind: 'claims', detail: { text: 'Here!', claims: [{ kind: 'located', item: 'diamond', place: [0, -50, 3] }] } },
+      { actor: 'sally', kind: 'claims', detail: { text: 'Open!', to: 'anne', claims: [{ kind: 'block', state: 'oak_door[open=true]', place: [1, -51, 3] }] } }
+    ])
+    assert.match((await failure(world, own.say(sally, 'x', 'y'))).message, /must be a list/)
+  })
+})
+
 test('a whisper to nobody, and commands, do nothing', async () => {
   await withSkills(both({}), async world => {
     const { bots: { sally } } = world
