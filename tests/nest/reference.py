@@ -17,6 +17,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from tests.nest.reference_rules import UNKNOWN, Block, Node, Rules
+from tests.nest.reference_testimony import Ear
 
 import beliefnest as bn
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
@@ -76,7 +77,7 @@ class Reference:
         tree.head = frame.tick
         if not frame.is_empty:
             tree.node = self._acted(tree.node, frame)
-            self._perceive_below(tree)
+            self._perceive_below(tree, happening=True)
 
     def switch(self, path: Path, branch: str) -> None:
         """Fork, restore or follow."""
@@ -95,7 +96,7 @@ class Reference:
         """Change a node by hand; the nodes below it perceive that (6)."""
         tree, control = self.tree(path), path in self._selected
         before, node = tree.node, tree.node.copy()
-        node.news = ()
+        node.news = node.events = ()
         basis = Basis(self.head(path), Source.EDITED)
         for place, state in blocks.items():
             node.blocks.pop(place, None)
@@ -103,14 +104,14 @@ class Reference:
                 node.blocks[place] = Block(state, basis, control)
             name = self.rules.container_name(node.blocks.get(place))
             if name is None or name != self.rules.container_name(before.blocks.get(place)):
-                node.containers.pop(place, None)
+                node.drop(place)
             if name is not None and place not in node.containers:
                 node.containers[place] = ContainerBelief({}, control, basis, control)
         for place, items in contents.items():
             node.containers[place] = ContainerBelief(dict(items), True, basis, control)
         node.tick = basis.observed_at
         tree.node = node
-        self._perceive_below(tree)
+        self._perceive_below(tree, happening=False)
 
     def tree(self, path: Path) -> Tree:
         """The node of a normalised path, from the nearest simulator in control mode."""
@@ -176,7 +177,11 @@ class Reference:
                 )
                 for name, fact in start.agents.items()
             },
+            self._ear(),
         )
+
+    def _ear(self) -> Ear:
+        return Ear(self._start.tick, dict.fromkeys(self._start.agents, 0))
 
     @staticmethod
     def _real_blocks(start: Snapshot) -> dict[Position, int]:
@@ -189,7 +194,8 @@ class Reference:
         for name in tree.node.agents:
             if path[-1:] != (name,):
                 below = (*path, name)
-                first = self.rules.perceive(tree.node, self._prior(below), name)
+                before = self._prior(below)
+                first = self.rules.perceive(tree.node, before, name, happening=False)
                 tree.kids[name] = Tree(first)
                 self._grow(tree.kids[name], below, depth)
 
@@ -198,7 +204,8 @@ class Reference:
         basis = Basis(start.tick, Source.PRIOR)
         states = self._real_blocks(start)
         known = {p: s for p, s in states.items() if registry.name(s) in self._static}
-        node = Node(start.tick, {}, {}, {name: AgentBelief() for name in start.agents})
+        nobody = {name: AgentBelief() for name in start.agents}
+        node = Node(start.tick, {}, {}, nobody, self._ear(), path)
         special = self._initial.get(path, bn.InitialBelief(path))
         known |= special.blocks
         node.blocks = {p: Block(s, basis, False) for p, s in known.items() if s != UNKNOWN}
@@ -211,10 +218,10 @@ class Reference:
             node.agents[name] = AgentBelief(position=feet, basis=basis)
         return node
 
-    def _perceive_below(self, tree: Tree) -> None:
+    def _perceive_below(self, tree: Tree, *, happening: bool) -> None:
         for name, kid in tree.kids.items():
-            kid.node = self.rules.perceive(tree.node, kid.node, name)
-            self._perceive_below(kid)
+            kid.node = self.rules.perceive(tree.node, kid.node, name, happening=happening)
+            self._perceive_below(kid, happening=happening)
 
     def _forked(self, node: Node) -> Node:
         """In control mode everything known is current (6)."""
@@ -223,14 +230,15 @@ class Reference:
         node.agents = {
             n: replace(a, current=a.position is not None) for n, a in node.agents.items()
         }
-        node.news = ()
+        node.news = node.events = ()
         return node
 
     def _acted(self, before: Node, frame: Frame) -> Node:
         """A simulator in control mode after a frame of its own (6)."""
         basis = Basis(frame.tick, Source.SEEN)
         node = before.copy()
-        node.tick, node.news = frame.tick, frame.events
+        node.tick = frame.tick
+        node.news = node.events = frame.events
         node.log += [PerceivedEvent(frame.tick, e.kind, e.actor, e.detail) for e in frame.events]
         for place, state in frame.blocks.items():
             node.blocks[place] = Block(state, basis, True)

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field, replace
 from math import dist
 
 import numpy as np
+from tests.nest.reference_testimony import Ear, Matter, hear
 
 import beliefnest as bn
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
@@ -34,14 +35,25 @@ class Block:
 
 @dataclass
 class Node:
-    """The state of one simulator. A block that is not in `blocks` is unknown."""
+    """The state of one simulator. A block that is not in `blocks` is unknown.
+
+    `events` are all that happened on its timeline in this tick, `news` those that it perceived.
+    """
 
     tick: int
     blocks: dict[Position, Block]
     containers: dict[Position, ContainerBelief]
     agents: dict[str, AgentBelief]
+    ear: Ear
+    path: tuple[str, ...] = ()
     log: list[PerceivedEvent] = field(default_factory=list)
     news: tuple[Event, ...] = ()
+    events: tuple[Event, ...] = ()
+
+    def drop(self, place: Position) -> None:
+        """Hold nothing of a container any more, nor that something was perceived in it."""
+        self.containers.pop(place, None)
+        self.ear.forget(place)
 
     def copy(self) -> "Node":
         return Node(
@@ -49,8 +61,11 @@ class Node:
             dict(self.blocks),
             dict(self.containers),
             dict(self.agents),
+            self.ear.copy(),
+            self.path,
             list(self.log),
             self.news,
+            self.events,
         )
 
 
@@ -75,10 +90,14 @@ class Rules:
         name = self.registry.name(block.state)
         return name if self.registry.is_container(name) else None
 
-    def perceive(self, around: Node, before: Node, me: str) -> Node:
-        """The belief of `me`, who lives in `around`, after the tick (4, 5)."""
+    def perceive(self, around: Node, before: Node, me: str, *, happening: bool) -> Node:
+        """The belief of `me`, who lives in `around`, after the tick (4, 5, 8).
+
+        If nothing is `happening`, it perceives anew between two ticks.
+        """
         after = before.copy()
-        after.tick = around.tick
+        after.tick, after.events = around.tick, around.events
+        after.ear.pass_to(around.tick - 1 if happening else around.tick)
         self._age(after)
         present = around.agents[me].position is not None and around.agents[me].current
         view = View(self, around, me) if present else None
@@ -88,7 +107,32 @@ class Rules:
             self._see_blocks(after, around, view)
             self._see_agents(after, before, around, me, view)
             self._see_contents(after, before, around, me, view)
+        if self.options.testimony == "informed":
+            self._attend(after, me, view)
+        hear(self, after, around, me, view)
         return after
+
+    def _attend(self, after: Node, me: str, view: "View | None") -> None:
+        """What the claims of this tick and later ones are weighed by (8)."""
+        seen: set[Matter] = set()
+        acts: set[Matter] = set()
+        if view is not None:
+            for name in view.agents:
+                position = after.agents[name].position
+                assert position is not None
+                after.ear.met[name] = position
+            for name, place in list(after.ear.met.items()):
+                if name not in view.agents and view.would_see(place):
+                    del after.ear.met[name]
+            seen |= {("agent", name) for name in view.agents}
+            seen |= {("cell", place) for place in self.box.positions() if view.sees(place)}
+            acts |= {
+                ("cell", event.detail["position"])
+                for event in after.news
+                if event.actor is not None and "position" in event.detail
+            }
+        missing = {name for name, agent in after.agents.items() if not agent.current}
+        after.ear.perceive(missing, seen, acts, after.tick)
 
     def _age(self, node: Node) -> None:
         """Nothing is current that is not perceived anew (4)."""
@@ -172,8 +216,10 @@ class Rules:
                     basis=Basis(around.tick, Source.WITNESSED, event.kind),
                     current=True,
                 )
+                after.ear.put(place, event.detail["items"], MOVES[event.kind])
         for place in looked_into:
             after.containers[place] = around.containers[place]
+            after.ear.look_into(place, around.containers[place].items)
             acts = [e.kind for e in own if e.detail["position"] == place]
             if acts and after.containers[place].current:
                 basis = Basis(around.tick, Source.WITNESSED, acts[-1])
@@ -187,9 +233,9 @@ class Rules:
             name = self.container_name(new)
             is_replaced = old is not None and old.state != new.state
             if is_replaced and (name is None or name != self.container_name(old)):
-                after.containers.pop(place, None)
+                after.drop(place)
             if name is None and (old is None or self._is_gone(place, around, view)):
-                after.containers.pop(place, None)
+                after.drop(place)
             is_news = old is None or old.state != new.state
             if name is not None and is_news and place not in after.containers:
                 after.containers[place] = ContainerBelief({}, False, new.basis, current=False)

@@ -40,11 +40,13 @@ class Basis:
         observed_at: Tick of the perception that the value rests on.
         source: Kind of ground.
         event: The kind of the event that was witnessed or heard, if it was one.
+        speaker: Who said it, if it was heard.
     """
 
     observed_at: int
     source: Source
     event: EventKind | None = None
+    speaker: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
