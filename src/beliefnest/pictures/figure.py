@@ -1,0 +1,187 @@
+"""Figures: drawings for a width, saved in the form that the file's ending names."""
+
+import io
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from beliefnest.errors import InputError
+from beliefnest.pictures.legend import draw_legend
+from beliefnest.pictures.marks import XY, Drawing, scaled
+from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.palette import agent_looks
+from beliefnest.pictures.panel import draw_panel
+from beliefnest.pictures.scene import Scene
+from beliefnest.pictures.svg import svg_text
+
+if TYPE_CHECKING:
+    from PIL import Image
+
+__all__ = ["MARGIN", "TEXT_SIZE", "Figure", "Size", "columns_for", "figure_of"]
+
+Size = float | tuple[float, float] | Literal["one column", "two columns"]
+"""Width, or greatest width and height, in millimetres; or columns of a paper."""
+
+TEXT_SIZE = 7.0
+"""Of texts in figures, in points."""
+MARGIN = 5.0
+"""Around figures, in points."""
+
+_POINTS = 72 / 25.4
+_COLUMNS: Mapping[str, float] = {"one column": 84.0, "two columns": 174.0}
+_NARROWEST = 20.0
+_WIDEST = 2000.0
+_PANEL = 104.0
+"""Least width of a panel, in points."""
+_GAP = 9.0
+
+
+class Figure:
+    """A figure that can be laid out for any width.
+
+    Args:
+        layout: Drawing for a width in points.
+        width: Width in millimetres where none is asked for.
+        about: What it shows, in a few words.
+    """
+
+    def __init__(self, layout: Callable[[float], Drawing], width: float, about: str) -> None:
+        self._layout = layout
+        self._width = width
+        self._about = about
+
+    def __repr__(self) -> str:
+        return f"<figure of {self._about}; save() writes .svg, .pdf or .png>"
+
+    def _repr_html_(self) -> str:
+        return svg_text(self.drawing(), inline=True)
+
+    def drawing(self, size: Size | None = None) -> Drawing:
+        """The marks of the figure.
+
+        Args:
+            size: Width in millimetres; or width and greatest height, and it is made smaller to fit;
+                or `one column` (84 mm) or `two columns` (174 mm) of a paper; None: its own width.
+
+        Raises:
+            InputError: There is no such size.
+        """
+        if isinstance(size, tuple):
+            width, height = (_length(part) for part in size)
+            return self._fitting(width * _POINTS, height * _POINTS)
+        if isinstance(size, str):
+            if size not in _COLUMNS:
+                names = " or ".join(repr(name) for name in _COLUMNS)
+                raise InputError(f"there is no size {size!r}; give millimetres, {names}")
+            return self._layout(_COLUMNS[size] * _POINTS)
+        return self._layout(_length(self._width if size is None else size) * _POINTS)
+
+    def image(self, size: Size | None = None, dpi: float = 200) -> "Image.Image":
+        """The figure as an image of pixels."""
+        from beliefnest.pictures.raster import raster
+
+        return raster(self.drawing(size), dpi)
+
+    def save(self, path: str | Path, size: Size | None = None, dpi: float = 200) -> None:
+        """Write the figure as SVG, PDF or PNG, by the ending of the file's name.
+
+        The same figure gives the same bytes. Texts of SVG and PDF can be selected.
+
+        Args:
+            path: The file; it is replaced.
+            size: As for `drawing`.
+            dpi: Pixels to an inch, of PNG.
+
+        Raises:
+            InputError: There is no such ending or size, or the file cannot be written.
+        """
+        file = Path(path)
+        ending = file.suffix.lower()
+        if ending not in _FORMS:
+            raise InputError(
+                f"{file} has the ending {file.suffix or '(none)'!s}; "
+                f"figures are written as {', '.join(_FORMS)}"
+            )
+        content = _FORMS[ending](self.drawing(size), dpi)
+        try:
+            file.write_bytes(content)
+        except OSError as error:
+            raise InputError(
+                f"the figure {file} cannot be written ({error.strerror or error}); check the path"
+            ) from None
+
+    def _fitting(self, width: float, height: float) -> Drawing:
+        """Laid out wider until it is no higher than there is room for, and made smaller."""
+        factor = 1.0
+        drawing = self._layout(width)
+        while drawing.height > height * factor and factor < 8:
+            factor *= 1.1
+            drawing = self._layout(width * factor)
+        return scaled(drawing, 1 / max(factor, drawing.height / height))
+
+
+def figure_of(scenes: Sequence[Scene]) -> Figure:
+    """Simulators side by side, as many in a row as there is room for."""
+    paths = ", ".join(scene.path for scene in scenes)
+    about = f"{paths} at tick {scenes[0].tick}"
+    width = _COLUMNS["one column" if len(scenes) == 1 else "two columns"]
+    return Figure(lambda points: _side_by_side(scenes, points, about), width, about)
+
+
+def columns_for(count: int, width: float, least: float) -> int:
+    """How many of `count` equal columns stand side by side, none much shorter than others."""
+    most = max(1, int((width + _GAP) // (least + _GAP)))
+    rows = -(-count // min(most, count))
+    return -(-count // rows)
+
+
+def _side_by_side(scenes: Sequence[Scene], width: float, about: str) -> Drawing:
+    looks = agent_looks(scenes[0].agents)
+    columns = columns_for(len(scenes), width - 2 * MARGIN, _PANEL)
+    wide = (width - 2 * MARGIN - _GAP * (columns - 1)) / columns
+    marks: list[Drawn] = []
+    kinds: set[str] = set()
+    top = bottom = MARGIN
+    for number, scene in enumerate(scenes):
+        if number and number % columns == 0:
+            top = bottom + _GAP
+        at: XY = (MARGIN + number % columns * (wide + _GAP), top)
+        panel = draw_panel(scene, looks, at, wide, TEXT_SIZE)
+        marks += panel.marks
+        kinds |= panel.kinds
+        bottom = max(bottom, panel.bottom)
+    legend = draw_legend(kinds, looks, (MARGIN, bottom + 4), width - 2 * MARGIN, TEXT_SIZE * 0.95)
+    return Drawing(width, legend.bottom + MARGIN, (*marks, *legend.marks), about)
+
+
+def _length(value: object) -> float:
+    if isinstance(value, int | float) and _NARROWEST <= value <= _WIDEST:
+        return float(value)
+    raise InputError(
+        f"{value!r} is no length of a figure; give {_NARROWEST:g} to {_WIDEST:g} millimetres"
+    )
+
+
+def _svg(drawing: Drawing, _: float) -> bytes:
+    return svg_text(drawing).encode()
+
+
+def _pdf(drawing: Drawing, _: float) -> bytes:
+    from beliefnest.pictures.pdf import pdf_bytes
+
+    return pdf_bytes(drawing)
+
+
+def _png(drawing: Drawing, dpi: float) -> bytes:
+    from beliefnest.pictures.raster import raster
+
+    out = io.BytesIO()
+    raster(drawing, dpi).save(out, format="PNG", dpi=(dpi, dpi))
+    return out.getvalue()
+
+
+_FORMS: Mapping[str, Callable[[Drawing, float], bytes]] = {
+    ".svg": _svg,
+    ".pdf": _pdf,
+    ".png": _png,
+}

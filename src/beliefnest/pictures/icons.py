@@ -1,0 +1,262 @@
+"""Small drawings: agents, containers, items, doors, levers."""
+
+import math
+import zlib
+from collections.abc import Mapping
+
+from beliefnest.pictures.lettering import ASCENT, text_width
+from beliefnest.pictures.marks import XY, Circle, Lines, Polygon, Rectangle, Text
+from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.palette import INK, MARKS, PAPER, AgentLook, Mark, mix
+from beliefnest.pictures.scene import Device, Store
+
+__all__ = ["agent", "container", "device", "false_sign", "item", "letters", "verdict"]
+
+_WOOD, _WOOD_DARK, _WOOD_LIGHT = "#b07a42", "#704822", "#ce9c62"
+_STONE, _STONE_DARK = "#8d8a88", "#4c4a4a"
+_GOOD = "#007a58"
+_GEMS: Mapping[str, str] = {
+    "diamond": "#52ced6",
+    "emerald": "#3cb860",
+    "gold": "#f0c442",
+    "iron": "#cececf",
+    "apple": "#ce3c38",
+}
+
+
+def letters(at: XY, text: str, room: float, colour: str, *, halo: str | None = None) -> Text:
+    """Letters in the middle of an icon, as large as fit into `room`."""
+    size = min(room * 0.8, room * 0.88 / max(text_width(text, 1.0, bold=True), 0.1))
+    x, y = at
+    return Text(x, y + size * ASCENT * 0.48, text, size, colour, True, "middle", halo, "part")
+
+
+def agent(at: XY, radius: float, look: AgentLook, yaw: float | None, mark: Mark) -> list[Drawn]:
+    """A disc with a nose towards where the agent looks; a dashed one for a memory.
+
+    Args:
+        at: Its middle.
+        radius: Of the disc.
+        look: The agent's.
+        yaw: Where it looks, 0 up, pi/2 left; None: not shown.
+        mark: What can be said of its place.
+    """
+    x, y = at
+    drawn: list[Drawn] = []
+    if yaw is not None:
+        a, b = -math.sin(yaw), -math.cos(yaw)
+        nose = (
+            (x + a * radius * 1.7, y + b * radius * 1.7),
+            (x - b * radius * 0.75, y + a * radius * 0.75),
+            (x + b * radius * 0.75, y - a * radius * 0.75),
+        )
+        drawn.append(Polygon(nose, mix(look.colour, INK, 0.35)))
+    thick = radius * 0.13
+    if mark is Mark.CURRENT:
+        drawn.append(Circle(x, y, radius, look.colour, INK, thick, role="icon"))
+        drawn.append(letters(at, look.badge, radius * 1.6, look.ink))
+    else:
+        fill = mix(PAPER, look.colour, 0.3)
+        drawn.append(Circle(x, y, radius, fill, INK, thick * 1.3, radius * 0.45, "icon"))
+        drawn.append(letters(at, look.badge, radius * 1.6, INK))
+    drawn += [
+        Circle(x, y, radius * (0.9 - 0.16 * ring), None, PAPER, thick * 0.7)
+        for ring in range(look.rings)
+    ]
+    if mark is Mark.FALSE:
+        drawn += false_sign((x + radius * 0.62, y - radius * 0.62), radius * 0.5)
+    return drawn
+
+
+def false_sign(at: XY, radius: float) -> list[Drawn]:
+    """A cross on a diamond: this is false."""
+    x, y = at
+    colour = MARKS[Mark.FALSE].colour
+    r, c = radius * 1.35, radius * 0.42
+    diamond = ((x, y - r), (x + r, y), (x, y + r), (x - r, y))
+    arms = (((x - c, y - c), (x + c, y + c)), ((x - c, y + c), (x + c, y - c)))
+    return [
+        Polygon(diamond, colour, PAPER, radius * 0.2),
+        Lines(arms, PAPER, radius * 0.32, "part"),
+    ]
+
+
+def verdict(at: XY, radius: float, *, good: bool) -> list[Drawn]:
+    """A tick on a disc, or the cross of what is false."""
+    x, y = at
+    if not good:
+        return false_sign(at, radius)
+    points = (
+        (x - radius * 0.5, y + radius * 0.05),
+        (x - radius * 0.1, y + radius * 0.42),
+        (x + radius * 0.52, y - radius * 0.38),
+    )
+    return [
+        Circle(x, y, radius, _GOOD),
+        Polygon(points, None, PAPER, radius * 0.26, closed=False),
+    ]
+
+
+def container(at: XY, size: float, store: Store) -> list[Drawn]:
+    """A container with what is known to be in it.
+
+    Items stand on it; it is open if it is known to be empty; `?` says that nothing is known, `+?`
+    that there may be more.
+    """
+    x, y = at
+    half = size / 2
+    kiln = store.name is not None and any(k in store.name for k in ("furnace", "smoker"))
+    body, dark, light = (
+        (_STONE, _STONE_DARK, mix(_STONE, PAPER, 0.3)) if kiln else (_WOOD, _WOOD_DARK, _WOOD_LIGHT)
+    )
+    drawn: list[Drawn] = [
+        Rectangle(
+            x - half, y - half, size, size, body, dark, size * 0.05, size * 0.08, role="icon"
+        ),
+    ]
+    empty = store.complete and not store.items
+    if empty:
+        inside = (x - half * 0.78, y - half * 0.78, size * 0.78, size * 0.5)
+        drawn.append(Rectangle(*inside, mix(dark, INK, 0.6), light, size * 0.05, role="part"))
+    else:
+        lid = (x - half * 0.9, y - half * 0.9, size * 0.9, size * 0.36)
+        drawn.append(Rectangle(*lid, light, role="part"))
+    if kiln:
+        drawn.append(
+            Rectangle(x - half * 0.4, y + half * 0.2, half * 0.8, half * 0.6, INK, role="part")
+        )
+    else:
+        drawn.append(
+            Rectangle(
+                x - size * 0.08,
+                y - size * 0.1,
+                size * 0.16,
+                size * 0.2,
+                "#ded6c4",
+                dark,
+                size * 0.03,
+                role="part",
+            )
+        )
+    if store.items:
+        name, *_ = sorted(store.items)
+        drawn += item((x, y - half * 0.15), size * 0.8, name)
+    if not store.complete:
+        sign = MARKS[Mark.INCOMPLETE if store.items else Mark.UNKNOWN].sign
+        place = (x + half * 0.55, y + half * 0.55) if store.items else at
+        drawn.append(letters(place, sign, size * (0.5 if store.items else 0.9), INK, halo=PAPER))
+    if store.mark is Mark.FALSE:
+        drawn += false_sign((x + half * 0.8, y - half * 0.8), size * 0.24)
+    return drawn
+
+
+def item(at: XY, size: float, name: str) -> list[Drawn]:
+    """An item: a cut stone in its colour."""
+    x, y = at
+    r = size / 2
+    colour = _item_colour(name)
+    table = ((x - r * 0.55, y - r * 0.75), (x + r * 0.55, y - r * 0.75))
+    low, left, right, tip = y - r * 0.2, x - r, x + r, (x, y + r * 0.95)
+    outline = (*table, (right, low), tip, (left, low))
+    return [
+        Polygon(outline, colour, mix(colour, INK, 0.55), size * 0.06),
+        Polygon((*table, (x + r * 0.35, low), (x - r * 0.35, low)), mix(colour, PAPER, 0.6)),
+        Polygon(((x - r * 0.35, low), (x + r * 0.35, low), tip), mix(colour, PAPER, 0.25)),
+    ]
+
+
+def device(at: XY, cell: float, shown: Device) -> list[Drawn]:
+    """A door as wide as it stands, a lever, a button, a plate, a table to work at.
+
+    Args:
+        at: Left upper corner of its column.
+        cell: Width of a column.
+        shown: What is drawn.
+    """
+    x, y = at
+    middle = (x + cell / 2, y + cell / 2)
+    if "lever" in shown.name:
+        end = (middle[0] + cell * (0.34 if shown.on else -0.34), middle[1] - cell * 0.34)
+        return [
+            Rectangle(
+                x + cell * 0.3,
+                y + cell * 0.5,
+                cell * 0.4,
+                cell * 0.3,
+                _STONE,
+                INK,
+                cell * 0.05,
+                role="part",
+            ),
+            Lines(((middle, end),), _WOOD_DARK, cell * 0.13, "part"),
+            Circle(*end, cell * 0.13, "#d03030" if shown.on else PAPER, INK, cell * 0.05),
+        ]
+    if "button" in shown.name or "plate" in shown.name:
+        fill = INK if shown.on else _STONE
+        return [
+            Rectangle(
+                x + cell * 0.25,
+                y + cell * 0.3,
+                cell * 0.5,
+                cell * 0.4,
+                fill,
+                INK,
+                cell * 0.06,
+                cell * 0.1,
+                role="part",
+            )
+        ]
+    if "door" in shown.name or "gate" in shown.name:
+        return _door(at, cell, shown)
+    return _table(at, cell, shown)
+
+
+def _door(at: XY, cell: float, shown: Device) -> list[Drawn]:
+    """A shut door fills its frame; an open one stands aside, and an arc tells how it turned."""
+    x, y = at
+    frame = Rectangle(
+        x,
+        y,
+        cell,
+        cell,
+        mix(_WOOD_LIGHT, PAPER, 0.55),
+        _WOOD_DARK,
+        cell * 0.04,
+        dash=cell * 0.12,
+        role="part",
+    )
+    leaves = shown.parts or ((0.0, 0.4, 0.15, 0.6), (0.85, 0.4, 1.0, 0.6))
+    drawn: list[Drawn] = [frame]
+    for left, top, right, bottom in leaves:
+        wide, high = max(right - left, 0.12) * cell, max(bottom - top, 0.12) * cell
+        leaf = (x + left * cell, y + top * cell, wide, high)
+        fill = PAPER if shown.on else _WOOD
+        drawn.append(Rectangle(*leaf, fill, _WOOD_DARK, cell * 0.07, role="part"))
+    return drawn
+
+
+def _table(at: XY, cell: float, shown: Device) -> list[Drawn]:
+    x, y = at
+    kiln = "table" not in shown.name
+    fill, dark = (_STONE, _STONE_DARK) if kiln else (_WOOD, _WOOD_DARK)
+    drawn: list[Drawn] = [Rectangle(x, y, cell, cell, fill, dark, cell * 0.06, role="part")]
+    if kiln:
+        mouth = "#e67e22" if shown.on else INK
+        drawn.append(
+            Rectangle(x + cell * 0.25, y + cell * 0.5, cell * 0.5, cell * 0.35, mouth, role="part")
+        )
+    else:
+        grid = [((x + cell * s, y), (x + cell * s, y + cell)) for s in (1 / 3, 2 / 3)]
+        grid += [((x, y + cell * s), (x + cell, y + cell * s)) for s in (1 / 3, 2 / 3)]
+        drawn.append(Lines(tuple(grid), dark, cell * 0.06, "part"))
+    return drawn
+
+
+def _item_colour(name: str) -> str:
+    for part, colour in _GEMS.items():
+        if part in name:
+            return colour
+    # Not Python's own hash, which differs from process to process.
+    digest = zlib.crc32(name.encode())
+    parts = (90 + digest % 130, 90 + digest // 256 % 130, 90 + digest // 65536 % 130)
+    return "#" + bytes(parts).hex()

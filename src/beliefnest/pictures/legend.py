@@ -1,0 +1,135 @@
+"""What the signs of a figure mean: only those that are in it."""
+
+from collections.abc import Callable, Iterable, Mapping
+
+from beliefnest.pictures import icons
+from beliefnest.pictures.lettering import ASCENT, text_width
+from beliefnest.pictures.marks import XY, Circle, Lines, Polygon, Rectangle, Text
+from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.palette import INK, MARKS, PAPER, QUIET, AgentLook, Mark, mix
+from beliefnest.pictures.panel import Block
+from beliefnest.pictures.plan import hatching
+from beliefnest.pictures.scene import Device, Store
+
+__all__ = ["draw_legend"]
+
+_GROUND = "#f0ece3"
+
+
+def draw_legend(
+    kinds: Iterable[str], looks: Mapping[str, AgentLook], at: XY, width: float, size: float
+) -> Block:
+    """Signs and words, as many in a line as there is room for.
+
+    Args:
+        kinds: What is to be explained.
+        looks: Of all agents.
+        at: Left upper corner, in points.
+        width: In points.
+        size: Of the words, in points.
+    """
+    left, top = at
+    block = Block(bottom=top)
+    x = left
+    height = size * 1.2
+    for kind in sorted(kinds, key=_order):
+        sign, words = _entry(kind, looks)
+        wide = height * 1.5
+        taken = wide + 2 + text_width(words, size)
+        if x > left and x + taken > left + width:
+            x, block.bottom = left, block.bottom + height * 1.45
+        block.marks += sign((x, block.bottom), wide, height)
+        base = block.bottom + height / 2 + size * ASCENT * 0.48
+        block.marks.append(Text(x + wide + 2, base, words, size, QUIET))
+        x += taken + size * 1.5
+    block.bottom += height if x > left else 0
+    return block
+
+
+_Sign = Callable[[XY, float, float], list[Drawn]]
+_KINDS = ("sight", "remembered", "false", "unknown blocks", "container", "trail")
+
+
+def _order(kind: str) -> tuple[int, str]:
+    first = next((n for n, known in enumerate(_KINDS) if kind.startswith(known)), len(_KINDS))
+    return first, kind
+
+
+def _entry(kind: str, looks: Mapping[str, AgentLook]) -> tuple[_Sign, str]:
+    if kind.startswith("sight"):
+        _, number, name = kind.split()
+        return _sight_sign(int(number), looks[name].colour), f"seen by {name}"
+    if kind in _SIGNS:
+        return _SIGNS[kind]
+    return _device_sign(kind), kind.replace("_", " ")
+
+
+def _sight_sign(number: int, colour: str) -> _Sign:
+    def drawn(at: XY, wide: float, high: float) -> list[Drawn]:
+        x, y = at
+        if number == 0:
+            return [Rectangle(x, y, wide, high, mix(_GROUND, colour, 0.3), colour, 0.4)]
+        lines = hatching((x, y, x + wide, y + high), number)
+        return [
+            Rectangle(x, y, wide, high, _GROUND, colour, 0.4),
+            Lines(lines, mix(_GROUND, colour, 0.8), 0.5),
+        ]
+
+    return drawn
+
+
+def _device_sign(kind: str) -> _Sign:
+    def drawn(at: XY, wide: float, high: float) -> list[Drawn]:
+        x, y = at
+        shown = Device((0, 0, 0), kind, on=False, parts=((0.0, 0.8, 1.0, 1.0),))
+        return icons.device((x + (wide - high) / 2, y), high, shown)
+
+    return drawn
+
+
+def _remembered(at: XY, wide: float, high: float) -> list[Drawn]:
+    middle = (at[0] + wide / 2, at[1] + high / 2)
+    return [Circle(*middle, high / 2, mix(PAPER, QUIET, 0.2), INK, 0.7, high * 0.2)]
+
+
+def _false(at: XY, wide: float, high: float) -> list[Drawn]:
+    return icons.false_sign((at[0] + wide / 2, at[1] + high / 2), high * 0.36)
+
+
+def _unknown(at: XY, wide: float, high: float) -> list[Drawn]:
+    x, y = at
+    dots = [
+        ((x + wide * a - 0.4, y + high * b), (x + wide * a + 0.4, y + high * b))
+        for a in (0.2, 0.5, 0.8)
+        for b in (0.3, 0.7)
+    ]
+    return [
+        Rectangle(x, y, wide, high, _GROUND),
+        Lines(tuple(dots), QUIET, 0.8),
+    ]
+
+
+def _container(at: XY, wide: float, high: float) -> list[Drawn]:
+    x, y = at
+    store = Store((0, 0, 0), "chest", "", {}, False, Mark.UNKNOWN, 0, "", 0)
+    return icons.container((x + wide / 2, y + high / 2), high, store)
+
+
+def _trail(at: XY, wide: float, high: float) -> list[Drawn]:
+    x, y = at
+    ends = ((x, y + high / 2), (x + wide, y + high / 2))
+    return [Polygon(ends, None, QUIET, 0.9, 2.2, closed=False, role="line")]
+
+
+def _dropped(at: XY, wide: float, high: float) -> list[Drawn]:
+    return icons.item((at[0] + wide / 2, at[1] + high / 2), high, "diamond")
+
+
+_SIGNS: Mapping[str, tuple[_Sign, str]] = {
+    "remembered": (_remembered, MARKS[Mark.STALE].words),
+    "false": (_false, MARKS[Mark.FALSE].words),
+    "unknown blocks": (_unknown, "not known what stands there"),
+    "container": (_container, "not known what is in it; open: known to be empty"),
+    "trail": (_trail, "the way an agent has gone"),
+    "dropped item": (_dropped, "dropped item"),
+}

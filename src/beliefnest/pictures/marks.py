@@ -1,0 +1,191 @@
+"""A drawing: a list of marks, each of them of one simple shape, in points, y downwards.
+
+Marks know where they end, so that what a drawing holds can be measured as well as looked at.
+What a mark is for is its `role`: texts and icons must not touch one another, cards must not be
+empty, and lines and areas lie where they lie.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+from beliefnest.pictures.lettering import ASCENT, DESCENT, text_width
+
+__all__ = [
+    "XY",
+    "Bounds",
+    "Circle",
+    "Drawing",
+    "Lines",
+    "Mark",
+    "Polygon",
+    "Rectangle",
+    "Role",
+    "Text",
+    "scaled",
+]
+
+XY = tuple[float, float]
+Bounds = tuple[float, float, float, float]
+"""Left, top, right, bottom."""
+
+Role = Literal["area", "line", "icon", "part", "text", "card"]
+"""`part` is a piece of an icon; `text` stands for itself, a letter inside an icon is a `part`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rectangle:
+    """A rectangle with its left upper corner at `x`, `y`."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    fill: str | None = None
+    stroke: str | None = None
+    thick: float = 0.5
+    radius: float = 0.0
+    dash: float = 0.0
+    role: Role = "area"
+
+    @property
+    def bounds(self) -> Bounds:
+        """Where it ends."""
+        return self.x, self.y, self.x + self.width, self.y + self.height
+
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    """A circle around `x`, `y`."""
+
+    x: float
+    y: float
+    radius: float
+    fill: str | None = None
+    stroke: str | None = None
+    thick: float = 0.5
+    dash: float = 0.0
+    role: Role = "part"
+
+    @property
+    def bounds(self) -> Bounds:
+        """Where it ends."""
+        r = self.radius
+        return self.x - r, self.y - r, self.x + r, self.y + r
+
+
+@dataclass(frozen=True, slots=True)
+class Polygon:
+    """A filled polygon, or with `closed` unset a line through points."""
+
+    points: tuple[XY, ...]
+    fill: str | None = None
+    stroke: str | None = None
+    thick: float = 0.5
+    dash: float = 0.0
+    closed: bool = True
+    role: Role = "part"
+
+    @property
+    def bounds(self) -> Bounds:
+        """Where it ends."""
+        xs, ys = zip(*self.points, strict=True)
+        return min(xs), min(ys), max(xs), max(ys)
+
+
+@dataclass(frozen=True, slots=True)
+class Lines:
+    """Many straight lines of one look: each from a point to a point."""
+
+    segments: tuple[tuple[XY, XY], ...]
+    stroke: str
+    thick: float = 0.5
+    role: Role = "line"
+
+    @property
+    def bounds(self) -> Bounds:
+        """Where they end."""
+        xs, ys = zip(*(point for ends in self.segments for point in ends), strict=True)
+        return min(xs), min(ys), max(xs), max(ys)
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """A line of text; `y` is its base line, `x` its beginning, middle or end."""
+
+    x: float
+    y: float
+    text: str
+    size: float
+    colour: str
+    bold: bool = False
+    anchor: Literal["start", "middle", "end"] = "start"
+    halo: str | None = None
+    role: Role = "text"
+
+    @property
+    def width(self) -> float:
+        """How long it is."""
+        return text_width(self.text, self.size, bold=self.bold)
+
+    @property
+    def left(self) -> float:
+        """Where it begins."""
+        share = {"start": 0.0, "middle": 0.5, "end": 1.0}[self.anchor]
+        return self.x - share * self.width
+
+    @property
+    def bounds(self) -> Bounds:
+        """Where its letters end."""
+        top, bottom = self.y - ASCENT * self.size, self.y + DESCENT * self.size
+        return self.left, top, self.left + self.width, bottom
+
+
+Mark = Rectangle | Circle | Polygon | Lines | Text
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """Marks on a page, the first lowest.
+
+    Attributes:
+        width: Of the page, in points.
+        height: Of the page, in points.
+        marks: What is drawn.
+        title: What it shows, for those who do not see it.
+    """
+
+    width: float
+    height: float
+    marks: tuple[Mark, ...]
+    title: str = ""
+
+    def having(self, *roles: Role) -> Iterator[Mark]:
+        """The marks of some roles."""
+        return (mark for mark in self.marks if mark.role in roles)
+
+
+def scaled(drawing: Drawing, factor: float) -> Drawing:
+    """A drawing of another size, its texts included."""
+    return replace(
+        drawing,
+        width=drawing.width * factor,
+        height=drawing.height * factor,
+        marks=tuple(_scaled(mark, factor) for mark in drawing.marks),
+    )
+
+
+_LENGTHS = ("x", "y", "width", "height", "thick", "radius", "dash", "size")
+
+
+def _scaled(mark: Mark, factor: float) -> Mark:
+    given: dict[str, Any] = {
+        name: getattr(mark, name) * factor for name in mark.__dataclass_fields__ if name in _LENGTHS
+    }
+    if isinstance(mark, Polygon):
+        given["points"] = tuple((x * factor, y * factor) for x, y in mark.points)
+    elif isinstance(mark, Lines):
+        given["segments"] = tuple(
+            ((a * factor, b * factor), (c * factor, d * factor)) for (a, b), (c, d) in mark.segments
+        )
+    return replace(mark, **given)

@@ -1,0 +1,187 @@
+"""A panel of a figure: title, plan, and in the margin what a plan cannot show."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from beliefnest.pictures import icons
+from beliefnest.pictures.lettering import ASCENT, text_width, wrap
+from beliefnest.pictures.marks import XY, Text
+from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.palette import INK, MARKS, QUIET, AgentLook, Mark, age_text, mix
+from beliefnest.pictures.plan import draw_plan
+from beliefnest.pictures.scene import Person, Scene, Store
+
+__all__ = ["Block", "belief_words", "draw_panel", "paragraph"]
+
+_LINE = 1.32
+_MOST = 12
+"""Containers that are listed; more are counted."""
+
+
+@dataclass
+class Block:
+    """A part of a page under way, from the top downwards.
+
+    Attributes:
+        marks: What is drawn.
+        bottom: Where it ends.
+        kinds: What of the legend it needs.
+    """
+
+    marks: list[Drawn] = field(default_factory=list)
+    bottom: float = 0.0
+    kinds: set[str] = field(default_factory=set)
+
+
+def belief_words(path: str) -> str:
+    """What a simulator is, in words."""
+    names = [name for name in path.split("/") if name]
+    return " that ".join(f"{name} believes" for name in names) or "reality"
+
+
+def paragraph(
+    block: Block,
+    text: str,
+    left: float,
+    width: float,
+    size: float,
+    colour: str = INK,
+    *,
+    bold: bool = False,
+) -> None:
+    """Lines of text at the end of a block."""
+    for line in wrap(text, size, width, bold=bold):
+        block.marks.append(Text(left, block.bottom + ASCENT * size, line, size, colour, bold))
+        block.bottom += size * _LINE
+
+
+def draw_panel(
+    scene: Scene,
+    looks: Mapping[str, AgentLook],
+    at: XY,
+    width: float,
+    size: float,
+    trails: Mapping[str, tuple[XY, ...]] | None = None,
+) -> Block:
+    """A panel of a scene.
+
+    Args:
+        scene: What is drawn.
+        looks: Of all agents.
+        at: Left upper corner, in points.
+        width: In points.
+        size: Of texts, in points.
+        trails: Where agents have been.
+    """
+    left, top = at
+    block = Block(bottom=top)
+    paragraph(block, scene.path, left, width, size * 1.15, bold=True)
+    note = f", {scene.note}" if scene.note else ""
+    words = f"{belief_words(scene.path)}, tick {scene.tick}{note}"
+    paragraph(block, words, left, width, size * 0.95, QUIET)
+    plan = draw_plan(scene, looks, (left, block.bottom + 1.5), width, size, trails)
+    block.marks += plan.marks
+    block.kinds |= plan.kinds
+    block.bottom = plan.bottom + size * 0.7
+    _margin(block, scene, looks, left, width, size)
+    if plan.unnamed:
+        paragraph(block, f"too close for a name: {', '.join(plan.unnamed)}", left, width, size)
+    return block
+
+
+def _margin(
+    block: Block,
+    scene: Scene,
+    looks: Mapping[str, AgentLook],
+    left: float,
+    width: float,
+    size: float,
+) -> None:
+    for store in scene.stores[:_MOST]:
+        _store_line(block, store, scene.against, left, width, size)
+    if len(scene.stores) > _MOST:
+        paragraph(block, f"and {len(scene.stores) - _MOST} more containers", left, width, size)
+    for person in scene.people:
+        if person.mark is Mark.FALSE:
+            _person_line(block, person, scene.against, looks, left, width, size)
+    lost = [person for person in scene.people if person.mark is Mark.UNKNOWN]
+    if lost:
+        _lost_line(block, lost, looks, left, width, size)
+
+
+def _store_line(
+    block: Block, store: Store, against: str, left: float, width: float, size: float
+) -> None:
+    """An icon, the container's name, what is known of it, and how it is elsewhere."""
+    icon = size * 1.15
+    block.marks += icons.container((left + icon / 2, block.bottom + icon / 2), icon, store)
+    block.kinds.add("container")
+    inner = left + icon * 1.55
+    text = f"{store.label}: {store.words}"
+    if store.age:
+        text += f" ({age_text(store.age)})"
+    top = block.bottom
+    paragraph(block, text, inner, width - icon * 1.55, size)
+    if store.mark is Mark.FALSE:
+        _false_line(block, f"{_place_words(against)}: {store.instead}", inner, left + width, size)
+    block.bottom = max(block.bottom, top + icon + 2.2) + 0.8
+
+
+def _person_line(
+    block: Block,
+    person: Person,
+    against: str,
+    looks: Mapping[str, AgentLook],
+    left: float,
+    width: float,
+    size: float,
+) -> None:
+    radius = size * 0.6
+    at = (left + radius, block.bottom + radius)
+    block.marks += icons.agent(at, radius, looks[person.name], None, Mark.STALE)
+    inner, top = left + size * 1.78, block.bottom
+    seen = age_text(person.age) if person.age else "now"
+    paragraph(block, f"{person.name}: seen {seen}", inner, width - size * 1.78, size)
+    _false_line(block, f"{_place_words(against)}: {person.instead}", inner, left + width, size)
+    block.bottom = max(block.bottom, top + 2 * radius) + 0.8
+
+
+def _false_line(block: Block, text: str, left: float, right: float, size: float) -> None:
+    radius = size * 0.34
+    at = (left + radius * 1.35, block.bottom + size * 0.45)
+    block.marks += icons.false_sign(at, radius)
+    block.kinds.add("false")
+    inner = left + radius * 3.6
+    paragraph(block, text, inner, right - inner, size, _darker(Mark.FALSE))
+
+
+def _lost_line(
+    block: Block,
+    lost: list[Person],
+    looks: Mapping[str, AgentLook],
+    left: float,
+    width: float,
+    size: float,
+) -> None:
+    """Discs and names of those whose place is unknown, as many in a line as there is room for."""
+    paragraph(block, "place not known:", left, width, size, QUIET)
+    radius, x = size * 0.6, left
+    step = max(size * _LINE, 2 * radius + 1.6)
+    for person in lost:
+        taken = 2 * radius + 2 + text_width(person.name, size) + size * 0.9
+        if x > left and x + taken - size * 0.9 > left + width:
+            x, block.bottom = left, block.bottom + step
+        at = (x + radius, block.bottom + radius)
+        block.marks += icons.agent(at, radius, looks[person.name], None, Mark.STALE)
+        base = block.bottom + radius + size * ASCENT * 0.48
+        block.marks.append(Text(x + 2 * radius + 2, base, person.name, size, INK))
+        x += taken
+    block.bottom += step
+
+
+def _place_words(path: str) -> str:
+    return "in reality" if path == "/" else f"in {path}"
+
+
+def _darker(mark: Mark) -> str:
+    return mix(MARKS[mark].colour, INK, 0.35)

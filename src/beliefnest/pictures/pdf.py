@@ -1,0 +1,92 @@
+"""A drawing as PDF, with its font inside."""
+
+import io
+from typing import Any
+
+from beliefnest.pictures.lettering import font_bytes
+from beliefnest.pictures.marks import Circle, Drawing, Lines, Mark, Polygon, Rectangle, Text
+
+__all__ = ["pdf_bytes"]
+
+_NAMES = {False: "LiberationSans", True: "LiberationSans-Bold"}
+
+
+def pdf_bytes(drawing: Drawing) -> bytes:
+    """The PDF of a drawing: one page of its size; the same drawing gives the same bytes."""
+    from reportlab.pdfbase import pdfmetrics
+    from reportlab.pdfbase.ttfonts import TTFont
+    from reportlab.pdfgen.canvas import Canvas
+
+    for bold, name in _NAMES.items():
+        pdfmetrics.registerFont(TTFont(name, io.BytesIO(font_bytes(bold=bold))))
+    out = io.BytesIO()
+    size = (drawing.width, drawing.height)
+    canvas = Canvas(out, pagesize=size, invariant=1, pageCompression=1)
+    canvas.setTitle(drawing.title)
+    for mark in drawing.marks:
+        _draw(canvas, drawing.height, mark)
+    canvas.save()
+    return out.getvalue()
+
+
+def _draw(canvas: Any, height: float, mark: Mark) -> None:
+    """Put a mark on a canvas of reportlab, whose y goes up."""
+    match mark:
+        case Text():
+            _text(canvas, height, mark)
+        case Lines():
+            _look(canvas, None, mark.stroke, mark.thick, 0)
+            canvas.lines([(a, height - b, c, height - d) for (a, b), (c, d) in mark.segments])
+        case Rectangle():
+            fill, stroke = _look(canvas, mark.fill, mark.stroke, mark.thick, mark.dash)
+            place = (mark.x, height - mark.y - mark.height, mark.width, mark.height)
+            if mark.radius:
+                canvas.roundRect(*place, mark.radius, stroke=stroke, fill=fill)
+            else:
+                canvas.rect(*place, stroke=stroke, fill=fill)
+        case Circle():
+            fill, stroke = _look(canvas, mark.fill, mark.stroke, mark.thick, mark.dash)
+            canvas.circle(mark.x, height - mark.y, mark.radius, stroke=stroke, fill=fill)
+        case Polygon():
+            fill, stroke = _look(canvas, mark.fill, mark.stroke, mark.thick, mark.dash)
+            path = canvas.beginPath()
+            (x, y), *others = mark.points
+            path.moveTo(x, height - y)
+            for x, y in others:
+                path.lineTo(x, height - y)
+            if mark.closed:
+                path.close()
+            canvas.drawPath(path, stroke=stroke, fill=fill)
+
+
+def _look(
+    canvas: Any, fill: str | None, stroke: str | None, thick: float, dash: float
+) -> tuple[int, int]:
+    """Set colours and lines; whether there is a fill and a stroke."""
+    from reportlab.lib.colors import HexColor
+
+    if fill is not None:
+        canvas.setFillColor(HexColor(fill))
+    if stroke is not None:
+        canvas.setStrokeColor(HexColor(stroke))
+        canvas.setLineWidth(thick)
+        canvas.setDash([dash, dash] if dash else [])
+    return int(fill is not None), int(stroke is not None)
+
+
+def _text(canvas: Any, height: float, mark: Text) -> None:
+    from reportlab.lib.colors import HexColor
+
+    for colour, mode in ((mark.halo, 2), (mark.colour, 0)):
+        if colour is None:
+            continue
+        text = canvas.beginText(mark.left, height - mark.y)
+        text.setFont(_NAMES[mark.bold], mark.size)
+        text.setFillColor(HexColor(colour))
+        text.setStrokeColor(HexColor(colour))
+        text.setTextRenderMode(mode)
+        canvas.setLineWidth(mark.size * 0.28)
+        canvas.setLineJoin(1)
+        canvas.setDash([])
+        text.textOut(mark.text)
+        canvas.drawText(text)

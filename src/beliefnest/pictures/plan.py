@@ -1,0 +1,397 @@
+"""The plan of a scene: ground, walls, sight, containers, devices, agents, and their names."""
+
+import zlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+
+from beliefnest.pictures import icons
+from beliefnest.pictures.lettering import ASCENT, DESCENT, text_width
+from beliefnest.pictures.marks import XY, Bounds, Lines, Polygon, Rectangle, Text
+from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.palette import INK, MARKS, PAPER, QUIET, AgentLook, Mark, age_text, mix
+from beliefnest.pictures.room import Room
+from beliefnest.pictures.scene import Cell, Person, Scene, Store
+from beliefnest.world.registry import Registry
+
+__all__ = ["Plan", "draw_plan", "hatching"]
+
+_NOWHERE = "#dfdbd2"
+_GROUND = "#f0ece3"
+_GRID = "#e4dfd4"
+_WALL = "#706c6a"
+_HATCH = 4.2
+_SMALLEST = 3.9
+"""Least radius of an agent, in points, at which its letters can be read."""
+_KINDS: Mapping[str, str] = {
+    "glass": "#b8d8e2",
+    "ice": "#b0ceec",
+    "water": "#78a8dc",
+    "lava": "#e08040",
+    "grass": "#96ba6e",
+    "leaves": "#6e9e56",
+    "planks": "#bc9868",
+    "log": "#96744c",
+    "sand": "#e0d2a0",
+}
+_DEVICES = ("door", "lever", "button", "furnace", "smoker", "crafting_table", "gate", "plate")
+_STORES = ("chest", "barrel", "furnace", "smoker")
+
+
+@dataclass
+class Plan:
+    """A plan that was drawn.
+
+    Attributes:
+        marks: What was drawn.
+        bottom: Where it ends.
+        unnamed: Names for which there was no room.
+        kinds: What of the legend it needs.
+    """
+
+    marks: list[Drawn]
+    bottom: float
+    unnamed: list[str] = field(default_factory=list)
+    kinds: set[str] = field(default_factory=set)
+
+
+def draw_plan(
+    scene: Scene,
+    looks: Mapping[str, AgentLook],
+    at: XY,
+    width: float,
+    size: float,
+    trails: Mapping[str, tuple[XY, ...]] | None = None,
+) -> Plan:
+    """The plan of a scene.
+
+    Args:
+        scene: What is drawn.
+        looks: Of all agents.
+        at: Left upper corner, in points.
+        width: In points; a plan that is higher than wide is made narrower.
+        size: Of the names, in points.
+        trails: Where agents have been: x and z, oldest first.
+    """
+    across, down = scene.size
+    cell = min(width / across, width * 1.1 / down)
+    left = at[0] + (width - cell * across) / 2
+    sheet = _Sheet(scene, looks, (left, at[1]), cell, size)
+    sheet.ground()
+    sheet.sights()
+    sheet.walls()
+    sheet.trails(trails or {})
+    sheet.things()
+    sheet.names()
+    edge = Rectangle(left, at[1], cell * across, cell * down, None, mix(INK, PAPER, 0.6), 0.5)
+    return Plan([*sheet.marks, edge], at[1] + cell * down, sheet.unnamed, sheet.kinds)
+
+
+def hatching(bounds: Bounds, number: int, step: float = _HATCH) -> tuple[tuple[XY, XY], ...]:
+    """Lines across a rectangle that go on in its neighbours; `number` says which way."""
+    x0, y0, x1, y1 = bounds
+    sign = 1 if number % 2 else -1
+    ends = [x0 + sign * y0, x0 + sign * y1, x1 + sign * y0, x1 + sign * y1]
+    segments = []
+    offset = -(-min(ends) // step) * step
+    while offset < max(ends):
+        # Points of the rectangle on the line x + sign * y = offset.
+        crossings = sorted(
+            {
+                (round(max(x0, min(x1, offset - sign * y)), 3), round(y, 3))
+                for y in (
+                    max(y0, min(y1, sign * (offset - x0))),
+                    max(y0, min(y1, sign * (offset - x1))),
+                )
+            }
+        )
+        if len(crossings) == 2:
+            segments.append((crossings[0], crossings[1]))
+        offset += step
+    return tuple(segments)
+
+
+class _Sheet:
+    """A plan under way."""
+
+    def __init__(
+        self, scene: Scene, looks: Mapping[str, AgentLook], at: XY, cell: float, size: float
+    ) -> None:
+        self._scene = scene
+        self._looks = looks
+        self._at = at
+        self._cell = cell
+        self._size = size
+        across, down = scene.size
+        inset = 1.0
+        self._room = Room(
+            (
+                at[0] + inset,
+                at[1] + inset,
+                at[0] + across * cell - inset,
+                at[1] + down * cell - inset,
+            )
+        )
+        self._labels: list[tuple[Bounds, tuple[tuple[str, bool], ...]]] = []
+        self.marks: list[Drawn] = []
+        self.unnamed: list[str] = []
+        self.kinds: set[str] = set()
+
+    def _place(self, x: float, z: float) -> XY:
+        low_x, low_z = self._scene.low
+        return self._at[0] + (x - low_x) * self._cell, self._at[1] + (z - low_z) * self._cell
+
+    def _square(self, i: int, k: int, wide: int = 1) -> Bounds:
+        x, y = self._at[0] + i * self._cell, self._at[1] + k * self._cell
+        return x, y, x + wide * self._cell, y + self._cell
+
+    def _runs(self, of: Mapping[tuple[int, int], object]) -> Iterator[tuple[int, int, int]]:
+        """Rows of equal neighbours: first column, row, and how many."""
+        across, down = self._scene.size
+        for k in range(down):
+            start = 0
+            for i in range(1, across + 1):
+                if i == across or of.get((i, k)) != of.get((start, k)):
+                    if of.get((start, k)) is not None:
+                        yield start, k, i - start
+                    start = i
+
+    def _cells(self) -> Iterator[tuple[int, int, Cell]]:
+        for i, row in enumerate(self._scene.cells):
+            for k, cell in enumerate(row):
+                yield i, k, cell
+
+    def ground(self) -> None:
+        """The floor, what is not known of it, and thin lines between columns."""
+        fills = {(i, k): _ground_colour(cell) for i, k, cell in self._cells()}
+        for i, k, count in self._runs(fills):
+            x0, y0, x1, y1 = self._square(i, k, count)
+            self.marks.append(Rectangle(x0, y0, x1 - x0, y1 - y0, fills[i, k]))
+        across, down = self._scene.size
+        width, height = across * self._cell, down * self._cell
+        x, y = self._at
+        lines = [
+            ((x + i * self._cell, y), (x + i * self._cell, y + height)) for i in range(1, across)
+        ]
+        lines += [
+            ((x, y + k * self._cell), (x + width, y + k * self._cell)) for k in range(1, down)
+        ]
+        self.marks.append(Lines(tuple(lines), _GRID, 0.25))
+
+    def sights(self) -> None:
+        """A tint over what the first agent sees, hatching for the others."""
+        for number, sight in enumerate(self._scene.sights):
+            colour = self._looks[sight.name].colour
+            seen = {(int(i), int(k)): True for i, k in zip(*sight.seen.nonzero(), strict=True)}
+            segments: list[tuple[XY, XY]] = []
+            for i, k, count in self._runs(seen):
+                bounds = self._square(i, k, count)
+                x0, y0, x1, y1 = bounds
+                if number == 0:
+                    tint = mix(_GROUND, colour, 0.3)
+                    self.marks.append(Rectangle(x0, y0, x1 - x0, y1 - y0, tint))
+                else:
+                    segments += hatching(bounds, number)
+            if segments:
+                self.marks.append(Lines(tuple(segments), mix(_GROUND, colour, 0.8), 0.5))
+            self.kinds.add(f"sight {number} {sight.name}")
+
+    def walls(self) -> None:
+        """What stands at this height, what is unknown there, and what of it is false."""
+        dots: list[tuple[XY, XY]] = []
+        fills: dict[tuple[int, int], str] = {}
+        for i, k, cell in self._cells():
+            x0, y0, x1, y1 = self._square(i, k)
+            if cell.standing is None:
+                middle, level, r = (x0 + x1) / 2, (y0 + y1) / 2, min(0.8, self._cell * 0.09)
+                dots.append(((middle - r, level), (middle + r, level)))
+                continue
+            for part in _standing(cell.standing):
+                if part == (0.0, 0.0, 1.0, 1.0):
+                    fills[i, k] = _colour(cell.standing, _WALL)
+                    continue
+                left, top, right, bottom = (share * self._cell for share in part)
+                fill = _colour(cell.standing, _WALL)
+                box = (x0 + left, y0 + top, right - left, bottom - top)
+                self.marks.append(Rectangle(*box, fill))
+        for i, k, count in self._runs(fills):
+            x0, y0, x1, y1 = self._square(i, k, count)
+            edge = mix(fills[i, k], INK, 0.35)
+            self.marks.append(Rectangle(x0, y0, x1 - x0, y1 - y0, fills[i, k], edge, 0.3))
+        if dots:
+            self.marks.append(
+                Lines(tuple(dots), mix(QUIET, PAPER, 0.1), min(1.0, self._cell * 0.14))
+            )
+            self.kinds.add("unknown blocks")
+        self._false_blocks()
+
+    def _false_blocks(self) -> None:
+        look = MARKS[Mark.FALSE]
+        for i, k, cell in self._cells():
+            if not cell.wrong:
+                continue
+            x0, y0, x1, y1 = self._square(i, k)
+            inset = self._cell * 0.12
+            size = self._cell - 2 * inset
+            self.marks.append(Rectangle(x0 + inset, y0 + inset, size, size, None, look.colour, 0.9))
+            arms = (
+                ((x0 + inset, y0 + inset), (x1 - inset, y1 - inset)),
+                ((x0 + inset, y1 - inset), (x1 - inset, y0 + inset)),
+            )
+            self.marks.append(Lines(arms, look.colour, 0.6))
+            self.kinds.add("false")
+
+    def trails(self, trails: Mapping[str, tuple[XY, ...]]) -> None:
+        """The ways that agents have gone."""
+        for name, points in sorted(trails.items()):
+            if len(set(points)) > 1:
+                line = tuple(self._place(*point) for point in points)
+                colour = mix(self._looks[name].colour, INK, 0.15)
+                self.marks.append(Polygon(line, None, colour, 0.9, 2.2, closed=False, role="line"))
+                self.kinds.add("trail")
+
+    def things(self) -> None:
+        """Devices, containers, dropped items, places and agents."""
+        for shown in self._scene.devices:
+            x, _, z = shown.position
+            if not any(store.position == shown.position for store in self._scene.stores):
+                self.marks += icons.device(self._place(x, z), self._cell, shown)
+                self.kinds.add(_device_kind(shown.name))
+        for store in self._scene.stores:
+            if self._holds((store.position[0] + 0.5, store.position[2] + 0.5)):
+                self._store(store)
+        for person in self._scene.people:
+            if person.position is not None and self._holds(
+                (person.position[0], person.position[2])
+            ):
+                self._person(person)
+        for name, (px, _, pz) in self._scene.items:
+            size = max(self._cell * 0.6, 4.0)
+            spot = self._icon((px, pz), size) if self._holds((px, pz)) else None
+            if spot is not None:
+                box = (spot[0] - size / 2, spot[1] - size / 2, size, size)
+                self.marks.append(Rectangle(*box, role="icon"))
+                self.marks += icons.item(spot, size, name)
+                self.kinds.add("dropped item")
+        for label, (x, _, z) in self._scene.places:
+            if self._holds((x + 0.5, z + 0.5)):
+                self._mark_place(label, (x, z))
+
+    def _holds(self, point: XY) -> bool:
+        (low_x, low_z), (across, down) = self._scene.low, self._scene.size
+        return low_x <= point[0] <= low_x + across and low_z <= point[1] <= low_z + down
+
+    def _icon(self, point: XY, size: float) -> XY | None:
+        """Room for an icon at a point, or near it with a line that leads there."""
+        at = self._place(*point)
+        spot = self._room.spot(at, size, size)
+        if spot is not None and spot != at:
+            self.marks.append(Lines(((at, spot),), INK, 0.5))
+        return spot
+
+    def _store(self, store: Store) -> None:
+        size = max(self._cell * 0.96, 7.5)
+        x, _, z = store.position
+        spot = self._icon((x + 0.5, z + 0.5), size)
+        if spot is None:
+            self.unnamed.append(store.label)
+            return
+        self.marks += icons.container(spot, size, store)
+        self.kinds.add("container")
+        self._label(spot, size, ((_with_height(store.label, store.above), False),))
+
+    def _person(self, person: Person) -> None:
+        if person.position is None:
+            return
+        radius = max(self._cell * 0.5, _SMALLEST)
+        spot = self._icon((person.position[0], person.position[2]), 2 * radius)
+        if spot is None:
+            self.unnamed.append(person.name)
+            return
+        yaw = person.yaw if person.mark is Mark.CURRENT else None
+        look = self._looks[person.name]
+        # A false place is a remembered one, unless somebody sees what is not there.
+        self.marks += icons.agent(spot, radius, look, yaw, person.mark)
+        if person.age or person.mark is Mark.STALE:
+            self.kinds.add("remembered")
+        lines = [(_with_height(person.name, person.above), True)]
+        if person.age:
+            lines.append((age_text(person.age), False))
+        self._label(spot, 2 * radius, tuple(lines))
+
+    def _mark_place(self, label: str, place: tuple[int, int]) -> None:
+        """A place that people have a name for: its letters on a dotted square."""
+        x0, y0 = self._place(place[0], place[1])
+        square = Rectangle(x0, y0, self._cell, self._cell, None, INK, 0.6, dash=1.2)
+        self.marks.append(square)
+        self._label((x0 + self._cell / 2, y0 + self._cell / 2), self._cell, ((label, True),))
+
+    def _label(self, spot: XY, size: float, lines: tuple[tuple[str, bool], ...]) -> None:
+        half = size / 2
+        icon = (spot[0] - half, spot[1] - half, spot[0] + half, spot[1] + half)
+        self._labels.append((icon, lines))
+
+    def names(self) -> None:
+        """The names beside their icons, when all icons have their places."""
+        for icon, lines in self._labels:
+            sizes = [
+                self._size if number == 0 else self._size * 0.85 for number in range(len(lines))
+            ]
+            width = max(
+                text_width(text, size, bold=bold)
+                for (text, bold), size in zip(lines, sizes, strict=True)
+            )
+            step = ASCENT + DESCENT
+            corner = self._room.beside(icon, width, sum(sizes) * step)
+            if corner is None:
+                self.unnamed.append(" ".join(text for text, _ in lines))
+                continue
+            x, y = corner
+            for (text, bold), size in zip(lines, sizes, strict=True):
+                base = y + ASCENT * size
+                self.marks.append(
+                    Text(x + width / 2, base, text, size, INK, bold, "middle", halo=PAPER)
+                )
+                y += step * size
+
+
+def _with_height(name: str, above: int) -> str:
+    """A name, with how far from the storey what it names is."""
+    if not above:
+        return name
+    return f"{name}, {abs(above)} {'up' if above > 0 else 'down'}"
+
+
+def _device_kind(name: str) -> str:
+    return next(kind for kind in _DEVICES if kind in name)
+
+
+def _ground_colour(cell: Cell) -> str:
+    if cell.ground is None or cell.ground == "air":
+        return _NOWHERE
+    return mix(_GROUND, _colour(cell.ground, _GROUND), 0.5)
+
+
+@cache
+def _standing(text: str) -> tuple[tuple[float, float, float, float], ...]:
+    """What a block takes of its column: left, top, right, bottom of each part, from 0 to 1."""
+    name = text.partition("[")[0]
+    if name in {"air", "cave_air", "void_air"}:
+        return ()
+    if any(kind in name for kind in (*_DEVICES, *_STORES)):
+        return ()
+    registry = Registry.load()
+    boxes = registry.boxes(registry.state_id(text))
+    # What can be walked through is there all the same.
+    return tuple((b[0], b[2], b[3], b[5]) for b in boxes) or ((0.3, 0.3, 0.7, 0.7),)
+
+
+@cache
+def _colour(text: str, default: str) -> str:
+    name = text.partition("[")[0]
+    for part, colour in _KINDS.items():
+        if part in name:
+            return colour
+    # Blocks of different names differ a little, always in the same way.
+    shade = (zlib.crc32(name.encode()) % 17 - 8) / 100
+    return mix(default, INK if shade > 0 else PAPER, abs(shade))

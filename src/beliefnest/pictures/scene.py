@@ -1,0 +1,405 @@
+"""What a picture of one simulator shows: values that know nothing of points and colours."""
+
+import math
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.entries import AgentBelief, ContainerBelief
+from beliefnest.belief.view import State
+from beliefnest.pictures.palette import Mark
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Items, Point, Position
+
+__all__ = [
+    "Cell",
+    "Device",
+    "Labels",
+    "Person",
+    "Scene",
+    "Shown",
+    "Sight",
+    "Store",
+    "Wrong",
+    "best_height",
+    "read_scene",
+]
+
+Labels = Mapping[Position, str]
+"""What people call containers and places."""
+
+_NEAR = 2
+"""Blocks up or down within which a thing belongs to a storey."""
+_WIDEST = 40
+"""A plan of more blocks is cut to those around what stands in it."""
+_EDGE = 4
+
+
+class Shown(Protocol):
+    """A simulator at one tick."""
+
+    @property
+    def path(self) -> str:
+        """The belief path."""
+
+    @property
+    def state(self) -> State:
+        """What it holds."""
+
+    def visible_blocks(self, agent: str) -> npt.NDArray[np.bool_]:
+        """Which blocks an agent sees in it, shape of the box."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wrong:
+    """One thing that a simulator holds otherwise than another one does.
+
+    Attributes:
+        where: Position of a block or container; an agent's name.
+        instead: How the other one has it, in words.
+    """
+
+    where: Position | str
+    instead: str
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """One column of the plan.
+
+    Attributes:
+        ground: Block text below; None: unknown.
+        standing: Block text at the storey's height; None: unknown.
+        wrong: Whether one of them is otherwise in the simulator it is compared with.
+    """
+
+    ground: str | None
+    standing: str | None
+    wrong: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Device:
+    """A block that people work with: a door, a lever, a button, a crafting table.
+
+    Attributes:
+        position: Where it is.
+        name: Block name.
+        on: Whether it is open, switched on or pressed.
+        parts: Where it stands in its column, from 0 to 1: left, top, right, bottom of each box.
+    """
+
+    position: Position
+    name: str
+    on: bool
+    parts: tuple[tuple[float, float, float, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Store:
+    """A container.
+
+    Attributes:
+        position: Where it is.
+        name: Block name; None: its block is not known.
+        label: What people call it.
+        items: What is known to be in it.
+        complete: Whether these are known to be all.
+        mark: What can be said of that.
+        age: Ticks since what is known of it was perceived.
+        instead: What is in it elsewhere, if it is false.
+        above: Blocks above the storey; below: negative.
+    """
+
+    position: Position
+    name: str | None
+    label: str
+    items: Items
+    complete: bool
+    mark: Mark
+    age: int
+    instead: str
+    above: int
+
+    @property
+    def words(self) -> str:
+        """What is known of what is in it."""
+        if not self.items:
+            return "?" if not self.complete else "empty"
+        told = ", ".join(
+            item.replace("_", " ") if count == 1 else f"{count} {item.replace('_', ' ')}"
+            for item, count in sorted(self.items.items())
+        )
+        return told if self.complete else f"{told}, more?"
+
+
+@dataclass(frozen=True, slots=True)
+class Person:
+    """An agent.
+
+    Attributes:
+        name: Who.
+        position: Its feet; None: unknown.
+        yaw: Radians, 0 looks along -z, pi/2 along -x.
+        mark: Current, stale, unknown or false.
+        age: Ticks since it was perceived; 0 if it is now.
+        holds: Item in its main hand; empty: none, or not known.
+        instead: Where it is elsewhere, if this is false.
+        above: Blocks above the storey; below: negative.
+    """
+
+    name: str
+    position: Point | None
+    yaw: float
+    mark: Mark
+    age: int
+    holds: str
+    instead: str
+    above: int
+
+
+@dataclass(frozen=True)
+class Sight:
+    """What an agent sees in the simulator.
+
+    Attributes:
+        name: The agent.
+        seen: bool, shape of the plan.
+    """
+
+    name: str
+    seen: npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One simulator at one tick, at one height.
+
+    Attributes:
+        path: Belief path.
+        tick: When.
+        agents: All agents of the run, for their looks.
+        low: x and z of the first column.
+        height: The storey: y of what stands on its floor.
+        cells: By column along x, then along z.
+        stores: Containers, in order of position.
+        devices: Blocks that people work with.
+        items: Dropped items: name and place.
+        places: What people call places.
+        people: Agents in order of their names.
+        sights: What chosen agents see.
+        wrong: How many things are false.
+        against: The path it is compared with.
+        note: Further words for the title, as its branch.
+    """
+
+    path: str
+    tick: int
+    agents: tuple[str, ...]
+    low: tuple[int, int]
+    height: int
+    cells: tuple[tuple[Cell, ...], ...]
+    stores: tuple[Store, ...]
+    devices: tuple[Device, ...]
+    items: tuple[tuple[str, Point], ...]
+    places: tuple[tuple[str, Position], ...]
+    people: tuple[Person, ...]
+    sights: tuple[Sight, ...]
+    wrong: int
+    against: str
+    note: str = ""
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Columns along x and along z."""
+        return len(self.cells), len(self.cells[0])
+
+
+def best_height(states: Iterable[State]) -> int:
+    """The y at which most containers are, or else most agents' feet."""
+    found = list(states)
+    heights = [place[1] for state in found for place in state.containers] or [
+        math.floor(agent.position[1] + 1e-6)
+        for state in found
+        for agent in state.agents.values()
+        if agent.position is not None
+    ]
+    if not heights:
+        return found[0].box.low[1] + 1
+    counts = Counter(heights)
+    return min(counts, key=lambda height: (-counts[height], height))
+
+
+def read_scene(
+    shown: Shown,
+    *,
+    wrong: Collection[Wrong] = (),
+    against: str = "/",
+    labels: Labels | None = None,
+    places: Mapping[str, Position] | None = None,
+    sight: Sequence[str] = (),
+    height: int | None = None,
+    note: str = "",
+) -> Scene:
+    """The scene of a simulator.
+
+    Args:
+        shown: The simulator at a tick.
+        wrong: What it holds otherwise than `against` does.
+        against: The path it is compared with.
+        labels: What people call containers.
+        places: What people call other places.
+        sight: Agents whose sight is shown.
+        height: The storey, y of what stands on its floor; None: that of most things.
+        note: Further words for the title.
+    """
+    state = shown.state
+    level = best_height([state]) if height is None else height
+    level = min(max(level, state.box.low[1]), state.box.high[1])
+    window = _window(state, places or {})
+    by_place = {each.where: each for each in wrong}
+    (x0, z0), (x1, z1) = window
+    layer = level - state.box.low[1]
+    cut = (
+        slice(x0 - state.box.low[0], x1 - state.box.low[0] + 1),
+        slice(z0 - state.box.low[2], z1 - state.box.low[2] + 1),
+    )
+    cells = tuple(
+        tuple(_cell(state, (x, level, z), by_place) for z in range(z0, z1 + 1))
+        for x in range(x0, x1 + 1)
+    )
+    return Scene(
+        path=shown.path,
+        tick=state.tick,
+        agents=tuple(sorted(state.agents)),
+        low=(x0, z0),
+        height=level,
+        cells=cells,
+        stores=_stores(state, level, labels or {}, by_place),
+        devices=_devices(cells, (x0, level, z0)),
+        items=tuple((item.name, item.position) for _, item in sorted(state.items.items())),
+        places=tuple(sorted((places or {}).items())),
+        people=tuple(
+            _person(name, agent, state.tick, level, by_place)
+            for name, agent in sorted(state.agents.items())
+        ),
+        sights=tuple(
+            Sight(name, shown.visible_blocks(name)[cut[0], layer, cut[1]]) for name in sight
+        ),
+        wrong=len(wrong),
+        against=against,
+        note=note,
+    )
+
+
+def _window(
+    state: State, places: Mapping[str, Position]
+) -> tuple[tuple[int, int], tuple[int, int]]:
+    """The corners of the plan: the box, or of a wide one what lies around things and agents."""
+    (x0, _, z0), (x1, _, z1) = state.box.low, state.box.high
+    if max(x1 - x0, z1 - z0) < _WIDEST:
+        return (x0, z0), (x1, z1)
+    spots = [
+        *((place[0], place[2]) for place in state.containers),
+        *((place[0], place[2]) for place in places.values()),
+        *(
+            (math.floor(agent.position[0]), math.floor(agent.position[2]))
+            for agent in state.agents.values()
+            if agent.position is not None
+        ),
+    ] or [(x0, z0)]
+    xs, zs = zip(*spots, strict=True)
+    return (
+        (max(x0, min(xs) - _EDGE), max(z0, min(zs) - _EDGE)),
+        (min(x1, max(xs) + _EDGE), min(z1, max(zs) + _EDGE)),
+    )
+
+
+def _cell(state: State, at: Position, wrong: Mapping[Position | str, Wrong]) -> Cell:
+    x, y, z = at
+    below = (x, y - 1, z)
+    ground = state.blocks[below] if y > state.box.low[1] else None
+    container = at in state.containers
+    return Cell(ground, state.blocks[at], not container and (at in wrong or below in wrong))
+
+
+def _stores(
+    state: State, level: int, labels: Labels, wrong: Mapping[Position | str, Wrong]
+) -> tuple[Store, ...]:
+    found = []
+    for place, held in sorted(state.containers.items()):
+        text = state.blocks[place]
+        false = wrong.get(place)
+        found.append(
+            Store(
+                position=place,
+                name=None if text is None else text.partition("[")[0],
+                label=labels.get(place, f"({', '.join(map(str, place))})"),
+                items=held.items,
+                complete=held.complete,
+                mark=_store_mark(held, false=false is not None),
+                age=0 if held.current else state.tick - held.basis.observed_at,
+                instead="" if false is None else false.instead,
+                above=place[1] - level,
+            )
+        )
+    return tuple(found)
+
+
+def _store_mark(held: ContainerBelief, *, false: bool) -> Mark:
+    if false:
+        return Mark.FALSE
+    if held.complete:
+        return Mark.CURRENT if held.current else Mark.STALE
+    return Mark.INCOMPLETE if held.items else Mark.UNKNOWN
+
+
+def _person(
+    name: str, agent: AgentBelief, tick: int, level: int, wrong: Mapping[Position | str, Wrong]
+) -> Person:
+    false = wrong.get(name)
+    mark = Mark.CURRENT if agent.current else Mark.STALE
+    age = 0
+    if agent.position is None:
+        mark = Mark.UNKNOWN
+    elif not agent.current and agent.basis is not None:
+        age = tick - agent.basis.observed_at
+    if false is not None and agent.position is not None:
+        mark = Mark.FALSE
+    above = 0 if agent.position is None else math.floor(agent.position[1] + 1e-6) - level
+    return Person(
+        name=name,
+        position=agent.position,
+        yaw=agent.yaw,
+        mark=mark,
+        age=age,
+        holds=(agent.equipment or {}).get("main_hand", "").replace("_", " "),
+        instead="" if false is None else false.instead,
+        above=above if abs(above) >= _NEAR else 0,
+    )
+
+
+_DEVICES = ("door", "lever", "button", "furnace", "smoker", "crafting_table", "gate", "plate")
+_ON = ("open", "powered", "lit")
+
+
+def _devices(cells: Sequence[Sequence[Cell]], low: Position) -> tuple[Device, ...]:
+    registry = Registry.load()
+    found = []
+    for i, row in enumerate(cells):
+        for k, cell in enumerate(row):
+            if cell.standing is None or not any(kind in cell.standing for kind in _DEVICES):
+                continue
+            state = registry.state_id(cell.standing)
+            properties = registry.properties(state)
+            name = registry.name(state)
+            # A door that a signal holds is open; one that is only powered may be shut.
+            states = [properties[key] == "true" for key in _ON if key in properties]
+            parts = tuple((b[0], b[2], b[3], b[5]) for b in registry.boxes(state))
+            place = (low[0] + i, low[1], low[2] + k)
+            found.append(Device(place, name, bool(states and states[0]), parts))
+    return tuple(found)

@@ -1,0 +1,110 @@
+"""A drawing as SVG: text stays text, and has the room that was measured for it."""
+
+from xml.etree import ElementTree
+
+from beliefnest.pictures.lettering import FAMILIES
+from beliefnest.pictures.marks import Circle, Drawing, Lines, Mark, Polygon, Rectangle, Text
+
+__all__ = ["svg_text"]
+
+_MILLIMETRES = 25.4 / 72
+
+
+def svg_text(drawing: Drawing, *, inline: bool = False) -> str:
+    """The SVG of a drawing.
+
+    Args:
+        drawing: What is drawn.
+        inline: Whether it stands in a page: it is then as wide as there is room, at most its own
+            width, in pixels of 1/96 inch.
+    """
+    width, height = drawing.width, drawing.height
+    root = ElementTree.Element(
+        "svg",
+        {
+            "xmlns": "http://www.w3.org/2000/svg",
+            "viewBox": f"0 0 {_n(width)} {_n(height)}",
+            "role": "img",
+            "font-family": FAMILIES,
+        },
+    )
+    if inline:
+        root.set("style", f"width:100%;max-width:{_n(width * 96 / 72)}px;height:auto")
+    else:
+        root.set("width", f"{_n(width * _MILLIMETRES)}mm")
+        root.set("height", f"{_n(height * _MILLIMETRES)}mm")
+    if drawing.title:
+        root.set("aria-label", drawing.title)
+        ElementTree.SubElement(root, "title").text = drawing.title
+    for mark in drawing.marks:
+        _add(root, mark)
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def _add(root: ElementTree.Element, mark: Mark) -> None:
+    match mark:
+        case Rectangle():
+            given = {"x": mark.x, "y": mark.y, "width": mark.width, "height": mark.height}
+            shape = _shape(root, "rect", given, mark)
+            if mark.radius:
+                shape.set("rx", _n(mark.radius))
+        case Circle():
+            _shape(root, "circle", {"cx": mark.x, "cy": mark.y, "r": mark.radius}, mark)
+        case Polygon():
+            shape = _shape(root, "polygon" if mark.closed else "polyline", {}, mark)
+            shape.set("points", " ".join(f"{_n(x)},{_n(y)}" for x, y in mark.points))
+        case Lines():
+            path = "".join(f"M{_n(a)} {_n(b)}L{_n(c)} {_n(d)}" for (a, b), (c, d) in mark.segments)
+            look = {"d": path, "stroke": mark.stroke, "stroke-width": _n(mark.thick)}
+            ElementTree.SubElement(root, "path", look)
+        case Text():
+            _text(root, mark)
+
+
+def _shape(
+    root: ElementTree.Element,
+    tag: str,
+    given: dict[str, float],
+    mark: Rectangle | Circle | Polygon,
+) -> ElementTree.Element:
+    shape = ElementTree.SubElement(root, tag, {key: _n(value) for key, value in given.items()})
+    shape.set("fill", mark.fill or "none")
+    if mark.stroke is not None:
+        shape.set("stroke", mark.stroke)
+        shape.set("stroke-width", _n(mark.thick))
+        if mark.dash:
+            shape.set("stroke-dasharray", _n(mark.dash))
+    return shape
+
+
+def _text(root: ElementTree.Element, mark: Text) -> None:
+    if not mark.text:
+        return
+    look = {
+        "x": _n(mark.left),
+        "y": _n(mark.y),
+        "font-size": _n(mark.size),
+        "fill": mark.colour,
+        "textLength": _n(mark.width),
+        "lengthAdjust": "spacingAndGlyphs",
+    }
+    if mark.bold:
+        look["font-weight"] = "bold"
+    if mark.halo is not None:
+        look |= {
+            "stroke": mark.halo,
+            "stroke-width": _n(mark.size * 0.28),
+            "stroke-linejoin": "round",
+            "paint-order": "stroke",
+        }
+    ElementTree.SubElement(root, "text", look).text = _clean(mark.text)
+
+
+def _clean(text: str) -> str:
+    """Without characters that XML cannot hold."""
+    return "".join(c if c.isprintable() else "\ufffd" for c in text)
+
+
+def _n(value: float) -> str:
+    """A number in as few signs as its place needs."""
+    return f"{value:.2f}".rstrip("0").rstrip(".") or "0"
