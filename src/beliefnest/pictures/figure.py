@@ -10,7 +10,7 @@ from beliefnest.pictures.legend import draw_legend
 from beliefnest.pictures.marks import XY, Drawing, scaled
 from beliefnest.pictures.marks import Mark as Drawn
 from beliefnest.pictures.palette import agent_looks
-from beliefnest.pictures.panel import draw_panel
+from beliefnest.pictures.panel import draw_panel, draw_title
 from beliefnest.pictures.scene import Scene
 from beliefnest.pictures.svg import svg_text
 
@@ -141,15 +141,17 @@ def _side_by_side(scenes: Sequence[Scene], width: float, about: str) -> Drawing:
     wide = (width - 2 * MARGIN - _GAP * (columns - 1)) / columns
     marks: list[Drawn] = []
     kinds: set[str] = set()
-    top = bottom = MARGIN
-    for number, scene in enumerate(scenes):
-        if number and number % columns == 0:
-            top = bottom + _GAP
-        at: XY = (MARGIN + number % columns * (wide + _GAP), top)
-        panel = draw_panel(scene, looks, at, wide, TEXT_SIZE)
-        marks += panel.marks
-        kinds |= panel.kinds
-        bottom = max(bottom, panel.bottom)
+    bottom = MARGIN
+    for start in range(0, len(scenes), columns):
+        row = scenes[start : start + columns]
+        top = bottom + (_GAP if start else 0)
+        heads = [draw_title(scene, (MARGIN, top), wide, TEXT_SIZE).bottom for scene in row]
+        for number, scene in enumerate(row):
+            at: XY = (MARGIN + number * (wide + _GAP), top)
+            panel = draw_panel(scene, looks, at, wide, TEXT_SIZE, max(heads) + 1.5)
+            marks += panel.marks
+            kinds |= panel.kinds
+            bottom = max(bottom, panel.bottom)
     legend = draw_legend(kinds, looks, (MARGIN, bottom + 4), width - 2 * MARGIN, TEXT_SIZE * 0.95)
     return Drawing(width, legend.bottom + MARGIN, (*marks, *legend.marks), about)
 

@@ -64,7 +64,7 @@ def agent(at: XY, radius: float, look: AgentLook, yaw: float | None, mark: Mark)
         for ring in range(look.rings)
     ]
     if mark is Mark.FALSE:
-        drawn += false_sign((x + radius * 0.62, y - radius * 0.62), radius * 0.5)
+        drawn += false_sign((x + radius * 0.86, y - radius * 0.86), radius * 0.42)
     return drawn
 
 
@@ -146,7 +146,7 @@ def container(at: XY, size: float, store: Store) -> list[Drawn]:
         place = (x + half * 0.55, y + half * 0.55) if store.items else at
         drawn.append(letters(place, sign, size * (0.5 if store.items else 0.9), INK, halo=PAPER))
     if store.mark is Mark.FALSE:
-        drawn += false_sign((x + half * 0.8, y - half * 0.8), size * 0.24)
+        drawn += false_sign((x + half, y - half), size * 0.21)
     return drawn
 
 

@@ -11,7 +11,7 @@ from beliefnest.pictures.palette import INK, MARKS, QUIET, AgentLook, Mark, age_
 from beliefnest.pictures.plan import draw_plan
 from beliefnest.pictures.scene import Person, Scene, Store
 
-__all__ = ["Block", "belief_words", "draw_panel", "paragraph"]
+__all__ = ["Block", "belief_words", "draw_panel", "draw_title", "paragraph"]
 
 _LINE = 1.32
 _MOST = 12
@@ -61,6 +61,7 @@ def draw_panel(
     at: XY,
     width: float,
     size: float,
+    plan_at: float = 0.0,
     trails: Mapping[str, tuple[XY, ...]] | None = None,
 ) -> Block:
     """A panel of a scene.
@@ -71,21 +72,30 @@ def draw_panel(
         at: Left upper corner, in points.
         width: In points.
         size: Of texts, in points.
+        plan_at: Where the plan begins at the earliest, so that those of a row are level.
         trails: Where agents have been.
     """
-    left, top = at
-    block = Block(bottom=top)
-    paragraph(block, scene.path, left, width, size * 1.15, bold=True)
-    note = f", {scene.note}" if scene.note else ""
-    words = f"{belief_words(scene.path)}, tick {scene.tick}{note}"
-    paragraph(block, words, left, width, size * 0.95, QUIET)
-    plan = draw_plan(scene, looks, (left, block.bottom + 1.5), width, size, trails)
+    left, _ = at
+    block = draw_title(scene, at, width, size)
+    begin = max(block.bottom + 1.5, plan_at)
+    plan = draw_plan(scene, looks, (left, begin), width, size, trails)
     block.marks += plan.marks
     block.kinds |= plan.kinds
     block.bottom = plan.bottom + size * 0.7
     _margin(block, scene, looks, left, width, size)
     if plan.unnamed:
         paragraph(block, f"too close for a name: {', '.join(plan.unnamed)}", left, width, size)
+    return block
+
+
+def draw_title(scene: Scene, at: XY, width: float, size: float) -> Block:
+    """The head of a panel: path, what that is, tick."""
+    left, top = at
+    block = Block(bottom=top)
+    paragraph(block, scene.path, left, width, size * 1.15, bold=True)
+    note = f", {scene.note}" if scene.note else ""
+    words = f"{belief_words(scene.path)}, tick {scene.tick}{note}"
+    paragraph(block, words, left, width, size * 0.95, QUIET)
     return block
 
 
@@ -118,7 +128,7 @@ def _store_line(
     block.kinds.add("container")
     inner = left + icon * 1.55
     text = f"{store.label}: {store.words}"
-    if store.age:
+    if store.age and (store.items or store.complete):
         text += f" ({age_text(store.age)})"
     top = block.bottom
     paragraph(block, text, inner, width - icon * 1.55, size)

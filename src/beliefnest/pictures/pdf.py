@@ -18,6 +18,8 @@ def pdf_bytes(drawing: Drawing) -> bytes:
     from reportlab.pdfgen.canvas import Canvas
 
     for bold, name in _NAMES.items():
+        if name in pdfmetrics.getRegisteredFontNames():
+            continue
         pdfmetrics.registerFont(TTFont(name, io.BytesIO(font_bytes(bold=bold))))
     out = io.BytesIO()
     size = (drawing.width, drawing.height)

@@ -292,19 +292,21 @@ class _Sheet:
     def _store(self, store: Store) -> None:
         size = max(self._cell * 0.96, 7.5)
         x, _, z = store.position
-        spot = self._icon((x + 0.5, z + 0.5), size)
+        spot = self._icon((x + 0.5, z + 0.5), size * (1.3 if store.mark is Mark.FALSE else 1))
         if spot is None:
             self.unnamed.append(store.label)
             return
         self.marks += icons.container(spot, size, store)
         self.kinds.add("container")
-        self._label(spot, size, ((_with_height(store.label, store.above), False),))
+        around = size * (1.3 if store.mark is Mark.FALSE else 1)
+        self._label(spot, around, ((_with_height(store.label, store.above), False),))
 
     def _person(self, person: Person) -> None:
         if person.position is None:
             return
         radius = max(self._cell * 0.5, _SMALLEST)
-        spot = self._icon((person.position[0], person.position[2]), 2 * radius)
+        size = radius * (2.8 if person.mark is Mark.FALSE else 2)
+        spot = self._icon((person.position[0], person.position[2]), size)
         if spot is None:
             self.unnamed.append(person.name)
             return
@@ -317,7 +319,7 @@ class _Sheet:
         lines = [(_with_height(person.name, person.above), True)]
         if person.age:
             lines.append((age_text(person.age), False))
-        self._label(spot, 2 * radius, tuple(lines))
+        self._label(spot, size, tuple(lines))
 
     def _mark_place(self, label: str, place: tuple[int, int]) -> None:
         """A place that people have a name for: its letters on a dotted square."""

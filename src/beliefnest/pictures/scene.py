@@ -129,7 +129,7 @@ class Store:
     def words(self) -> str:
         """What is known of what is in it."""
         if not self.items:
-            return "?" if not self.complete else "empty"
+            return "empty" if self.complete else "nothing known"
         told = ", ".join(
             item.replace("_", " ") if count == 1 else f"{count} {item.replace('_', ' ')}"
             for item, count in sorted(self.items.items())

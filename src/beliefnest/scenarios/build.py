@@ -80,7 +80,6 @@ def build_scenario(
         expectations=tuple(
             builder.expectation(n, entry) for n, entry in enumerate(file.expectations)
         ),
-        labels={entry.at: entry.label for entry in file.containers if entry.label},
         source=document.source,
         text=document.text,
         templates={
@@ -110,6 +109,9 @@ class _Builder:
         file = self._file
         for number, name in enumerate(file.static_blocks):
             self._check_block_name(("static_blocks", number), name)
+        for name, place in file.places.items():
+            if place not in self._snapshot.box:
+                raise self._document.fault(("places", name), f"{list(place)} lies outside the box")
         return Setting(
             name=file.name,
             snapshot=self._snapshot,
@@ -119,6 +121,8 @@ class _Builder:
                 self._initial_belief(n, entry) for n, entry in enumerate(file.initial_beliefs)
             ),
             script=tuple(self._step(n, entry) for n, entry in enumerate(file.script)),
+            labels={entry.at: entry.label for entry in file.containers if entry.label},
+            places=dict(file.places),
         )
 
     def probe(self, number: int, entry: ProbeEntry) -> Probe:

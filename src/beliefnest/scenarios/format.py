@@ -217,6 +217,7 @@ class ScenarioFile(_Entry, frozen=True):
     ] = ""
     blocks: Annotated[list[BlockEntry], _note("The rest of the box is air.")] = []
     containers: list[ContainerEntry] = []
+    places: Annotated[dict[str, Position], _note("What people call places: name to block.")] = {}
     perception: PerceptionEntry = PerceptionEntry()
     static_blocks: Annotated[list[str], _note("Blocks that everybody knows from the start.")] = []
     initial_beliefs: list[InitialBeliefEntry] = []

@@ -119,7 +119,6 @@ class Scenario:
         conditions: All conditions it could be loaded under: number to description.
         probes: What models are asked, in order.
         expectations: What simulators are to hold after the script.
-        labels: What people call the containers.
         source: Where it comes from, for messages.
         text: The text of its file; empty if it was built in code.
         templates: Texts of the templates that its probes name, by the name written there.
@@ -133,7 +132,6 @@ class Scenario:
     conditions: Mapping[int, str] = field(default_factory=dict)
     probes: tuple[Probe, ...] = ()
     expectations: tuple[Expectation, ...] = ()
-    labels: Mapping[Position, str] = field(default_factory=dict)
     source: str = "scenario"
     text: str = ""
     templates: Mapping[str, str] = field(default_factory=dict)
@@ -142,6 +140,11 @@ class Scenario:
     def name(self) -> str:
         """Its short name."""
         return self.setting.name
+
+    @property
+    def labels(self) -> Mapping[Position, str]:
+        """What people call the containers."""
+        return self.setting.labels
 
     @staticmethod
     def load(name_or_path: str, condition: int | None = None) -> "Scenario":

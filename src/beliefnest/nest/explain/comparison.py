@@ -61,9 +61,24 @@ def compare(
     return list(differences(one, other, ground.box, ground.registry, unknown=unknown))
 
 
-def false_beliefs(engine: Engine, path: Path, tick: int | None) -> list[Difference]:
-    """`falsehoods` of a node at a tick; None: now."""
-    real, belief = engine.reading((), tick), engine.reading(path, tick)
+def false_beliefs(
+    engine: Engine,
+    path: Path,
+    tick: int | None,
+    against: Path = (),
+    against_tick: int | None = None,
+) -> list[Difference]:
+    """`falsehoods` of a node at a tick; None: now.
+
+    Args:
+        engine: Of the nest.
+        path: The node.
+        tick: Its tick.
+        against: The node that is taken for true.
+        against_tick: Its tick; None: the same.
+    """
+    belief = engine.reading(path, tick)
+    real = engine.reading(against, tick if against_tick is None else against_tick)
     ground = engine.history.ground
     return list(falsehoods(real, belief, ground.box, ground.registry))
 

@@ -16,6 +16,7 @@ from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.exploration import Attempt, Exploration, Score
 from beliefnest.nest.acting.script import STEP, steps_played
 from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs
+from beliefnest.nest.face.looking import Looking
 from beliefnest.nest.face.reader import Reader
 from beliefnest.nest.face.simulator import PastSimulator, Simulator
 from beliefnest.nest.face.ticks import tick_of
@@ -63,7 +64,7 @@ class HasSetting(Protocol):
         """Number of the chosen condition; None if there is none."""
 
 
-class Nest:
+class Nest(Looking):
     """The real world and every belief in it; each node is made on first use.
 
     `Nest(world)` wraps a `ScriptedWorld` and follows what it is told; `Nest.open` opens a
@@ -377,12 +378,15 @@ class Nest:
                 )
 
 
-class Past:
+class Past(Looking):
     """All simulators at one past tick."""
 
     def __init__(self, engine: Engine, tick: int) -> None:
         self._engine = engine
         self._tick = tick
+
+    def _moment(self) -> int:
+        return self._tick
 
     def __getitem__(self, path: str) -> PastSimulator:
         """The simulator of a belief path as it was."""

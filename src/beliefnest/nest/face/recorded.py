@@ -6,6 +6,7 @@ from typing import Self
 
 from beliefnest.bodies.scripted import ScriptedBodies
 from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.face.looking import Looking
 from beliefnest.nest.face.nest import Past
 from beliefnest.nest.face.reader import Reader
 from beliefnest.nest.face.simulator import PastSimulator
@@ -21,7 +22,7 @@ from beliefnest.world.paths import parse_path
 __all__ = ["RecordedNest"]
 
 
-class RecordedNest:
+class RecordedNest(Looking):
     """Simulators of a run as they were; nothing in it can act.
 
     Args:

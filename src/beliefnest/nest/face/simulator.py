@@ -15,6 +15,7 @@ from beliefnest.errors import BranchError, InputError, PathError, PositionError,
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.explain.chain import element_of, explain
 from beliefnest.nest.explain.explanation import Explanation
+from beliefnest.nest.face.looking import LookingAtOne
 from beliefnest.nest.face.recording_model import RecordingModel
 from beliefnest.nest.face.ticks import tick_of, whole
 from beliefnest.nest.face.turns import in_turn
@@ -34,7 +35,7 @@ Mode = Literal["control", "follow"]
 _LONGEST = 24 * 3600 * TICKS_PER_SECOND
 
 
-class _Seen:
+class _Seen(LookingAtOne):
     """What a simulator shows of itself at one tick, now or in the past."""
 
     def __init__(self, engine: Engine, path: tuple[str, ...]) -> None:
@@ -153,6 +154,9 @@ class PastSimulator(_Seen):
         return self._engine.reading(self._path, self._tick)
 
     def _explained_tick(self) -> int:
+        return self._tick
+
+    def _moment(self) -> int:
         return self._tick
 
 

@@ -8,6 +8,7 @@ from beliefnest.errors import InputError, PathError
 from beliefnest.perception.options import Perception
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.paths import parse_path, path_text
+from beliefnest.world.values import Position
 
 __all__ = ["MAIN", "Setting", "Step"]
 
@@ -44,6 +45,8 @@ class Setting:
         initial_beliefs: Further priors, at any depth.
         script: What happens in the real world, in order.
         absent: Agents who are not in the world at its first tick and may come later.
+        labels: What people call containers.
+        places: What people call other places.
     """
 
     name: str
@@ -53,6 +56,8 @@ class Setting:
     initial_beliefs: tuple[InitialBelief, ...] = ()
     script: tuple[Step, ...] = ()
     absent: frozenset[str] = frozenset()
+    labels: Mapping[Position, str] = field(default_factory=dict)
+    places: Mapping[str, Position] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         agents = self.snapshot.agents.keys() | self.absent

@@ -9,6 +9,7 @@ from beliefnest.errors import StoreError
 from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.perception.options import ContainerMode, Perception, Radius, Testimony
 from beliefnest.timeline import codec
+from beliefnest.world.values import Position
 
 __all__ = ["decode_start", "encode_start"]
 
@@ -31,7 +32,7 @@ class _Perception(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True
     sincere: bool = True
 
 
-class _Start(msgspec.Struct, forbid_unknown_fields=True):
+class _Start(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
     form: int
     world: str
     name: str
@@ -41,6 +42,8 @@ class _Start(msgspec.Struct, forbid_unknown_fields=True):
     initial_beliefs: tuple[InitialBelief, ...]
     script: tuple[Step, ...]
     absent: tuple[str, ...]
+    labels: tuple[tuple[Position, str], ...] = ()
+    places: tuple[tuple[str, Position], ...] = ()
 
 
 def encode_start(setting: Setting, world: str) -> bytes:
@@ -60,6 +63,8 @@ def encode_start(setting: Setting, world: str) -> bytes:
             initial_beliefs=setting.initial_beliefs,
             script=setting.script,
             absent=tuple(sorted(setting.absent)),
+            labels=tuple(sorted(setting.labels.items())),
+            places=tuple(sorted(setting.places.items())),
         )
     )
 
@@ -85,6 +90,8 @@ def decode_start(data: bytes) -> tuple[Setting, str]:
         initial_beliefs=start.initial_beliefs,
         script=start.script,
         absent=frozenset(start.absent),
+        labels=dict(start.labels),
+        places=dict(start.places),
     )
     return setting, start.world
 

@@ -1,0 +1,202 @@
+"""What users see of a nest: figures, plots of beliefs over time, what a notebook shows."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.view import State
+from beliefnest.errors import InputError
+from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.explain.comparison import Difference, Pose, false_beliefs
+from beliefnest.nest.explain.explanation import Contents
+from beliefnest.pictures.figure import Figure, figure_of
+from beliefnest.pictures.scene import Scene, Wrong, best_height, read_scene
+from beliefnest.world.paths import parse_path, path_text
+
+__all__ = ["Looking", "LookingAtOne", "contents_words", "figure"]
+
+Path = tuple[str, ...]
+
+_APART = 0.5
+"""Blocks by which an agent's place must be wrong to be shown as false."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Node:
+    """A simulator at a tick; None: at the latest of its timeline."""
+
+    engine: Engine
+    names: Path
+    tick: int | None
+
+    @property
+    def path(self) -> str:
+        """The belief path."""
+        return path_text(self.names)
+
+    @property
+    def state(self) -> State:
+        """What it holds."""
+        return self.engine.state(self.names, self.tick)
+
+    def visible_blocks(self, agent: str) -> npt.NDArray[np.bool_]:
+        """Which blocks an agent sees in it."""
+        return self.engine.reading(self.names, self.tick).visible_from(agent)
+
+
+class Looking:
+    """Pictures of a nest: live, past, or recorded."""
+
+    _engine: Engine
+
+    def _moment(self) -> int | None:
+        """The tick it shows; None: each simulator's latest."""
+        return None
+
+    def figure(
+        self,
+        paths: str | Sequence[str] = "/",
+        tick: int | None = None,
+        against: str | None = None,
+        *,
+        sight: Sequence[str] | None = None,
+        height: int | None = None,
+    ) -> Figure:
+        """Simulators side by side, each drawn from what it holds itself.
+
+        Args:
+            paths: Belief paths; one can stand alone.
+            tick: When; None: the latest tick.
+            against: The path that they are compared with, to mark what is false; None: reality.
+            sight: Agents whose sight is shown in each; None: that of the belief's owner.
+            height: The storey, y of what stands on its floor; None: that of most containers, or
+                of most agents.
+
+        Raises:
+            PathError: A path is malformed or names an unknown agent.
+            TickError: The tick is in the future or before the start.
+            InputError: There is no path, or the height lies outside the box.
+        """
+        wanted = [paths] if isinstance(paths, str) else list(paths)
+        then = self._moment() if tick is None else tick
+        return figure(self._engine, wanted, then, against, sight=sight, height=height)
+
+    def _repr_html_(self) -> str:
+        return self.figure()._repr_html_()
+
+
+class LookingAtOne:
+    """Pictures of one simulator."""
+
+    _engine: Engine
+    _path: Path
+
+    def _moment(self) -> int | None:
+        """The tick it shows; None: the latest."""
+        return None
+
+    def figure(
+        self,
+        against: str | None = None,
+        *,
+        sight: Sequence[str] | None = None,
+        height: int | None = None,
+    ) -> Figure:
+        """The simulator, drawn from what it holds itself; as `Nest.figure`."""
+        paths = [path_text(self._path)]
+        return figure(self._engine, paths, self._moment(), against, sight=sight, height=height)
+
+    def _repr_html_(self) -> str:
+        return self.figure()._repr_html_()
+
+
+def figure(
+    engine: Engine,
+    paths: Sequence[str],
+    tick: int | None,
+    against: str | None,
+    *,
+    sight: Sequence[str] | None,
+    height: int | None,
+) -> Figure:
+    """As `Looking.figure`."""
+    if not paths:
+        raise InputError("a figure of no simulator is empty; give a belief path")
+    with engine.turn:
+        other = parse_path("/" if against is None else against, engine.agents)
+        nodes = [_Node(engine, parse_path(path, engine.agents), tick) for path in paths]
+        for name in sight or ():
+            parse_path(path_text((name,)), engine.agents)
+        low, high = engine.setting.snapshot.box.low[1], engine.setting.snapshot.box.high[1]
+        if height is not None and not low <= height <= high:
+            raise InputError(f"height {height} lies outside the box; give {low} to {high}")
+        # One storey for all of them, so that they can be compared.
+        level = best_height([node.state for node in nodes]) if height is None else height
+        return figure_of([_scene(node, other, sight, level) for node in nodes])
+
+
+def _scene(node: _Node, against: Path, sight: Sequence[str] | None, height: int) -> Scene:
+    engine = node.engine
+    setting = engine.setting
+    key = engine.selected.get(node.names)
+    # Who is not there at this tick looks from a remembered place: nobody can tell what it sees.
+    own = [name for name in node.names[-1:] if node.state.agents[name].current]
+    return read_scene(
+        node,
+        wrong=_wrong(node, against),
+        against=path_text(against),
+        labels=setting.labels,
+        places=setting.places,
+        sight=own if sight is None else sight,
+        height=height,
+        note=f"branch {key.branch}" if key is not None and node.names else "",
+    )
+
+
+def _wrong(node: _Node, against: Path) -> list[Wrong]:
+    """What a simulator holds otherwise than another, at its tick or that one's latest."""
+    if node.names == against:
+        return []
+    tick = node.tick
+    if tick is not None:
+        tick = min(tick, node.engine.info(against).head)
+    found = false_beliefs(node.engine, node.names, node.tick, against, tick)
+    return [
+        Wrong(each.where, _instead(each))
+        for each in found
+        if each.kind != "inventory" and _far(each)
+    ]
+
+
+def _far(difference: Difference) -> bool:
+    """Whether a pose is false by more than a turn of the head or half a step."""
+    a, b = difference.a, difference.b
+    if isinstance(a, Pose) and isinstance(b, Pose):
+        return math.dist(a.position, b.position) > _APART
+    return True
+
+
+def _instead(difference: Difference) -> str:
+    """How the other simulator has it."""
+    match difference.a:
+        case Pose(position=(x, y, z)):
+            return f"at ({x:.1f}, {y:.1f}, {z:.1f})"
+        case Contents() as contents:
+            return contents_words(contents)
+        case None:
+            return "not known"
+        case text:
+            return text
+
+
+def contents_words(contents: Contents) -> str:
+    """Contents for people."""
+    told = ", ".join(
+        f"{count} {name.replace('_', ' ')}" for name, count in sorted(contents.items.items())
+    )
+    if contents.complete:
+        return told or "empty"
+    return f"{told}, more?" if told else "nothing known"
