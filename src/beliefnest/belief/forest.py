@@ -25,7 +25,7 @@ from beliefnest.belief.holdings import (
     replaced_block,
     witness,
 )
-from beliefnest.belief.plots import Plots
+from beliefnest.belief.node_table import NodeTable
 from beliefnest.belief.story import Reader, Story
 from beliefnest.world.values import Event, Items
 
@@ -42,7 +42,7 @@ class Forest:
 
     Attributes:
         columns: The stretch of the timeline that it is in.
-        plots: The nodes' arrays.
+        table: The nodes' arrays.
         holdings: The nodes' contents, possessions and dropped items.
         position: Entries folded.
         first_vitals: Health and food of agents in node 0 as they were known at a fork.
@@ -58,7 +58,7 @@ class Forest:
     def __init__(self, ground: Ground, story: Story, tick: int, extra: Sequence[int] = ()) -> None:
         self.ground, self._story = ground, story
         self.columns = self._nowhere(0, 0)
-        self.plots = Plots(ground, self.columns.versions, extra)
+        self.table = NodeTable(ground, self.columns.versions, extra)
         self.holdings: list[Holdings] = []
         self.position, self.tick = 0, tick
         self.facts_tick: int | None = None
@@ -73,7 +73,7 @@ class Forest:
     @property
     def versions(self) -> Versions:
         """The poses that nodes refer to."""
-        return self.plots.versions
+        return self.table.versions
 
     @property
     def count_of_events(self) -> int:
@@ -82,7 +82,7 @@ class Forest:
 
     def enter(self, columns: Columns) -> None:
         """Go over to the stretch of the timeline that the next entries lie in."""
-        self.plots.enter(columns.versions)
+        self.table.enter(columns.versions)
         self.columns = columns
 
     def leave(self) -> None:
@@ -103,7 +103,7 @@ class Forest:
 
     def advance(self, stop: int) -> None:
         """Fold entries of the stretch up to number `stop` (excluded)."""
-        self.plots.track()
+        self.table.track()
         if self.position < stop:
             self._let_read()
         while self.position < stop:
@@ -114,7 +114,7 @@ class Forest:
 
     def heard(self, node: int, count: int) -> Iterator[PerceivedEvent]:
         """What a node perceived of the first `count` events, oldest first."""
-        yield from self._story.before(self.plots.path(node))
+        yield from self._story.before(self.table.path(node))
         numbers = np.flatnonzero(self.hearing.of(node, count)).tolist()
         events = self._story.events(numbers[-1] + 1) if numbers else ()
         for number in numbers:
@@ -131,46 +131,46 @@ class Forest:
 
     def block_is_current(self, node: int, cell: int) -> bool:
         """Whether a node's block is backed by a perception in the last entry (5.4)."""
-        ground, nodes, poses = self.ground, self.plots.nodes(), self.versions.poses()
+        ground, nodes, poses = self.ground, self.table.nodes(), self.versions.poses()
         while node > 0:
-            around = self.plots.parent(node)
-            if not self.plots.is_present(node) or (node, cell) in self.put_by_hand:
+            around = self.table.parent(node)
+            if not self.table.is_present(node) or (node, cell) in self.put_by_hand:
                 return False
-            version = self.plots.version(around, self.plots.owner(node))
+            version = self.table.version(around, self.table.owner(node))
             if not kernel.sees_cell(
                 ground.space, ground.senses, poses, nodes, around, version, cell
             ):
                 return False
             node = around
-        return self.plots.block(0, cell) >= 0
+        return self.table.block(0, cell) >= 0
 
     def vitals(self, node: int, agent: int) -> tuple[float | None, float | None]:
         """Health and food of an agent, which only the agent itself perceives."""
-        while node > 0 and self.plots.owner(node) == agent:
-            node = self.plots.parent(node)
-        looks = self.plots.looks_of(0, agent) if node == 0 else None
-        if looks is None or not self.versions.is_told(self.plots.version(0, agent)):
+        while node > 0 and self.table.owner(node) == agent:
+            node = self.table.parent(node)
+        looks = self.table.looks_of(0, agent) if node == 0 else None
+        if looks is None or not self.versions.is_told(self.table.version(0, agent)):
             return self.first_vitals.get(agent, (None, None)) if node == 0 else (None, None)
         return looks.health, looks.food
 
     def adopt(self, other: "Forest", paths: Sequence[Path]) -> None:
         """Take over nodes of a forest that is as far on."""
         count = self.count_of_events
-        self.plots.track()
-        other.plots.track()
+        self.table.track()
+        other.table.track()
         for path in paths:
-            source = other.plots.index[path]
-            node = self.plots.copy_node(other.plots, source, is_root=False, told=True)
+            source = other.table.index[path]
+            node = self.table.copy_node(other.table, source, is_root=False, told=True)
             self.holdings.append(other.holdings[source].copy())
             self.looked[node] = other.last_look(source)
             self.put_by_hand |= {(node, c) for n, c in other.put_by_hand if n == source}
             self.doubt_contents(node)
             self.hearing.set(node, 0, other.hearing.of(source, count))
-        self.plots.link()
+        self.table.link()
 
     def perceive_at_first(self) -> None:
         """Let all nodes but the first perceive what there is, with nothing happening."""
-        self._look(self.plots.below(0))
+        self._look(self.table.below(0))
 
     def skip(self, tick: int) -> None:
         """Let an entry pass that is about no node of this forest."""
@@ -193,10 +193,10 @@ class Forest:
         holdings, basis = self.holdings[node], Basis(tick, Source.EDITED)
         self.ground.track(c for c, s in blocks.items() if self.ground.container_name(s))
         self.ground.track(contents)
-        self.plots.track()
+        self.table.track()
         for cell, state in blocks.items():
-            old = self.ground.container_name(self.plots.block(node, cell))
-            self.plots.put(node, cell, state, basis)
+            old = self.ground.container_name(self.table.block(node, cell))
+            self.table.put(node, cell, state, basis)
             new = self.ground.container_name(state)
             if old != new:
                 holdings.containers.pop(cell, None)
@@ -210,7 +210,7 @@ class Forest:
         self.put_by_hand |= {(node, cell) for cell in blocks}
         self.position += 1
         self.tick = tick
-        self._look(self.plots.below(node))
+        self._look(self.table.below(node))
 
     def content(self, node: int, cell: int) -> Content:
         """A container's content in a node; in node 0 it is seen to be so all the time."""
@@ -226,11 +226,11 @@ class Forest:
 
         An agent's own are what the simulator around holds of them, whatever the depth.
         """
-        while node > 0 and self.plots.owner(node) == agent:
-            node = self.plots.parent(node)
+        while node > 0 and self.table.owner(node) == agent:
+            node = self.table.parent(node)
         known = self.holdings[node].inventories.get(agent)
         if node == 0:
-            version, looks = self.plots.version(0, agent), self.plots.looks_of(0, agent)
+            version, looks = self.table.version(0, agent), self.table.looks_of(0, agent)
             if looks is not None and (known is None or self.versions.is_told(version)):
                 return looks.inventory, known is None
         return self.holdings[node].inventories.get(agent, {}), False
@@ -264,9 +264,9 @@ class Forest:
 
     def _changes(self, events: int) -> Changes:
         # In one entry every node can change every tracked cell once; see `kernel.fold`.
-        room = 4 * (self.plots.count * len(self.ground.tracked) + 16)
+        room = 4 * (self.table.count * len(self.ground.tracked) + 16)
         return Changes(
-            np.zeros((events, self.plots.count), dtype=np.bool_),
+            np.zeros((events, self.table.count), dtype=np.bool_),
             np.zeros((room, 7), dtype=np.int32),
             np.zeros(1, dtype=np.int32),
         )
@@ -275,8 +275,8 @@ class Forest:
         ground, columns, facts = self.ground, self.columns, self.columns.facts()
         first = columns.events_until(start)
         changes = self._changes(columns.events_until(stop) - first)
-        poses, nodes = self.versions.poses(), self.plots.nodes()
-        everywhere = np.ones(self.plots.count, dtype=np.bool_)
+        poses, nodes = self.versions.poses(), self.table.nodes()
+        everywhere = np.ones(self.table.count, dtype=np.bool_)
         where = start - columns.first, stop - columns.first
         reached = columns.first + kernel.fold(
             ground.space, ground.senses, poses, facts, nodes, changes, *where, everywhere
@@ -294,19 +294,19 @@ class Forest:
             }
             self.facts_tick = self.columns.tick(entry)
             self.edited.clear()
-            self.looked = dict.fromkeys(range(self.plots.count), entry)
+            self.looked = dict.fromkeys(range(self.table.count), entry)
             self._happens(entry)
             self._follow(
                 entry, self.columns.tick(entry), rows.get(entry, {}), perceived, everywhere
             )
         self.facts_tick = self.columns.tick(reached - 1)
         self.edited.clear()
-        self.looked = dict.fromkeys(range(self.plots.count), reached - 1)
+        self.looked = dict.fromkeys(range(self.table.count), reached - 1)
         self.put_by_hand.clear()
         return reached
 
     def _look(self, below: npt.NDArray[np.bool_]) -> None:
-        ground, nodes = self.ground, self.plots.nodes()
+        ground, nodes = self.ground, self.table.nodes()
         changes = self._changes(0)
         nothing, at = np.zeros(0, dtype=np.int32), np.zeros(2, dtype=np.int32)
         facts = Facts(
@@ -355,26 +355,26 @@ class Forest:
                 basis = Basis(tick, Source.SEEN)
                 self.holdings[0].containers[cell] = Content({}, True, basis, entry)
         things = self._has_things()
-        for node in range(1, self.plots.count):
+        for node in range(1, self.table.count):
             for _, _, cell, old, new, observed_at, source in rows.get(node, ()):
                 names = self.ground.block_name(old), self.ground.container_name(new)
                 basis = Basis(observed_at, SOURCES[source])
                 replaced_block(self.holdings[node], cell, *names, basis)
             acts = [self.columns.event(n) for n, heard in perceived.items() if heard[node]]
-            if not which[node] or not (acts or things) or not self.plots.is_present(node):
+            if not which[node] or not (acts or things) or not self.table.is_present(node):
                 continue
             self._forget(node)
             into = self._see_into(node, tick, entry)
             if acts:
                 self._follow_acts(node, acts, into, tick, entry)
-            self._see_items(node, self.plots.parent(node), tick, entry)
+            self._see_items(node, self.table.parent(node), tick, entry)
 
     def _follow_acts(
         self, node: int, acts: list[Event], into: set[int], tick: int, entry: int
     ) -> None:
         """What perceived acts do to a node that sees into the containers of `into` anyway."""
-        holdings, owner = self.holdings[node], self.ground.agents[self.plots.owner(node)]
-        around = self.plots.parent(node)
+        holdings, owner = self.holdings[node], self.ground.agents[self.table.owner(node)]
+        around = self.table.parent(node)
         box, there = self.ground.box, self.holdings[around].containers
         touched = [(cell_of(box, a.detail["position"]), a) for a in acts if a.kind in TOUCHES]
         own = {cell for cell, act in touched if act.actor == owner and cell in there}
@@ -403,7 +403,7 @@ class Forest:
 
     def _doubt(self, node: int, cell: int) -> None:
         """Note a content at a place where a node knows no container."""
-        state = self.plots.block(node, cell)
+        state = self.table.block(node, cell)
         if node > 0 and cell in self.holdings[node].containers and not self.ground.holds[state]:
             self.doubtful[node, cell] = state
 
@@ -412,8 +412,8 @@ class Forest:
         for (doubter, cell), before in list(self.doubtful.items()):
             if doubter != node:
                 continue
-            state = self.plots.block(node, cell)
-            around = self.plots.block(self.plots.parent(node), cell)
+            state = self.table.block(node, cell)
+            around = self.table.block(self.table.parent(node), cell)
             if self.ground.holds[state] or cell not in self.holdings[node].containers:
                 del self.doubtful[node, cell]
             elif self._is_gone(node, cell) or (
@@ -429,8 +429,8 @@ class Forest:
 
     def _is_gone(self, node: int, cell: int) -> bool:
         """Whether the owner of a node perceives now that a cell holds no container."""
-        around = self.plots.parent(node)
-        state = self.plots.block(around, cell)
+        around = self.table.parent(node)
+        state = self.table.block(around, cell)
         return (
             state >= 0
             and not self.ground.holds[state]
@@ -444,9 +444,9 @@ class Forest:
 
     def _seen_cells(self, node: int, cells: Iterable[int]) -> set[int]:
         """Those of some cells that the present owner of a node sees in the simulator around."""
-        ground, around = self.ground, self.plots.parent(node)
-        version = self.plots.version(around, self.plots.owner(node))
-        nodes, poses = self.plots.nodes(), self.versions.poses()
+        ground, around = self.ground, self.table.parent(node)
+        version = self.table.version(around, self.table.owner(node))
+        nodes, poses = self.table.nodes(), self.versions.poses()
         wanted = np.array([*cells], dtype=np.int64)
         seen = kernel.sees_cells(ground.space, ground.senses, poses, nodes, around, version, wanted)
         return set(wanted[seen].tolist())
@@ -455,7 +455,7 @@ class Forest:
         """Look into transparent containers; returns the cells looked into."""
         if self.ground.options.containers != "transparent":
             return set()
-        around = self.plots.parent(node)
+        around = self.table.parent(node)
         into = self._seen_cells(node, self.holdings[around].containers)
         for cell in into:
             learn(self.holdings[node], cell, self._there(around, cell, entry), None, tick)
@@ -486,8 +486,8 @@ class Forest:
     def _sees_item(self, node: int, around: int, lying: Lying) -> bool:
         ground = self.ground
         x, y, z = lying.item.position
-        version = self.plots.version(around, self.plots.owner(node))
-        nodes, poses = self.plots.nodes(), self.versions.poses()
+        version = self.table.version(around, self.table.owner(node))
+        nodes, poses = self.table.nodes(), self.versions.poses()
         place = (x, y + _ITEM_HEIGHT, z)
         return kernel.sees_point(ground.space, ground.senses, poses, nodes, around, version, place)
 

@@ -51,13 +51,13 @@ def planted(
             for place, state in belief.blocks.items()
             if ground.container_name(state)
         )
-    forest.plots.track()
+    forest.table.track()
     _plant_world(forest, snapshot)
     for depth in range(1, len(path) + 1):
         node = path[:depth]
         mine = next((belief for belief in initial if belief.path == node), InitialBelief(node))
         _plant_prior(forest, node, prior, mine, snapshot.tick)
-    forest.plots.link()
+    forest.table.link()
     forest.perceive_at_first()
     return forest
 
@@ -71,16 +71,16 @@ def _states_of(ground: Ground, names: frozenset[str]) -> npt.NDArray[np.bool_]:
 
 
 def _plant_world(forest: Forest, snapshot: Snapshot) -> None:
-    ground, plots = forest.ground, forest.plots
-    node = plots.add((), UNKNOWN)
-    plots.set_blocks(node, snapshot.blocks)
+    ground, table = forest.ground, forest.table
+    node = table.add((), UNKNOWN)
+    table.set_blocks(node, snapshot.blocks)
     basis = Basis(snapshot.tick, Source.SEEN)
-    plots.set_known_bases(node, basis)
+    table.set_known_bases(node, basis)
     for name, agent in snapshot.agents.items():
         version = forest.versions.add(name, agent)
         number = ground.numbers[name]
-        plots.set_pose(node, number, version, snapshot.tick, current=True)
-        plots.set_looks(node, number, version)
+        table.set_pose(node, number, version, snapshot.tick, current=True)
+        table.set_looks(node, number, version)
     holdings = Holdings()
     for place, items in snapshot.containers.items():
         holdings.containers[cell_of(ground.box, place)] = Content(dict(items), True, basis, -1)
@@ -92,22 +92,22 @@ def _plant_world(forest: Forest, snapshot: Snapshot) -> None:
 def _plant_prior(
     forest: Forest, path: Path, prior: npt.NDArray[np.int32], mine: InitialBelief, tick: int
 ) -> None:
-    ground, plots = forest.ground, forest.plots
+    ground, table = forest.ground, forest.table
     basis = Basis(tick, Source.PRIOR)
-    node = plots.add(path, plots.index[path[:-1]])
+    node = table.add(path, table.index[path[:-1]])
     blocks = prior.copy()
     for place, state in mine.blocks.items():
         blocks[ground.box.index(place)] = state
-    plots.set_blocks(node, blocks)
+    table.set_blocks(node, blocks)
     for name, position in mine.agents.items():
         version = forest.versions.add_pose(position, 0.0, 0.0)
-        plots.set_pose(node, ground.numbers[name], version, tick, current=False)
+        table.set_pose(node, ground.numbers[name], version, tick, current=False)
     holdings = Holdings()
     for place, (items, complete) in mine.containers.items():
         holdings.containers[cell_of(ground.box, place)] = Content(dict(items), complete, basis)
-    plots.set_known_bases(node, basis)
+    table.set_known_bases(node, basis)
     for cell in ground.tracked:
-        if ground.container_name(plots.block(node, cell)):
+        if ground.container_name(table.block(node, cell)):
             holdings.containers.setdefault(cell, Content({}, False, basis))
     forest.holdings.append(holdings)
     forest.doubt_contents(node)
@@ -135,17 +135,17 @@ def forked(
         extra: Further cells whose basis is to be tracked; the source tracks them too.
     """
     forest = Forest(source.ground, story, tick, extra)
-    source.plots.track()
+    source.table.track()
     for depth in range(len(root), len(path) + 1):
-        old = source.plots.index[path[:depth]]
+        old = source.table.index[path[:depth]]
         is_root = depth == len(root)
-        node = forest.plots.copy_node(source.plots, old, is_root=is_root, told=False)
+        node = forest.table.copy_node(source.table, old, is_root=is_root, told=False)
         forest.holdings.append(_forked_holdings(source, old, is_root=is_root))
         forest.doubt_contents(node)
-    node = source.plots.index[root]
+    node = source.table.index[root]
     for agent in range(len(source.ground.agents)):
         forest.first_vitals[agent] = source.vitals(node, agent)
-    forest.plots.link()
+    forest.table.link()
     return forest
 
 

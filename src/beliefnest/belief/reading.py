@@ -35,7 +35,7 @@ class Reading:
         self.path = path
         self.tick = forest.tick
         self._forest = forest
-        self._node = forest.plots.index[path]
+        self._node = forest.table.index[path]
         self.count_of_events = forest.count_of_events
         self._last_look = forest.last_look(self._node)
         forest.read_by(self)
@@ -47,7 +47,7 @@ class Reading:
     @cached_property
     def blocks(self) -> BlockGrid:
         """Believed block states, shape of the box, -1 unknown."""
-        return self._forest.plots.blocks(self._node)
+        return self._forest.table.blocks(self._node)
 
     @cached_property
     def geometry(self) -> Geometry:
@@ -124,13 +124,13 @@ class Reading:
 
     def _agent(self, number: int) -> AgentBelief:
         forest, node = self._forest, self._node
-        plots, versions = forest.plots, forest.plots.versions
+        table, versions = forest.table, forest.table.versions
         inventory, complete = forest.inventory(node, number)
         looks = (
-            versions.looks(plots.looks(node, number)) if plots.looks(node, number) >= 0 else None
+            versions.looks(table.looks(node, number)) if table.looks(node, number) >= 0 else None
         )
         health, food = forest.vitals(node, number)
-        version = plots.version(node, number)
+        version = table.version(node, number)
         if version < 0:
             return AgentBelief(
                 equipment=None if looks is None else looks.equipment,
@@ -150,8 +150,8 @@ class Reading:
             inventory_complete=complete,
             health=health,
             food=food,
-            basis=Basis(plots.seen_at(node, number), source),
-            current=plots.is_current(node, number),
+            basis=Basis(table.seen_at(node, number), source),
+            current=table.is_current(node, number),
         )
 
 

@@ -156,7 +156,7 @@ def _held_now(engine: Engine, path: Path, place: Place, element: Element) -> dic
         block = None
         if not isinstance(element.where, str):
             cell = cell_of(history.ground.box, element.where)
-            block = history.ground.block_name(forest.plots.block(forest.plots.index[node], cell))
+            block = history.ground.block_name(forest.table.block(forest.table.index[node], cell))
         events = Reading(forest, node).events()
         held[node] = _Held(value_in(forest, node, element), block, basis, current, events)
     return held
@@ -174,7 +174,7 @@ def _ground_of(
         content = reading.containers.get(element.where)
         return (None, False) if content is None else (content.basis, content.current)
     cell = cell_of(engine.history.ground.box, element.where)
-    basis = forest.plots.bases(forest.plots.index[node], [cell])[cell]
+    basis = forest.table.bases(forest.table.index[node], [cell])[cell]
     current = engine.history.block_is_current(place.key, node, place.entries, element.where)
     return basis, current
 
@@ -241,7 +241,7 @@ def _take(engine: Engine, trace: _Trace, step: Step, element: Element) -> None:
 
 def _feet(forest: Forest, path: Path) -> Point | None:
     """Where the owner of a node stands in the simulator around it."""
-    version = forest.plots.version(forest.plots.index[path[:-1]], forest.ground.numbers[path[-1]])
+    version = forest.table.version(forest.table.index[path[:-1]], forest.ground.numbers[path[-1]])
     return None if version < 0 else forest.versions.position(version)
 
 
@@ -256,7 +256,7 @@ def _missed(
     """Why acts in the simulator around a node, or what there is, did not reach it."""
     forest = step.forest
     mine = Reading(forest, path).events() if acts else ()
-    present = forest.plots.is_present(forest.plots.index[path])
+    present = forest.table.is_present(forest.table.index[path])
     around = Reading(forest, path[:-1])
     return Missed(
         tick=forest.tick,
@@ -280,10 +280,10 @@ def _is_edit(engine: Engine, place: Place, path: Path) -> bool:
 
 def _absence(engine: Engine, forest: Forest, path: Path) -> Absence:
     """Why the simulator around a node does not know where its owner is."""
-    around, plots = path[:-1], forest.plots
-    node, number = plots.index[around], forest.ground.numbers[path[-1]]
-    last_seen = plots.seen_at(node, number) if plots.version(node, number) >= 0 else None
-    if node == 0 or not plots.is_present(node):
+    around, table = path[:-1], forest.table
+    node, number = table.index[around], forest.ground.numbers[path[-1]]
+    last_seen = table.seen_at(node, number) if table.version(node, number) >= 0 else None
+    if node == 0 or not table.is_present(node):
         return Absence(last_seen, None)
     outer = Reading(forest, around[:-1])
     box = engine.history.ground.box

@@ -75,13 +75,13 @@ def steps_since(
 
 def value_in(forest: Forest, path: Path, element: Element) -> Value:
     """What a node of a forest holds of an element."""
-    node, ground = forest.plots.index[path], forest.ground
+    node, ground = forest.table.index[path], forest.ground
     if isinstance(element.where, str):
-        version = forest.plots.version(node, ground.numbers[element.where])
+        version = forest.table.version(node, ground.numbers[element.where])
         return None if version < 0 else forest.versions.position(version)
     cell = cell_of(ground.box, element.where)
     if element.kind == "block":
-        state = forest.plots.block(node, cell)
+        state = forest.table.block(node, cell)
         return None if state < 0 else ground.registry.text(state)
     if cell not in forest.holdings[node].containers:
         return None
@@ -91,14 +91,14 @@ def value_in(forest: Forest, path: Path, element: Element) -> Value:
 
 def grounded_at(forest: Forest, path: Path, element: Element) -> int | None:
     """Tick of the perception that a node's value of an element rests on; None: no value."""
-    node, ground = forest.plots.index[path], forest.ground
+    node, ground = forest.table.index[path], forest.ground
     if isinstance(element.where, str):
         number = ground.numbers[element.where]
-        known = forest.plots.version(node, number) >= 0
-        return forest.plots.seen_at(node, number) if known else None
+        known = forest.table.version(node, number) >= 0
+        return forest.table.seen_at(node, number) if known else None
     cell = cell_of(ground.box, element.where)
     if element.kind == "block":
-        basis = forest.plots.bases(node, [cell])[cell]
+        basis = forest.table.bases(node, [cell])[cell]
         return None if basis is None else basis.observed_at
     if cell not in forest.holdings[node].containers:
         return None

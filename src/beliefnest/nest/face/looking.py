@@ -1,4 +1,4 @@
-"""What users see of a nest: figures, plots of beliefs over time, what a notebook shows."""
+"""What users see of a nest: figures, table of beliefs over time, what a notebook shows."""
 
 import math
 from collections.abc import Sequence

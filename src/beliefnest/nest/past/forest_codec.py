@@ -12,7 +12,7 @@ from beliefnest.belief.columns import Columns, SavedVersions, Versions
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.ground import Ground
 from beliefnest.belief.holdings import Holdings
-from beliefnest.belief.plots import SavedPlot
+from beliefnest.belief.node_table import SavedNode
 from beliefnest.belief.story import Story
 from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
@@ -25,7 +25,7 @@ _LEVEL = 1
 
 
 class _Node(msgspec.Struct, forbid_unknown_fields=True):
-    plot: SavedPlot
+    row: SavedNode
     holdings: Holdings
     heard: bytes
     looked: int
@@ -48,13 +48,13 @@ class _Saved(msgspec.Struct, forbid_unknown_fields=True):
 def saved(forest: Forest) -> bytes:
     """Bytes of a forest, which leaves the stretch it is in; `restored` is the inverse."""
     forest.leave()
-    count, plots = forest.count_of_events, forest.plots
+    count, table = forest.count_of_events, forest.table
     # Many nodes with all their blocks take a lot of memory, so each is packed by itself.
     packer = zstandard.ZstdCompressor(level=_LEVEL)
     nodes = []
-    for path, node in plots.index.items():
+    for path, node in table.index.items():
         body = _Node(
-            plots.saved(node),
+            table.saved(node),
             forest.holdings[node],
             np.packbits(forest.hearing.of(node, count)).tobytes(),
             forest.last_look(node),
@@ -70,7 +70,7 @@ def saved(forest: Forest) -> bytes:
             facts_tick=forest.facts_tick,
             edited=sorted(forest.edited),
             first_vitals=forest.first_vitals,
-            tracked=plots.tracked.tobytes(),
+            tracked=table.tracked.tobytes(),
             versions=forest.versions.saved(),
             nodes=nodes,
         )
@@ -108,14 +108,14 @@ def restored(ground: Ground, story: Story, data: bytes, path: Path | None = None
     forest.first_vitals = body.first_vitals
     for number, (_, packed) in enumerate(nodes):
         node = codec.decode(_unpacked(packed), _Node)
-        forest.plots.restore(node.plot, tracked)
+        forest.table.restore(node.row, tracked)
         forest.holdings.append(node.holdings)
         heard = np.unpackbits(np.frombuffer(node.heard, dtype=np.uint8), count=body.events)
         forest.hearing.set(number, 0, heard.astype(np.bool_))
         forest.looked[number] = node.looked
         forest.put_by_hand |= {(number, cell) for cell in node.put_by_hand}
         forest.doubtful |= {(number, cell): state for cell, state in node.doubtful.items()}
-    forest.plots.link()
+    forest.table.link()
     return forest
 
 

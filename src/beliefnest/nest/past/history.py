@@ -63,7 +63,7 @@ class _Stretch:
         for number in sorted(n for n in self.edits if forest.position <= n < stop):
             forest.advance(number)
             edit = self.edits[number]
-            node = forest.plots.index.get(edit.path)
+            node = forest.table.index.get(edit.path)
             if node is None:
                 forest.skip(edit.tick)
             else:
@@ -123,11 +123,11 @@ class History:
         first, *others = paths
         forest = self._begun(key, first)
         for path in others:
-            if path not in forest.plots.index:
+            if path not in forest.table.index:
                 start = len(key.path)
                 chain = [path[:depth] for depth in range(start, len(path) + 1)]
                 other = self._begun(key, path)
-                forest.adopt(other, [node for node in chain if node not in forest.plots.index])
+                forest.adopt(other, [node for node in chain if node not in forest.table.index])
         return forest
 
     def advance(self, key: TimelineKey, forest: Forest, position: int) -> None:
@@ -154,7 +154,7 @@ class History:
         It is not kept while folding, so the timeline is folded anew.
         """
         forest = self._walk(key, path, position, cells)
-        return forest.plots.bases(forest.plots.index[path], cells)
+        return forest.table.bases(forest.table.index[path], cells)
 
     def block_is_current(
         self, key: TimelineKey, path: Path, position: int, place: Position
@@ -165,7 +165,7 @@ class History:
             # What agents believed at the fork stays as it was until something happens.
             return self.block_is_current(base.timeline, path, base.entries, place)
         forest = self._forest(key, path, position)
-        return forest.block_is_current(forest.plots.index[path], cell_of(self.ground.box, place))
+        return forest.block_is_current(forest.table.index[path], cell_of(self.ground.box, place))
 
     def forget(self, key: TimelineKey) -> None:
         """Drop what is remembered of a timeline that was deleted or renamed."""
@@ -192,10 +192,10 @@ class History:
         """The last forest at hand with a node that lies no later than a position."""
         found = None
         for other, forest in self._pasts:
-            if other == key and path in forest.plots.index and forest.position <= position:
+            if other == key and path in forest.table.index and forest.position <= position:
                 # Only a forest without beliefs can leap.
                 near = position - forest.position <= self._pace.lag
-                fits = near or path != key.path or forest.plots.count == 1
+                fits = near or path != key.path or forest.table.count == 1
                 if fits and (found is None or forest.position > found.position):
                     found = forest
         return found
@@ -204,20 +204,20 @@ class History:
         head = self._heads.get(key)
         if head is None:
             head = self._checkpoints.before(key, count, self._log(key))
-        if head is None or (head.plots.count == 1 and path != key.path):
+        if head is None or (head.table.count == 1 and path != key.path):
             # Folded as the head it leaves checkpoints on the way, other than a late node.
             head = self._begun(key, path)
         self._heads[key] = head
         while head.position < count:
-            far = count if head.plots.count == 1 else head.position + self._pace.every
+            far = count if head.table.count == 1 else head.position + self._pace.every
             self._advance(key, head, min(count, far))
             # Where it was a long way, who asks for the past need not go it again.
             self._checkpoints.keep(key, head)
-        if path not in head.plots.index:
+        if path not in head.table.index:
             late = self._walk(key, path, count)
             start = len(key.path)
             chain = [path[:depth] for depth in range(start, len(path) + 1)]
-            head.adopt(late, [node for node in chain if node not in head.plots.index])
+            head.adopt(late, [node for node in chain if node not in head.table.index])
         return head
 
     def _walk(
@@ -266,7 +266,7 @@ class History:
 
     def _advance(self, key: TimelineKey, forest: Forest, position: int) -> None:
         """Fold entries of a timeline into a forest, up to a position."""
-        if forest.plots.count == 1 and position - forest.position > self._pace.lag:
+        if forest.table.count == 1 and position - forest.position > self._pace.lag:
             self._leap(key, forest, position)
         while forest.position < position:
             stretch = self._stretch(key, forest.position, position)

@@ -15,7 +15,7 @@ from beliefnest.belief.ground import Ground
 from beliefnest.perception.codes import mark_intruded
 from beliefnest.world.frames import BlockGrid
 
-__all__ = ["Plots", "SavedPlot"]
+__all__ = ["NodeTable", "SavedNode"]
 
 Path = tuple[str, ...]
 Row = npt.NDArray[Any]
@@ -28,7 +28,7 @@ _BY_SPOT = {"watched": 0, "basis_at": UNKNOWN, "basis_source": 0}
 
 
 @dataclass(frozen=True, slots=True)
-class SavedPlot:
+class SavedNode:
     """A node's rows, as native bytes, by their names in `arrays.Nodes`."""
 
     path: Path
@@ -44,7 +44,7 @@ class SavedPlot:
 _SAVED = ("blocks", "version", "looks", "seen_at", "current", "basis_at", "basis_source")
 
 
-class Plots:
+class NodeTable:
     """Arrays of nodes; see `arrays.Nodes` for what each holds.
 
     Attributes:
@@ -113,11 +113,11 @@ class Plots:
             self._rows[name][: self.count] = table[self._rows[name][: self.count]]
         self.versions = versions
 
-    def copy_node(self, other: "Plots", source: int, *, is_root: bool, told: bool) -> int:
-        """A node of other plots as node of these; as node 0 all that it knows is current.
+    def copy_node(self, other: "NodeTable", source: int, *, is_root: bool, told: bool) -> int:
+        """A node of other table as node of these; as node 0 all that it knows is current.
 
         Args:
-            other: The other plots.
+            other: The other table.
             source: Number of the node there.
             is_root: Whether it becomes node 0.
             told: Whether what the other's timeline told is told by the timeline of these.
@@ -226,12 +226,12 @@ class Plots:
         # Whoever looks next looks at the new cells too.
         self._rows["eye"][: self.count] = UNKNOWN
 
-    def saved(self, node: int) -> SavedPlot:
+    def saved(self, node: int) -> SavedNode:
         """What a node holds, as plain data; what it was asked last is not part of that."""
         row = {name: self._rows[name][node].tobytes() for name in _SAVED}
-        return SavedPlot(self.path(node), **row)
+        return SavedNode(self.path(node), **row)
 
-    def restore(self, saved: SavedPlot, tracked: npt.NDArray[np.int32]) -> None:
+    def restore(self, saved: SavedNode, tracked: npt.NDArray[np.int32]) -> None:
         """Add a node that was saved, with what was tracked then; `link` has to follow."""
         node = self.add(saved.path, self.index.get(saved.path[:-1], UNKNOWN))
         spots = {cell: spot for spot, cell in enumerate(self._tracked.tolist())}
