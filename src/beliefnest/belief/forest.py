@@ -11,8 +11,8 @@ import numpy.typing as npt
 from beliefnest.belief import kernel
 from beliefnest.belief.arrays import Changes, Facts
 from beliefnest.belief.columns import Columns, Versions, cell_of
+from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import SOURCES, Basis, PerceivedEvent, Source
-from beliefnest.belief.ground import Ground
 from beliefnest.belief.hearing import Hearing
 from beliefnest.belief.holdings import (
     NEVER,
@@ -55,10 +55,12 @@ class Forest:
         doubtful: Nodes and cells of contents where no container is known, with the block there.
     """
 
-    def __init__(self, ground: Ground, story: Story, tick: int, extra: Sequence[int] = ()) -> None:
-        self.ground, self._story = ground, story
+    def __init__(
+        self, context: BeliefContext, story: Story, tick: int, extra: Sequence[int] = ()
+    ) -> None:
+        self.context, self._story = context, story
         self.columns = self._nowhere(0, 0)
-        self.table = NodeTable(ground, self.columns.versions, extra)
+        self.table = NodeTable(context, self.columns.versions, extra)
         self.holdings: list[Holdings] = []
         self.position, self.tick = 0, tick
         self.facts_tick: int | None = None
@@ -131,14 +133,14 @@ class Forest:
 
     def block_is_current(self, node: int, cell: int) -> bool:
         """Whether a node's block is backed by a perception in the last entry (5.4)."""
-        ground, nodes, poses = self.ground, self.table.nodes(), self.versions.poses()
+        context, nodes, poses = self.context, self.table.nodes(), self.versions.poses()
         while node > 0:
             around = self.table.parent(node)
             if not self.table.is_present(node) or (node, cell) in self.put_by_hand:
                 return False
             version = self.table.version(around, self.table.owner(node))
             if not kernel.sees_cell(
-                ground.space, ground.senses, poses, nodes, around, version, cell
+                context.space, context.senses, poses, nodes, around, version, cell
             ):
                 return False
             node = around
@@ -191,13 +193,13 @@ class Forest:
         """
         self._let_read()
         holdings, basis = self.holdings[node], Basis(tick, Source.EDITED)
-        self.ground.track(c for c, s in blocks.items() if self.ground.container_name(s))
-        self.ground.track(contents)
+        self.context.track(c for c, s in blocks.items() if self.context.container_name(s))
+        self.context.track(contents)
         self.table.track()
         for cell, state in blocks.items():
-            old = self.ground.container_name(self.table.block(node, cell))
+            old = self.context.container_name(self.table.block(node, cell))
             self.table.put(node, cell, state, basis)
-            new = self.ground.container_name(state)
+            new = self.context.container_name(state)
             if old != new:
                 holdings.containers.pop(cell, None)
             if new is not None and cell not in holdings.containers:
@@ -237,8 +239,8 @@ class Forest:
 
     def _nowhere(self, position: int, events: int) -> Columns:
         """An empty stretch, for who waits in between."""
-        ground = self.ground
-        return Columns(ground.box, ground.agents, ground.holds, position, events)
+        context = self.context
+        return Columns(context.box, context.agents, context.holds, position, events)
 
     def _let_read(self) -> None:
         readers, self._readers = list(self._readers), WeakSet()
@@ -259,12 +261,12 @@ class Forest:
 
     def _has_things(self) -> bool:
         """Whether there is something to be looked at that is no block and no agent."""
-        transparent = self.ground.options.containers == "transparent"
+        transparent = self.context.options.containers == "transparent"
         return transparent or bool(self.doubtful) or any(h.items for h in self.holdings)
 
     def _changes(self, events: int) -> Changes:
         # In one entry every node can change every tracked cell once; see `kernel.fold`.
-        room = 4 * (self.table.count * len(self.ground.tracked) + 16)
+        room = 4 * (self.table.count * len(self.context.tracked) + 16)
         return Changes(
             np.zeros((events, self.table.count), dtype=np.bool_),
             np.zeros((room, 7), dtype=np.int32),
@@ -272,14 +274,14 @@ class Forest:
         )
 
     def _fold(self, start: int, stop: int) -> int:
-        ground, columns, facts = self.ground, self.columns, self.columns.facts()
+        context, columns, facts = self.context, self.columns, self.columns.facts()
         first = columns.events_until(start)
         changes = self._changes(columns.events_until(stop) - first)
         poses, nodes = self.versions.poses(), self.table.nodes()
         everywhere = np.ones(self.table.count, dtype=np.bool_)
         where = start - columns.first, stop - columns.first
         reached = columns.first + kernel.fold(
-            ground.space, ground.senses, poses, facts, nodes, changes, *where, everywhere
+            context.space, context.senses, poses, facts, nodes, changes, *where, everywhere
         )
         count = columns.events_until(reached) - first
         self.hearing.note(first, changes.perceived[:count])
@@ -306,7 +308,7 @@ class Forest:
         return reached
 
     def _look(self, below: npt.NDArray[np.bool_]) -> None:
-        ground, nodes = self.ground, self.table.nodes()
+        context, nodes = self.context, self.table.nodes()
         changes = self._changes(0)
         nothing, at = np.zeros(0, dtype=np.int32), np.zeros(2, dtype=np.int32)
         facts = Facts(
@@ -316,7 +318,7 @@ class Forest:
             *(at, nothing, nothing, nothing, nothing),
         )
         poses = self.versions.poses()
-        kernel.fold(ground.space, ground.senses, poses, facts, nodes, changes, 0, 1, below)
+        kernel.fold(context.space, context.senses, poses, facts, nodes, changes, 0, 1, below)
         entry = self.position - 1
         self.looked.update(dict.fromkeys(np.flatnonzero(below).tolist(), entry))
         self.put_by_hand = {(node, cell) for node, cell in self.put_by_hand if not below[node]}
@@ -329,7 +331,7 @@ class Forest:
             return
         holdings, basis = self.holdings[0], Basis(frame.tick, Source.SEEN)
         for place, items in frame.containers.items():
-            cell = cell_of(self.ground.box, place)
+            cell = cell_of(self.context.box, place)
             old = holdings.containers.pop(cell, None)
             if items is not None:
                 complete = old is None or old.complete
@@ -349,7 +351,7 @@ class Forest:
     ) -> None:
         """What an entry does to contents and possessions, after `_happens`."""
         for _, _, cell, _, new, _, _ in rows.get(0, ()):
-            if self.ground.container_name(new) is None:
+            if self.context.container_name(new) is None:
                 self.holdings[0].containers.pop(cell, None)
             elif cell not in self.holdings[0].containers:
                 basis = Basis(tick, Source.SEEN)
@@ -357,7 +359,7 @@ class Forest:
         things = self._has_things()
         for node in range(1, self.table.count):
             for _, _, cell, old, new, observed_at, source in rows.get(node, ()):
-                names = self.ground.block_name(old), self.ground.container_name(new)
+                names = self.context.block_name(old), self.context.container_name(new)
                 basis = Basis(observed_at, SOURCES[source])
                 replaced_block(self.holdings[node], cell, *names, basis)
             acts = [self.columns.event(n) for n, heard in perceived.items() if heard[node]]
@@ -373,9 +375,9 @@ class Forest:
         self, node: int, acts: list[Event], into: set[int], tick: int, entry: int
     ) -> None:
         """What perceived acts do to a node that sees into the containers of `into` anyway."""
-        holdings, owner = self.holdings[node], self.ground.agents[self.table.owner(node)]
+        holdings, owner = self.holdings[node], self.context.agents[self.table.owner(node)]
         around = self.table.parent(node)
-        box, there = self.ground.box, self.holdings[around].containers
+        box, there = self.context.box, self.holdings[around].containers
         touched = [(cell_of(box, a.detail["position"]), a) for a in acts if a.kind in TOUCHES]
         own = {cell for cell, act in touched if act.actor == owner and cell in there}
         for cell, act in touched:
@@ -390,7 +392,7 @@ class Forest:
                 learn(holdings, cell, content, kind, tick)
                 self._doubt(node, cell)
         for name in {act.actor for act in acts if act.actor not in (None, owner)}:
-            number = self.ground.numbers[str(name)]
+            number = self.context.numbers[str(name)]
             before = holdings.inventories.get(number, {})
             after = follow_acts(before, (act for act in acts if act.actor == name))
             if after is not before:
@@ -404,7 +406,7 @@ class Forest:
     def _doubt(self, node: int, cell: int) -> None:
         """Note a content at a place where a node knows no container."""
         state = self.table.block(node, cell)
-        if node > 0 and cell in self.holdings[node].containers and not self.ground.holds[state]:
+        if node > 0 and cell in self.holdings[node].containers and not self.context.holds[state]:
             self.doubtful[node, cell] = state
 
     def _forget(self, node: int) -> None:
@@ -414,12 +416,12 @@ class Forest:
                 continue
             state = self.table.block(node, cell)
             around = self.table.block(self.table.parent(node), cell)
-            if self.ground.holds[state] or cell not in self.holdings[node].containers:
+            if self.context.holds[state] or cell not in self.holdings[node].containers:
                 del self.doubtful[node, cell]
             elif self._is_gone(node, cell) or (
                 before < 0
                 and around >= 0
-                and not self.ground.holds[around]
+                and not self.context.holds[around]
                 and self._sees_cell(node, cell)
             ):
                 del self.holdings[node].containers[cell]
@@ -433,7 +435,7 @@ class Forest:
         state = self.table.block(around, cell)
         return (
             state >= 0
-            and not self.ground.holds[state]
+            and not self.context.holds[state]
             and self._sees_cell(node, cell)
             and self.block_is_current(around, cell)
         )
@@ -444,16 +446,18 @@ class Forest:
 
     def _seen_cells(self, node: int, cells: Iterable[int]) -> set[int]:
         """Those of some cells that the present owner of a node sees in the simulator around."""
-        ground, around = self.ground, self.table.parent(node)
+        context, around = self.context, self.table.parent(node)
         version = self.table.version(around, self.table.owner(node))
         nodes, poses = self.table.nodes(), self.versions.poses()
         wanted = np.array([*cells], dtype=np.int64)
-        seen = kernel.sees_cells(ground.space, ground.senses, poses, nodes, around, version, wanted)
+        seen = kernel.sees_cells(
+            context.space, context.senses, poses, nodes, around, version, wanted
+        )
         return set(wanted[seen].tolist())
 
     def _see_into(self, node: int, tick: int, entry: int) -> set[int]:
         """Look into transparent containers; returns the cells looked into."""
-        if self.ground.options.containers != "transparent":
+        if self.context.options.containers != "transparent":
             return set()
         around = self.table.parent(node)
         into = self._seen_cells(node, self.holdings[around].containers)
@@ -484,12 +488,14 @@ class Forest:
         known.update(seen)
 
     def _sees_item(self, node: int, around: int, lying: Lying) -> bool:
-        ground = self.ground
+        context = self.context
         x, y, z = lying.item.position
         version = self.table.version(around, self.table.owner(node))
         nodes, poses = self.table.nodes(), self.versions.poses()
         place = (x, y + _ITEM_HEIGHT, z)
-        return kernel.sees_point(ground.space, ground.senses, poses, nodes, around, version, place)
+        return kernel.sees_point(
+            context.space, context.senses, poses, nodes, around, version, place
+        )
 
 
 def _by_entry(changes: Changes, first: int) -> dict[int, dict[int, list[Sequence[int]]]]:

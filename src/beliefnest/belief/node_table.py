@@ -10,8 +10,8 @@ import numpy.typing as npt
 from beliefnest.belief import kernel
 from beliefnest.belief.arrays import UNKNOWN, Nodes
 from beliefnest.belief.columns import Looks, Versions
+from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import SOURCES, Basis
-from beliefnest.belief.ground import Ground
 from beliefnest.perception.codes import mark_intruded
 from beliefnest.world.frames import BlockGrid
 
@@ -53,17 +53,19 @@ class NodeTable:
         versions: The poses that the nodes' versions are numbers of.
     """
 
-    def __init__(self, ground: Ground, versions: Versions, extra: Sequence[int] = ()) -> None:
-        self._ground = ground
+    def __init__(
+        self, context: BeliefContext, versions: Versions, extra: Sequence[int] = ()
+    ) -> None:
+        self._context = context
         self.versions = versions
         self.index: dict[Path, int] = {}
         self.count = 0
         self._linked = 1
-        known = set(ground.tracked)
+        known = set(context.tracked)
         others = [cell for cell in extra if cell not in known]
-        tracked = self._tracked = np.array([*ground.tracked, *others], dtype=np.int32)
-        agents, cells, spots = len(ground.agents), ground.cells, len(tracked)
-        margin = int(np.prod(ground.space.sizes))
+        tracked = self._tracked = np.array([*context.tracked, *others], dtype=np.int32)
+        agents, cells, spots = len(context.agents), context.cells, len(tracked)
+        margin = int(np.prod(context.space.sizes))
         self._rows: dict[str, Row] = {
             "parent": np.full(2, UNKNOWN, dtype=np.int32),
             "agent": np.full(2, UNKNOWN, dtype=np.int32),
@@ -98,7 +100,7 @@ class NodeTable:
         self.index[path] = node
         self._rows["parent"][node] = parent
         if parent >= 0:
-            self._rows["agent"][node] = self._ground.numbers[path[-1]]
+            self._rows["agent"][node] = self._context.numbers[path[-1]]
         return node
 
     def enter(self, versions: Versions) -> None:
@@ -165,7 +167,7 @@ class NodeTable:
 
     def set_blocks(self, node: int, blocks: npt.NDArray[np.signedinteger[Any]]) -> None:
         """Set all blocks of a node, and its geometry."""
-        space = self._ground.space
+        space = self._context.space
         self._rows["blocks"][node] = blocks.ravel()
         codes = np.zeros(space.sizes, dtype=np.uint16)
         codes[1:-1, 1:-1, 1:-1] = space.codes[blocks]
@@ -208,13 +210,13 @@ class NodeTable:
 
     def put(self, node: int, cell: int, state: int, basis: Basis) -> None:
         """Let a node hold a block state by hand."""
-        kernel.put(self._ground.space, self.nodes(), node, cell, state)
+        kernel.put(self._context.space, self.nodes(), node, cell, state)
         self.set_basis(node, cell, basis if state >= 0 else None)
 
     def track(self) -> None:
-        """Track the cells that the ground tracks by now."""
+        """Track the cells that the context tracks by now."""
         known = set(self._tracked.tolist())
-        new = [cell for cell in self._ground.tracked if cell not in known]
+        new = [cell for cell in self._context.tracked if cell not in known]
         if not new:
             return
         self._tracked = np.array([*self._tracked.tolist(), *new], dtype=np.int32)
@@ -240,7 +242,7 @@ class NodeTable:
             row = self._rows[name]
             values = np.frombuffer(getattr(saved, name), dtype=row.dtype)
             if name == "blocks":
-                self.set_blocks(node, values.reshape(self._ground.box.shape))
+                self.set_blocks(node, values.reshape(self._context.box.shape))
             elif name in _BY_SPOT:
                 row[node] = _BY_SPOT[name]
                 row[node, places] = values
@@ -267,7 +269,7 @@ class NodeTable:
     def blocks(self, node: int) -> BlockGrid:
         """A copy of a node's blocks, of the box's shape."""
         blocks: BlockGrid = self._rows["blocks"][node].astype(np.int32)
-        return blocks.reshape(self._ground.box.shape)
+        return blocks.reshape(self._context.box.shape)
 
     def version(self, node: int, agent: int) -> int:
         """Version of an agent's believed pose; -1: unknown."""

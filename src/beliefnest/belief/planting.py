@@ -7,9 +7,9 @@ import numpy.typing as npt
 
 from beliefnest.belief.arrays import UNKNOWN
 from beliefnest.belief.columns import cell_of
+from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis, InitialBelief, Source
 from beliefnest.belief.forest import Forest
-from beliefnest.belief.ground import Ground
 from beliefnest.belief.holdings import NEVER, Content, Holdings, Lying
 from beliefnest.belief.story import Story
 from beliefnest.world.frames import Snapshot
@@ -20,7 +20,7 @@ Path = tuple[str, ...]
 
 
 def planted(
-    ground: Ground,
+    context: BeliefContext,
     story: Story,
     snapshot: Snapshot,
     static_blocks: frozenset[str],
@@ -31,7 +31,7 @@ def planted(
     """A forest of the real world, a node and those between, after the first perception.
 
     Args:
-        ground: What the nest stands on.
+        context: What all nodes share.
         story: What happens on the real world's timeline.
         snapshot: The real world at its first tick.
         static_blocks: Names of blocks that everybody knows from the start.
@@ -39,17 +39,17 @@ def planted(
         path: The deepest node.
         extra: Further cells whose basis is to be tracked.
     """
-    forest = Forest(ground, story, snapshot.tick, extra)
+    forest = Forest(context, story, snapshot.tick, extra)
     forest.facts_tick = snapshot.tick
-    known = _states_of(ground, static_blocks)
+    known = _states_of(context, static_blocks)
     prior = np.where(known[snapshot.blocks], snapshot.blocks, UNKNOWN).astype(np.int32)
-    ground.track(np.flatnonzero(ground.holds[snapshot.blocks.ravel()]).tolist())
+    context.track(np.flatnonzero(context.holds[snapshot.blocks.ravel()]).tolist())
     for belief in initial:
-        ground.track(cell_of(ground.box, place) for place in belief.containers)
-        ground.track(
-            cell_of(ground.box, place)
+        context.track(cell_of(context.box, place) for place in belief.containers)
+        context.track(
+            cell_of(context.box, place)
             for place, state in belief.blocks.items()
-            if ground.container_name(state)
+            if context.container_name(state)
         )
     forest.table.track()
     _plant_world(forest, snapshot)
@@ -62,28 +62,28 @@ def planted(
     return forest
 
 
-def _states_of(ground: Ground, names: frozenset[str]) -> npt.NDArray[np.bool_]:
-    known = np.zeros(ground.registry.states, dtype=np.bool_)
+def _states_of(context: BeliefContext, names: frozenset[str]) -> npt.NDArray[np.bool_]:
+    known = np.zeros(context.registry.states, dtype=np.bool_)
     for name in names:
-        ids = ground.registry.state_ids(name)
+        ids = context.registry.state_ids(name)
         known[ids.start : ids.stop] = True
     return known
 
 
 def _plant_world(forest: Forest, snapshot: Snapshot) -> None:
-    ground, table = forest.ground, forest.table
+    context, table = forest.context, forest.table
     node = table.add((), UNKNOWN)
     table.set_blocks(node, snapshot.blocks)
     basis = Basis(snapshot.tick, Source.SEEN)
     table.set_known_bases(node, basis)
     for name, agent in snapshot.agents.items():
         version = forest.versions.add(name, agent)
-        number = ground.numbers[name]
+        number = context.numbers[name]
         table.set_pose(node, number, version, snapshot.tick, current=True)
         table.set_looks(node, number, version)
     holdings = Holdings()
     for place, items in snapshot.containers.items():
-        holdings.containers[cell_of(ground.box, place)] = Content(dict(items), True, basis, -1)
+        holdings.containers[cell_of(context.box, place)] = Content(dict(items), True, basis, -1)
     for key, item in snapshot.items.items():
         holdings.items[key] = Lying(item, basis, -1)
     forest.holdings.append(holdings)
@@ -92,22 +92,22 @@ def _plant_world(forest: Forest, snapshot: Snapshot) -> None:
 def _plant_prior(
     forest: Forest, path: Path, prior: npt.NDArray[np.int32], mine: InitialBelief, tick: int
 ) -> None:
-    ground, table = forest.ground, forest.table
+    context, table = forest.context, forest.table
     basis = Basis(tick, Source.PRIOR)
     node = table.add(path, table.index[path[:-1]])
     blocks = prior.copy()
     for place, state in mine.blocks.items():
-        blocks[ground.box.index(place)] = state
+        blocks[context.box.index(place)] = state
     table.set_blocks(node, blocks)
     for name, position in mine.agents.items():
         version = forest.versions.add_pose(position, 0.0, 0.0)
-        table.set_pose(node, ground.numbers[name], version, tick, current=False)
+        table.set_pose(node, context.numbers[name], version, tick, current=False)
     holdings = Holdings()
     for place, (items, complete) in mine.containers.items():
-        holdings.containers[cell_of(ground.box, place)] = Content(dict(items), complete, basis)
+        holdings.containers[cell_of(context.box, place)] = Content(dict(items), complete, basis)
     table.set_known_bases(node, basis)
-    for cell in ground.tracked:
-        if ground.container_name(table.block(node, cell)):
+    for cell in context.tracked:
+        if context.container_name(table.block(node, cell)):
             holdings.containers.setdefault(cell, Content({}, False, basis))
     forest.holdings.append(holdings)
     forest.doubt_contents(node)
@@ -134,7 +134,7 @@ def forked(
         tick: Tick of the fork.
         extra: Further cells whose basis is to be tracked; the source tracks them too.
     """
-    forest = Forest(source.ground, story, tick, extra)
+    forest = Forest(source.context, story, tick, extra)
     source.table.track()
     for depth in range(len(root), len(path) + 1):
         old = source.table.index[path[:depth]]
@@ -143,7 +143,7 @@ def forked(
         forest.holdings.append(_forked_holdings(source, old, is_root=is_root))
         forest.doubt_contents(node)
     node = source.table.index[root]
-    for agent in range(len(source.ground.agents)):
+    for agent in range(len(source.context.agents)):
         forest.first_vitals[agent] = source.vitals(node, agent)
     forest.table.link()
     return forest
@@ -161,7 +161,7 @@ def _forked_holdings(source: Forest, node: int, *, is_root: bool) -> Holdings:
         entry = -1 if is_root or lying.entry == last else NEVER
         copied.items[number] = Lying(lying.item, lying.basis, entry)
     if is_root:
-        for agent in range(len(source.ground.agents)):
+        for agent in range(len(source.context.agents)):
             items, complete = source.inventory(node, agent)
             copied.inventories.pop(agent, None)
             if not complete:

@@ -52,8 +52,8 @@ class Reading:
     @cached_property
     def geometry(self) -> Geometry:
         """The believed blocks prepared for looks."""
-        ground = self._forest.ground
-        return ground.sight.geometry(self.blocks, ground.box.low)
+        context = self._forest.context
+        return context.sight.geometry(self.blocks, context.box.low)
 
     @cached_property
     def containers(self) -> Mapping[Position, ContainerBelief]:
@@ -62,7 +62,7 @@ class Reading:
         found = {}
         for cell in sorted(forest.holdings[self._node].containers):
             content = forest.content(self._node, cell)
-            found[place_of(forest.ground.box, cell)] = ContainerBelief(
+            found[place_of(forest.context.box, cell)] = ContainerBelief(
                 content.items,
                 content.complete,
                 content.basis,
@@ -73,7 +73,7 @@ class Reading:
     @cached_property
     def agents(self) -> Mapping[str, AgentBelief]:
         """What is believed of every agent."""
-        names = self._forest.ground.agents
+        names = self._forest.context.agents
         return {name: self._agent(number) for number, name in enumerate(names)}
 
     @cached_property
@@ -115,7 +115,7 @@ class Reading:
         }
         return Snapshot(
             tick=self.tick,
-            box=self._forest.ground.box,
+            box=self._forest.context.box,
             blocks=np.maximum(self.blocks, 0),
             containers={place: dict(c.items) for place, c in self.containers.items()},
             agents=agents,

@@ -126,7 +126,7 @@ class Engine:
     @property
     def agents(self) -> tuple[str, ...]:
         """All agents, sorted."""
-        return self.history.ground.agents
+        return self.history.context.agents
 
     def reading(self, path: Path, tick: int | None = None) -> Reading:
         """A node's state now, or at a past tick of the timeline it is on."""

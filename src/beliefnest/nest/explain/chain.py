@@ -147,7 +147,7 @@ class _Trace:
 
 def _held_now(engine: Engine, path: Path, place: Place, element: Element) -> dict[Path, _Held]:
     root, history = place.key.path, engine.history
-    cells = cells_of(element, history.ground.box)
+    cells = cells_of(element, history.context.box)
     held = {}
     (forest,) = history.steps(place.key, path, place.entries, place.entries, cells)
     for depth in range(len(root), len(path) + 1):
@@ -155,8 +155,8 @@ def _held_now(engine: Engine, path: Path, place: Place, element: Element) -> dic
         basis, current = _ground_of(engine, place, forest, node, element)
         block = None
         if not isinstance(element.where, str):
-            cell = cell_of(history.ground.box, element.where)
-            block = history.ground.block_name(forest.table.block(forest.table.index[node], cell))
+            cell = cell_of(history.context.box, element.where)
+            block = history.context.block_name(forest.table.block(forest.table.index[node], cell))
         events = Reading(forest, node).events()
         held[node] = _Held(value_in(forest, node, element), block, basis, current, events)
     return held
@@ -173,7 +173,7 @@ def _ground_of(
     if element.kind == "container":
         content = reading.containers.get(element.where)
         return (None, False) if content is None else (content.basis, content.current)
-    cell = cell_of(engine.history.ground.box, element.where)
+    cell = cell_of(engine.history.context.box, element.where)
     basis = forest.table.bases(forest.table.index[node], [cell])[cell]
     current = engine.history.block_is_current(place.key, node, place.entries, element.where)
     return basis, current
@@ -241,7 +241,7 @@ def _take(engine: Engine, trace: _Trace, step: Step, element: Element) -> None:
 
 def _feet(forest: Forest, path: Path) -> Point | None:
     """Where the owner of a node stands in the simulator around it."""
-    version = forest.table.version(forest.table.index[path[:-1]], forest.ground.numbers[path[-1]])
+    version = forest.table.version(forest.table.index[path[:-1]], forest.context.numbers[path[-1]])
     return None if version < 0 else forest.versions.position(version)
 
 
@@ -281,12 +281,12 @@ def _is_edit(engine: Engine, place: Place, path: Path) -> bool:
 def _absence(engine: Engine, forest: Forest, path: Path) -> Absence:
     """Why the simulator around a node does not know where its owner is."""
     around, table = path[:-1], forest.table
-    node, number = table.index[around], forest.ground.numbers[path[-1]]
+    node, number = table.index[around], forest.context.numbers[path[-1]]
     last_seen = table.seen_at(node, number) if table.version(node, number) >= 0 else None
     if node == 0 or not table.is_present(node):
         return Absence(last_seen, None)
     outer = Reading(forest, around[:-1])
-    box = engine.history.ground.box
+    box = engine.history.context.box
     return Absence(last_seen, sighting_of_agent(outer, box, around[-1], path[-1]))
 
 
@@ -298,7 +298,7 @@ def _sightings(
     acts: Iterable[PerceivedEvent],
 ) -> tuple[Sighting, ...]:
     """The looks that would have told a change: at who did it, and at the element."""
-    box = engine.history.ground.box
+    box = engine.history.context.box
     if isinstance(element.where, str):
         return (sighting_of_agent(around, box, viewer, element.where),)
     actors: list[str] = []

@@ -57,8 +57,8 @@ def compare(
 ) -> list[Difference]:
     """`differences` of two nodes at a tick; None: now."""
     one, other = engine.reading(a, tick), engine.reading(b, tick)
-    ground = engine.history.ground
-    return list(differences(one, other, ground.box, ground.registry, unknown=unknown))
+    context = engine.history.context
+    return list(differences(one, other, context.box, context.registry, unknown=unknown))
 
 
 def false_beliefs(
@@ -79,8 +79,8 @@ def false_beliefs(
     """
     belief = engine.reading(path, tick)
     real = engine.reading(against, tick if against_tick is None else against_tick)
-    ground = engine.history.ground
-    return list(falsehoods(real, belief, ground.box, ground.registry))
+    context = engine.history.context
+    return list(falsehoods(real, belief, context.box, context.registry))
 
 
 def differences(

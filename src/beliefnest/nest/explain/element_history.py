@@ -68,21 +68,21 @@ def steps_since(
         base = Place(info.base.timeline, info.base.entries)
         yield from steps_since(history, journal, path, base, tick, element)
     first = min(journal.entries_until(place.key, tick - 1), place.entries)
-    cells = cells_of(element, history.ground.box)
+    cells = cells_of(element, history.context.box)
     for forest in history.steps(place.key, path, first, place.entries, cells):
         yield Step(Place(place.key, forest.position), forest)
 
 
 def value_in(forest: Forest, path: Path, element: Element) -> Value:
     """What a node of a forest holds of an element."""
-    node, ground = forest.table.index[path], forest.ground
+    node, context = forest.table.index[path], forest.context
     if isinstance(element.where, str):
-        version = forest.table.version(node, ground.numbers[element.where])
+        version = forest.table.version(node, context.numbers[element.where])
         return None if version < 0 else forest.versions.position(version)
-    cell = cell_of(ground.box, element.where)
+    cell = cell_of(context.box, element.where)
     if element.kind == "block":
         state = forest.table.block(node, cell)
-        return None if state < 0 else ground.registry.text(state)
+        return None if state < 0 else context.registry.text(state)
     if cell not in forest.holdings[node].containers:
         return None
     content = forest.content(node, cell)
@@ -91,12 +91,12 @@ def value_in(forest: Forest, path: Path, element: Element) -> Value:
 
 def grounded_at(forest: Forest, path: Path, element: Element) -> int | None:
     """Tick of the perception that a node's value of an element rests on; None: no value."""
-    node, ground = forest.table.index[path], forest.ground
+    node, context = forest.table.index[path], forest.context
     if isinstance(element.where, str):
-        number = ground.numbers[element.where]
+        number = context.numbers[element.where]
         known = forest.table.version(node, number) >= 0
         return forest.table.seen_at(node, number) if known else None
-    cell = cell_of(ground.box, element.where)
+    cell = cell_of(context.box, element.where)
     if element.kind == "block":
         basis = forest.table.bases(node, [cell])[cell]
         return None if basis is None else basis.observed_at
@@ -124,7 +124,7 @@ def last_change(
     for entry in entries:
         if isinstance(entry, Edit) and entry.path != path:
             continue
-        told = _told(entry, element, history.ground.registry, held)
+        told = _told(entry, element, history.context.registry, held)
         if told != held:
             held = told
             last = Change(entry.tick, edited=isinstance(entry, Edit))

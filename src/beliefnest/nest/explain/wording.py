@@ -60,7 +60,7 @@ def _belief_text(level: Level, element: Element) -> str:
     if level.basis is None:
         return f"{outer}{known}.{given_up}"
     now = " That is current." if level.current else ""
-    return f"{outer}{known}: {_ground(level, level.basis, name)}.{now}"
+    return f"{outer}{known}: {_context(level, level.basis, name)}.{now}"
 
 
 def _given_up(level: Level, element: Element) -> str:
@@ -70,7 +70,7 @@ def _given_up(level: Level, element: Element) -> str:
     return f"{begin} gave up what it had believed."
 
 
-def _ground(level: Level, basis: Basis, name: str) -> str:
+def _context(level: Level, basis: Basis, name: str) -> str:
     """What a belief rests on."""
     tick, holder = basis.observed_at, level.holder
     late = level.since is not None and level.since > tick

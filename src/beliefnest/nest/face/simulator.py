@@ -348,7 +348,7 @@ class Simulator(_Seen):
             PositionError: A position is outside the box.
             UnknownNameError: There is no such block or item.
         """
-        registry = self._engine.history.ground.registry
+        registry = self._engine.history.context.registry
         box = self._engine.setting.snapshot.box
         for position in (*(blocks or {}), *(containers or {})):
             if position not in box:

@@ -13,8 +13,8 @@ from hashlib import blake2b
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 
+from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.forest import Forest
-from beliefnest.belief.ground import Ground
 from beliefnest.belief.story import Story
 from beliefnest.errors import StoreError
 from beliefnest.nest.past.forest_codec import restored, saved
@@ -63,14 +63,16 @@ class Checkpoints:
     Args:
         journal: Where they are kept; one that cannot be written to is only read.
         setting: What the nest started from.
-        ground: What its nodes stand on.
+        context: What all nodes share.
         pace: How often they are written.
     """
 
-    def __init__(self, journal: Journal, setting: Setting, ground: Ground, pace: Pace) -> None:
+    def __init__(
+        self, journal: Journal, setting: Setting, context: BeliefContext, pace: Pace
+    ) -> None:
         self._journal = journal
         self._setting = setting
-        self._ground = ground
+        self._context = context
         self._pace = pace
         self._kept: dict[tuple[TimelineKey, bool], _Kept] = {}
 
@@ -101,7 +103,7 @@ class Checkpoints:
                 found = world
         if found is None or found[0] <= after:
             return None
-        forest = restored(self._ground, story, found[1], path)
+        forest = restored(self._context, story, found[1], path)
         if forest is not None and path is None:
             self._note(key, forest, found[1])
         return forest

@@ -9,8 +9,8 @@ import numpy as np
 import zstandard
 
 from beliefnest.belief.columns import Columns, SavedVersions, Versions
+from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.forest import Forest
-from beliefnest.belief.ground import Ground
 from beliefnest.belief.holdings import Holdings
 from beliefnest.belief.node_table import SavedNode
 from beliefnest.belief.story import Story
@@ -77,11 +77,13 @@ def saved(forest: Forest) -> bytes:
     )
 
 
-def restored(ground: Ground, story: Story, data: bytes, path: Path | None = None) -> Forest | None:
-    """A forest from the bytes of `saved`, made on the same ground.
+def restored(
+    context: BeliefContext, story: Story, data: bytes, path: Path | None = None
+) -> Forest | None:
+    """A forest from the bytes of `saved`, made on the same context.
 
     Args:
-        ground: What the nest stands on.
+        context: What all nodes share.
         story: What happens on the forest's timeline.
         data: The bytes.
         path: The deepest node wanted; None: all there are.
@@ -97,9 +99,9 @@ def restored(ground: Ground, story: Story, data: bytes, path: Path | None = None
     if path is not None and all(other != path for other, _ in nodes):
         return None
     tracked = np.frombuffer(body.tracked, dtype=np.int32)
-    ground.track(tracked.tolist())
-    forest = Forest(ground, story, body.tick)
-    columns = Columns(ground.box, ground.agents, ground.holds, body.position, body.events)
+    context.track(tracked.tolist())
+    forest = Forest(context, story, body.tick)
+    columns = Columns(context.box, context.agents, context.holds, body.position, body.events)
     columns.versions = Versions.restored(body.versions)
     forest.enter(columns)
     forest.position = body.position

@@ -10,9 +10,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from beliefnest.belief.columns import Columns, cell_of
+from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.belief.forest import Forest
-from beliefnest.belief.ground import Ground
 from beliefnest.belief.planting import forked, planted
 from beliefnest.belief.reading import Reading
 from beliefnest.nest.past.checkpoints import Checkpoints, Pace
@@ -24,7 +24,7 @@ from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 
-__all__ = ["History", "ground_of"]
+__all__ = ["History", "context_of"]
 
 Path = tuple[str, ...]
 
@@ -32,7 +32,7 @@ _PASTS = 4
 _STRETCHES = 8
 
 
-def ground_of(setting: Setting) -> Ground:
+def context_of(setting: Setting) -> BeliefContext:
     """What the nodes of a nest with this setting stand on."""
     registry = Registry.load()
     options = setting.perception
@@ -40,7 +40,7 @@ def ground_of(setting: Setting) -> Ground:
         registry, options.max_visible_distance, options.field_of_view, options.transparent_blocks
     )
     agents = tuple(sorted({*setting.snapshot.agents, *setting.absent}))
-    return Ground(setting.snapshot.box, agents, options, registry, sight)
+    return BeliefContext(setting.snapshot.box, agents, options, registry, sight)
 
 
 @dataclass
@@ -59,7 +59,7 @@ class _Stretch:
 
     def fold(self, forest: Forest, stop: int) -> None:
         """Fold entries up to number `stop` into a forest that is in this stretch."""
-        box = forest.ground.box
+        box = forest.context.box
         for number in sorted(n for n in self.edits if forest.position <= n < stop):
             forest.advance(number)
             edit = self.edits[number]
@@ -86,8 +86,8 @@ class History:
         self._journal = journal
         self._setting = setting
         self._pace = Pace() if pace is None else pace
-        self.ground = ground_of(setting)
-        self._checkpoints = Checkpoints(journal, setting, self.ground, self._pace)
+        self.context = context_of(setting)
+        self._checkpoints = Checkpoints(journal, setting, self.context, self._pace)
         self._stretches: dict[tuple[TimelineKey, int], _Stretch] = {}
         self._logs: dict[TimelineKey, EventLog] = {}
         self._heads: dict[TimelineKey, Forest] = {}
@@ -165,7 +165,7 @@ class History:
             # What agents believed at the fork stays as it was until something happens.
             return self.block_is_current(base.timeline, path, base.entries, place)
         forest = self._forest(key, path, position)
-        return forest.block_is_current(forest.table.index[path], cell_of(self.ground.box, place))
+        return forest.block_is_current(forest.table.index[path], cell_of(self.context.box, place))
 
     def forget(self, key: TimelineKey) -> None:
         """Drop what is remembered of a timeline that was deleted or renamed."""
@@ -238,7 +238,7 @@ class History:
         if base is None:
             setting = self._setting
             return planted(
-                self.ground,
+                self.context,
                 log,
                 setting.snapshot,
                 setting.static_blocks,
@@ -291,7 +291,7 @@ class History:
             stretch.add(Frame(self._entry(key, last - 1).tick, agents))
         for entry in self._journal.entries(key, last, position):
             stretch.add(entry)
-        self.ground.track(stretch.columns.held)
+        self.context.track(stretch.columns.held)
         forest.enter(stretch.columns)
         stretch.fold(forest, stretch.columns.end)
         forest.leap(position, self._journal.events_until(key, position))
@@ -313,10 +313,10 @@ class History:
         held = len(columns.held)
         for entry in self._journal.entries(key, columns.end, min(end, wanted)):
             stretch.add(entry)
-        self.ground.track(columns.held[held:])
+        self.context.track(columns.held[held:])
         self._log(key).take(columns)
         return stretch
 
     def _new_stretch(self, first: int, first_event: int) -> _Stretch:
-        ground = self.ground
-        return _Stretch(Columns(ground.box, ground.agents, ground.holds, first, first_event))
+        context = self.context
+        return _Stretch(Columns(context.box, context.agents, context.holds, first, first_event))

@@ -39,7 +39,7 @@ def over_time(engine: Engine, path: tuple[str, ...]) -> Iterator[Moment]:
     Timelines come in order of creation, each with its own ticks: what lies before its first is
     told of the one it goes on from.
     """
-    registry = engine.history.ground.registry
+    registry = engine.history.context.registry
     box = engine.setting.snapshot.box
     for info in engine.journal.timelines():
         if path[: len(info.key.path)] != info.key.path:

@@ -49,10 +49,10 @@ class Blocks:
 
     def __getitem__(self, position: Position) -> str | None:
         state = int(self.grid[self._index(position)])
-        return None if state < 0 else self._history.ground.registry.text(state)
+        return None if state < 0 else self._history.context.registry.text(state)
 
     def __iter__(self) -> Iterator[Position]:
-        return self._history.ground.box.positions()
+        return self._history.context.box.positions()
 
     def __len__(self) -> int:
         return int(self.grid.size)
@@ -66,9 +66,9 @@ class Blocks:
 
     def named(self, names: frozenset[str]) -> dict[Position, str]:
         """Known blocks of some names."""
-        registry = self._history.ground.registry
+        registry = self._history.context.registry
         states = [s for name in sorted(names) for s in registry.state_ids(name)]
-        x, y, z = self._history.ground.box.low
+        x, y, z = self._history.context.box.low
         return {
             (x + i, y + j, z + k): registry.text(int(self.grid[i, j, k]))
             for i, j, k in np.argwhere(np.isin(self.grid, states)).tolist()
@@ -84,11 +84,11 @@ class Blocks:
     def basis(self, position: Position) -> Basis | None:
         """What the block rests on; None where it is unknown."""
         self._index(position)
-        cell = cell_of(self._history.ground.box, position)
+        cell = cell_of(self._history.context.box, position)
         if cell not in self._bases:
             # Who asks for a few will ask for all.
             every = len(self._bases) >= _FEW
-            cells = range(self._history.ground.cells) if every else [cell]
+            cells = range(self._history.context.cells) if every else [cell]
             with self._turn:
                 self._bases.update(
                     self._history.block_bases(self._key, self._reading.path, self._position, cells)
@@ -96,7 +96,7 @@ class Blocks:
         return self._bases[cell]
 
     def _index(self, position: Position) -> tuple[int, int, int]:
-        box = self._history.ground.box
+        box = self._history.context.box
         if position not in box:
             raise PositionError(f"position {position} lies outside the box {box.low}..{box.high}")
         return box.index(position)

@@ -14,11 +14,11 @@ from beliefnest.perception.sight import Sight
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box
 
-__all__ = ["Ground"]
+__all__ = ["BeliefContext"]
 
 
 @dataclass(frozen=True, eq=False)
-class Ground:
+class BeliefContext:
     """What does not change in the life of a nest.
 
     Attributes:
