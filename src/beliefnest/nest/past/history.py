@@ -13,7 +13,7 @@ from beliefnest.belief.columns import Columns, cell_of
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.belief.forest import Forest
-from beliefnest.belief.planting import forked, planted
+from beliefnest.belief.initial import forked_forest, initial_forest
 from beliefnest.belief.reading import Reading
 from beliefnest.nest.past.checkpoints import Checkpoints, Pace
 from beliefnest.nest.past.event_log import EventLog
@@ -237,7 +237,7 @@ class History:
         log = self._log(key)
         if base is None:
             setting = self._setting
-            return planted(
+            return initial_forest(
                 self.context,
                 log,
                 setting.snapshot,
@@ -251,7 +251,7 @@ class History:
             if extra
             else self._forest(base.timeline, path, base.entries)
         )
-        return forked(source, log, key.path, path, base.tick, extra)
+        return forked_forest(source, log, key.path, path, base.tick, extra)
 
     def _log(self, key: TimelineKey) -> EventLog:
         if key not in self._logs:

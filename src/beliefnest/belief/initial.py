@@ -14,12 +14,12 @@ from beliefnest.belief.holdings import NEVER, Content, Holdings, Lying
 from beliefnest.belief.story import Story
 from beliefnest.world.frames import Snapshot
 
-__all__ = ["forked", "planted"]
+__all__ = ["forked_forest", "initial_forest"]
 
 Path = tuple[str, ...]
 
 
-def planted(
+def initial_forest(
     context: BeliefContext,
     story: Story,
     snapshot: Snapshot,
@@ -52,11 +52,11 @@ def planted(
             if context.container_name(state)
         )
     forest.table.track()
-    _plant_world(forest, snapshot)
+    _add_world(forest, snapshot)
     for depth in range(1, len(path) + 1):
         node = path[:depth]
         mine = next((belief for belief in initial if belief.path == node), InitialBelief(node))
-        _plant_prior(forest, node, prior, mine, snapshot.tick)
+        _add_prior(forest, node, prior, mine, snapshot.tick)
     forest.table.link()
     forest.perceive_at_first()
     return forest
@@ -70,7 +70,7 @@ def _states_of(context: BeliefContext, names: frozenset[str]) -> npt.NDArray[np.
     return known
 
 
-def _plant_world(forest: Forest, snapshot: Snapshot) -> None:
+def _add_world(forest: Forest, snapshot: Snapshot) -> None:
     context, table = forest.context, forest.table
     node = table.add((), UNKNOWN)
     table.set_blocks(node, snapshot.blocks)
@@ -89,7 +89,7 @@ def _plant_world(forest: Forest, snapshot: Snapshot) -> None:
     forest.holdings.append(holdings)
 
 
-def _plant_prior(
+def _add_prior(
     forest: Forest, path: Path, prior: npt.NDArray[np.int32], mine: InitialBelief, tick: int
 ) -> None:
     context, table = forest.context, forest.table
@@ -113,7 +113,7 @@ def _plant_prior(
     forest.doubt_contents(node)
 
 
-def forked(
+def forked_forest(
     source: Forest,
     story: Story,
     root: Path,
