@@ -26,7 +26,7 @@ from beliefnest.belief.holdings import (
     witness,
 )
 from beliefnest.belief.node_table import NodeTable
-from beliefnest.belief.story import Reader, Story
+from beliefnest.belief.protocols import EventHistory, Reader
 from beliefnest.world.values import Event, Items
 
 __all__ = ["Forest"]
@@ -56,9 +56,9 @@ class Forest:
     """
 
     def __init__(
-        self, context: BeliefContext, story: Story, tick: int, extra: Sequence[int] = ()
+        self, context: BeliefContext, events: EventHistory, tick: int, extra: Sequence[int] = ()
     ) -> None:
-        self.context, self._story = context, story
+        self.context, self._events = context, events
         self.columns = self._nowhere(0, 0)
         self.table = NodeTable(context, self.columns.versions, extra)
         self.holdings: list[Holdings] = []
@@ -116,9 +116,9 @@ class Forest:
 
     def heard(self, node: int, count: int) -> Iterator[PerceivedEvent]:
         """What a node perceived of the first `count` events, oldest first."""
-        yield from self._story.before(self.table.path(node))
+        yield from self._events.before(self.table.path(node))
         numbers = np.flatnonzero(self.hearing.of(node, count)).tolist()
-        events = self._story.events(numbers[-1] + 1) if numbers else ()
+        events = self._events.events(numbers[-1] + 1) if numbers else ()
         for number in numbers:
             tick, event = events[number]
             yield PerceivedEvent(tick, event.kind, event.actor, event.detail)

@@ -11,7 +11,7 @@ from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis, InitialBelief, Source
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.holdings import NEVER, Content, Holdings, Lying
-from beliefnest.belief.story import Story
+from beliefnest.belief.protocols import EventHistory
 from beliefnest.world.frames import Snapshot
 
 __all__ = ["forked_forest", "initial_forest"]
@@ -21,7 +21,7 @@ Path = tuple[str, ...]
 
 def initial_forest(
     context: BeliefContext,
-    story: Story,
+    events: EventHistory,
     snapshot: Snapshot,
     static_blocks: frozenset[str],
     initial: Sequence[InitialBelief],
@@ -32,14 +32,14 @@ def initial_forest(
 
     Args:
         context: What all nodes share.
-        story: What happens on the real world's timeline.
+        events: What happens on the real world's timeline.
         snapshot: The real world at its first tick.
         static_blocks: Names of blocks that everybody knows from the start.
         initial: Further priors, at any depth.
         path: The deepest node.
         extra: Further cells whose basis is to be tracked.
     """
-    forest = Forest(context, story, snapshot.tick, extra)
+    forest = Forest(context, events, snapshot.tick, extra)
     forest.facts_tick = snapshot.tick
     known = _states_of(context, static_blocks)
     prior = np.where(known[snapshot.blocks], snapshot.blocks, UNKNOWN).astype(np.int32)
@@ -115,7 +115,7 @@ def _add_prior(
 
 def forked_forest(
     source: Forest,
-    story: Story,
+    events: EventHistory,
     root: Path,
     path: Path,
     tick: int,
@@ -128,13 +128,13 @@ def forked_forest(
 
     Args:
         source: The other forest, at the fork.
-        story: What happens on the new timeline.
+        events: What happens on the new timeline.
         root: The simulator that gets a timeline of its own.
         path: The deepest node.
         tick: Tick of the fork.
         extra: Further cells whose basis is to be tracked; the source tracks them too.
     """
-    forest = Forest(source.context, story, tick, extra)
+    forest = Forest(source.context, events, tick, extra)
     source.table.track()
     for depth in range(len(root), len(path) + 1):
         old = source.table.index[path[:depth]]

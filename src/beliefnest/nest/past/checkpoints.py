@@ -15,7 +15,7 @@ from importlib.resources.abc import Traversable
 
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.forest import Forest
-from beliefnest.belief.story import Story
+from beliefnest.belief.protocols import EventHistory
 from beliefnest.errors import StoreError
 from beliefnest.nest.past.forest_codec import restored, saved
 from beliefnest.nest.past.setting import Setting
@@ -80,7 +80,7 @@ class Checkpoints:
         self,
         key: TimelineKey,
         position: int,
-        story: Story,
+        events: EventHistory,
         path: Path | None = None,
         after: int = 0,
     ) -> Forest | None:
@@ -89,7 +89,7 @@ class Checkpoints:
         Args:
             key: The timeline.
             position: Where it may lie at most.
-            story: What happens on the timeline.
+            events: What happens on the timeline.
             path: A node that has to be in it, and the only one wanted with those around it;
                 None: all nodes that were saved.
             after: Where it does not lie any more.
@@ -103,7 +103,7 @@ class Checkpoints:
                 found = world
         if found is None or found[0] <= after:
             return None
-        forest = restored(self._context, story, found[1], path)
+        forest = restored(self._context, events, found[1], path)
         if forest is not None and path is None:
             self._note(key, forest, found[1])
         return forest

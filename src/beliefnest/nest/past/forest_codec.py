@@ -13,7 +13,7 @@ from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.holdings import Holdings
 from beliefnest.belief.node_table import SavedNode
-from beliefnest.belief.story import Story
+from beliefnest.belief.protocols import EventHistory
 from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
 
@@ -78,13 +78,13 @@ def saved(forest: Forest) -> bytes:
 
 
 def restored(
-    context: BeliefContext, story: Story, data: bytes, path: Path | None = None
+    context: BeliefContext, events: EventHistory, data: bytes, path: Path | None = None
 ) -> Forest | None:
     """A forest from the bytes of `saved`, made on the same context.
 
     Args:
         context: What all nodes share.
-        story: What happens on the forest's timeline.
+        events: What happens on the forest's timeline.
         data: The bytes.
         path: The deepest node wanted; None: all there are.
 
@@ -100,7 +100,7 @@ def restored(
         return None
     tracked = np.frombuffer(body.tracked, dtype=np.int32)
     context.track(tracked.tolist())
-    forest = Forest(context, story, body.tick)
+    forest = Forest(context, events, body.tick)
     columns = Columns(context.box, context.agents, context.holds, body.position, body.events)
     columns.versions = Versions.restored(body.versions)
     forest.enter(columns)

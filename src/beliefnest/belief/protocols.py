@@ -6,12 +6,12 @@ from typing import Protocol
 from beliefnest.belief.entries import PerceivedEvent
 from beliefnest.world.values import Event
 
-__all__ = ["Reader", "Story"]
+__all__ = ["EventHistory", "Reader"]
 
 Path = tuple[str, ...]
 
 
-class Story(Protocol):
+class EventHistory(Protocol):
     """What happens on a timeline, for those who list it; folding does without."""
 
     def events(self, count: int) -> Sequence[tuple[int, Event]]:
