@@ -17,9 +17,9 @@ from beliefnest.belief.hearing import Hearing
 from beliefnest.belief.holdings import (
     NEVER,
     TOUCHES,
+    BelievedItem,
     Content,
     Holdings,
-    Lying,
     follow_acts,
     learn,
     replaced_block,
@@ -339,7 +339,7 @@ class Forest:
         for number, item in frame.items.items():
             holdings.items.pop(number, None)
             if item is not None:
-                holdings.items[number] = Lying(item, basis, entry)
+                holdings.items[number] = BelievedItem(item, basis, entry)
 
     def _follow(
         self,
@@ -478,18 +478,22 @@ class Forest:
         if not known and not self.holdings[around].items:
             return
         there = {
-            number: Lying(lying.item, Basis(tick, Source.SEEN), entry) if around == 0 else lying
-            for number, lying in self.holdings[around].items.items()
+            number: BelievedItem(believed.item, Basis(tick, Source.SEEN), entry)
+            if around == 0
+            else believed
+            for number, believed in self.holdings[around].items.items()
         }
-        seen = {n: lying for n, lying in there.items() if self._sees_item(node, around, lying)}
+        seen = {
+            n: believed for n, believed in there.items() if self._sees_item(node, around, believed)
+        }
         for number in [n for n in known if n not in seen]:
             if self._sees_item(node, around, known[number]):
                 del known[number]
         known.update(seen)
 
-    def _sees_item(self, node: int, around: int, lying: Lying) -> bool:
+    def _sees_item(self, node: int, around: int, believed: BelievedItem) -> bool:
         context = self.context
-        x, y, z = lying.item.position
+        x, y, z = believed.item.position
         version = self.table.version(around, self.table.owner(node))
         nodes, poses = self.table.nodes(), self.versions.poses()
         place = (x, y + _ITEM_HEIGHT, z)

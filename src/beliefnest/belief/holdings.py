@@ -13,9 +13,9 @@ from beliefnest.world.values import DroppedItem, Event, EventKind, Items
 __all__ = [
     "NEVER",
     "TOUCHES",
+    "BelievedItem",
     "Content",
     "Holdings",
-    "Lying",
     "changed_items",
     "follow_acts",
     "learn",
@@ -59,7 +59,7 @@ class Content:
 
 
 @dataclass(frozen=True, slots=True)
-class Lying:
+class BelievedItem:
     """What is believed of a dropped item; entry as in `Content`."""
 
     item: DroppedItem
@@ -79,7 +79,7 @@ class Holdings:
 
     containers: dict[int, Content] = field(default_factory=dict)
     inventories: dict[int, Items] = field(default_factory=dict)
-    items: dict[int, Lying] = field(default_factory=dict)
+    items: dict[int, BelievedItem] = field(default_factory=dict)
 
     def copy(self) -> "Holdings":
         """The same holdings, to be changed apart."""

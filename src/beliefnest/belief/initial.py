@@ -10,7 +10,7 @@ from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis, InitialBelief, Source
 from beliefnest.belief.forest import Forest
-from beliefnest.belief.holdings import NEVER, Content, Holdings, Lying
+from beliefnest.belief.holdings import NEVER, BelievedItem, Content, Holdings
 from beliefnest.belief.protocols import EventHistory
 from beliefnest.world.frames import Snapshot
 
@@ -85,7 +85,7 @@ def _add_world(forest: Forest, snapshot: Snapshot) -> None:
     for place, items in snapshot.containers.items():
         holdings.containers[cell_of(context.box, place)] = Content(dict(items), True, basis, -1)
     for key, item in snapshot.items.items():
-        holdings.items[key] = Lying(item, basis, -1)
+        holdings.items[key] = BelievedItem(item, basis, -1)
     forest.holdings.append(holdings)
 
 
@@ -157,9 +157,9 @@ def _forked_holdings(source: Forest, node: int, *, is_root: bool) -> Holdings:
         there = source.content(node, cell)
         entry = -1 if is_root or there.entry == last else NEVER
         copied.containers[cell] = Content(there.items, there.complete, there.basis, entry)
-    for number, lying in copied.items.items():
-        entry = -1 if is_root or lying.entry == last else NEVER
-        copied.items[number] = Lying(lying.item, lying.basis, entry)
+    for number, believed in copied.items.items():
+        entry = -1 if is_root or believed.entry == last else NEVER
+        copied.items[number] = BelievedItem(believed.item, believed.basis, entry)
     if is_root:
         for agent in range(len(source.context.agents)):
             items, complete = source.inventory(node, agent)

@@ -79,7 +79,7 @@ class Reading:
     @cached_property
     def items(self) -> Mapping[int, DroppedItem]:
         """Dropped items last seen."""
-        return {n: lying.item for n, lying in self._forest.holdings[self._node].items.items()}
+        return {n: believed.item for n, believed in self._forest.holdings[self._node].items.items()}
 
     def events(self) -> tuple[PerceivedEvent, ...]:
         """All perceived events, oldest first."""
