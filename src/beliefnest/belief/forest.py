@@ -50,8 +50,8 @@ class Forest:
         tick: Tick of the last of them, or of the beginning.
         hearing: Who perceived which event.
         looked: By node, the entry after which its owner last perceived what there is.
-        edited: Cells of node 0 that were changed by hand since the last frame.
-        put_by_hand: Nodes and cells of blocks that were, since somebody last looked there.
+        edited_facts: Cells of node 0 that were changed by hand since the last frame.
+        edited_cells: Nodes and cells of blocks that were, since somebody last looked there.
         doubtful: Nodes and cells of contents where no container is known, with the block there.
     """
 
@@ -64,11 +64,11 @@ class Forest:
         self.holdings: list[Holdings] = []
         self.position, self.tick = 0, tick
         self.facts_tick: int | None = None
-        self.edited: set[int] = set()
+        self.edited_facts: set[int] = set()
         self.doubtful: dict[tuple[int, int], int] = {}
         self.first_vitals: dict[int, tuple[float | None, float | None]] = {}
         self.looked: dict[int, int] = {}
-        self.put_by_hand: set[tuple[int, int]] = set()
+        self.edited_cells: set[tuple[int, int]] = set()
         self.hearing = Hearing()
         self._readers: WeakSet[Reader] = WeakSet()
 
@@ -136,7 +136,7 @@ class Forest:
         context, nodes, poses = self.context, self.table.nodes(), self.versions.poses()
         while node > 0:
             around = self.table.parent(node)
-            if not self.table.is_present(node) or (node, cell) in self.put_by_hand:
+            if not self.table.is_present(node) or (node, cell) in self.edited_cells:
                 return False
             version = self.table.version(around, self.table.owner(node))
             if not kernel.sees_cell(
@@ -165,7 +165,7 @@ class Forest:
             node = self.table.copy_node(other.table, source, is_root=False, told=True)
             self.holdings.append(other.holdings[source].copy())
             self.looked[node] = other.last_look(source)
-            self.put_by_hand |= {(node, c) for n, c in other.put_by_hand if n == source}
+            self.edited_cells |= {(node, c) for n, c in other.edited_cells if n == source}
             self.doubt_contents(node)
             self.hearing.set(node, 0, other.hearing.of(source, count))
         self.table.link()
@@ -208,8 +208,8 @@ class Forest:
             holdings.containers[cell] = Content(dict(items), complete=True, basis=basis)
             self._doubt(node, cell)
         if node == 0:
-            self.edited |= {*blocks, *contents}
-        self.put_by_hand |= {(node, cell) for cell in blocks}
+            self.edited_facts |= {*blocks, *contents}
+        self.edited_cells |= {(node, cell) for cell in blocks}
         self.position += 1
         self.tick = tick
         self._look(self.table.below(node))
@@ -219,7 +219,7 @@ class Forest:
         content = self.holdings[node].containers[cell]
         if node > 0:
             return content
-        seen = self.facts_tick is not None and cell not in self.edited
+        seen = self.facts_tick is not None and cell not in self.edited_facts
         basis = Basis(self.facts_tick or 0, Source.SEEN) if seen else content.basis
         return Content(content.items, content.complete, basis, self.position - 1)
 
@@ -295,16 +295,16 @@ class Forest:
                 for number in self.columns.acts.get(entry, ())
             }
             self.facts_tick = self.columns.tick(entry)
-            self.edited.clear()
+            self.edited_facts.clear()
             self.looked = dict.fromkeys(range(self.table.count), entry)
             self._happens(entry)
             self._follow(
                 entry, self.columns.tick(entry), rows.get(entry, {}), perceived, everywhere
             )
         self.facts_tick = self.columns.tick(reached - 1)
-        self.edited.clear()
+        self.edited_facts.clear()
         self.looked = dict.fromkeys(range(self.table.count), reached - 1)
-        self.put_by_hand.clear()
+        self.edited_cells.clear()
         return reached
 
     def _look(self, below: npt.NDArray[np.bool_]) -> None:
@@ -321,7 +321,7 @@ class Forest:
         kernel.fold(context.space, context.senses, poses, facts, nodes, changes, 0, 1, below)
         entry = self.position - 1
         self.looked.update(dict.fromkeys(np.flatnonzero(below).tolist(), entry))
-        self.put_by_hand = {(node, cell) for node, cell in self.put_by_hand if not below[node]}
+        self.edited_cells = {(node, cell) for node, cell in self.edited_cells if not below[node]}
         self._follow(entry, self.tick, _by_entry(changes, 0).get(0, {}), {}, below)
 
     def _happens(self, entry: int) -> None:

@@ -29,7 +29,7 @@ class _Node(msgspec.Struct, forbid_unknown_fields=True):
     holdings: Holdings
     heard: bytes
     looked: int
-    put_by_hand: list[int]
+    edited_cells: list[int]
     doubtful: dict[int, int]
 
 
@@ -38,7 +38,7 @@ class _Saved(msgspec.Struct, forbid_unknown_fields=True):
     events: int
     tick: int
     facts_tick: int | None
-    edited: list[int]
+    edited_facts: list[int]
     first_vitals: dict[int, tuple[float | None, float | None]]
     tracked: bytes
     versions: SavedVersions
@@ -58,7 +58,7 @@ def saved(forest: Forest) -> bytes:
             forest.holdings[node],
             np.packbits(forest.hearing.of(node, count)).tobytes(),
             forest.last_look(node),
-            sorted(cell for other, cell in forest.put_by_hand if other == node),
+            sorted(cell for other, cell in forest.edited_cells if other == node),
             {cell: s for (other, cell), s in sorted(forest.doubtful.items()) if other == node},
         )
         nodes.append((path, packer.compress(codec.encode(body))))
@@ -68,7 +68,7 @@ def saved(forest: Forest) -> bytes:
             events=count,
             tick=forest.tick,
             facts_tick=forest.facts_tick,
-            edited=sorted(forest.edited),
+            edited_facts=sorted(forest.edited_facts),
             first_vitals=forest.first_vitals,
             tracked=table.tracked.tobytes(),
             versions=forest.versions.saved(),
@@ -106,7 +106,7 @@ def restored(
     forest.enter(columns)
     forest.position = body.position
     forest.facts_tick = body.facts_tick
-    forest.edited = set(body.edited)
+    forest.edited_facts = set(body.edited_facts)
     forest.first_vitals = body.first_vitals
     for number, (_, packed) in enumerate(nodes):
         node = codec.decode(_unpacked(packed), _Node)
@@ -115,7 +115,7 @@ def restored(
         heard = np.unpackbits(np.frombuffer(node.heard, dtype=np.uint8), count=body.events)
         forest.hearing.set(number, 0, heard.astype(np.bool_))
         forest.looked[number] = node.looked
-        forest.put_by_hand |= {(number, cell) for cell in node.put_by_hand}
+        forest.edited_cells |= {(number, cell) for cell in node.edited_cells}
         forest.doubtful |= {(number, cell): state for cell, state in node.doubtful.items()}
     forest.table.link()
     return forest
