@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from threading import RLock
 from typing import Self, TypeVar
 
-from beliefnest.belief.reading import Reading
+from beliefnest.belief.node_view import NodeView
 from beliefnest.bodies.protocol import KILLED, Body, Fault, ProgramResult, World
 from beliefnest.errors import (
     BodyError,
@@ -128,7 +128,7 @@ class Engine:
         """All agents, sorted."""
         return self.history.context.agents
 
-    def reading(self, path: Path, tick: int | None = None) -> Reading:
+    def reading(self, path: Path, tick: int | None = None) -> NodeView:
         """A node's state now, or at a past tick of the timeline it is on."""
         key, position = self._when(path, tick)
         return self.history.reading(key, path, position)

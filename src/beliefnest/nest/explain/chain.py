@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.belief.forest import Forest
-from beliefnest.belief.reading import Reading
+from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError, PathError, PositionError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.explain.element_history import (
@@ -157,7 +157,7 @@ def _held_now(engine: Engine, path: Path, place: Place, element: Element) -> dic
         if not isinstance(element.where, str):
             cell = cell_of(history.context.box, element.where)
             block = history.context.block_name(forest.table.block(forest.table.index[node], cell))
-        events = Reading(forest, node).events()
+        events = NodeView(forest, node).events()
         held[node] = _Held(value_in(forest, node, element), block, basis, current, events)
     return held
 
@@ -166,7 +166,7 @@ def _ground_of(
     engine: Engine, place: Place, forest: Forest, node: Path, element: Element
 ) -> tuple[Basis | None, bool]:
     """What a node's value rests on, and whether it is current."""
-    reading = Reading(forest, node)
+    reading = NodeView(forest, node)
     if isinstance(element.where, str):
         agent = reading.agents[element.where]
         return agent.basis, agent.current
@@ -233,7 +233,7 @@ def _take(engine: Engine, trace: _Trace, step: Step, element: Element) -> None:
         trace.stood = _feet(forest, trace.path)
     elif trace.missed is None and there != trace.around and trace.observed_at is not None:
         edited = _is_edit(engine, step.place, trace.path[:-1])
-        events = Reading(forest, trace.path[:-1]).events()
+        events = NodeView(forest, trace.path[:-1]).events()
         acts = () if edited else _acts(events, forest.tick, element)
         missed = _missed(engine, trace.path, step, element, trace.around, acts)
         trace.missed = replace(missed, edited=edited)
@@ -255,9 +255,9 @@ def _missed(
 ) -> Missed:
     """Why acts in the simulator around a node, or what there is, did not reach it."""
     forest = step.forest
-    mine = Reading(forest, path).events() if acts else ()
+    mine = NodeView(forest, path).events() if acts else ()
     present = forest.table.is_present(forest.table.index[path])
-    around = Reading(forest, path[:-1])
+    around = NodeView(forest, path[:-1])
     return Missed(
         tick=forest.tick,
         before=before,
@@ -285,14 +285,14 @@ def _absence(engine: Engine, forest: Forest, path: Path) -> Absence:
     last_seen = table.seen_at(node, number) if table.version(node, number) >= 0 else None
     if node == 0 or not table.is_present(node):
         return Absence(last_seen, None)
-    outer = Reading(forest, around[:-1])
+    outer = NodeView(forest, around[:-1])
     box = engine.history.context.box
     return Absence(last_seen, sighting_of_agent(outer, box, around[-1], path[-1]))
 
 
 def _sightings(
     engine: Engine,
-    around: Reading,
+    around: NodeView,
     viewer: str,
     element: Element,
     acts: Iterable[PerceivedEvent],

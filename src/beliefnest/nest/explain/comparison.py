@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from beliefnest.belief.entries import AgentBelief, Source
-from beliefnest.belief.reading import Reading
+from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.explain.explanation import Contents
 from beliefnest.world.frames import BlockGrid
@@ -84,7 +84,7 @@ def false_beliefs(
 
 
 def differences(
-    a: Reading, b: Reading, box: Box, registry: Registry, *, unknown: bool = True
+    a: NodeView, b: NodeView, box: Box, registry: Registry, *, unknown: bool = True
 ) -> Iterator[Difference]:
     """Where two states differ: blocks, containers, agents, inventories, each in order.
 
@@ -101,7 +101,7 @@ def differences(
 
 
 def falsehoods(
-    real: Reading, belief: Reading, box: Box, registry: Registry
+    real: NodeView, belief: NodeView, box: Box, registry: Registry
 ) -> Iterator[Difference]:
     """What a belief holds and reality does not: unknown is not false.
 
@@ -119,7 +119,9 @@ def falsehoods(
             yield found
 
 
-def _all_differences(a: Reading, b: Reading, box: Box, registry: Registry) -> Iterator[Difference]:
+def _all_differences(
+    a: NodeView, b: NodeView, box: Box, registry: Registry
+) -> Iterator[Difference]:
     x, y, z = box.low
     for i, j, k in np.argwhere(a.blocks != b.blocks).tolist():
         texts = (_block(grid, (i, j, k), registry) for grid in (a.blocks, b.blocks))

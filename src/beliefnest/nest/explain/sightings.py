@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from beliefnest.belief.entries import AgentBelief
-from beliefnest.belief.reading import Reading
+from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.explanation import Sighting, View
 from beliefnest.perception.sight import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT, Geometry
 from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position
@@ -17,7 +17,7 @@ __all__ = ["sighting_of_agent", "sighting_of_block"]
 _Sees = Callable[[Geometry], bool]
 
 
-def sighting_of_block(reading: Reading, box: Box, viewer: str, place: Position) -> Sighting:
+def sighting_of_block(reading: NodeView, box: Box, viewer: str, place: Position) -> Sighting:
     """The look of an agent of known pose at a block, inside a simulator."""
     here = reading.agents[viewer]
     cells = np.array([place])
@@ -35,7 +35,7 @@ def sighting_of_block(reading: Reading, box: Box, viewer: str, place: Position) 
     return _with_blocker(look, reading, box, without, _eye(here), [centre])
 
 
-def sighting_of_agent(reading: Reading, box: Box, viewer: str, other: str) -> Sighting:
+def sighting_of_agent(reading: NodeView, box: Box, viewer: str, other: str) -> Sighting:
     """The look of an agent of known pose at another, inside a simulator."""
     here, there = reading.agents[viewer], reading.agents[other]
     if there.position is None:
@@ -66,7 +66,12 @@ def _view(geometry: Geometry, sees: _Sees) -> View:
 
 
 def _with_blocker(
-    look: Sighting, reading: Reading, box: Box, geometry: Geometry, eye: Point, samples: list[Point]
+    look: Sighting,
+    reading: NodeView,
+    box: Box,
+    geometry: Geometry,
+    eye: Point,
+    samples: list[Point],
 ) -> Sighting:
     if look.view is not View.BLOCKED:
         return look
@@ -84,6 +89,6 @@ def _eye(agent: AgentBelief) -> Point:
     return (x, y + EYE_HEIGHT, z)
 
 
-def _block_name(reading: Reading, box: Box, place: Position) -> str | None:
+def _block_name(reading: NodeView, box: Box, place: Position) -> str | None:
     state = int(reading.blocks[box.index(place)])
     return None if state < 0 else reading.geometry.sight.registry.name(state)

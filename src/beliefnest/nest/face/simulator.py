@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.reading import Reading
+from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.bodies.scripted import ScriptedBody
@@ -62,7 +62,7 @@ class _Seen(LookingAtOne):
         """What the simulator holds, read-only."""
         raise NotImplementedError
 
-    def _reading(self) -> Reading:
+    def _reading(self) -> NodeView:
         raise NotImplementedError
 
     def render(self, template: Template | Path | str, **variables: object) -> str:
@@ -150,7 +150,7 @@ class PastSimulator(_Seen):
         """What the simulator held, read-only."""
         return self._engine.state(self._path, self._tick)
 
-    def _reading(self) -> Reading:
+    def _reading(self) -> NodeView:
         return self._engine.reading(self._path, self._tick)
 
     def _explained_tick(self) -> int:
@@ -370,7 +370,7 @@ class Simulator(_Seen):
         """What the simulator holds, read-only."""
         return self._engine.state(self._path)
 
-    def _reading(self) -> Reading:
+    def _reading(self) -> NodeView:
         return self._engine.reading(self._path)
 
     def _explained_tick(self) -> None:

@@ -14,7 +14,7 @@ from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.initial import forked_forest, initial_forest
-from beliefnest.belief.reading import Reading
+from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.checkpoints import Checkpoints, Pace
 from beliefnest.nest.past.event_log import EventLog
 from beliefnest.nest.past.setting import Setting
@@ -93,13 +93,13 @@ class History:
         self._heads: dict[TimelineKey, Forest] = {}
         self._pasts: list[tuple[TimelineKey, Forest]] = []
 
-    def reading(self, key: TimelineKey, path: Path, position: int | None = None) -> Reading:
+    def reading(self, key: TimelineKey, path: Path, position: int | None = None) -> NodeView:
         """State of the node `path` after `position` entries of a timeline; None: at its head.
 
         `path` is the timeline's own simulator or a node below it that follows it.
         """
         count = self._journal.info(key).entries
-        return Reading(self._forest(key, path, count if position is None else position), path)
+        return NodeView(self._forest(key, path, count if position is None else position), path)
 
     def steps(
         self, key: TimelineKey, path: Path, first: int, last: int, extra: Sequence[int] = ()

@@ -8,7 +8,7 @@ import numpy as np
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent
-from beliefnest.belief.reading import Reading
+from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.view import BlockView, State
 from beliefnest.errors import PositionError
 from beliefnest.nest.past.history import History
@@ -31,7 +31,7 @@ class Blocks:
         history: History,
         key: TimelineKey,
         position: int,
-        reading: Reading,
+        reading: NodeView,
         turn: AbstractContextManager[object],
     ) -> None:
         self._turn = turn
@@ -107,7 +107,7 @@ class LiveState(State):
 
     def __init__(
         self,
-        reading: Reading,
+        reading: NodeView,
         blocks: Blocks,
         box: Box,
         tick: int,
@@ -119,7 +119,7 @@ class LiveState(State):
         object.__setattr__(self, "_blocks", blocks)
         object.__setattr__(self, "_turn", turn)
 
-    _reading: Reading
+    _reading: NodeView
     _blocks: Blocks
     _turn: AbstractContextManager[object]
 

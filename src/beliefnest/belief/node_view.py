@@ -14,7 +14,7 @@ from beliefnest.perception.sight import Geometry
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.values import EYE_HEIGHT, AgentState, DroppedItem, Position
 
-__all__ = ["Reading"]
+__all__ = ["NodeView"]
 
 Path = tuple[str, ...]
 
@@ -22,7 +22,7 @@ FULL = 20.0
 """Health and food of an agent of whom no more is known."""
 
 
-class Reading:
+class NodeView:
     """A node's state; stays as it is when the forest goes on.
 
     Attributes:
