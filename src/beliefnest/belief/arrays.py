@@ -1,7 +1,7 @@
 """The arrays that the belief kernel works on.
 
-Cells are indices into a flat array over the box (x slowest, z fastest). A version is a
-row of a pose table: one agent's pose as it was from some tick on. Nodes are the
+Cells are indices into a flat array over the box (x slowest, z fastest). A pose id is
+a row of a pose table: one agent's pose as it was from some tick on. Nodes are the
 simulators below one timeline, shallower ones first; node 0 is the timeline's own.
 """
 
@@ -35,7 +35,7 @@ Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
 
 UNKNOWN = -1
-"""A block state, a version or a cell that is not known, or none."""
+"""A block state, a pose id or a cell that is not known, or none."""
 
 NOBODY = -1
 """Index of no agent."""
@@ -97,7 +97,7 @@ class Senses(NamedTuple):
 
 
 class Poses(NamedTuple):
-    """Pose table: by version, feet (x, y, z) in scenario coordinates, and (yaw, pitch)."""
+    """Pose table: by pose id, feet (x, y, z) in scenario coordinates, and (yaw, pitch)."""
 
     feet: Floats
     angles: Floats
@@ -108,7 +108,7 @@ class Facts(NamedTuple):
 
     Attributes:
         tick: By entry.
-        pose_at, pose_agent, pose_version: Agents that moved, and their new versions.
+        pose_at, pose_agent, pose_id: Agents that moved, and the ids of their new poses.
         block_at, block_cell, block_state: Blocks that changed.
         event_at, event_kind, event_actor, event_cell, event_to: What happened; kinds as
             `KIND_...`; `event_to` is whom an utterance is whispered to, `NOBODY` if it is aloud.
@@ -117,7 +117,7 @@ class Facts(NamedTuple):
     tick: Ints
     pose_at: Ints
     pose_agent: Ints
-    pose_version: Ints
+    pose_id: Ints
     block_at: Ints
     block_cell: Ints
     block_state: Ints
@@ -135,8 +135,8 @@ class Nodes(NamedTuple):
         parent: (N,), index of the shallower node; -1 for node 0.
         agent: (N,), whose belief it is; -1 for node 0.
         child_at, child: Node n's children are child[child_at[n]:child_at[n + 1]].
-        version: (N, A), version of each agent's believed pose; -1 unknown.
-        looks: (N, A), version of each agent's believed equipment; -1 unknown.
+        pose: (N, A), id of each agent's believed pose; -1 unknown.
+        equipment: (N, A), pose id of each agent's believed equipment; -1 unknown.
         seen_at: (N, A), tick of the perception that the pose rests on.
         current: (N, A), whether the pose is backed by a perception in this tick.
         blocks: (N, C), believed block states; -1 unknown. No version has 32768 states.
@@ -144,9 +144,9 @@ class Nodes(NamedTuple):
         geometry: (N,), counts changes of the geometry.
         pending: (N, words), bit set of cells that the parent knows otherwise.
         fresh: (N,), whether a bit of pending was set since they were last tried.
-        eye: (N,), version the owner last looked from; -1: it was not present.
+        eye: (N,), id of the pose the owner last looked from; -1: it was not present.
         scene: (N,), the parent's geometry it last looked at.
-        tried: (N, A), version of each agent that `sees` is about.
+        tried: (N, A), pose id of each agent that `sees` is about.
         sees: (N, A), whether the owner sees the agent in the parent.
         tracked: (T,), cells whose basis is tracked: those that ever hold a container.
         watched: (N, T), whether the owner sees the tracked cell in the parent.
@@ -158,8 +158,8 @@ class Nodes(NamedTuple):
     agent: Ints
     child_at: Ints
     child: Ints
-    version: Ints
-    looks: Ints
+    pose: Ints
+    equipment: Ints
     seen_at: Ints
     current: Flags
     blocks: npt.NDArray[np.int16]

@@ -1,9 +1,7 @@
-"""Stretches of timelines in columns, with their poses, as the belief kernel reads them."""
+"""A stretch of a timeline in columns, as the belief kernel reads it."""
 
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -16,13 +14,12 @@ from beliefnest.belief.arrays import (
     NOBODY,
     UNKNOWN,
     Facts,
-    Ints,
-    Poses,
 )
+from beliefnest.belief.poses import Growing, PoseTable
 from beliefnest.world.frames import Frame
-from beliefnest.world.values import AgentState, Box, Event, EventKind, Items, Point, Position
+from beliefnest.world.values import Box, Event, EventKind, Position
 
-__all__ = ["Columns", "Looks", "SavedVersions", "Versions", "cell_of", "place_of"]
+__all__ = ["Columns", "cell_of", "place_of"]
 
 _KINDS = {
     EventKind.CHAT: KIND_CHAT,
@@ -45,160 +42,6 @@ def place_of(box: Box, cell: int) -> Position:
     return (x + cell // (ny * nz), y + cell // nz % ny, z + cell % nz)
 
 
-class _Column:
-    """A growing array of rows; new rows wait in a list until the array is looked at."""
-
-    def __init__(self, dtype: npt.DTypeLike, width: int = 0) -> None:
-        shape = (64, width) if width else (64,)
-        self._rows: npt.NDArray[Any] = np.zeros(shape, dtype=dtype)
-        self._filled = 0
-        self._waiting: list[Any] = []
-        self.append = self._waiting.append
-
-    def __len__(self) -> int:
-        return self._filled + len(self._waiting)
-
-    def extend(self, rows: Iterable[Any]) -> None:
-        """Add rows."""
-        self._waiting.extend(rows)
-
-    def view(self) -> npt.NDArray[Any]:
-        """The rows so far."""
-        count = len(self)
-        if count > self._filled:
-            if count > len(self._rows):
-                size = (max(count, 2 * len(self._rows)), *self._rows.shape[1:])
-                grown = np.zeros(size, dtype=self._rows.dtype)
-                grown[: self._filled] = self._rows[: self._filled]
-                self._rows = grown
-            self._rows[self._filled : count] = self._waiting
-            self._waiting.clear()
-            self._filled = count
-        return self._rows[:count]
-
-
-@dataclass(frozen=True, slots=True)
-class Looks:
-    """What goes with a pose: footing, equipment, and what only the agent itself perceives."""
-
-    on_ground: bool
-    equipment: Mapping[str, str]
-    inventory: Items
-    health: float
-    food: float
-
-
-class Versions:
-    """Poses and what goes with them, numbered as they came: those that one stretch needs."""
-
-    def __init__(self) -> None:
-        self._feet = _Column(np.float64, 3)
-        self._angles = _Column(np.float64, 2)
-        self._looks = _Column(np.int32)
-        self._told = _Column(np.bool_)
-        self._table: list[Looks | None] = [None]
-        self._last: dict[str, int] = {}
-
-    def __len__(self) -> int:
-        return len(self._feet)
-
-    def add(self, name: str, agent: AgentState) -> int:
-        """Number of a new version of an agent, told by the timeline itself."""
-        looks = Looks(agent.on_ground, agent.equipment, agent.inventory, agent.health, agent.food)
-        last = self._last.get(name, 0)
-        if self._table[last] != looks:
-            self._table.append(looks)
-            last = self._last[name] = len(self._table) - 1
-        return self._add(agent.position, agent.yaw, agent.pitch, last, told=True)
-
-    def add_pose(self, position: Point, yaw: float, pitch: float) -> int:
-        """Number of a pose that nobody was seen in."""
-        return self._add(position, yaw, pitch, 0, told=False)
-
-    def take(self, other: "Versions", numbers: Ints, *, told: bool = True) -> Ints:
-        """Numbers here of versions of another table.
-
-        Args:
-            other: The other table.
-            numbers: Their numbers there.
-            told: Whether what its timeline told is told by the timeline of this table.
-        """
-        table = {0: 0}
-        first = len(self)
-        feet, angles = other._feet.view()[numbers], other._angles.view()[numbers]
-        looks, was_told = other._looks.view()[numbers], other._told.view()[numbers]
-        for number in np.unique(looks).tolist():
-            if number not in table:
-                table[number] = len(self._table)
-                self._table.append(other._table[number])
-        self._feet.extend(feet)
-        self._angles.extend(angles)
-        self._looks.extend([table[number] for number in looks.tolist()])
-        self._told.extend(was_told & told)
-        return np.arange(first, len(self), dtype=np.int32)
-
-    def position(self, version: int) -> Point:
-        """Feet of a version."""
-        x, y, z = self._feet.view()[version].tolist()
-        return (x, y, z)
-
-    def angles(self, version: int) -> tuple[float, float]:
-        """Yaw and pitch of a version."""
-        yaw, pitch = self._angles.view()[version].tolist()
-        return yaw, pitch
-
-    def looks(self, version: int) -> Looks | None:
-        """What goes with a version; None for a pose that nobody was seen in."""
-        return self._table[int(self._looks.view()[version])]
-
-    def is_told(self, version: int) -> bool:
-        """Whether the timeline told a version, so that it is not only believed since a fork."""
-        return bool(self._told.view()[version])
-
-    def poses(self) -> Poses:
-        """The table for the kernel."""
-        return Poses(self._feet.view(), self._angles.view())
-
-    def saved(self) -> "SavedVersions":
-        """All versions as plain data."""
-        return SavedVersions(
-            self._feet.view().tobytes(),
-            self._angles.view().tobytes(),
-            self._looks.view().tobytes(),
-            self._told.view().tobytes(),
-            self._table,
-        )
-
-    @classmethod
-    def restored(cls, saved: "SavedVersions") -> "Versions":
-        """The table that was saved."""
-        versions = cls()
-        versions._feet.extend(np.frombuffer(saved.feet, np.float64).reshape(-1, 3))
-        versions._angles.extend(np.frombuffer(saved.angles, np.float64).reshape(-1, 2))
-        versions._looks.extend(np.frombuffer(saved.looks, np.int32))
-        versions._told.extend(np.frombuffer(saved.told, np.bool_))
-        versions._table = list(saved.table)
-        return versions
-
-    def _add(self, position: Point, yaw: float, pitch: float, looks: int, *, told: bool) -> int:
-        self._feet.append(position)
-        self._angles.append((yaw, pitch))
-        self._looks.append(looks)
-        self._told.append(told)
-        return len(self._feet) - 1
-
-
-@dataclass(frozen=True, slots=True)
-class SavedVersions:
-    """A table of versions as plain data: rows of `Versions` as native bytes, and their looks."""
-
-    feet: bytes
-    angles: bytes
-    looks: bytes
-    told: bytes
-    table: list[Looks | None]
-
-
 class Columns:
     """A stretch of one timeline's entries in columns; all numbers are those of the timeline.
 
@@ -211,7 +54,7 @@ class Columns:
 
     Attributes:
         first: Number of the first entry.
-        versions: Poses of its agents.
+        poses: Poses of its agents.
         frames: By entry, the frames that carry contents, dropped items or arrivals that
             the kernel knows nothing of.
         events: The stretch's events, in order.
@@ -233,7 +76,7 @@ class Columns:
         self._holds = holds
         self.first = first
         self._first_event = first_event
-        self.versions = Versions()
+        self.poses = PoseTable()
         self.held: list[int] = []
         self.item_entries: list[int] = []
         self.act_entries: list[int] = []
@@ -242,11 +85,11 @@ class Columns:
         self.frames: dict[int, Frame] = {}
         self.events: list[Event] = []
         self.acts: dict[int, list[int]] = {}
-        self._tick = _Column(np.int32)
-        self._pose_at, self._block_at, self._event_at = (_Column(np.int32) for _ in range(3))
-        self._pose = [_Column(np.int32) for _ in range(2)]
-        self._block = [_Column(np.int32) for _ in range(2)]
-        self._event = [_Column(np.int32) for _ in range(4)]
+        self._tick = Growing(np.int32)
+        self._pose_at, self._block_at, self._event_at = (Growing(np.int32) for _ in range(3))
+        self._pose = [Growing(np.int32) for _ in range(2)]
+        self._block = [Growing(np.int32) for _ in range(2)]
+        self._event = [Growing(np.int32) for _ in range(4)]
         self._close_entry()
 
     @property
@@ -276,7 +119,7 @@ class Columns:
         """An event of the stretch."""
         return self.events[number - self._first_event]
 
-    def told_since(self, entry: int) -> Iterator[tuple[int, Event]]:
+    def events_since(self, entry: int) -> Iterator[tuple[int, Event]]:
         """Events from an entry of the stretch on, each with its tick."""
         at, tick = self._event_at.view(), self._tick.view()
         for row in range(entry - self.first, len(tick)):
@@ -292,14 +135,14 @@ class Columns:
 
     def facts(self) -> Facts:
         """The columns for the kernel, which counts entries and events from the stretch's first."""
-        agent, version = (column.view() for column in self._pose)
+        agent, pose = (column.view() for column in self._pose)
         block_cell, state = (column.view() for column in self._block)
         kind, actor, event_cell, event_to = (column.view() for column in self._event)
         return Facts(
             self._tick.view(),
             self._pose_at.view(),
             agent,
-            version,
+            pose,
             self._block_at.view(),
             block_cell,
             state,
@@ -317,9 +160,9 @@ class Columns:
         if frame.items:
             self.item_entries.append(entry)
         for name, agent in frame.agents.items():
-            version = UNKNOWN if agent is None else self.versions.add(name, agent)
+            pose = UNKNOWN if agent is None else self.poses.add(name, agent)
             self._pose[0].append(self._numbers[name])
-            self._pose[1].append(version)
+            self._pose[1].append(pose)
         for place, state in frame.blocks.items():
             cell = cell_of(self._box, place)
             self._block[0].append(cell)

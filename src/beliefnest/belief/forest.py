@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from beliefnest.belief import kernel
 from beliefnest.belief.arrays import Changes, Facts
-from beliefnest.belief.columns import Columns, Versions, cell_of
+from beliefnest.belief.columns import Columns, cell_of
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import SOURCES, Basis, PerceivedEvent, Source
 from beliefnest.belief.hearing import Hearing
@@ -26,6 +26,7 @@ from beliefnest.belief.holdings import (
     witness,
 )
 from beliefnest.belief.node_table import NodeTable
+from beliefnest.belief.poses import PoseTable
 from beliefnest.belief.protocols import EventHistory, Reader
 from beliefnest.world.values import Event, Items
 
@@ -60,7 +61,7 @@ class Forest:
     ) -> None:
         self.context, self._events = context, events
         self.columns = self._nowhere(0, 0)
-        self.table = NodeTable(context, self.columns.versions, extra)
+        self.table = NodeTable(context, self.columns.poses, extra)
         self.holdings: list[Holdings] = []
         self.position, self.tick = 0, tick
         self.facts_tick: int | None = None
@@ -73,9 +74,9 @@ class Forest:
         self._readers: WeakSet[Reader] = WeakSet()
 
     @property
-    def versions(self) -> Versions:
+    def poses(self) -> PoseTable:
         """The poses that nodes refer to."""
-        return self.table.versions
+        return self.table.poses
 
     @property
     def count_of_events(self) -> int:
@@ -84,7 +85,7 @@ class Forest:
 
     def enter(self, columns: Columns) -> None:
         """Go over to the stretch of the timeline that the next entries lie in."""
-        self.table.enter(columns.versions)
+        self.table.enter(columns.poses)
         self.columns = columns
 
     def leave(self) -> None:
@@ -133,14 +134,14 @@ class Forest:
 
     def block_is_current(self, node: int, cell: int) -> bool:
         """Whether a node's block is backed by a perception in the last entry (5.4)."""
-        context, nodes, poses = self.context, self.table.nodes(), self.versions.poses()
+        context, nodes, poses = self.context, self.table.nodes(), self.poses.arrays()
         while node > 0:
             around = self.table.parent(node)
             if not self.table.is_present(node) or (node, cell) in self.edited_cells:
                 return False
-            version = self.table.version(around, self.table.owner(node))
+            pose = self.table.pose(around, self.table.owner(node))
             if not kernel.sees_cell(
-                context.space, context.senses, poses, nodes, around, version, cell
+                context.space, context.senses, poses, nodes, around, pose, cell
             ):
                 return False
             node = around
@@ -150,10 +151,10 @@ class Forest:
         """Health and food of an agent, which only the agent itself perceives."""
         while node > 0 and self.table.owner(node) == agent:
             node = self.table.parent(node)
-        looks = self.table.looks_of(0, agent) if node == 0 else None
-        if looks is None or not self.versions.is_told(self.table.version(0, agent)):
+        condition = self.table.condition_of(0, agent) if node == 0 else None
+        if condition is None or not self.poses.is_recorded(self.table.pose(0, agent)):
             return self.first_vitals.get(agent, (None, None)) if node == 0 else (None, None)
-        return looks.health, looks.food
+        return condition.health, condition.food
 
     def adopt(self, other: "Forest", paths: Sequence[Path]) -> None:
         """Take over nodes of a forest that is as far on."""
@@ -162,7 +163,7 @@ class Forest:
         other.table.track()
         for path in paths:
             source = other.table.index[path]
-            node = self.table.copy_node(other.table, source, is_root=False, told=True)
+            node = self.table.copy_node(other.table, source, is_root=False, recorded=True)
             self.holdings.append(other.holdings[source].copy())
             self.looked[node] = other.last_look(source)
             self.edited_cells |= {(node, c) for n, c in other.edited_cells if n == source}
@@ -232,9 +233,9 @@ class Forest:
             node = self.table.parent(node)
         known = self.holdings[node].inventories.get(agent)
         if node == 0:
-            version, looks = self.table.version(0, agent), self.table.looks_of(0, agent)
-            if looks is not None and (known is None or self.versions.is_told(version)):
-                return looks.inventory, known is None
+            pose, condition = self.table.pose(0, agent), self.table.condition_of(0, agent)
+            if condition is not None and (known is None or self.poses.is_recorded(pose)):
+                return condition.inventory, known is None
         return self.holdings[node].inventories.get(agent, {}), False
 
     def _nowhere(self, position: int, events: int) -> Columns:
@@ -277,7 +278,7 @@ class Forest:
         context, columns, facts = self.context, self.columns, self.columns.facts()
         first = columns.events_until(start)
         changes = self._changes(columns.events_until(stop) - first)
-        poses, nodes = self.versions.poses(), self.table.nodes()
+        poses, nodes = self.poses.arrays(), self.table.nodes()
         everywhere = np.ones(self.table.count, dtype=np.bool_)
         where = start - columns.first, stop - columns.first
         reached = columns.first + kernel.fold(
@@ -317,7 +318,7 @@ class Forest:
             *(at, nothing, nothing),
             *(at, nothing, nothing, nothing, nothing),
         )
-        poses = self.versions.poses()
+        poses = self.poses.arrays()
         kernel.fold(context.space, context.senses, poses, facts, nodes, changes, 0, 1, below)
         entry = self.position - 1
         self.looked.update(dict.fromkeys(np.flatnonzero(below).tolist(), entry))
@@ -447,12 +448,10 @@ class Forest:
     def _seen_cells(self, node: int, cells: Iterable[int]) -> set[int]:
         """Those of some cells that the present owner of a node sees in the simulator around."""
         context, around = self.context, self.table.parent(node)
-        version = self.table.version(around, self.table.owner(node))
-        nodes, poses = self.table.nodes(), self.versions.poses()
+        pose = self.table.pose(around, self.table.owner(node))
+        nodes, poses = self.table.nodes(), self.poses.arrays()
         wanted = np.array([*cells], dtype=np.int64)
-        seen = kernel.sees_cells(
-            context.space, context.senses, poses, nodes, around, version, wanted
-        )
+        seen = kernel.sees_cells(context.space, context.senses, poses, nodes, around, pose, wanted)
         return set(wanted[seen].tolist())
 
     def _see_into(self, node: int, tick: int, entry: int) -> set[int]:
@@ -494,12 +493,10 @@ class Forest:
     def _sees_item(self, node: int, around: int, believed: BelievedItem) -> bool:
         context = self.context
         x, y, z = believed.item.position
-        version = self.table.version(around, self.table.owner(node))
-        nodes, poses = self.table.nodes(), self.versions.poses()
+        pose = self.table.pose(around, self.table.owner(node))
+        nodes, poses = self.table.nodes(), self.poses.arrays()
         place = (x, y + _ITEM_HEIGHT, z)
-        return kernel.sees_point(
-            context.space, context.senses, poses, nodes, around, version, place
-        )
+        return kernel.sees_point(context.space, context.senses, poses, nodes, around, pose, place)
 
 
 def _by_entry(changes: Changes, first: int) -> dict[int, dict[int, list[Sequence[int]]]]:

@@ -77,10 +77,10 @@ def _add_world(forest: Forest, snapshot: Snapshot) -> None:
     basis = Basis(snapshot.tick, Source.SEEN)
     table.set_known_bases(node, basis)
     for name, agent in snapshot.agents.items():
-        version = forest.versions.add(name, agent)
+        pose = forest.poses.add(name, agent)
         number = context.numbers[name]
-        table.set_pose(node, number, version, snapshot.tick, current=True)
-        table.set_looks(node, number, version)
+        table.set_pose(node, number, pose, snapshot.tick, current=True)
+        table.set_equipment(node, number, pose)
     holdings = Holdings()
     for place, items in snapshot.containers.items():
         holdings.containers[cell_of(context.box, place)] = Content(dict(items), True, basis, -1)
@@ -100,8 +100,8 @@ def _add_prior(
         blocks[context.box.index(place)] = state
     table.set_blocks(node, blocks)
     for name, position in mine.agents.items():
-        version = forest.versions.add_pose(position, 0.0, 0.0)
-        table.set_pose(node, context.numbers[name], version, tick, current=False)
+        pose = forest.poses.add_pose(position, 0.0, 0.0)
+        table.set_pose(node, context.numbers[name], pose, tick, current=False)
     holdings = Holdings()
     for place, (items, complete) in mine.containers.items():
         holdings.containers[cell_of(context.box, place)] = Content(dict(items), complete, basis)
@@ -139,7 +139,7 @@ def forked_forest(
     for depth in range(len(root), len(path) + 1):
         old = source.table.index[path[:depth]]
         is_root = depth == len(root)
-        node = forest.table.copy_node(source.table, old, is_root=is_root, told=False)
+        node = forest.table.copy_node(source.table, old, is_root=is_root, recorded=False)
         forest.holdings.append(_forked_holdings(source, old, is_root=is_root))
         forest.doubt_contents(node)
     node = source.table.index[root]

@@ -71,9 +71,9 @@ def _grid_cell(space: Space, cell: int) -> Cell:
 
 
 @inlined
-def _eye(space: Space, senses: Senses, poses: Poses, version: int) -> Eye:
-    x, y, z = poses.feet[version]
-    yaw, pitch = poses.angles[version]
+def _eye(space: Space, senses: Senses, poses: Poses, pose: int) -> Eye:
+    x, y, z = poses.feet[pose]
+    yaw, pitch = poses.angles[pose]
     level = math.cos(pitch)
     place = (
         x + space.origin[0],
@@ -165,11 +165,11 @@ def refresh_pending(nodes: Nodes, node: int) -> None:
 def _happens(space: Space, facts: Facts, nodes: Nodes, changes: Changes, entry: int) -> None:
     """An entry in node 0, where everything known is current."""
     for row in range(facts.pose_at[entry], facts.pose_at[entry + 1]):
-        who, version = facts.pose_agent[row], facts.pose_version[row]
-        nodes.version[0, who] = version
-        nodes.looks[0, who] = version
-    for who in range(nodes.version.shape[1]):
-        known = nodes.version[0, who] != UNKNOWN
+        who, pose = facts.pose_agent[row], facts.pose_id[row]
+        nodes.pose[0, who] = pose
+        nodes.equipment[0, who] = pose
+    for who in range(nodes.pose.shape[1]):
+        known = nodes.pose[0, who] != UNKNOWN
         nodes.current[0, who] = known
         if known:
             nodes.seen_at[0, who] = facts.tick[entry]
@@ -201,29 +201,29 @@ def _meet(
 ) -> None:
     """What the owner of a node learns of the agents around it."""
     around, me = _whole(nodes.parent[node]), _whole(nodes.agent[node])
-    for who in range(nodes.version.shape[1]):
-        version = _whole(nodes.version[around, who])
+    for who in range(nodes.pose.shape[1]):
+        pose = _whole(nodes.pose[around, who])
         seen = who == me
-        if not seen and version != UNKNOWN:
-            if moved or nodes.tried[node, who] != version:
-                nodes.sees[node, who] = _sees_agent(space, nodes, around, eye, poses, version)
-                nodes.tried[node, who] = version
+        if not seen and pose != UNKNOWN:
+            if moved or nodes.tried[node, who] != pose:
+                nodes.sees[node, who] = _sees_agent(space, nodes, around, eye, poses, pose)
+                nodes.tried[node, who] = pose
             seen = nodes.sees[node, who]
         if seen:
-            nodes.version[node, who] = version
-            if nodes.looks[around, who] != UNKNOWN:
-                nodes.looks[node, who] = nodes.looks[around, who]
+            nodes.pose[node, who] = pose
+            if nodes.equipment[around, who] != UNKNOWN:
+                nodes.equipment[node, who] = nodes.equipment[around, who]
             nodes.seen_at[node, who] = nodes.seen_at[around, who]
             nodes.current[node, who] = nodes.current[around, who]
             continue
         nodes.current[node, who] = False
-        believed = _whole(nodes.version[node, who])
+        believed = _whole(nodes.pose[node, who])
         if (
             senses.negative
             and believed != UNKNOWN
             and _sees_agent(space, nodes, around, eye, poses, believed)
         ):
-            nodes.version[node, who] = UNKNOWN
+            nodes.pose[node, who] = UNKNOWN
 
 
 @inner
@@ -256,13 +256,13 @@ def _hears(senses: Senses, poses: Poses, nodes: Nodes, node: int, speaker: int) 
     if senses.hearing == HEAR_ALL:
         return True
     if senses.hearing == HEAR_SEEN:
-        known = nodes.version[nodes.parent[node], speaker] != UNKNOWN
+        known = nodes.pose[nodes.parent[node], speaker] != UNKNOWN
         return bool(nodes.sees[node, speaker] and known)
     around = _whole(nodes.parent[node])
-    there = _whole(nodes.version[around, speaker])
+    there = _whole(nodes.pose[around, speaker])
     if there == UNKNOWN:
         return False
-    here = _whole(nodes.version[around, nodes.agent[node]])
+    here = _whole(nodes.pose[around, nodes.agent[node]])
     x = poses.feet[here, 0] - poses.feet[there, 0]
     y = poses.feet[here, 1] - poses.feet[there, 1]
     z = poses.feet[here, 2] - poses.feet[there, 2]
@@ -298,7 +298,7 @@ def _attend(
             cell = _whole(facts.event_cell[event])
             got = _sees_cell(space, nodes, around, eye, cell)
         else:
-            got = actor >= 0 and nodes.version[around, actor] != UNKNOWN and nodes.sees[node, actor]
+            got = actor >= 0 and nodes.pose[around, actor] != UNKNOWN and nodes.sees[node, actor]
         changes.perceived[event - first_event, node] = got
 
 
@@ -346,10 +346,10 @@ def _believe(
     if not nodes.current[around, me]:
         _absent(senses, facts, nodes, changes, entry, first_event, node)
         return
-    version = _whole(nodes.version[around, me])
-    eye = _eye(space, senses, poses, version)
-    moved = nodes.eye[node] != version or nodes.scene[node] != nodes.geometry[around]
-    nodes.eye[node] = version
+    pose = _whole(nodes.pose[around, me])
+    eye = _eye(space, senses, poses, pose)
+    moved = nodes.eye[node] != pose or nodes.scene[node] != nodes.geometry[around]
+    nodes.eye[node] = pose
     nodes.scene[node] = nodes.geometry[around]
     _meet(space, senses, poses, nodes, node, eye, moved)
     if moved or nodes.fresh[node]:
@@ -393,10 +393,10 @@ def fold(
 
 @compiled
 def sees_cell(
-    space: Space, senses: Senses, poses: Poses, nodes: Nodes, node: int, version: int, cell: int
+    space: Space, senses: Senses, poses: Poses, nodes: Nodes, node: int, pose: int, cell: int
 ) -> bool:
-    """Whether an eye at a version's pose sees a cell in a node."""
-    return _sees_cell(space, nodes, node, _eye(space, senses, poses, version), cell)
+    """Whether an eye at a pose's pose sees a cell in a node."""
+    return _sees_cell(space, nodes, node, _eye(space, senses, poses, pose), cell)
 
 
 @compiled
@@ -406,11 +406,11 @@ def sees_cells(
     poses: Poses,
     nodes: Nodes,
     node: int,
-    version: int,
+    pose: int,
     cells: npt.NDArray[np.int64],
 ) -> npt.NDArray[np.bool_]:
-    """Which of some cells an eye at a version's pose sees in a node."""
-    eye = _eye(space, senses, poses, version)
+    """Which of some cells an eye at a pose's pose sees in a node."""
+    eye = _eye(space, senses, poses, pose)
     seen = np.zeros(len(cells), dtype=np.bool_)
     for number in range(len(cells)):
         seen[number] = _sees_cell(space, nodes, node, eye, cells[number])
@@ -424,11 +424,11 @@ def sees_point(
     poses: Poses,
     nodes: Nodes,
     node: int,
-    version: int,
+    pose: int,
     point: tuple[float, float, float],
 ) -> bool:
-    """Whether an eye at a version's pose sees a point (scenario coordinates) in a node."""
-    eye = _eye(space, senses, poses, version)
+    """Whether an eye at a pose's pose sees a point (scenario coordinates) in a node."""
+    eye = _eye(space, senses, poses, pose)
     x, y, z = point
     there = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
     codes = nodes.codes[node]

@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from beliefnest.belief import kernel
 from beliefnest.belief.arrays import UNKNOWN, Nodes
-from beliefnest.belief.columns import Looks, Versions
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import SOURCES, Basis
+from beliefnest.belief.poses import Condition, PoseTable
 from beliefnest.perception.codes import mark_intruded
 from beliefnest.world.frames import BlockGrid
 
@@ -20,8 +20,8 @@ __all__ = ["NodeTable", "SavedNode"]
 Path = tuple[str, ...]
 Row = npt.NDArray[Any]
 
-_VERSIONED = ("version", "looks", "eye", "tried")
-"""Rows that hold numbers of versions."""
+_POSE_IDS = ("pose", "equipment", "eye", "tried")
+"""Rows that hold pose ids."""
 
 _BY_SPOT = {"watched": 0, "basis_at": UNKNOWN, "basis_source": 0}
 """Rows with a column for each tracked cell, and what stands where nothing is known."""
@@ -33,15 +33,15 @@ class SavedNode:
 
     path: Path
     blocks: bytes
-    version: bytes
-    looks: bytes
+    pose: bytes
+    equipment: bytes
     seen_at: bytes
     current: bytes
     basis_at: bytes
     basis_source: bytes
 
 
-_SAVED = ("blocks", "version", "looks", "seen_at", "current", "basis_at", "basis_source")
+_SAVED = ("blocks", "pose", "equipment", "seen_at", "current", "basis_at", "basis_source")
 
 
 class NodeTable:
@@ -50,14 +50,12 @@ class NodeTable:
     Attributes:
         index: Number of each node by path; a node's number is above its parent's.
         count: How many nodes there are.
-        versions: The poses that the nodes' versions are numbers of.
+        poses: The pose table that the nodes' pose ids are rows of.
     """
 
-    def __init__(
-        self, context: BeliefContext, versions: Versions, extra: Sequence[int] = ()
-    ) -> None:
+    def __init__(self, context: BeliefContext, poses: PoseTable, extra: Sequence[int] = ()) -> None:
         self._context = context
-        self.versions = versions
+        self.poses = poses
         self.index: dict[Path, int] = {}
         self.count = 0
         self._linked = 1
@@ -69,8 +67,8 @@ class NodeTable:
         self._rows: dict[str, Row] = {
             "parent": np.full(2, UNKNOWN, dtype=np.int32),
             "agent": np.full(2, UNKNOWN, dtype=np.int32),
-            "version": np.full((2, agents), UNKNOWN, dtype=np.int32),
-            "looks": np.full((2, agents), UNKNOWN, dtype=np.int32),
+            "pose": np.full((2, agents), UNKNOWN, dtype=np.int32),
+            "equipment": np.full((2, agents), UNKNOWN, dtype=np.int32),
             "seen_at": np.full((2, agents), UNKNOWN, dtype=np.int32),
             "current": np.zeros((2, agents), dtype=np.bool_),
             "blocks": np.full((2, cells), UNKNOWN, dtype=np.int16),
@@ -103,26 +101,26 @@ class NodeTable:
             self._rows["agent"][node] = self._context.numbers[path[-1]]
         return node
 
-    def enter(self, versions: Versions) -> None:
-        """Go over to another table of versions."""
-        numbers = [self._rows[name][: self.count].ravel() for name in _VERSIONED]
+    def enter(self, poses: PoseTable) -> None:
+        """Go over to another pose table."""
+        numbers = [self._rows[name][: self.count].ravel() for name in _POSE_IDS]
         used = np.unique(np.concatenate(numbers))
         used = used[used >= 0]
-        table = np.full(len(self.versions) + 1, UNKNOWN, dtype=np.int32)
-        table[used] = versions.take(self.versions, used)
-        for name in _VERSIONED:
-            # The last place of the table is that of -1, which is no version.
+        table = np.full(len(self.poses) + 1, UNKNOWN, dtype=np.int32)
+        table[used] = poses.take(self.poses, used)
+        for name in _POSE_IDS:
+            # The last place of the table is that of -1, which is no pose.
             self._rows[name][: self.count] = table[self._rows[name][: self.count]]
-        self.versions = versions
+        self.poses = poses
 
-    def copy_node(self, other: "NodeTable", source: int, *, is_root: bool, told: bool) -> int:
+    def copy_node(self, other: "NodeTable", source: int, *, is_root: bool, recorded: bool) -> int:
         """A node of other table as node of these; as node 0 all that it knows is current.
 
         Args:
             other: The other table.
             source: Number of the node there.
             is_root: Whether it becomes node 0.
-            told: Whether what the other's timeline told is told by the timeline of these.
+            recorded: Whether what the other's timeline recorded counts as recorded by this one's.
         """
         path = other.path(source)
         node = self._grow()
@@ -136,14 +134,14 @@ class NodeTable:
                 row[node] = other._rows[name][source]
         for name in ("eye", "scene", "tried"):
             self._rows[name][node] = UNKNOWN
-        for name in ("version", "looks"):
+        for name in ("pose", "equipment"):
             row = self._rows[name][node]
-            row[row >= 0] = self.versions.take(other.versions, row[row >= 0], told=told)
+            row[row >= 0] = self.poses.take(other.poses, row[row >= 0], recorded=recorded)
         self._rows["geometry"][node] = 0
         self.index[path] = node
         if is_root:
             self._rows["parent"][node] = self._rows["agent"][node] = UNKNOWN
-            self._rows["current"][node] = self._rows["version"][node] >= 0
+            self._rows["current"][node] = self._rows["pose"][node] >= 0
         else:
             self._rows["parent"][node] = self.index[path[:-1]]
         return node
@@ -174,15 +172,15 @@ class NodeTable:
         mark_intruded(codes, space.reaches)
         self._rows["codes"][node] = codes.ravel()
 
-    def set_pose(self, node: int, agent: int, version: int, seen_at: int, *, current: bool) -> None:
+    def set_pose(self, node: int, agent: int, pose: int, seen_at: int, *, current: bool) -> None:
         """Set the believed pose of an agent."""
-        self._rows["version"][node, agent] = version
+        self._rows["pose"][node, agent] = pose
         self._rows["seen_at"][node, agent] = seen_at
         self._rows["current"][node, agent] = current
 
-    def set_looks(self, node: int, agent: int, version: int) -> None:
-        """Set the believed equipment of an agent to that of a version."""
-        self._rows["looks"][node, agent] = version
+    def set_equipment(self, node: int, agent: int, pose: int) -> None:
+        """Set the believed equipment of an agent to that of a pose."""
+        self._rows["equipment"][node, agent] = pose
 
     def set_basis(self, node: int, cell: int, basis: Basis | None) -> None:
         """Set what a cell rests on, if it is tracked."""
@@ -271,18 +269,18 @@ class NodeTable:
         blocks: BlockGrid = self._rows["blocks"][node].astype(np.int32)
         return blocks.reshape(self._context.box.shape)
 
-    def version(self, node: int, agent: int) -> int:
-        """Version of an agent's believed pose; -1: unknown."""
-        return int(self._rows["version"][node, agent])
+    def pose(self, node: int, agent: int) -> int:
+        """Id of an agent's believed pose; -1: unknown."""
+        return int(self._rows["pose"][node, agent])
 
-    def looks(self, node: int, agent: int) -> int:
-        """Version of an agent's believed equipment; -1: unknown."""
-        return int(self._rows["looks"][node, agent])
+    def equipment(self, node: int, agent: int) -> int:
+        """Id of the pose with an agent's believed equipment; -1: unknown."""
+        return int(self._rows["equipment"][node, agent])
 
-    def looks_of(self, node: int, agent: int) -> Looks | None:
+    def condition_of(self, node: int, agent: int) -> Condition | None:
         """What goes with an agent's believed pose; None if it is unknown or nobody was seen."""
-        version = self.version(node, agent)
-        return None if version < 0 else self.versions.looks(version)
+        pose = self.pose(node, agent)
+        return None if pose < 0 else self.poses.condition(pose)
 
     def seen_at(self, node: int, agent: int) -> int:
         """Tick that an agent's believed pose rests on."""

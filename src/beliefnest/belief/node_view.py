@@ -124,28 +124,27 @@ class NodeView:
 
     def _agent(self, number: int) -> AgentBelief:
         forest, node = self._forest, self._node
-        table, versions = forest.table, forest.table.versions
+        table, poses = forest.table, forest.table.poses
         inventory, complete = forest.inventory(node, number)
-        looks = (
-            versions.looks(table.looks(node, number)) if table.looks(node, number) >= 0 else None
-        )
+        dressed = table.equipment(node, number)
+        seen = poses.condition(dressed) if dressed >= 0 else None
         health, food = forest.vitals(node, number)
-        version = table.version(node, number)
-        if version < 0:
+        pose = table.pose(node, number)
+        if pose < 0:
             return AgentBelief(
-                equipment=None if looks is None else looks.equipment,
+                equipment=None if seen is None else seen.equipment,
                 inventory=inventory,
                 inventory_complete=complete,
             )
-        posed = versions.looks(version)
-        yaw, pitch = versions.angles(version)
+        posed = poses.condition(pose)
+        yaw, pitch = poses.angles(pose)
         source = Source.PRIOR if posed is None else Source.SEEN
         return AgentBelief(
-            position=versions.position(version),
+            position=poses.position(pose),
             yaw=yaw,
             pitch=pitch,
             on_ground=posed is None or posed.on_ground,
-            equipment=None if looks is None else looks.equipment,
+            equipment=None if seen is None else seen.equipment,
             inventory=inventory,
             inventory_complete=complete,
             health=health,

@@ -241,8 +241,8 @@ def _take(engine: Engine, trace: _Trace, step: Step, element: Element) -> None:
 
 def _feet(forest: Forest, path: Path) -> Point | None:
     """Where the owner of a node stands in the simulator around it."""
-    version = forest.table.version(forest.table.index[path[:-1]], forest.context.numbers[path[-1]])
-    return None if version < 0 else forest.versions.position(version)
+    version = forest.table.pose(forest.table.index[path[:-1]], forest.context.numbers[path[-1]])
+    return None if version < 0 else forest.poses.position(version)
 
 
 def _missed(
@@ -282,7 +282,7 @@ def _absence(engine: Engine, forest: Forest, path: Path) -> Absence:
     """Why the simulator around a node does not know where its owner is."""
     around, table = path[:-1], forest.table
     node, number = table.index[around], forest.context.numbers[path[-1]]
-    last_seen = table.seen_at(node, number) if table.version(node, number) >= 0 else None
+    last_seen = table.seen_at(node, number) if table.pose(node, number) >= 0 else None
     if node == 0 or not table.is_present(node):
         return Absence(last_seen, None)
     outer = NodeView(forest, around[:-1])

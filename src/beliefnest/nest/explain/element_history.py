@@ -77,8 +77,8 @@ def value_in(forest: Forest, path: Path, element: Element) -> Value:
     """What a node of a forest holds of an element."""
     node, context = forest.table.index[path], forest.context
     if isinstance(element.where, str):
-        version = forest.table.version(node, context.numbers[element.where])
-        return None if version < 0 else forest.versions.position(version)
+        version = forest.table.pose(node, context.numbers[element.where])
+        return None if version < 0 else forest.poses.position(version)
     cell = cell_of(context.box, element.where)
     if element.kind == "block":
         state = forest.table.block(node, cell)
@@ -94,7 +94,7 @@ def grounded_at(forest: Forest, path: Path, element: Element) -> int | None:
     node, context = forest.table.index[path], forest.context
     if isinstance(element.where, str):
         number = context.numbers[element.where]
-        known = forest.table.version(node, number) >= 0
+        known = forest.table.pose(node, number) >= 0
         return forest.table.seen_at(node, number) if known else None
     cell = cell_of(context.box, element.where)
     if element.kind == "block":

@@ -54,5 +54,5 @@ class EventLog:
     def take(self, columns: Columns) -> None:
         """Take over the events of a stretch, where it goes on from what is known."""
         if columns.first <= self._entries < columns.end:
-            self._events.extend(columns.told_since(self._entries))
+            self._events.extend(columns.events_since(self._entries))
             self._entries = columns.end

@@ -8,11 +8,12 @@ import msgspec
 import numpy as np
 import zstandard
 
-from beliefnest.belief.columns import Columns, SavedVersions, Versions
+from beliefnest.belief.columns import Columns
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.holdings import Holdings
 from beliefnest.belief.node_table import SavedNode
+from beliefnest.belief.poses import PoseTable, SavedPoses
 from beliefnest.belief.protocols import EventHistory
 from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
@@ -41,7 +42,7 @@ class _Saved(msgspec.Struct, forbid_unknown_fields=True):
     edited_facts: list[int]
     first_vitals: dict[int, tuple[float | None, float | None]]
     tracked: bytes
-    versions: SavedVersions
+    poses: SavedPoses
     nodes: list[tuple[Path, bytes]]
 
 
@@ -71,7 +72,7 @@ def saved(forest: Forest) -> bytes:
             edited_facts=sorted(forest.edited_facts),
             first_vitals=forest.first_vitals,
             tracked=table.tracked.tobytes(),
-            versions=forest.versions.saved(),
+            poses=forest.poses.saved(),
             nodes=nodes,
         )
     )
@@ -102,7 +103,7 @@ def restored(
     context.track(tracked.tolist())
     forest = Forest(context, events, body.tick)
     columns = Columns(context.box, context.agents, context.holds, body.position, body.events)
-    columns.versions = Versions.restored(body.versions)
+    columns.poses = PoseTable.restored(body.poses)
     forest.enter(columns)
     forest.position = body.position
     forest.facts_tick = body.facts_tick

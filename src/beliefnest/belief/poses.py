@@ -1,0 +1,177 @@
+"""Poses of agents, and what goes with each, in a table that the belief kernel reads."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.arrays import Ints, Poses
+from beliefnest.world.values import AgentState, Items, Point
+
+__all__ = ["Condition", "Growing", "PoseTable", "SavedPoses"]
+
+
+class Growing:
+    """An array that grows by rows; new rows wait in a list until the array is read."""
+
+    def __init__(self, dtype: npt.DTypeLike, width: int = 0) -> None:
+        shape = (64, width) if width else (64,)
+        self._rows: npt.NDArray[Any] = np.zeros(shape, dtype=dtype)
+        self._filled = 0
+        self._waiting: list[Any] = []
+        self.append = self._waiting.append
+
+    def __len__(self) -> int:
+        return self._filled + len(self._waiting)
+
+    def extend(self, rows: Iterable[Any]) -> None:
+        """Add rows."""
+        self._waiting.extend(rows)
+
+    def view(self) -> npt.NDArray[Any]:
+        """The rows so far."""
+        count = len(self)
+        if count > self._filled:
+            if count > len(self._rows):
+                size = (max(count, 2 * len(self._rows)), *self._rows.shape[1:])
+                grown = np.zeros(size, dtype=self._rows.dtype)
+                grown[: self._filled] = self._rows[: self._filled]
+                self._rows = grown
+            self._rows[self._filled : count] = self._waiting
+            self._waiting.clear()
+            self._filled = count
+        return self._rows[:count]
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """What goes with a pose: footing, equipment, and what only the agent itself perceives.
+
+    Attributes as those of `AgentState`.
+    """
+
+    on_ground: bool
+    equipment: Mapping[str, str]
+    inventory: Items
+    health: float
+    food: float
+
+
+class PoseTable:
+    """Poses and what goes with each, for one stretch of a timeline; a pose's id is its row."""
+
+    def __init__(self) -> None:
+        self._feet = Growing(np.float64, 3)
+        self._angles = Growing(np.float64, 2)
+        self._conditions = Growing(np.int32)
+        self._recorded = Growing(np.bool_)
+        self._table: list[Condition | None] = [None]
+        self._last: dict[str, int] = {}
+
+    def __len__(self) -> int:
+        return len(self._feet)
+
+    def add(self, name: str, agent: AgentState) -> int:
+        """Id of a new pose of an agent, which the timeline itself recorded."""
+        condition = Condition(
+            agent.on_ground, agent.equipment, agent.inventory, agent.health, agent.food
+        )
+        last = self._last.get(name, 0)
+        if self._table[last] != condition:
+            self._table.append(condition)
+            last = self._last[name] = len(self._table) - 1
+        return self._add(agent.position, agent.yaw, agent.pitch, last, recorded=True)
+
+    def add_pose(self, position: Point, yaw: float, pitch: float) -> int:
+        """Id of a pose in which nobody was seen."""
+        return self._add(position, yaw, pitch, 0, recorded=False)
+
+    def take(self, other: "PoseTable", numbers: Ints, *, recorded: bool = True) -> Ints:
+        """Copy poses of another table; returns their ids in this one.
+
+        Args:
+            other: The other table.
+            numbers: Their ids in the other table.
+            recorded: Whether what the other's timeline recorded counts as recorded by this one's.
+        """
+        table = {0: 0}
+        first = len(self)
+        feet, angles = other._feet.view()[numbers], other._angles.view()[numbers]
+        conditions, was_recorded = (
+            other._conditions.view()[numbers],
+            other._recorded.view()[numbers],
+        )
+        for number in np.unique(conditions).tolist():
+            if number not in table:
+                table[number] = len(self._table)
+                self._table.append(other._table[number])
+        self._feet.extend(feet)
+        self._angles.extend(angles)
+        self._conditions.extend([table[number] for number in conditions.tolist()])
+        self._recorded.extend(was_recorded & recorded)
+        return np.arange(first, len(self), dtype=np.int32)
+
+    def position(self, pose: int) -> Point:
+        """Feet of a pose."""
+        x, y, z = self._feet.view()[pose].tolist()
+        return (x, y, z)
+
+    def angles(self, pose: int) -> tuple[float, float]:
+        """Yaw and pitch of a pose."""
+        yaw, pitch = self._angles.view()[pose].tolist()
+        return yaw, pitch
+
+    def condition(self, pose: int) -> Condition | None:
+        """What goes with a pose; None for a pose that nobody was seen in."""
+        return self._table[int(self._conditions.view()[pose])]
+
+    def is_recorded(self, pose: int) -> bool:
+        """Whether the timeline recorded a pose, so that it is not only believed since a fork."""
+        return bool(self._recorded.view()[pose])
+
+    def arrays(self) -> Poses:
+        """The table for the kernel."""
+        return Poses(self._feet.view(), self._angles.view())
+
+    def saved(self) -> "SavedPoses":
+        """The table as plain data."""
+        return SavedPoses(
+            self._feet.view().tobytes(),
+            self._angles.view().tobytes(),
+            self._conditions.view().tobytes(),
+            self._recorded.view().tobytes(),
+            self._table,
+        )
+
+    @classmethod
+    def restored(cls, saved: "SavedPoses") -> "PoseTable":
+        """The table that was saved."""
+        restored = cls()
+        restored._feet.extend(np.frombuffer(saved.feet, np.float64).reshape(-1, 3))
+        restored._angles.extend(np.frombuffer(saved.angles, np.float64).reshape(-1, 2))
+        restored._conditions.extend(np.frombuffer(saved.conditions, np.int32))
+        restored._recorded.extend(np.frombuffer(saved.recorded, np.bool_))
+        restored._table = list(saved.table)
+        return restored
+
+    def _add(
+        self, position: Point, yaw: float, pitch: float, condition: int, *, recorded: bool
+    ) -> int:
+        self._feet.append(position)
+        self._angles.append((yaw, pitch))
+        self._conditions.append(condition)
+        self._recorded.append(recorded)
+        return len(self._feet) - 1
+
+
+@dataclass(frozen=True, slots=True)
+class SavedPoses:
+    """A pose table as plain data: its columns as native bytes, and the conditions."""
+
+    feet: bytes
+    angles: bytes
+    conditions: bytes
+    recorded: bytes
+    table: list[Condition | None]
