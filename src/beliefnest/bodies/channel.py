@@ -13,7 +13,7 @@ import msgspec
 
 from beliefnest.bodies.child import Child
 from beliefnest.bodies.limits import ProcessLimits
-from beliefnest.errors import BodyError, BodyLostError, WorldError
+from beliefnest.errors import BodyError, BodyLostError, InputError, WorldError
 
 __all__ = ["PROTOCOL", "Channel"]
 
@@ -83,6 +83,7 @@ class Channel:
         """Send a request and return its result; frames on the way go to `on_frame`.
 
         Raises:
+            InputError: A text of the request has half a character in it, so that it cannot be sent.
             WorldError: Node refused the request as impossible.
             BodyLostError: Node ended, or had to be killed; the message carries its last words.
             BodyError: Node failed to do it.
@@ -91,7 +92,7 @@ class Channel:
             raise BodyError(f"the world was closed; it cannot be asked for {op!r} any more")
         self._number += 1
         self._tick = None
-        message = msgspec.msgpack.encode({"id": self._number, "op": op, **arguments})
+        message = _encoded(op, {"id": self._number, "op": op, **arguments})
         try:
             self._send(_HEADER.pack(len(message)) + message)
             answer, refused = self._answer(on_frame)
@@ -152,7 +153,7 @@ class Channel:
             raise _BrokenError(f"announced a message of {length} bytes")
         try:
             message = msgspec.msgpack.decode(self._read(length), type=dict[str, Any])
-        except msgspec.MsgspecError as error:
+        except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
             raise _BrokenError(f"sent {length} bytes that are no message ({error})") from error
         return message
 
@@ -193,6 +194,17 @@ class Channel:
         when = f"during {op!r}" if self._tick is None else f"during {op!r}, after tick {self._tick}"
         told = f"; its last words:\n{words}" if words else "; it said nothing"
         return BodyLostError(f"Node {ended} {when}{told}")
+
+
+def _encoded(op: str, message: dict[str, Any]) -> bytes:
+    try:
+        return msgspec.msgpack.encode(message)
+    except UnicodeEncodeError as error:
+        half = error.object[error.start]
+        raise InputError(
+            f"a text in the request {op!r} has half a character in it ({half!a}); "
+            "give whole characters"
+        ) from error
 
 
 def _result(op: str, answer: dict[str, Any]) -> Any:

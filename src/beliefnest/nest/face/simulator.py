@@ -304,6 +304,7 @@ class Simulator(_Seen):
             self._child_path(agent)
             if not isinstance(code, str):
                 raise InputError(f"the program of {agent} is a text, not {type(code).__name__}")
+            _whole(agent, code)
         return self._engine.run(self._path, programs, _timeout(timeout_ticks))
 
     def noting(self, model: "Model", **detail: str) -> "Model":
@@ -375,6 +376,18 @@ class Simulator(_Seen):
 
     def _explained_tick(self) -> None:
         return None
+
+
+def _whole(agent: str, code: str) -> None:
+    """Refuse a program that has half a character in it: no file and no process could take it."""
+    try:
+        code.encode()
+    except UnicodeEncodeError as error:
+        half, line = code[error.start], code.count("\n", 0, error.start) + 1
+        raise InputError(
+            f"the program of {agent} has half a character, {half!a}, in line {line}; "
+            "write the whole character, or an escape such as \\u{1f600}"
+        ) from error
 
 
 def _timeout(ticks: int) -> int:

@@ -5,6 +5,7 @@
  * arguments of the signature without `bot`, which is `context.bot`.
  */
 const { numbers } = require('./lib/answers')
+const { show } = require('./lib/arguments')
 const { SkillError } = require('./lib/errors')
 
 const SKILLS = [
@@ -89,7 +90,7 @@ function bind (skill, body, signal) {
       return await skill.run(context, ...own)
     } catch (error) {
       if (error instanceof SkillError) throw error
-      throw new SkillError(skill.name, `${skill.name}: ${error instanceof Error ? error.message : String(error)}`, error)
+      throw new SkillError(skill.name, `${skill.name}: ${error instanceof Error ? error.message : show(error)}`, error)
     }
   }
 }

@@ -1,12 +1,26 @@
 'use strict'
 /** Checks of what a program handed to a skill; every `fail(message)` throws. */
 
+const MOST_SHOWN = 200
+const LONGEST_NAME = 100
+
+/**
+ * What a value is, for a message: primitives and places themselves, all else by its kind, for making a text of what
+ * the game is made of takes long and tells more than a program may know.
+ */
 function show (value) {
-  if (typeof value === 'string') return `"${value}"`
-  if (value !== null && typeof value === 'object' && Number.isFinite(value.x)) return `(${value.x}, ${value.y}, ${value.z})`
-  if (typeof value !== 'object' || value === null) return String(value)
-  const isData = Array.isArray(value) || Object.getPrototypeOf(value) === Object.prototype
-  return isData ? JSON.stringify(value) : 'an object of the game'
+  if (typeof value === 'string') return `"${shortened(value)}"`
+  if (typeof value === 'function') return 'a function'
+  if (typeof value !== 'object' || value === null) return shortened(String(value))
+  if (typeof value.x === 'number') return shortened(`(${[value.x, value.y, value.z].map(part).join(', ')})`)
+  if (Array.isArray(value)) return `a list of ${value.length}`
+  return Object.getPrototypeOf(value) === Object.prototype ? 'an object' : 'an object of the game'
+}
+
+const part = value => (typeof value === 'object' && value !== null ? 'an object' : show(value))
+
+function shortened (text) {
+  return (text.length > MOST_SHOWN ? `${text.slice(0, MOST_SHOWN - 4)} ...` : text).toWellFormed()
 }
 
 /** @returns {Vec3} a finite position */
@@ -38,8 +52,9 @@ function text ({ fail }, name, value) {
   return value
 }
 
-/** Names that contain what was asked for or the other way round, for a hint. */
+/** Names that contain what was asked for or the other way round, for a hint; none for what is too long to be one. */
 function similar (name, names) {
+  if (name.length > LONGEST_NAME) return ''
   const close = names.filter(other => other.includes(name) || name.includes(other)).slice(0, 4)
   return close.length ? `; similar names: ${close.join(', ')}` : ''
 }

@@ -9,6 +9,13 @@ const MAX_UNSENT = 40
 // Real time: Python's patience is.
 const BEAT_MS = 1000
 
+/** Python takes no text with half a character in it: each becomes U+FFFD, wherever it stands in a message. */
+class WellFormedEncoder extends Encoder {
+  encodeString (text) {
+    super.encodeString(text.toWellFormed())
+  }
+}
+
 class Channel {
   /**
    * @param {import('node:stream').Duplex} stream
@@ -20,7 +27,7 @@ class Channel {
     this.pending = Buffer.alloc(0)
     this.unsent = []
     this.written = 0
-    this.encoder = new Encoder({ ignoreUndefined: true })
+    this.encoder = new WellFormedEncoder({ ignoreUndefined: true })
     stream.on('data', chunk => this.take(chunk))
   }
 

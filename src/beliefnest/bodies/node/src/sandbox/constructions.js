@@ -3,24 +3,33 @@
 
 const { goals, Movements } = require('mineflayer-pathfinder')
 
-const MAX_SUBGOALS = 100
+const { cut } = require('./text')
+
+const MAX_GOALS = 100
 const MAX_RANGE = 256
 const MAX_DEPTH = 10
+// A player reaches no further; rays are as long.
+const MAX_REACH = 8
+// What a goal costs that looks along rays, at every place of a way that is near enough for them; and making movements.
+const RAYS_COST = 5000
+const MOVEMENTS_COST = 200_000
 const coordinate = (exchange, wire, where) => exchange.coordinate(wire, where)
-const range = (exchange, wire, where) => {
+const upTo = (most) => (exchange, wire, where) => {
   const value = exchange.number(wire, where)
-  if (value < 0 || value > MAX_RANGE) throw new TypeError(`${where} must be between 0 and ${MAX_RANGE}, found ${value}`)
+  if (value < 0 || value > most) throw new TypeError(`${where} must be between 0 and ${most}, found ${value}`)
   return value
 }
+const range = upTo(MAX_RANGE)
+const near = upTo(MAX_REACH)
 const vector = (exchange, wire, where) => exchange.vector(wire, where)
 const entity = (exchange, wire, where) => exchange.object(wire, ['entity'], where)
-const goal = (exchange, wire, where, depth) => buildGoal(exchange, wire, where, depth)
-const goalList = (exchange, wire, where, depth) => {
+const goal = (exchange, wire, where, tree) => buildGoal(exchange, wire, where, tree)
+const goalList = (exchange, wire, where, tree) => {
   const list = Array.isArray(wire) ? wire : []
-  if (list.length === 0 || list.length > MAX_SUBGOALS) throw new TypeError(`${where} must be 1 to ${MAX_SUBGOALS} goals`)
-  return list.map((item, i) => buildGoal(exchange, item, `${where}[${i}]`, depth))
+  if (list.length === 0 || list.length > MAX_GOALS) throw new TypeError(`${where} must be 1 to ${MAX_GOALS} goals`)
+  return list.map((item, i) => buildGoal(exchange, item, `${where}[${i}]`, tree))
 }
-const reach = { range: [range, 5], LOS: [boolean, true] }
+const reach = { range: [near, 5], LOS: [boolean, true] }
 const placing = { ...reach, facing: [facing, undefined], half: [half, undefined] }
 
 const xyz = [coordinate, coordinate, coordinate]
@@ -35,7 +44,7 @@ const FORMS = {
   GoalInvert: { args: [goal] },
   GoalCompositeAny: { args: [goalList] },
   GoalCompositeAll: { args: [goalList] },
-  GoalLookAtBlock: { args: [vector], world: true, options: { reach: [range, 4.5], entityHeight: [range, 1.6] } },
+  GoalLookAtBlock: { args: [vector], world: true, options: { reach: [near, 4.5], entityHeight: [near, 1.6] } },
   GoalPlaceBlock: { args: [vector], world: true, options: placing }
 }
 
@@ -50,13 +59,13 @@ function boolean (exchange, wire, where) {
 
 function facing (exchange, wire, where) {
   const text = exchange.text(wire, where)
-  if (!['north', 'south', 'east', 'west', 'up', 'down'].includes(text)) throw new TypeError(`${where} must be a direction, found ${text}`)
+  if (!['north', 'south', 'east', 'west', 'up', 'down'].includes(text)) throw new TypeError(`${where} must be a direction, found ${cut(text, 40)}`)
   return text
 }
 
 function half (exchange, wire, where) {
   const text = exchange.text(wire, where)
-  if (!['top', 'bottom'].includes(text)) throw new TypeError(`${where} must be "top" or "bottom", found ${text}`)
+  if (!['top', 'bottom'].includes(text)) throw new TypeError(`${where} must be "top" or "bottom", found ${cut(text, 40)}`)
   return text
 }
 
@@ -69,15 +78,28 @@ const GOAL_NAMES = Object.keys(FORMS)
  * @param {string} where for messages
  * @returns {object} a goal of mineflayer-pathfinder
  */
-function buildGoal (exchange, wire, where, depth = 0) {
+function buildGoal (exchange, wire, where, { depth, made } = { depth: 0, made: { goals: 0 } }) {
+  if (++made.goals > MAX_GOALS) throw new TypeError(`${where} is one of more than ${MAX_GOALS} goals in one`)
   if (depth > MAX_DEPTH) throw new TypeError(`${where} is nested more than ${MAX_DEPTH} deep`)
   if (wire === null || typeof wire !== 'object' || wire.$ !== 'g' || !Object.hasOwn(FORMS, wire.n) || !Array.isArray(wire.a)) {
     throw new TypeError(`${where} must be a goal, such as new goals.GoalNear(x, y, z, range)`)
   }
   const form = FORMS[wire.n]
-  const args = form.args.map((convert, i) => convert(exchange, wire.a[i] ?? null, `argument ${i + 1} of ${wire.n}`, depth + 1))
+  const args = form.args.map((convert, i) => convert(exchange, wire.a[i] ?? null, `argument ${i + 1} of ${wire.n}`, { depth: depth + 1, made }))
   if (form.world) args.push(exchange.bot.world, goalOptions(exchange, form, wire))
-  return new goals[wire.n](...args)
+  if (form.world) exchange.pay(RAYS_COST)
+  const built = new goals[wire.n](...args)
+  if (form.world) payForRays(exchange, built)
+  return built
+}
+
+/** Lets the program pay where a goal looks along rays; it is reached at once when there is no fuel left. */
+function payForRays (exchange, goal) {
+  const { isEnd, pos } = goal
+  goal.isEnd = (node) => {
+    if (node.distanceTo(pos) > 2 * MAX_REACH + 1) return false
+    return exchange.spend(RAYS_COST) ? isEnd.call(goal, node) : true
+  }
 }
 
 function goalOptions (exchange, { options }, wire) {
@@ -96,13 +118,14 @@ function buildMovements (exchange, wire, where) {
   if (wire === null || typeof wire !== 'object' || wire.$ !== 'm' || !Array.isArray(wire.o)) {
     throw new TypeError(`${where} must be made with new Movements(bot)`)
   }
+  exchange.pay(MOVEMENTS_COST)
   const movements = new Movements(exchange.bot)
   const standard = exchange.bot.pathfinder.movements
   for (const name of [...SWITCHES, ...COSTS, 'scafoldingBlocks']) movements[name] = standard[name]
   for (const [name, value] of wire.o) {
     if (SWITCHES.includes(name)) movements[name] = boolean(exchange, value, `Movements.${name}`)
     else if (COSTS.includes(name)) movements[name] = exchange.number(value, `Movements.${name}`)
-    else throw new TypeError(`Movements.${String(name).slice(0, 40)} cannot be set by a program; ${[...SWITCHES, ...COSTS].join(', ')} can`)
+    else throw new TypeError(`Movements.${typeof name === 'string' ? cut(name, 40) : '?'} cannot be set by a program; ${[...SWITCHES, ...COSTS].join(', ')} can`)
   }
   return movements
 }

@@ -11,6 +11,7 @@ const { Memories } = require('./memories')
 const { guestSource } = require('./guest/source')
 const { kindNames, tables } = require('./policy/kinds')
 const { GOAL_NAMES } = require('./constructions')
+const { parsed } = require('./text')
 
 const SHADOW_STACK_BYTES = 400_000
 const UNMETERED = 0x7fffffff
@@ -21,6 +22,8 @@ const CROSSING_STACK_BYTES = 20_000
 const LAST_BREATH = 20_000
 const JOBS_AT_ONCE = 100
 const MOST_STRAYS = 1000
+// What the host does to wake a guest: about as much as to answer it.
+const WAKE_COST = 1500
 const HOST_FUNCTIONS = { host: 1, now: 2, random: 3 }
 
 /** Why a guest can run no more: `fuel`, `memory`, `stack`, `internal`, or what `end` was told. */
@@ -187,7 +190,7 @@ class Guest {
   reason (promise) {
     const { interpreter } = this
     try {
-      return JSON.parse(interpreter.text(interpreter.call(this.functions.describe, [interpreter.promiseResult(promise)])))
+      return parsed(interpreter.text(interpreter.call(this.functions.describe, [interpreter.promiseResult(promise)])))
     } catch (error) {
       if (error instanceof GuestException && error.guest.message !== 'interrupted') return {}
       throw error
@@ -202,19 +205,25 @@ class Guest {
   send (message) {
     const { interpreter } = this
     return this.enter(() => {
+      this.charge(WAKE_COST)
       const text = interpreter.string(JSON.stringify(message))
       const answer = interpreter.call(this.functions.dispatch, [text])
       interpreter.free(text)
-      const result = JSON.parse(interpreter.text(answer))
+      const result = parsed(interpreter.text(answer))
       interpreter.free(answer)
       return result
     })
   }
 
-  /** Takes fuel for work that the host does on the program's behalf. */
+  /**
+   * Takes fuel for work that the host does on the program's behalf.
+   * @returns {boolean} whether there was enough; a guest without any ends when it next runs
+   */
   charge (units) {
+    if (this.ended) return false
     const { fuel } = this.interpreter
     fuel.value = Math.max(fuel.value - units, GRACE)
+    return fuel.value > GRACE
   }
 
   /** Ends the guest: what runs of it stops within `LAST_BREATH`. */

@@ -6,12 +6,16 @@
 
 const { Vec3 } = require('vec3')
 const { buildGoal, buildMovements } = require('./constructions')
+const { cut } = require('./text')
 
 const MAX_COORDINATE = 30_000_000
 const MAX_TEXT = 100_000
 const MAX_ELEMENTS = 10_000
 const MAX_DEPTH = 32
 const MAX_HANDLES = 20_000
+const SHOWN = 40
+// What looking a block up takes.
+const BLOCK_COST = 1000
 const FORBIDDEN_KEYS = new Set(['__proto__', 'constructor', 'prototype'])
 
 /** A value of the program that cannot be used; the message says which and why. */
@@ -24,15 +28,22 @@ class RefusedError extends Error {
 
 class Exchange {
   /**
-   * @param {{bot: object, functionFor: function(number): function, kindOf: function(object): ?string}} host
+   * @param {{bot: object, functionFor: function(number): function, kindOf: function(object): ?string,
+   *   spend: function(number): boolean}} host `spend` takes fuel, and says whether the program goes on
    */
-  constructor ({ bot, functionFor, kindOf }) {
+  constructor ({ bot, functionFor, kindOf, spend }) {
     this.bot = bot
     this.functionFor = functionFor
     this.kindOf = kindOf
+    this.spend = spend
     this.objects = []
     this.handles = new Map()
     this.states = new Map()
+  }
+
+  /** Takes fuel for what a value of the program makes the host do. */
+  pay (units) {
+    if (!this.spend(units)) throw new RefusedError('the program has no fuel left for that')
   }
 
   /** @returns {{$: 'h', id: number, k: string}} the name of a host object for the guest */
@@ -88,6 +99,7 @@ class Exchange {
   /** A block stands for its position; its present state is looked up again. */
   block (wire, where) {
     if (!isTagged(wire, 'b')) throw new RefusedError(`${where} must be a block, found ${describeWire(wire)}`)
+    this.pay(BLOCK_COST)
     const position = this.vector(wire, where)
     const block = this.bot.blockAt(position)
     if (!block) throw new RefusedError(`${where}: there is no block at ${position}`)
@@ -156,7 +168,7 @@ class Exchange {
     if (wire.o.length > MAX_ELEMENTS) throw new RefusedError(`${where} has ${wire.o.length} keys, the limit is ${MAX_ELEMENTS}`)
     const record = {}
     for (const [key, value] of wire.o) {
-      if (typeof key !== 'string' || FORBIDDEN_KEYS.has(key)) throw new RefusedError(`${where} has the key ${key}, which is not allowed`)
+      if (typeof key !== 'string' || FORBIDDEN_KEYS.has(key)) throw new RefusedError(`${where} has the key ${typeof key === 'string' ? cut(key, SHOWN) : describeWire(key)}, which is not allowed`)
       record[key] = this.toHost(value, `${where}.${key}`, depth + 1)
     }
     return record
@@ -206,7 +218,7 @@ const TAG_NAMES = { u: 'undefined', v: 'a Vec3', h: 'an object of the game', b: 
 function describeWire (wire) {
   if (wire === null) return 'null'
   if (Array.isArray(wire)) return 'an array'
-  if (typeof wire === 'string') return `the text "${wire.slice(0, 40)}"`
+  if (typeof wire === 'string') return `the text "${cut(wire, SHOWN)}"`
   if (typeof wire !== 'object') return String(wire)
   if (wire.$ === 'n') return ['NaN', 'Infinity', '-Infinity', '-0'].includes(wire.v) ? wire.v : 'an unknown number'
   return Object.hasOwn(TAG_NAMES, wire.$) ? TAG_NAMES[wire.$] : 'a value of unknown form'

@@ -1,7 +1,14 @@
 'use strict'
 /** What a run is reported as: for the program's writer, in places of the program's own text. */
 
+const { cut } = require('./text')
+
 const MAX_MESSAGE = 4000
+const MAX_NAME = 100
+// A stack that the program has made itself may be of any length.
+const MAX_STACK = 20_000
+const MAX_FRAMES = 100
+const SKILL = /^[\w. ]{1,80}$/
 const NOT_AWAITED = ' (nothing waited for this promise: write await, or catch its error)'
 const PLACE = /\(?program\.js:(\d+):(\d+)\)?/
 
@@ -18,7 +25,7 @@ function describeOutcome ({ ok, error, stray, ended }, program, limits, last) {
   const { message, skill, kind, stack } = ended ? ofEnd(ended, limits) : ofError(error, limits)
   const { place, callee } = placeIn(stack, program)
   const { line, column } = place ?? program.statement(last) ?? { line: null, column: null }
-  return { message: named(message, callee).slice(0, MAX_MESSAGE) + (stray ? NOT_AWAITED : ''), line, column, skill, kind }
+  return { message: cut(named(message, callee), MAX_MESSAGE) + (stray ? NOT_AWAITED : ''), line, column, skill, kind }
 }
 
 // The interpreter does not say what is not a function.
@@ -40,14 +47,15 @@ function ofError (error, limits) {
 
 // The record comes from the guest: any field may be anything.
 function plainError (record) {
-  const field = (key, otherwise) => typeof record?.[key] === 'string' ? record[key] : otherwise
+  const field = (key, otherwise, most = MAX_MESSAGE) => typeof record?.[key] === 'string' ? cut(record[key], most) : otherwise
+  const skill = field('skill', null)
   const thrown = record?.thrown === true
   return {
     message: thrown ? `the program threw ${field('message', 'something')}` : field('message', 'the program failed, and broke what would have said how'),
-    name: thrown ? 'Error' : field('name', 'Error').slice(0, 100),
-    skill: field('skill', null),
+    name: thrown ? 'Error' : field('name', 'Error', MAX_NAME),
+    skill: skill !== null && SKILL.test(skill) ? skill : null,
     kind: ['skill', 'refused'].includes(record?.kind) ? record.kind : null,
-    stack: field('stack', '')
+    stack: field('stack', '', MAX_STACK)
   }
 }
 
@@ -66,7 +74,7 @@ function limitMessage (kind, { fuel, memory }) {
 }
 
 function placeIn (stack, program) {
-  for (const frame of stack.split('\n')) {
+  for (const frame of stack.slice(0, MAX_STACK).split('\n', MAX_FRAMES)) {
     const match = PLACE.exec(frame)
     const [line, column] = match ? [Number(match[1]), Number(match[2])] : []
     const place = match && program.locate(line, column)

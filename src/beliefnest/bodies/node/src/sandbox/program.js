@@ -5,9 +5,15 @@
  */
 
 const acorn = require('acorn')
+const { Insertions, Lines } = require('./places')
+const { cut } = require('./text')
 
-const MAX_LENGTH = 200_000
+// Reading a program takes acorn time that grows with the square of some of its parts: about a second at worst.
+const MAX_LENGTH = 40_000
+const MAX_LINES = 2000
 const MAX_NAME = 80
+const MAX_MESSAGE = 1000
+const NAME = '__ran'
 const STATEMENT_LISTS = { Program: 'body', BlockStatement: 'body', StaticBlock: 'body', SwitchCase: 'consequent' }
 const SKIPPED_KEYS = new Set(['type', 'start', 'end'])
 
@@ -27,7 +33,7 @@ class ProgramSyntaxError extends Error {
 
 /**
  * Reads a program and prepares it for execution.
- * @param {string} code the body of an async function, or function declarations only, of which the
+ * @param {string} given the body of an async function, or function declarations only, of which the
  *   last async one (or the only one) is called with `bot`
  * @param {string[]} parameters the names in scope, `bot` among them
  * @returns {{text: string, marks: number, locate: function(number, number): ?{line: number, column: number},
@@ -35,21 +41,24 @@ class ProgramSyntaxError extends Error {
  *   statement: function(number): ?{line: number, column: number}, linesOf: function(Iterable<number>): number[]}}
  *   `text` is an expression, a function of (marks, ...parameters); `marks` the length of the array that
  *   takes the numbers of executed statements; `locate` maps a place in `text` to one in
- *   `code`, `callee` to the text of what is called there
+ *   the program, `callee` to the text of what is called there
  * @throws {ProgramSyntaxError}
  */
-function prepareProgram (code, parameters) {
-  if (typeof code !== 'string') throw new ProgramSyntaxError(`a program is a text, not ${typeof code}`, null, null)
-  if (code.length > MAX_LENGTH) {
-    throw new ProgramSyntaxError(`the program has ${code.length} characters, the limit is ${MAX_LENGTH}`, null, null)
-  }
+function prepareProgram (given, parameters) {
+  if (typeof given !== 'string') throw new ProgramSyntaxError(`a program is a text, not ${typeof given}`, null, null)
+  const code = given.toWellFormed()
+  if (code.length > MAX_LENGTH) throw tooLarge(code.length, 'characters', MAX_LENGTH)
+  const lines = new Lines(code)
+  if (lines.count > MAX_LINES) throw tooLarge(lines.count, 'lines', MAX_LINES)
   const tree = parse(code)
   const marker = freeName(code)
-  const { edits, statements, places, callees } = survey(tree, code, marker)
+  const { edits, statements, places, callees } = survey(tree, code, marker, lines)
   const prefix = `(function (${[marker, ...parameters].join(', ')}) { return (async function () {`
-  const text = `${prefix}${applyEdits(code, edits)}\n${entryCall(tree)}})() })`
-  const position = (offset) => offsetToPlace(code, offset)
-  const original = (line, column) => originalOffset(placeToOffset(text, line, column) - prefix.length, edits)
+  const edited = new Insertions(code, edits)
+  const text = `${prefix}${edited.text}\n${entryCall(tree)}})() })`
+  const executed = new Lines(text, /\n/g)
+  const position = (offset) => lines.place(offset)
+  const original = (line, column) => edited.original(executed.offset(line, column) - prefix.length)
   return {
     text,
     marks: statements.length + 1,
@@ -63,6 +72,10 @@ function prepareProgram (code, parameters) {
   }
 }
 
+function tooLarge (count, what, limit) {
+  return new ProgramSyntaxError(`the program has ${count} ${what}, the limit is ${limit}`, null, null)
+}
+
 function parse (code) {
   try {
     return acorn.parse(code, {
@@ -71,7 +84,7 @@ function parse (code) {
   } catch (error) {
     if (error instanceof SyntaxError) {
       const message = error.message.replace(/ \(\d+:\d+\)$/, '')
-      throw new ProgramSyntaxError(`SyntaxError: ${message}`, error.loc.line, error.loc.column + 1)
+      throw new ProgramSyntaxError(`SyntaxError: ${cut(message, MAX_MESSAGE)}`, error.loc.line, error.loc.column + 1)
     }
     if (error instanceof RangeError) throw new ProgramSyntaxError('SyntaxError: the program is nested too deeply', null, null)
     throw error
@@ -89,12 +102,11 @@ function entryCall (tree) {
 }
 
 function freeName (code) {
-  let name = '__ran'
-  while (code.includes(name)) name += '_'
-  return name
+  const used = code.match(/__ran_*/g)
+  return used === null ? NAME : NAME.padEnd(Math.max(...used.map(({ length }) => length)) + 1, '_')
 }
 
-function survey (tree, code, marker) {
+function survey (tree, code, marker, lines) {
   const edits = []
   const statements = []
   const places = new Map()
@@ -107,7 +119,7 @@ function survey (tree, code, marker) {
   const stack = [tree]
   while (stack.length > 0) {
     const node = stack.pop()
-    if (node.type === 'ImportExpression') refuseImport(node, code)
+    if (node.type === 'ImportExpression') refuseImport(node, lines)
     const list = STATEMENT_LISTS[node.type]
     if (list) node[list].forEach(mark)
     notePlace(node, code, places, callees)
@@ -117,8 +129,8 @@ function survey (tree, code, marker) {
   return { edits, statements, places, callees }
 }
 
-function refuseImport (node, code) {
-  const { line, column } = offsetToPlace(code, node.start)
+function refuseImport (node, lines) {
+  const { line, column } = lines.place(node.start)
   throw new ProgramSyntaxError('SyntaxError: import is not available to a program', line, column)
 }
 
@@ -139,45 +151,12 @@ function notePlace (node, code, places, callees) {
   if (node.type === 'MemberExpression') places.set(code.indexOf(node.computed ? '[' : '.', node.object.end), node.property.start)
   if (node.type !== 'NewExpression' && node.type !== 'CallExpression') return
   const { callee } = node
+  // `new Name` needs no parenthesis.
+  if (callee.end === node.end) return
   const parenthesis = code.indexOf('(', callee.end)
   const named = callee.type === 'MemberExpression' ? callee.property.start : callee.start
   places.set(parenthesis, node.type === 'NewExpression' ? node.start : named)
-  callees.set(parenthesis, code.slice(callee.start, callee.end).slice(0, MAX_NAME))
-}
-
-function applyEdits (code, edits) {
-  const parts = []
-  let from = 0
-  for (const { at, text } of edits) {
-    parts.push(code.slice(from, at), text)
-    from = at
-  }
-  return parts.join('') + code.slice(from)
-}
-
-function originalOffset (offset, edits) {
-  let inserted = 0
-  for (const { at, text } of edits) {
-    if (at + inserted >= offset) break
-    if (at + inserted + text.length > offset) return at
-    inserted += text.length
-  }
-  return offset - inserted
-}
-
-function offsetToPlace (text, offset) {
-  const before = text.slice(0, offset).split(/\r\n|[\n\r\u2028\u2029]/)
-  return { line: before.length, column: before.at(-1).length + 1 }
-}
-
-function placeToOffset (text, line, column) {
-  let offset = 0
-  for (let n = 1; n < line; n++) {
-    const next = text.indexOf('\n', offset)
-    if (next < 0) return -1
-    offset = next + 1
-  }
-  return offset + column - 1
+  callees.set(parenthesis, cut(code.slice(callee.start, callee.end), MAX_NAME))
 }
 
 module.exports = { prepareProgram, ProgramSyntaxError }

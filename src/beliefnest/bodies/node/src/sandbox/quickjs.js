@@ -11,6 +11,8 @@ const { addTracker, setTracker } = require('./rejections')
 
 const CHUNK = 4096
 const EMPTY = Buffer.alloc(CHUNK)
+// Above the longest message (session.js) in bytes, so that a longer one is still seen to be too long.
+const MAX_TEXT = 4_000_000
 const ALL_INTRINSICS = 0
 const AS_SCRIPT = 0
 const PENDING = 0
@@ -120,9 +122,10 @@ class QuickJS {
     return { place, value: this.ffi.QTS_NewArrayBuffer(this.context, place, length) }
   }
 
+  /** @returns {string} what a value is as a text, no more than `MAX_TEXT` bytes of it */
   text (value) {
     const pointer = this.ffi.QTS_GetString(this.context, value)
-    const text = this.glue.UTF8ToString(pointer)
+    const text = this.glue.UTF8ToString(pointer, MAX_TEXT).toWellFormed()
     this.ffi.QTS_FreeCString(this.context, pointer)
     return text
   }

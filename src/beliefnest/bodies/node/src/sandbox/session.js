@@ -4,17 +4,18 @@
  * has happened, and lets go of everything when the run ends.
  */
 
-const { Exchange, RefusedError } = require('./exchange')
+const { describeWire, Exchange, RefusedError } = require('./exchange')
 const { COST, kinds, tables } = require('./policy/kinds')
 const { events } = require('./policy/events')
 const { GuestEnded } = require('./engine')
 const { stateOf } = require('./policy/types')
 const { kindOf } = require('./kind-of')
+const { cut, parsed } = require('./text')
 
-const LIMITS = { message: 1_000_000, calls: 100, timers: 1000, listeners: 100, logLines: 1000, logCharacters: 50_000, error: 4000 }
+const LIMITS = { message: 1_000_000, calls: 100, timers: 1000, listeners: 100, logLines: 1000, logCharacters: 50_000, error: 4000, name: 100, level: 10 }
 // Who waits for what a listener or a timer of the program answers.
 const NOBODY = 0
-const REQUEST_COST = { each: 1500, character: 20 }
+const REQUEST_COST = { each: 1500, character: 20, answered: 2 }
 
 class Session {
   /**
@@ -28,7 +29,9 @@ class Session {
     this.skills = skills
     this.data = data
     this.random = random
-    this.exchange = new Exchange({ bot, functionFor: (id) => this.functionFor(id), kindOf: (value) => kindOf(value, bot) })
+    this.exchange = new Exchange({
+      bot, functionFor: (id) => this.functionFor(id), kindOf: (value) => kindOf(value, bot), spend: (units) => this.spend(units)
+    })
     this.calls = new Map()
     this.timers = new Map()
     this.listeners = []
@@ -75,10 +78,22 @@ class Session {
     if (this.outcome !== null) return
     this.outcome = outcome
     this.unfinished = [...this.calls.values(), ...this.timers.values()].map(({ what, statement }) => ({ what, statement }))
-    for (const timer of this.timers.values()) timer.stop()
+    for (const { stop } of this.timers.values()) stop()
+    this.timers.clear()
     for (const { event, listener } of this.listeners) this.bot.removeListener(event, listener)
     this.guest.end('ended', 'the program has ended')
     this.resolve(outcome)
+  }
+
+  /**
+   * Takes fuel for work of the host that no code of the program waits for, such as a search for a way.
+   * @returns {boolean} whether the program goes on
+   */
+  spend (units) {
+    if (this.outcome === null && this.guest.charge(units) === false) {
+      this.finish({ ok: false, ended: new GuestEnded('fuel', 'the host has used it up on behalf of the program') })
+    }
+    return this.outcome === null
   }
 
   guarded (act) {
@@ -109,11 +124,13 @@ class Session {
     try {
       this.guest.charge(REQUEST_COST.each + REQUEST_COST.character * Math.min(text.length, LIMITS.message))
       if (text.length > LIMITS.message) {
-        throw new RefusedError(`${text.length} characters leave the program at once, the limit is ${LIMITS.message}`)
+        throw new RefusedError(`more than ${LIMITS.message} characters leave the program at once, which is the limit`)
       }
-      const [action, ...args] = JSON.parse(text)
-      if (!Object.hasOwn(HANDLERS, action)) throw new RefusedError('the request is of an unknown form')
-      return JSON.stringify({ ok: true, value: HANDLERS[action](this, ...args) })
+      const [action, ...args] = parsed(text)
+      if (typeof action !== 'string' || !Object.hasOwn(HANDLERS, action)) throw new RefusedError('the request is of an unknown form')
+      const answer = JSON.stringify({ ok: true, value: HANDLERS[action](this, ...args) })
+      this.guest.charge(REQUEST_COST.answered * answer.length)
+      return answer
     } catch (error) {
       const [cause, label] = error instanceof CallError ? [error.cause, error.label] : [error, null]
       return JSON.stringify({ ok: false, value: this.errorToGuest(cause, label) })
@@ -122,8 +139,8 @@ class Session {
 
   errorToGuest (error, skill) {
     const isError = error !== null && typeof error === 'object' && typeof error.message === 'string'
-    const message = (isError ? error.message : String(error)).slice(0, LIMITS.error)
-    const name = isError && typeof error.name === 'string' && error.name !== 'RefusedError' ? error.name.slice(0, 100) : 'Error'
+    const message = cut(isError ? error.message : primitive(error), LIMITS.error)
+    const name = isError && typeof error.name === 'string' && error.name !== 'RefusedError' ? cut(error.name, LIMITS.name) : 'Error'
     const place = isError ? this.places.get(error) ?? this.places.get(error.cause) : undefined
     return { $: 'e', message, name, skill, kind: error instanceof RefusedError ? 'refused' : 'skill', stack: place }
   }
@@ -165,9 +182,9 @@ class Session {
   }
 
   errorOfGuest ({ message, name, stack }) {
-    const error = new Error(String(message).slice(0, LIMITS.error))
-    error.name = String(name).slice(0, 100)
-    this.places.set(error, String(stack ?? '').slice(0, LIMITS.error))
+    const error = new Error(cut(primitive(message), LIMITS.error))
+    error.name = cut(primitive(name), LIMITS.name)
+    this.places.set(error, cut(primitive(stack ?? ''), LIMITS.error))
     return error
   }
 
@@ -189,7 +206,7 @@ class Session {
   member (handle, table, name) {
     const { object, kind } = this.exchange.resolve(handle)
     const members = kinds[kind][table] ?? {}
-    if (typeof name !== 'string' || !Object.hasOwn(members, name)) throw new RefusedError(`${kind} has no ${table} ${String(name).slice(0, 40)}`)
+    if (typeof name !== 'string' || !Object.hasOwn(members, name)) throw new RefusedError(`${kind} has no ${table} ${describeWire(name)}`)
     return { object, where: `${kind}.${name}`, entry: members[name] }
   }
 
@@ -239,7 +256,7 @@ class Session {
   }
 
   listen (event, wire, once) {
-    if (!Object.hasOwn(events, event)) throw new RefusedError(`a program cannot listen to the event ${String(event).slice(0, 40)}; it can to ${Object.keys(events).join(', ')}`)
+    if (typeof event !== 'string' || !Object.hasOwn(events, event)) throw new RefusedError(`a program cannot listen to the event ${describeWire(event)}; it can to ${Object.keys(events).join(', ')}`)
     if (this.listeners.length >= LIMITS.listeners) throw new RefusedError(`the program has ${LIMITS.listeners} listeners, which is the limit`)
     const id = this.exchange.functionOf(wire, 'the listener') && wire.id
     const listener = (...values) => {
@@ -271,6 +288,8 @@ class Session {
   }
 
   startTimer (id, wire, repeat) {
+    if (!Number.isSafeInteger(id)) throw new RefusedError(`the number of a timer must be a whole number, found ${describeWire(id)}`)
+    if (this.timers.has(id)) throw new RefusedError(`there is a timer ${id} already`)
     if (this.timers.size >= LIMITS.timers) throw new RefusedError(`the program has ${LIMITS.timers} timers, which is the limit`)
     const delay = Math.min(Math.max(this.exchange.number(wire, 'the delay of a timer'), 0), 2 ** 31 - 1)
     const fire = () => {
@@ -291,10 +310,10 @@ class Session {
 
   write (level, text) {
     if (this.log.length >= LIMITS.logLines || this.logRoom <= 0) return null
-    const written = String(text).slice(0, this.logRoom)
+    const written = cut(typeof text === 'string' ? text : describeWire(text), this.logRoom)
     this.logRoom -= written.length
     const isLast = this.log.length === LIMITS.logLines - 1 || this.logRoom <= 0
-    this.log.push({ level: String(level).slice(0, 10), text: isLast ? `${written} ... (the rest of the output is left out)` : written })
+    this.log.push({ level: cut(primitive(level), LIMITS.level), text: isLast ? `${written} ... (the rest of the output is left out)` : written })
     return null
   }
 
@@ -328,6 +347,11 @@ const HANDLERS = {
   keys: (session, name) => Object.keys(session.table(name)),
   state: (session, id) => session.blockState(id),
   settled: (session, ticket, ok, wire) => session.settled(ticket, ok, wire)
+}
+
+// Nothing else is made into a text: that would take time, or tell what no policy allows.
+function primitive (value) {
+  return (typeof value === 'object' && value !== null) || typeof value === 'function' ? 'something that is no text' : String(value)
 }
 
 // mcData holds only data; what JSON cannot say is left out.

@@ -55,8 +55,9 @@ describe('the text of a program', () => {
     ['a declaration twice', 'let a; let a', /already been declared/, 1, 12],
     ['a bare function', 'async (bot) => {}', /without a name/, 1, 1],
     ['no text', 7, /a program is a text, not number/, null, null],
-    ['too much text', ' '.repeat(200001), /200001 characters, the limit is 200000/, null, null],
-    ['deep nesting', '['.repeat(100000), /nested too deeply/, null, null]
+    ['too much text', ' '.repeat(40001), /40001 characters, the limit is 40000/, null, null],
+    ['too many lines', '0\n'.repeat(20000), /20001 lines, the limit is 2000/, null, null],
+    ['deep nesting', '['.repeat(40000), /nested too deeply/, null, null]
   ]) {
     it(`refuses ${what}`, () => {
       assert.throws(() => prepare(code), error => {

@@ -5,22 +5,21 @@
  * Runs inside QuickJS: the function is handed over as text and must not refer to anything outside it.
  */
 module.exports = function defineBorder (env) {
-  const { stringify, parse } = JSON
-  const handles = new Map()
-  const handleOf = new WeakMap()
-  const functions = new Map()
-  const functionIds = new WeakMap()
-  const promises = new Map()
-  const errorNotes = new WeakMap()
-  const states = new Map()
+  const { apply, each, is, isArray, isFinite, keys, own, parse, quote, toNumber } = env
+  const handles = own(new Map())
+  const handleOf = own(new WeakMap())
+  const functions = own(new Map())
+  const functionIds = own(new WeakMap())
+  const promises = own(new Map())
+  const errorNotes = own(new WeakMap())
+  const states = own(new Map())
+  const { fromEntries } = Object
   let nextFunction = 1
 
-  function special (number) {
-    return Object.is(number, -0) ? '-0' : String(number)
-  }
-
+  // Every function called encode... gives JSON.
   function encodeNumber (value) {
-    return Number.isFinite(value) && !Object.is(value, -0) ? value : { $: 'n', v: special(value) }
+    if (isFinite(value) && !is(value, -0)) return '' + value
+    return '{"$":"n","v":"' + (is(value, -0) ? '-0' : value) + '"}'
   }
 
   function encodeFunction (value) {
@@ -28,38 +27,60 @@ module.exports = function defineBorder (env) {
       functionIds.set(value, nextFunction)
       functions.set(nextFunction++, value)
     }
-    return { $: 'f', id: functionIds.get(value) }
+    return '{"$":"f","id":' + functionIds.get(value) + '}'
   }
 
   function encodeObject (value, depth) {
     if (depth > 32) throw new TypeError('a value handed out of the program is nested more than 32 deep')
-    if (env.isVector(value)) return { $: 'v', c: [value.x, value.y, value.z].map((c) => encodeNumber(Number(c))) }
+    if (env.isVector(value)) return encodeVector(value)
     if (handleOf.has(value)) return handle(value)
     const note = env.noteOf(value)
-    if (note) return note.a ? { ...note, a: note.a.map((item) => encode(item, depth + 1)) } : note
-    if (value instanceof env.Movements) return { $: 'm', o: entries(value, depth) }
-    if (value instanceof Error) return { $: 'e', message: String(value.message), name: String(value.name) }
+    if (note) return encodeNote(note, depth)
+    if (value instanceof env.Movements) return encodeEntries('m', value, depth)
+    if (value instanceof Error) return '{"$":"e","message":' + quote(value.message) + ',"name":' + quote(value.name) + '}'
     if (value instanceof Promise) throw new TypeError('a promise was handed out of the program: an await is missing')
-    if (Array.isArray(value)) return value.map((item) => encode(item, depth + 1))
-    return { $: 'o', o: entries(value, depth) }
+    if (isArray(value)) return encodeList(value, depth)
+    return encodeEntries('o', value, depth)
+  }
+
+  function encodeVector ({ x, y, z }) {
+    return '{"$":"v","c":[' + encodeNumber(toNumber(x)) + ',' + encodeNumber(toNumber(y)) + ',' + encodeNumber(toNumber(z)) + ']}'
+  }
+
+  function encodeNote (note, depth) {
+    switch (note.$) {
+      case 'g': return '{"$":"g","n":' + quote(note.n) + ',"a":' + encodeList(note.a, depth) + '}'
+      case 'b': return '{"$":"b","c":' + encodeList(note.c, depth) + '}'
+      default: return '{"$":"i","slot":' + encode(note.slot, depth + 1) + ',"type":' + encode(note.type, depth + 1) + '}'
+    }
   }
 
   function handle (object) {
     if (!handleOf.has(object)) throw new TypeError('the value is no object of the game')
-    return { $: 'h', id: handleOf.get(object) }
+    return '{"$":"h","id":' + encodeNumber(toNumber(handleOf.get(object))) + '}'
   }
 
-  function entries (value, depth) {
-    return Object.keys(value).map((key) => [key, encode(value[key], depth + 1)])
+  function encodeList (list, depth = 0) {
+    let text = '['
+    for (let i = 0; i < list.length; i++) text += (i > 0 ? ',' : '') + encode(list[i], depth + 1)
+    return text + ']'
+  }
+
+  function encodeEntries (tag, value, depth) {
+    const names = keys(value)
+    let text = '{"$":"' + tag + '","o":['
+    for (let i = 0; i < names.length; i++) text += (i > 0 ? ',[' : '[') + quote(names[i]) + ',' + encode(value[names[i]], depth + 1) + ']'
+    return text + ']}'
   }
 
   function encode (value, depth = 0) {
     switch (typeof value) {
-      case 'string': case 'boolean': return value
+      case 'string': return quote(value)
+      case 'boolean': return value ? 'true' : 'false'
       case 'number': return encodeNumber(value)
-      case 'undefined': return { $: 'u' }
+      case 'undefined': return '{"$":"u"}'
       case 'function': return encodeFunction(value)
-      case 'object': return value === null ? null : encodeObject(value, depth)
+      case 'object': return value === null ? 'null' : encodeObject(value, depth)
       default: throw new TypeError(`a ${typeof value} cannot be handed out of the program`)
     }
   }
@@ -74,7 +95,7 @@ module.exports = function defineBorder (env) {
   }
 
   function blockState (id) {
-    if (!states.has(id)) states.set(id, env.deepFreeze(request(['state', id])))
+    if (!states.has(id)) states.set(id, env.deepFreeze(ask('state', encodeNumber(toNumber(id)))))
     return states.get(id)
   }
 
@@ -94,23 +115,26 @@ module.exports = function defineBorder (env) {
     i: ({ d }) => env.makeItem(decode(d)),
     e: decodeError,
     p: ({ id }) => new Promise((resolve, reject) => promises.set(id, { resolve, reject })),
-    o: ({ o }) => Object.fromEntries(o.map(([key, value]) => [key, decode(value)]))
+    o: ({ o }) => fromEntries(each(o, (entry) => [entry[0], decode(entry[1])]))
   }
 
   function decode (wire) {
     if (wire === null || typeof wire !== 'object') return wire
-    return Array.isArray(wire) ? wire.map(decode) : decoders[wire.$](wire)
+    return Array.isArray(wire) ? each(wire, decode) : decoders[wire.$](wire)
   }
 
-  function request (message) {
-    const { ok, value } = parse(env.host(stringify(message)))
-    if (!ok) throw decodeError(value)
-    return decode(value)
+  /** Asks the host; what follows the action is JSON. */
+  function ask (action, ...parts) {
+    let text = '["' + action + '"'
+    for (let i = 0; i < parts.length; i++) text += ',' + parts[i]
+    const answer = parse(env.host(text + ']'))
+    if (!answer.ok) throw decodeError(answer.value)
+    return decode(answer.value)
   }
 
   // The error of an awaited call is made when the answer arrives; its place is where the call was made.
-  function call (message) {
-    const result = request(message)
+  function call (action, subject, first, second) {
+    const result = second === undefined ? ask(action, subject, first) : ask(action, subject, first, second)
     if (!(result instanceof Promise)) return result
     const place = new Error('').stack
     return result.catch((error) => {
@@ -120,13 +144,13 @@ module.exports = function defineBorder (env) {
     })
   }
 
+  /** @returns {string} JSON of what the host is told of an error */
   function describe (error) {
-    if (!(error instanceof Error)) return { thrown: true, message: env.show(error), name: typeof error }
-    const note = errorNotes.get(error) ?? {}
-    return {
-      message: String(error.message), name: String(error.name), stack: String(note.stack ?? error.stack ?? ''),
-      skill: note.skill ?? null, kind: note.kind ?? null
-    }
+    if (!(error instanceof Error)) return '{"thrown":true,"message":' + quote(env.show(error)) + ',"name":"' + typeof error + '"}'
+    const note = errorNotes.get(error)
+    const stack = note?.stack ?? error.stack ?? ''
+    return '{"message":' + quote(error.message) + ',"name":' + quote(error.name) + ',"stack":' + quote(stack) +
+      (note ? ',"skill":' + encode(note.skill) + ',"kind":' + encode(note.kind) : '') + '}'
   }
 
   function settle (id, ok, value) {
@@ -138,15 +162,16 @@ module.exports = function defineBorder (env) {
 
   // A function of the program that answers with a promise answers the host later, by `settled`.
   function invoke (id, args, ticket) {
-    return answer(functions.get(id)(...args.map(decode)), ticket)
+    return answer(apply(functions.get(id), undefined, each(args, decode)), ticket)
   }
 
+  /** @returns {string} JSON */
   function answer (result, ticket) {
-    if (!(result instanceof Promise)) return { now: encode(result) }
-    result.then((value) => request(['settled', ticket, true, encode(value)]))
-      .catch((error) => { request(['settled', ticket, false, describe(error)]) })
-    return { later: true }
+    if (!(result instanceof Promise)) return '{"now":' + encode(result) + '}'
+    result.then((value) => ask('settled', encode(ticket), 'true', encode(value)))
+      .catch((error) => { ask('settled', encode(ticket), 'false', describe(error)) })
+    return '{"later":true}'
   }
 
-  Object.assign(env, { handle, isHandle: (value) => handleOf.has(value), encode, decode, request, call, describe, settle, invoke, answer })
+  Object.assign(env, { ask, handle, isHandle: (value) => handleOf.has(value), encode, encodeList, decode, call, describe, settle, invoke, answer })
 }

@@ -5,12 +5,13 @@
  * Runs inside QuickJS: the function is handed over as text and must not refer to anything outside it.
  */
 module.exports = function defineGlobals (env) {
-  const { config, request, call, encode, handle } = env
-  const timers = new Map()
+  const { apply, ask, call, config, encode, encodeList, handle, own, quote, toNumber, toText } = env
+  const { max } = Math
+  const timers = own(new Map())
   let nextTimer = 1
 
   function show (value, depth = 0) {
-    if (typeof value === 'string') return depth ? JSON.stringify(value) : value
+    if (typeof value === 'string') return depth ? quote(value) : value
     if (typeof value === 'function') return `[function ${value.name}]`
     if (value instanceof Error) return `${value.name}: ${value.message}`
     if (env.isVector(value) || value === null || typeof value !== 'object') return String(value)
@@ -28,19 +29,19 @@ module.exports = function defineGlobals (env) {
   function startTimer (callback, delay, args, repeat) {
     if (typeof callback !== 'function') throw new TypeError('the first argument of a timer must be a function')
     const id = nextTimer++
-    request(['timer', id, Math.max(Number(delay) || 0, repeat ? 1 : 0), repeat])
+    ask('timer', encode(id), encode(max(toNumber(delay) || 0, repeat ? 1 : 0)), encode(repeat))
     timers.set(id, { callback, args, repeat })
     return id
   }
 
   function stopTimer (id) {
-    if (timers.delete(id)) request(['untimer', id])
+    if (timers.delete(id)) ask('untimer', encode(id))
   }
 
   function fire (id) {
     const { callback, args, repeat } = timers.get(id)
     if (!repeat) timers.delete(id)
-    const result = callback(...args)
+    const result = apply(callback, undefined, args)
     if (result instanceof Promise) env.answer(result, 0)
   }
 
@@ -77,10 +78,10 @@ module.exports = function defineGlobals (env) {
     const known = new Map()
     let keys
     const get = (key) => {
-      if (!known.has(key)) known.set(key, deepFreeze(request(['data', name, key])))
+      if (!known.has(key)) known.set(key, deepFreeze(ask('data', quote(name), quote(key))))
       return known.get(key)
     }
-    const allKeys = () => (keys ??= request(['keys', name]))
+    const allKeys = () => (keys ??= ask('keys', quote(name)))
     const refuse = readOnly(`mcData.${name}`)
     return new Proxy({}, {
       get: (_, key) => typeof key === 'string' ? get(key) : undefined,
@@ -99,7 +100,7 @@ module.exports = function defineGlobals (env) {
     const data = {}
     for (const [name, form] of Object.entries(config.tables)) {
       let value
-      const get = () => (value ??= form === 'table' ? lazyTable(name) : deepFreeze(request(['data', name, null])))
+      const get = () => (value ??= form === 'table' ? lazyTable(name) : deepFreeze(ask('data', quote(name), 'null')))
       Object.defineProperty(data, name, { get, enumerable: true })
     }
     return Object.freeze(data)
@@ -108,15 +109,17 @@ module.exports = function defineGlobals (env) {
   function defineKind (name, { gets, sets, calls }) {
     const prototype = env.kinds[name]
     for (const property of gets) {
+      const quoted = quote(property)
       const set = sets.includes(property)
-        ? function (value) { request(['set', handle(this), property, encode(value)]) }
+        ? function (value) { ask('set', handle(this), quoted, encode(value)) }
         : readOnly(`${name}.${property}`)
-      const get = function () { return request(['get', handle(this), property]) }
+      const get = function () { return ask('get', handle(this), quoted) }
       Object.defineProperty(prototype, property, { get, set, configurable: true })
     }
     for (const method of calls) {
+      const quoted = quote(method)
       prototype[method] = function (...args) {
-        return call(['call', handle(this), method, args.map((arg) => encode(arg))])
+        return call('call', handle(this), quoted, encodeList(args))
       }
     }
   }
@@ -131,17 +134,21 @@ module.exports = function defineGlobals (env) {
 
   function addListener (bot, event, listener, once) {
     if (typeof listener !== 'function') throw new TypeError('the second argument of bot.on must be a function')
-    request(['on', String(event), encode(listener), once])
+    ask('on', quote(event), encode(listener), encode(once))
     return bot
   }
 
   function removeListener (event, listener) {
-    if (typeof listener === 'function') request(['off', String(event), encode(listener)])
+    if (typeof listener === 'function') ask('off', quote(event), encode(listener))
     return this
   }
 
   function defineConsole () {
-    const logger = (level) => (...values) => { request(['log', level, values.map((value) => show(value)).join(' ')]) }
+    const logger = (level) => (...values) => {
+      let text = ''
+      for (let i = 0; i < values.length; i++) text += (i > 0 ? ' ' : '') + toText(show(values[i]))
+      ask('log', quote(level), quote(text))
+    }
     globalThis.console = Object.fromEntries(['log', 'info', 'debug', 'warn', 'error'].map((level) => [level, logger(level)]))
   }
 
@@ -158,7 +165,7 @@ module.exports = function defineGlobals (env) {
   globalThis.clearTimeout = globalThis.clearInterval = globalThis.clearImmediate = stopTimer
   globalThis.queueMicrotask = (callback) => { Promise.resolve().then(callback) }
   env.bindSkills = (names) => Object.fromEntries(names.map((name) =>
-    [name, (...args) => call(['skill', name, args.map((arg) => encode(arg))])]))
+    [name, (...args) => call('skill', quote(name), encodeList(args))]))
   env.bindData = () => {
     const data = defineData()
     Object.defineProperty(env.kinds.bot, 'registry', { value: data })

@@ -5,7 +5,7 @@
  */
 module.exports = function defineMain (env) {
   const { describe, decode } = env
-  const { parse, stringify } = JSON
+  const { parse } = env
 
   let scope = []
 
@@ -24,19 +24,19 @@ module.exports = function defineMain (env) {
   }
 
   const actions = {
-    settle: (id, ok, value) => env.settle(id, ok, value),
-    invoke: (id, args, ticket) => env.invoke(id, args, ticket),
-    fire: (id) => env.fire(id)
+    settle: (message) => env.settle(message[1], message[2], message[3]),
+    invoke: (message) => env.invoke(message[1], message[2], message[3]),
+    fire: (message) => env.fire(message[1])
   }
 
   function dispatch (text) {
-    const [action, ...args] = parse(text)
+    const message = parse(text)
     try {
-      return stringify({ ok: true, value: actions[action](...args) ?? null })
+      return '{"ok":true,"value":' + (actions[message[0]](message) ?? 'null') + '}'
     } catch (error) {
-      return stringify({ ok: false, value: describe(error) })
+      return '{"ok":false,"value":' + describe(error) + '}'
     }
   }
 
-  return { bind, start, dispatch, describe: (error) => stringify(describe(error)) }
+  return { bind, start, dispatch, describe }
 }

@@ -1,7 +1,10 @@
 'use strict'
 /** The text that prepares a fresh QuickJS context for a program. */
 
-const parts = [require('./vec3'), require('./values'), require('./border'), require('./globals'), require('./claims'), require('./main')]
+const parts = [
+  require('./primordials'), require('./vec3'), require('./values'), require('./border'), require('./globals'), require('./claims'),
+  require('./main')
+]
 
 /**
  * An expression: a function of (host, now, random, configText) that prepares the

@@ -4,7 +4,7 @@
  * Runs inside QuickJS: the function is handed over as text and must not refer to anything outside it.
  */
 module.exports = function defineValues (env) {
-  const notes = new WeakMap()
+  const notes = env.own(new WeakMap())
 
   function described (tag, name) {
     return class {

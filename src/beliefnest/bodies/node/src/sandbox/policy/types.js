@@ -171,13 +171,21 @@ const entityFilter = {
   }
 }
 
+// Mineflayer would look through a list for every block.
+const oneOf = {
+  toHost: (x, wire, where) => {
+    const wanted = new Set(list(count).toHost(x, wire, where))
+    return (block) => wanted.has(block.type)
+  }
+}
+
 const search = {
   toHost: (x, wire, where) => {
     const written = new Map(isTagged(wire, 'o') ? wire.o : [])
     const read = (key, type, otherwise) => isAbsent(written.get(key)) ? otherwise : type.toHost(x, written.get(key), `${where}.${key}`)
     if (!written.has('matching')) throw new RefusedError(`${where} must be an object with the key matching`)
     return {
-      matching: either(matcher, count, list(count)).toHost(x, written.get('matching'), `${where}.matching`),
+      matching: either(matcher, count, oneOf).toHost(x, written.get('matching'), `${where}.matching`),
       maxDistance: read('maxDistance', within(0, MAX_DISTANCE), 16),
       count: read('count', within(1, MAX_BLOCKS), 1),
       point: read('point', vector, undefined),
