@@ -126,3 +126,25 @@ def test_a_bomb_ends_the_process_and_not_the_machine(tmp_path, kind):
 def test_limits_that_leave_nothing_to_live_on_are_refused():
     with pytest.raises(InputError, match="heap is 0"):
         ProcessLimits(heap=0)
+
+
+def test_half_a_character_in_a_message_is_no_message(tmp_path):
+    told = said(tmp_path, "send(b'\\x81\\xa2id\\xa3\\xed\\xa0\\xbd')\n")
+    assert told.startswith("Node sent 8 bytes that are no message")
+
+
+def test_a_message_nested_without_end_is_no_message(tmp_path):
+    told = said(tmp_path, "send(b'\\x81\\xa1a' + b'\\x91' * 100_000 + b'\\x90')\n")
+    assert "that are no message" in told
+
+
+def test_half_a_character_in_a_request_is_refused_and_nothing_sent(tmp_path):
+    script = tmp_path / "acts.py"
+    script.write_text(START + message({"id": 1, "ok": True, "result": 7}))
+    channel = Channel.start([sys.executable, str(script)])
+    try:
+        with pytest.raises(InputError, match=r"'run' has half of a character in it"):
+            channel.request("run", programs={"ann": "\ud83d"})
+        assert channel.request("run") == 7
+    finally:
+        channel.close()

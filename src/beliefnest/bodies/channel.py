@@ -83,16 +83,16 @@ class Channel:
         """Send a request and return its result; frames on the way go to `on_frame`.
 
         Raises:
-            InputError: A text of the request has half a character in it, so that it cannot be sent.
+            InputError: A text of the request has half of a character in it, so that it cannot be sent.
             WorldError: Node refused the request as impossible.
             BodyLostError: Node ended, or had to be killed; the message carries its last words.
             BodyError: Node failed to do it.
         """
         if self._closed:
             raise BodyError(f"the world was closed; it cannot be asked for {op!r} any more")
+        message = _encoded(op, {"id": self._number + 1, "op": op, **arguments})
         self._number += 1
         self._tick = None
-        message = _encoded(op, {"id": self._number, "op": op, **arguments})
         try:
             self._send(_HEADER.pack(len(message)) + message)
             answer, refused = self._answer(on_frame)
@@ -202,7 +202,7 @@ def _encoded(op: str, message: dict[str, Any]) -> bytes:
     except UnicodeEncodeError as error:
         half = error.object[error.start]
         raise InputError(
-            f"a text in the request {op!r} has half a character in it ({half!a}); "
+            f"a text in the request {op!r} has half of a character in it ({half!a}); "
             "give whole characters"
         ) from error
 

@@ -23,6 +23,7 @@ from beliefnest.prompts import Template, render
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
 from beliefnest.world.paths import normalised, path_text
 from beliefnest.world.scripted import ScriptedWorld
+from beliefnest.world.texts import is_well_formed
 from beliefnest.world.values import TICKS_PER_SECOND, Items, Position
 
 if TYPE_CHECKING:
@@ -304,7 +305,11 @@ class Simulator(_Seen):
             self._child_path(agent)
             if not isinstance(code, str):
                 raise InputError(f"the program of {agent} is a text, not {type(code).__name__}")
-            _whole(agent, code)
+            if not is_well_formed(code):
+                raise InputError(
+                    f"the program of {agent} has half of a character in it; write the whole "
+                    "character, or an escape such as \\u{1f600}"
+                )
         return self._engine.run(self._path, programs, _timeout(timeout_ticks))
 
     def noting(self, model: "Model", **detail: str) -> "Model":
@@ -376,18 +381,6 @@ class Simulator(_Seen):
 
     def _explained_tick(self) -> None:
         return None
-
-
-def _whole(agent: str, code: str) -> None:
-    """Refuse a program that has half a character in it: no file and no process could take it."""
-    try:
-        code.encode()
-    except UnicodeEncodeError as error:
-        half, line = code[error.start], code.count("\n", 0, error.start) + 1
-        raise InputError(
-            f"the program of {agent} has half a character, {half!a}, in line {line}; "
-            "write the whole character, or an escape such as \\u{1f600}"
-        ) from error
 
 
 def _timeout(ticks: int) -> int:

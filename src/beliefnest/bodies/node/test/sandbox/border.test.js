@@ -101,6 +101,57 @@ describe('the border', () => {
     assert.deepEqual(JSON.parse(text).value, { $: 'e', message: 'it failed', name: 'Error', skill: 'fail', kind: 'skill' })
   })
 
+  it('takes no timer under a number that is taken, and stops every one at the end', (t) => {
+    const started = []
+    const stopped = []
+    for (const what of ['Timeout', 'Interval']) {
+      t.mock.method(globalThis, `set${what}`, () => started[started.push({}) - 1])
+      t.mock.method(globalThis, `clear${what}`, (timer) => stopped.push(timer))
+    }
+    assert.equal(ask('timer', 7, 1e6, false).ok, true)
+    for (const repeat of [true, false]) refused(['timer', 7, 1e6, repeat], /there is a timer 7 already/)
+    for (const id of [null, '7', 7.5, [7], { id: 7 }, 2 ** 60]) refused(['timer', id, 1e6, true], /must be a whole number/)
+    for (let id = 8; id < 1007; id++) assert.equal(ask('timer', id, 1e6, id % 2 === 0).ok, true)
+    refused(['timer', 2000, 1e6, true], /1000 timers/)
+    session.finish({ ok: true })
+    assert.equal(started.length, 1000)
+    assert.deepEqual(new Set(stopped), new Set(started))
+  })
+
+  it('says of what it refuses no more than what kind it is', () => {
+    const deep = JSON.parse(`${'['.repeat(500)}${']'.repeat(500)}`)
+    const long = 'x'.repeat(90_000)
+    for (const message of [['get', BOT, deep], ['get', BOT, long], ['on', deep, 1, false], ['on', long, 1, false], [deep], [long],
+      ['skill', 'echo', [BOT, { $: 'o', o: [[deep, 1]] }]], ['skill', 'echo', [BOT, { $: 'm', o: [[deep, 1]] }]],
+      ['skill', 'echo', [BOT, { $: 'g', n: 'GoalPlaceBlock', a: [{ $: 'v', c: [1, 2, 3] }, { $: 'o', o: [['facing', long]] }] }]]]) {
+      const { ok, value } = ask(...message)
+      assert.equal(ok, false)
+      assert.ok(value.message.length < 1000, value.message)
+    }
+    ask('log', deep, deep)
+    assert.deepEqual(session.log, [{ level: 'something ', text: 'an array' }])
+  })
+
+  it('lets the program pay for goals that look along rays, and ends them with its fuel', () => {
+    let fuel = 12_000
+    session.guest.charge = (units) => (fuel -= units) > 0
+    let looked = 0
+    bot.world = { raycast: () => { looked++ } }
+    ask('call', { $: 'h', id: session.exchange.handle(bot.pathfinder, 'pathfinder').id }, 'setGoal', [{ $: 'g', n: 'GoalLookAtBlock', a: [{ $: 'v', c: [1, 2, 3] }] }])
+    const [[, goal]] = bot.calls
+    fuel = 12_000
+    const { Vec3 } = require('vec3')
+    assert.equal(goal.isEnd(new Vec3(100, 2, 3)), false)
+    assert.equal(fuel, 12_000)
+    assert.equal(goal.isEnd(new Vec3(3, 2, 3)), false)
+    assert.equal(goal.isEnd(new Vec3(3, 2, 3)), false)
+    assert.ok(looked > 0)
+    const before = looked
+    assert.equal(goal.isEnd(new Vec3(3, 2, 3)), true)
+    assert.equal(looked, before)
+    assert.equal(session.outcome.ended.kind, 'fuel')
+  })
+
   it('survives random messages', () => {
     let state = 12345
     const random = (below) => (state = (state * 1103515245 + 12345) % 2147483648) % below

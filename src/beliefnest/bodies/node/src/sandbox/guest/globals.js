@@ -14,7 +14,7 @@ module.exports = function defineGlobals (env) {
     if (typeof value === 'string') return depth ? quote(value) : value
     if (typeof value === 'function') return `[function ${value.name}]`
     if (value instanceof Error) return `${value.name}: ${value.message}`
-    if (env.isVector(value) || value === null || typeof value !== 'object') return String(value)
+    if (env.isVector(value) || value === null || typeof value !== 'object') return toText(value)
     if (env.isHandle(value)) return `[${env.kindOf(value)}]`
     if (depth > 3) return Array.isArray(value) ? '[...]' : '{...}'
     if (Array.isArray(value)) return `[${value.map((item) => show(item, depth + 1)).join(', ')}]`
@@ -75,7 +75,7 @@ module.exports = function defineGlobals (env) {
   }
 
   function lazyTable (name) {
-    const known = new Map()
+    const known = own(new Map())
     let keys
     const get = (key) => {
       if (!known.has(key)) known.set(key, deepFreeze(ask('data', quote(name), quote(key))))
@@ -99,8 +99,8 @@ module.exports = function defineGlobals (env) {
   function defineData () {
     const data = {}
     for (const [name, form] of Object.entries(config.tables)) {
-      let value
-      const get = () => (value ??= form === 'table' ? lazyTable(name) : deepFreeze(ask('data', quote(name), 'null')))
+      let value = form === 'table' ? lazyTable(name) : undefined
+      const get = () => (value ??= deepFreeze(ask('data', quote(name), 'null')))
       Object.defineProperty(data, name, { get, enumerable: true })
     }
     return Object.freeze(data)

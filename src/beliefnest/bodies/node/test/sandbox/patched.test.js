@@ -1,0 +1,25 @@
+'use strict'
+/** Programs that replace what the language is made of: what leaves them is what leaves any other. */
+const assert = require('node:assert/strict')
+const { before, describe, it } = require('node:test')
+const { createSandbox } = require('../../src/sandbox')
+const { messagesOf, PATCHES, USES } = require('./patches')
+
+describe('built-ins that a program has replaced', () => {
+  let sandbox
+  let honest
+  before(async () => {
+    sandbox = createSandbox({ fuel: 15_000_000 })
+    honest = await messagesOf(sandbox, USES)
+    assert.ok(honest.length > 20)
+  })
+
+  for (const [what, patch] of Object.entries(PATCHES)) {
+    it(`have no part in what leaves it: ${what}`, async () => {
+      const told = await messagesOf(sandbox, `${patch}\n${USES}`)
+      // What it gets may be broken for it, so that it ends early.
+      assert.ok(told.length > 0)
+      assert.deepEqual(told, honest.slice(0, told.length))
+    })
+  }
+})
