@@ -27,7 +27,8 @@ WORK = {
     "lines without end": "0\n" * 99_999,
     "a name of the program": "__ran" + "_" * 39_000,
     "names": "let a" + "".join(f",a{n}" for n in range(5000)),
-    "a stack": "const e = new Error('x'); e.stack = ('at x (program.js:1:9)\\n').repeat(1e5); throw e",
+    "a stack": "const e = new Error('x'); "
+    "e.stack = ('at x (program.js:1:9)\\n').repeat(1e5); throw e",
     "goals": "bot.pathfinder.setGoal(new goals.GoalCompositeAny(Array.from({length: 95}, () => "
     "new goals.GoalCompositeAny(Array(100).fill(new goals.GoalLookAtBlock(new Vec3(5, 1, 5), "
     "bot.world, {reach: 256}))))))",

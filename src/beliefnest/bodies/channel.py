@@ -83,7 +83,7 @@ class Channel:
         """Send a request and return its result; frames on the way go to `on_frame`.
 
         Raises:
-            InputError: A text of the request has half of a character in it, so that it cannot be sent.
+            InputError: A text of the request has half of a character in it and cannot be sent.
             WorldError: Node refused the request as impossible.
             BodyLostError: Node ended, or had to be killed; the message carries its last words.
             BodyError: Node failed to do it.

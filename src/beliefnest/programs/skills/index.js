@@ -5,8 +5,10 @@
  * arguments of the signature without `bot`, which is `context.bot`.
  */
 const { numbers } = require('./lib/answers')
-const { show } = require('./lib/arguments')
+const { show, shortened } = require('./lib/arguments')
 const { SkillError } = require('./lib/errors')
+
+const LONGEST_MESSAGE = 2000
 
 const SKILLS = [
   require('./goToPosition'),
@@ -80,7 +82,7 @@ function untilAborted ({ bot, emit }, signal, fail) {
 }
 
 function bind (skill, body, signal) {
-  const fail = (message, cause) => { throw new SkillError(skill.name, `${skill.name}: ${message}`, cause) }
+  const fail = (message, cause) => { throw new SkillError(skill.name, shortened(`${skill.name}: ${message}`, LONGEST_MESSAGE), cause) }
   const context = { ...body, ...untilAborted(body, signal, fail), fail }
   const place = skill.parameters.findIndex(({ name }) => name === 'bot')
   return async (...args) => {
@@ -90,7 +92,7 @@ function bind (skill, body, signal) {
       return await skill.run(context, ...own)
     } catch (error) {
       if (error instanceof SkillError) throw error
-      throw new SkillError(skill.name, `${skill.name}: ${error instanceof Error ? error.message : show(error)}`, error)
+      fail(error instanceof Error ? error.message : show(error), error)
     }
   }
 }

@@ -19,8 +19,8 @@ function show (value) {
 
 const part = value => (typeof value === 'object' && value !== null ? 'an object' : show(value))
 
-function shortened (text) {
-  return (text.length > MOST_SHOWN ? `${text.slice(0, MOST_SHOWN - 4)} ...` : text).toWellFormed()
+function shortened (text, most = MOST_SHOWN) {
+  return (text.length > most ? `${text.slice(0, most - 4)} ...` : text).toWellFormed()
 }
 
 /** @returns {Vec3} a finite position */
@@ -99,4 +99,4 @@ function otherAgent ({ bot, fail }, name, value) {
   return value
 }
 
-module.exports = { show, position, blockPosition, count, distance, text, item, block, items, otherAgent }
+module.exports = { show, shortened, position, blockPosition, count, distance, text, item, block, items, otherAgent }
