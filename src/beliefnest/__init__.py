@@ -29,9 +29,10 @@ if TYPE_CHECKING:
         UnknownNameError,
         WorldError,
     )
-    from beliefnest.nest.acting.exploration import Attempt
     from beliefnest.nest.explain.comparison import Difference, Pose
-    from beliefnest.nest.explain.explanation import Contents, Explanation
+    from beliefnest.nest.explain.explanation import Explanation
+    from beliefnest.nest.explain.parts import Contents
+    from beliefnest.nest.face.exploration import Attempt
     from beliefnest.nest.face.nest import Nest
     from beliefnest.nest.face.simulator import Simulator
     from beliefnest.perception.options import Perception, Radius
@@ -76,10 +77,10 @@ __all__ = [
 ]
 
 _HOMES = {
-    "Attempt": "beliefnest.nest.acting.exploration",
+    "Attempt": "beliefnest.nest.face.exploration",
     "Claim": "beliefnest.world.claims",
     "ClaimKind": "beliefnest.world.claims",
-    "Contents": "beliefnest.nest.explain.explanation",
+    "Contents": "beliefnest.nest.explain.parts",
     "Difference": "beliefnest.nest.explain.comparison",
     "Explanation": "beliefnest.nest.explain.explanation",
     "InitialBelief": "beliefnest.belief.entries",

@@ -145,7 +145,7 @@ def test_a_switch_waits_for_a_program_that_runs(nest):
     begun = threading.Event()
 
     def program():
-        with nest._engine.turn:
+        with nest._recording.turn:
             begun.set()
             run(bob, "bob", "await waitTicks(bot, 100); bot.chat('late')")
 

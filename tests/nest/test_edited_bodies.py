@@ -45,7 +45,7 @@ def check(simulator, path, nest):
     """What the body holds, what one made anew would hold, and what the state says."""
     body, state = nest._engine.body(path).snapshot(), simulator.state
     known = {place: state.blocks[place] or "air" for place in state.blocks}
-    registry = nest._engine.history.context.registry
+    registry = nest._recording.history.context.registry
     in_body = {p: registry.text(int(body.blocks[body.box.index(p)])) for p in state.blocks}
     assert in_body == known
     assert body.containers == {place: held.items for place, held in state.containers.items()}

@@ -11,7 +11,7 @@ from tests.nest.test_sally_anne import BEFORE_LEFT, LEFT, RIGHT, walls
 import beliefnest as bn
 from beliefnest.belief.entries import Basis, Source
 from beliefnest.errors import InputError, PathError, PositionError, TickError
-from beliefnest.nest.explain.explanation import View
+from beliefnest.nest.explain.parts import View
 from beliefnest.world.values import EventKind
 
 THREE = {"observer": WEST, "sally": MEETING, "anne": GAP}

@@ -10,7 +10,7 @@ from tests.nest.comparing import everything
 import beliefnest as bn
 from beliefnest.bodies.channel import Channel
 from beliefnest.bodies.worlds import Worlds
-from beliefnest.nest.acting import exploration as exploring
+from beliefnest.nest.face import exploration as exploring
 
 ROOM = {
     "name": "room",
@@ -62,7 +62,7 @@ def explored(worlds, store, path, score, processes, programs=PROGRAMS):
         results = nest[path].run_all({"ann": PROGRAMS[0], "bob": PROGRAMS[4]})
         told = [(a.program, a.branch, a.result, a.score, everything(a.state)) for a in attempts]
         held = everything(nest[path].state)
-        used = len(nest._engine._others)
+        used = len(nest._engine.bodies.others)
     with sqlite3.connect(store) as file:
         dump = list(file.iterdump())
     return (told, branch, results, held, dump), used

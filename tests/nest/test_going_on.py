@@ -123,7 +123,7 @@ def visit(nest: bn.Nest, number: int, at: int | None) -> None:
 
 
 def entries(nest: bn.Nest) -> list[object]:
-    journal = nest._engine.journal
+    journal = nest._recording.journal
     key = TimelineKey((), "main")
     return list(journal.entries(key, 0, journal.info(key).entries))
 

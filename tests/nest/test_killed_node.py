@@ -80,7 +80,7 @@ def held(nest):
 
 
 def frames(nest):
-    journal = nest._engine.journal
+    journal = nest._recording.journal
     return {
         info.key: (info.head, list(journal.entries(info.key, 0, info.entries)))
         for info in journal.timelines()
@@ -88,7 +88,7 @@ def frames(nest):
 
 
 def world_of(nest):
-    return nest._engine.world._world
+    return nest._engine.bodies.world._world
 
 
 @contextmanager
@@ -175,7 +175,7 @@ def test_programs_under_which_node_ends(opened, monkeypatch, tmp_path, undisturb
         assert (go_on(nest), held(nest), frames(nest)) == undisturbed
     with bn.Nest.resume(store) as nest:
         assert (held(nest), frames(nest)) == undisturbed[1:]
-        failed = [program.error for program in nest._engine.log.programs() if not program.ok]
+        failed = [program.error for program in nest.programs() if not program.ok]
         assert failed[: len(told)] == told
 
 
@@ -270,7 +270,7 @@ def test_a_script_is_played_to_its_end(worlds, monkeypatch, tmp_path):
         nest.play()
         assert frames(nest) == expected
         assert len(killed) == 2
-        undone = [p for p in nest._engine.log.programs() if "undone" in p.detail]
+        undone = [p for p in nest.programs() if not p.kept]
         assert all("SIGKILL" in program.error for program in undone)
         assert undone
         nest.play()

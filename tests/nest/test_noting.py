@@ -6,7 +6,7 @@ from tests.nest.places import BOX, GAP, MEETING, WEST
 import beliefnest as bn
 from beliefnest.errors import ModelError
 from beliefnest.llm import Answer, Message, Sampling, Usage, ask_for_program
-from beliefnest.nest.face import nest as nest_module
+from beliefnest.nest.face import opening
 from beliefnest.timeline.journal import TimelineKey
 
 AGENTS = {"observer": WEST, "sally": MEETING, "anne": GAP}
@@ -138,7 +138,7 @@ def test_a_run_that_goes_on_with_other_versions_says_so(tmp_path, monkeypatch):
         (first,) = nest.versions()
     with bn.Nest.resume(store) as nest:
         assert nest.versions() == (first,)
-    monkeypatch.setattr(nest_module, "own_versions", lambda: {"numpy": "99.0"})
+    monkeypatch.setattr(opening, "own_versions", lambda: {"numpy": "99.0"})
     for _ in range(2):
         with bn.Nest.resume(store) as nest:
             assert nest.versions() == (first, {**first, "numpy": "99.0"})

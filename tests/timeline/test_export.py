@@ -23,7 +23,7 @@ DOCS = Path(__file__).parents[2] / "docs" / "export.md"
 MAIN = TimelineKey((), "main")
 PLAN = TimelineKey(("sally",), "plan")
 RUN = RunRecord("short", "name: short", "", 7, {"node": "v24"}, b"", {"short.txt": "{{ task }}"})
-PROGRAM = ProgramRecord(("sally",), "plan", "sally", "x()", 5, False, "no x", 3, 2, {"step": "1"})
+PROGRAM = ProgramRecord(("sally",), "plan", "sally", "x()", 5, False, "no x", 3, 2, step=1)
 PROMPT = PromptRecord(
     ("sally", "anne"),
     PLAN,
@@ -218,7 +218,7 @@ def test_the_run_its_programs_and_its_prompts(written):
     assert (program["path"], program["branch"], program["tick"]) == ("/sally", "plan", 5)
     assert (program["agent"], program["code"], program["ok"]) == ("sally", "x()", False)
     assert (program["error"], program["ticks"], program["call"]) == ("no x", 3, 2)
-    assert program["detail"] == {"step": "1"}
+    assert program["detail"] == {"step": "1", "timeout_ticks": "0", "entries": "0"}
     (prompt,) = written["prompts"]
     assert (prompt["path"], prompt["timeline_path"], prompt["timeline_branch"]) == (
         "/sally/anne",

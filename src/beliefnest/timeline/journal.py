@@ -294,6 +294,26 @@ class Journal(Protocol):
         timeline of that key.
         """
 
+    def put_body_state(self, key: TimelineKey, entries: int, tick: int, state: bytes) -> None:
+        """Keep what goes on in a timeline's body and cannot be perceived; it is in no entry.
+
+        Args:
+            key: The timeline.
+            entries: How many of its entries lie before.
+            tick: The body's tick; several calls may end after the same entry.
+            state: Bytes that only the world reads.
+
+        Raises:
+            BranchError: There is no timeline of that key.
+            InputError: The timeline does not have that many entries.
+        """
+
+    def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
+        """The internal state that was kept for just that moment; None if none was.
+
+        BranchError as above.
+        """
+
     def together(self) -> AbstractContextManager[None]:
         """Do all that is done inside or, if it raises, none of it. May be nested."""
 

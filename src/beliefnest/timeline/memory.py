@@ -20,6 +20,7 @@ from beliefnest.timeline.journal import (
     count_of_events,
     is_found,
 )
+from beliefnest.timeline.memory_records import MemoryRecords
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
 
@@ -34,6 +35,8 @@ class MemoryJournal:
         self._entries: dict[TimelineKey, list[Entry]] = {}
         self._found: dict[TimelineKey, _Found] = {}
         self._checkpoints: dict[TimelineKey, dict[tuple[str, int], bytes]] = {}
+        self._body_states: dict[TimelineKey, dict[tuple[int, int], bytes]] = {}
+        self.records = MemoryRecords()
 
     @property
     def writable(self) -> bool:
@@ -60,6 +63,7 @@ class MemoryJournal:
         self._entries[key] = []
         self._found[key] = _Found()
         self._checkpoints[key] = {}
+        self._body_states[key] = {}
 
     def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:
         """Add entries and move the head."""
@@ -125,6 +129,8 @@ class MemoryJournal:
         self._entries[new_key] = self._entries.pop(key)
         self._found[new_key] = self._found.pop(key)
         self._checkpoints[new_key] = self._checkpoints.pop(key)
+        self._body_states[new_key] = self._body_states.pop(key)
+        self.records.follow_rename(key.path, key.branch, name)
 
     def delete(self, key: TimelineKey) -> None:
         """Remove a timeline; BranchError if another is based on it."""
@@ -134,7 +140,9 @@ class MemoryJournal:
         ]
         if based:
             raise branch_carries(key, based)
-        del self._infos[key], self._entries[key], self._found[key], self._checkpoints[key]
+        del self._infos[key], self._entries[key], self._found[key]
+        del self._checkpoints[key], self._body_states[key]
+        self.records.forget_branch(key.path, key.branch)
 
     def describe(self, key: TimelineKey, description: str) -> None:
         """Set a timeline's description."""
@@ -153,19 +161,30 @@ class MemoryJournal:
         places = [at for kind, at in there if kind == name and at <= entries]
         return (max(places), there[name, max(places)]) if places else None
 
+    def put_body_state(self, key: TimelineKey, entries: int, tick: int, state: bytes) -> None:
+        """Keep the internal state of a timeline's body at a moment; InputError if too few."""
+        check_place(self.info(key), entries)
+        self._body_states[key][entries, tick] = state
+
+    def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
+        """The internal state that was kept for a moment; None if none was."""
+        return self._body_states[self.info(key).key].get((entries, tick))
+
     @contextmanager
     def together(self) -> Iterator[None]:
         """Do all that is done inside or, if it raises, none of it."""
         infos, entries, found = self._infos.copy(), self._entries.copy(), self._found.copy()
         checkpoints = {key: there.copy() for key, there in self._checkpoints.items()}
+        body_states = {key: there.copy() for key, there in self._body_states.items()}
         try:
-            yield
+            with self.records.together():
+                yield
         except BaseException:
             for key, info in infos.items():
                 del entries[key][info.entries :]
                 found[key].cut(info.entries)
             self._infos, self._entries, self._found = infos, entries, found
-            self._checkpoints = checkpoints
+            self._checkpoints, self._body_states = checkpoints, body_states
             raise
 
     def close(self) -> None:

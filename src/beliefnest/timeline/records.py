@@ -51,10 +51,13 @@ class ProgramRecord:
         error: The error's message; None if it ended well.
         ticks: How many ticks it took.
         group: Programs that ran at the same time in one call share a number.
-        detail: Further facts of the caller.
         lines: Lines of its text that ran, from 1, rising.
         log: What it wrote to its console.
         unfinished: What was still going on when it ended, in words.
+        entries: How many entries its timeline had when it began.
+        timeout_ticks: Ticks after which it would have been stopped.
+        step: Number of the script's step that it is part of, from 0; None: it is in no script.
+        kept: Whether what it did was recorded; not if the world's process ended under it.
     """
 
     path: tuple[str, ...]
@@ -66,10 +69,13 @@ class ProgramRecord:
     error: str | None
     ticks: int
     group: int = 0
-    detail: Mapping[str, str] = field(default_factory=dict)
     lines: tuple[int, ...] = ()
     log: tuple[str, ...] = ()
     unfinished: tuple[str, ...] = ()
+    entries: int = 0
+    timeout_ticks: int = 0
+    step: int | None = None
+    kept: bool = True
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ __all__ = ["APPLICATION_ID", "SCHEMA_VERSION", "SMALL_TABLES", "STATEMENTS", "ex
 APPLICATION_ID = 0x42656C4E
 """Marks an SQLite file as a run ("BelN")."""
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 
 SMALL_TABLES = ("timeline", "meta", "selected", "program", "prompt")
 """Tables whose structure is checked whenever a file is opened; the others can be large."""
@@ -56,7 +56,8 @@ STATEMENTS = (
     "CREATE INDEX piece_by_tick ON piece (timeline, last_tick, first)",
     "CREATE INDEX piece_with_events ON piece (timeline, first, events) WHERE events > 0",
     "CREATE INDEX piece_with_changes ON piece (timeline, first) WHERE changes > 0",
-    # A state after the first `entries` entries of a timeline, compressed; whose, says `name`.
+    # What stands for the first `entries` entries of a timeline, compressed; a cache. Whose, says
+    # `name`.
     """CREATE TABLE keyframe (
         id INTEGER PRIMARY KEY,
         timeline INTEGER NOT NULL,
@@ -65,6 +66,16 @@ STATEMENTS = (
         body BLOB NOT NULL,
         seal INTEGER NOT NULL,
         UNIQUE (timeline, name, entries)
+    )""",
+    # What goes on in a timeline's body after its first `entries` entries, at a tick, and cannot be
+    # perceived, compressed. No cache: nothing else tells it.
+    """CREATE TABLE body_state (
+        timeline INTEGER NOT NULL,
+        entries INTEGER NOT NULL,
+        tick INTEGER NOT NULL,
+        state BLOB NOT NULL,
+        seal INTEGER NOT NULL,
+        PRIMARY KEY (timeline, entries, tick)
     )""",
     """CREATE TABLE meta (
         name TEXT PRIMARY KEY,

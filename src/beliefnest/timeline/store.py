@@ -254,6 +254,7 @@ class SqliteJournal:
             for table, column in (
                 ("piece", "timeline"),
                 ("keyframe", "timeline"),
+                ("body_state", "timeline"),
                 ("timeline", "id"),
             ):
                 self._database.execute(f"DELETE FROM {table} WHERE {column} = ?", (row.id,))
@@ -291,6 +292,30 @@ class SqliteJournal:
         _, _, place, body = checked(found, self.path, f"a keyframe of {key}")
         return place, self._decompressed(body)
 
+    def put_body_state(self, key: TimelineKey, entries: int, tick: int, state: bytes) -> None:
+        """Keep the internal state of a timeline's body at a moment; InputError if too few."""
+        with self._database.transaction():
+            row = self._row(key)
+            check_place(_info(row, None), entries)
+            values = (row.id, entries, tick, self._packer.compress(state))
+            self._database.execute(
+                "INSERT OR REPLACE INTO body_state (timeline, entries, tick, state, seal) "
+                "VALUES (?, ?, ?, ?, ?)",
+                (*values, seal(*values)),
+            )
+
+    def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
+        """The internal state that was kept for a moment; None if none was."""
+        found = self._database.row(
+            "SELECT timeline, entries, tick, state, seal FROM body_state "
+            "WHERE timeline = ? AND entries = ? AND tick = ?",
+            (self._row(key).id, entries, tick),
+        )
+        if found is None:
+            return None
+        state = checked(found, self.path, f"the state of a body of {key}")[-1]
+        return self._decompressed(state)
+
     def put_keyframe(self, key: TimelineKey, entries: int, snapshot: Snapshot) -> None:
         """Keep the facts after the first `entries` entries; InputError if there are fewer."""
         self.put_checkpoint(key, _FACTS, entries, codec.encode_snapshot(snapshot))
@@ -324,6 +349,10 @@ class SqliteJournal:
                 "SELECT name, entries FROM keyframe WHERE timeline = ?", (row.id,)
             ):
                 self.nearest_checkpoint(row.key, name, place)
+            for place, tick in self._database.rows(
+                "SELECT entries, tick FROM body_state WHERE timeline = ?", (row.id,)
+            ):
+                self.body_state(row.key, place, tick)
 
     def close(self) -> None:
         """Close the file and let another writer have it; closing twice is allowed."""

@@ -246,7 +246,17 @@ def program_row(program: ProgramRecord) -> Row:
         "lines": list(program.lines),
         "log": list(program.log),
         "unfinished": list(program.unfinished),
-        "detail": dict(program.detail),
+        "detail": _program_detail(program),
+    }
+
+
+def _program_detail(program: ProgramRecord) -> dict[str, str]:
+    """What is known of a program besides, as texts."""
+    return {
+        **({} if program.step is None else {"step": str(program.step)}),
+        "timeout_ticks": str(program.timeout_ticks),
+        **({} if program.kept else {"undone": "killed"}),
+        "entries": str(program.entries),
     }
 
 

@@ -8,6 +8,7 @@ from beliefnest.bodies.embedded import EmbeddedWorld
 from beliefnest.cli.bench.figures import Figure, median_seconds
 from beliefnest.errors import BodyError
 from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.past.recording import Recording
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.memory import MemoryJournal
 
@@ -21,7 +22,7 @@ _AGENTS = ("ann", "bob", "cleo")
 def measure() -> Sequence[Figure]:
     """From the kill until all bodies have gone on by a tick."""
     world = EmbeddedWorld.start(0)
-    engine = Engine(_room().setting, MemoryJournal(), world, 0).begin()
+    engine = Engine(Recording(_room().setting, MemoryJournal()), world).begin()
     try:
         _go_apart(engine)
 

@@ -46,5 +46,5 @@ class FrameRecorder:
         self._history.note(self.key)
 
     def drop(self) -> None:
-        """Forget what was taken, because the journal has taken it back or never had it."""
+        """Forget what was taken, because nothing of it is kept."""
         self._frames, self._tick = [], None

@@ -5,8 +5,6 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from beliefnest.bodies.protocol import Body, World
-from beliefnest.errors import StoreError
-from beliefnest.nest.acting.script import UNDONE
 from beliefnest.nest.past.body_state import hidden_at, snapshot_at
 from beliefnest.nest.past.history import History
 from beliefnest.nest.past.setting import Setting
@@ -92,15 +90,12 @@ def replay(
         seed: Its seed.
 
     Raises:
-        StoreError: A noted program lacks facts that are needed to run it again.
         BodyError: The Minecraft side died.
     """
     history = History(journal, setting)
     for info in journal.timelines():
         mine = [
-            p
-            for p in programs
-            if (p.path, p.branch) == (info.key.path, info.key.branch) and UNDONE not in p.detail
+            p for p in programs if (p.path, p.branch) == (info.key.path, info.key.branch) and p.kept
         ]
         entries = list(journal.entries(info.key, 0, info.entries))
         calls = [_call(list(group)) for _, group in groupby(mine, key=lambda p: p.group)]
@@ -110,18 +105,8 @@ def replay(
 
 def _call(group: Sequence[ProgramRecord]) -> _Call:
     first = group[0]
-    try:
-        return _Call(
-            first.tick,
-            int(first.detail["entries"]),
-            {program.agent: program.code for program in group},
-            int(first.detail["timeout_ticks"]),
-        )
-    except (KeyError, ValueError) as fault:
-        raise StoreError(
-            f"the program of {first.agent} at tick {first.tick} of branch {first.branch!r} of "
-            f"{path_text(first.path)} lacks {fault}, which is needed to run it again"
-        ) from fault
+    programs = {program.agent: program.code for program in group}
+    return _Call(first.tick, first.entries, programs, first.timeout_ticks)
 
 
 def _run_again(

@@ -1,18 +1,37 @@
-"""How far a script has been played on a timeline."""
+"""The scenario's script: what happens in the real world, step by step."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
+from beliefnest.errors import BodyError, ProgramError
+from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.past.setting import Step
 from beliefnest.timeline.journal import Journal, TimelineKey, lineage
 from beliefnest.timeline.records import ProgramRecord
 
-__all__ = ["STEP", "UNDONE", "steps_played"]
+__all__ = ["Progress", "play_script", "steps_played"]
 
-STEP = "step"
-"""The detail of a noted program that says which step of the script it is, from 0."""
+Progress = Callable[[str, int, int], None]
+"""Takes what is being done, how many parts of it are done, and of how many."""
 
 
-UNDONE = "undone"
-"""The detail of a noted program of which nothing was kept, and why."""
+def play_script(engine: Engine, on_progress: Progress | None = None) -> None:
+    """Play the script in the real world, from the first step not played there.
+
+    Raises:
+        ProgramError: A program failed.
+        BodyError: The Minecraft side died again and again under a step.
+    """
+    recording = engine.recording
+    script = recording.setting.script
+    programs = recording.journal.records.programs()
+    played = steps_played(recording.journal, recording.controller(()), programs)
+    for number, step in enumerate(script[played:], start=played):
+        if on_progress is not None:
+            on_progress(step.label or f"step {number + 1}", number, len(script))
+        with recording.turn:
+            _play_step(engine, number, step)
+    if on_progress is not None:
+        on_progress("script played", len(script), len(script))
 
 
 def steps_played(journal: Journal, key: TimelineKey, programs: Iterable[ProgramRecord]) -> int:
@@ -20,10 +39,25 @@ def steps_played(journal: Journal, key: TimelineKey, programs: Iterable[ProgramR
 
     A step whose program failed counts: it has happened. One of which nothing was kept does not.
     """
-    noted = [p for p in programs if STEP in p.detail and UNDONE not in p.detail]
+    ends = [
+        (TimelineKey(program.path, program.branch), program.tick + program.ticks, program.step + 1)
+        for program in programs
+        if program.kept and program.step is not None
+    ]
     played = 0
     for place, until in lineage(journal, key):
-        here = [p for p in noted if (p.path, p.branch) == (place.path, place.branch)]
-        ended = [int(p.detail[STEP]) + 1 for p in here if p.tick + p.ticks <= until]
-        played = max([played, *ended])
+        reached = [count for on, end, count in ends if on == place and end <= until]
+        played = max([played, *reached])
     return played
+
+
+def _play_step(engine: Engine, number: int, step: Step) -> None:
+    results = engine.run((), step.programs, step.timeout_ticks, number)
+    for agent, result in results.items():
+        if not result.ok:
+            label = f" ({step.label})" if step.label else ""
+            where = f"{step.where}: " if step.where else ""
+            fault = BodyError if result.killed else ProgramError
+            raise fault(
+                f"{where}step {number + 1}{label}: the program of {agent} failed: {result.error}"
+            )

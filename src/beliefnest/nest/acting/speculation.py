@@ -1,4 +1,4 @@
-"""Running programs ahead of their turn, in several processes at once.
+"""Speculation: programs run ahead of their turn, in several processes at once.
 
 What a program does depends on the snapshot, the seed and the tick it begins with, and on nothing
 else. So it can run in any body filled with them, and be recorded when its turn comes.
@@ -12,15 +12,14 @@ from threading import Event
 
 from beliefnest.bodies.protocol import Body, ProgramResult, Sink, World
 from beliefnest.errors import BeliefNestError, BodyError, BodyLostError, WorldError
+from beliefnest.nest.acting.lives import Lives
 from beliefnest.world.frames import Frame, Snapshot
 
-__all__ = ["Outcome", "SpeculatedBody", "Start", "speculate"]
-
-_LIVES = 3
+__all__ = ["SpeculatedBody", "Speculation", "SpeculationStart", "speculate"]
 
 
 @dataclass(frozen=True, slots=True)
-class Start:
+class SpeculationStart:
     """What a body begins with that a program runs in.
 
     Attributes:
@@ -35,7 +34,7 @@ class Start:
 
 
 @dataclass(slots=True)
-class Outcome:
+class Speculation:
     """What became of programs in a body of their own.
 
     Attributes:
@@ -56,25 +55,25 @@ class Outcome:
 class SpeculatedBody:
     """A body in which programs have run already; it can do nothing but run them, once."""
 
-    def __init__(self, outcome: Outcome, sink: Sink) -> None:
-        self._outcome = outcome
+    def __init__(self, speculation: Speculation, sink: Sink) -> None:
+        self._speculation = speculation
         self._sink = sink
         self._ran = False
 
     @property
     def lost(self) -> bool:
         """Whether the process ended in which they ran."""
-        return self._ran and isinstance(self._outcome.error, BodyLostError)
+        return self._ran and isinstance(self._speculation.error, BodyLostError)
 
     @property
     def tick(self) -> int:
         """The body's latest tick."""
-        return self._outcome.tick
+        return self._speculation.tick
 
     @property
     def hidden(self) -> bytes:
         """What goes on in it and nobody can perceive."""
-        return self._outcome.hidden
+        return self._speculation.hidden
 
     def snapshot(self) -> Snapshot:
         """Raise BodyError: the body is gone."""
@@ -83,11 +82,11 @@ class SpeculatedBody:
     def run(self, programs: Mapping[str, str], timeout_ticks: int) -> Mapping[str, ProgramResult]:
         """Tell what the programs did; they are those that ran."""
         self._ran = True
-        for frame in self._outcome.frames:
+        for frame in self._speculation.frames:
             self._sink(frame)
-        if self._outcome.error is not None:
-            raise self._outcome.error
-        return self._outcome.results
+        if self._speculation.error is not None:
+            raise self._speculation.error
+        return self._speculation.results
 
     def step(self, ticks: int) -> None:
         """Raise BodyError: the body is gone."""
@@ -103,10 +102,10 @@ class SpeculatedBody:
 
 def speculate(
     worlds: Sequence[World],
-    start: Start,
+    start: SpeculationStart,
     jobs: Mapping[int, Mapping[str, str]],
     timeout_ticks: int,
-) -> Mapping[int, Outcome]:
+) -> Mapping[int, Speculation]:
     """Run programs, each job in a body of its own, in several worlds at the same time.
 
     Args:
@@ -116,12 +115,12 @@ def speculate(
         timeout_ticks: Ticks after which programs are stopped.
 
     Returns:
-        Outcomes by number; those for which no body could be made are left out.
+        Speculations by number; those for which no body could be made are left out.
     """
     waiting: SimpleQueue[int] = SimpleQueue()
     for number in jobs:
         waiting.put(number)
-    outcomes: dict[int, Outcome] = {}
+    speculations: dict[int, Speculation] = {}
     stopped = Event()
 
     def work(world: World) -> None:
@@ -130,10 +129,10 @@ def speculate(
                 number = waiting.get_nowait()
             except Empty:
                 return
-            outcome = _run(world, start, jobs[number], timeout_ticks, stopped)
-            if outcome is None:
+            speculation = _run(world, start, jobs[number], timeout_ticks, stopped)
+            if speculation is None:
                 return
-            outcomes[number] = outcome
+            speculations[number] = speculation
 
     with ThreadPoolExecutor(len(worlds)) as pool:
         try:
@@ -144,39 +143,39 @@ def speculate(
             for world in worlds:
                 world.interrupt()
             raise
-    return outcomes
+    return speculations
 
 
 def _run(
     world: World,
-    start: Start,
+    start: SpeculationStart,
     programs: Mapping[str, str],
     timeout_ticks: int,
     stopped: Event,
-) -> Outcome | None:
-    outcome = Outcome(start.snapshot.tick)
-    body = _opened(world, start, outcome.frames.append, stopped)
+) -> Speculation | None:
+    speculation = Speculation(start.snapshot.tick)
+    body = _opened(world, start, speculation.frames.append, stopped)
     if body is None:
         return None
     try:
-        outcome.results = body.run(programs, timeout_ticks)
+        speculation.results = body.run(programs, timeout_ticks)
     except BeliefNestError as error:
-        outcome.error = error
-    outcome.tick, outcome.hidden = body.tick, body.hidden
+        speculation.error = error
+    speculation.tick, speculation.hidden = body.tick, body.hidden
     body.close()
-    return outcome
+    return speculation
 
 
-def _opened(world: World, start: Start, sink: Sink, stopped: Event) -> Body | None:
-    lives = _LIVES
-    while lives > 0 and not stopped.is_set():
-        try:
-            return world.open_body(start.name, start.seed, start.snapshot, sink)
-        except BodyLostError:
-            lives -= 1
-        except (BodyError, WorldError):
-            break
-    return None
+def _opened(world: World, start: SpeculationStart, sink: Sink, stopped: Event) -> Body | None:
+    def opened() -> Body | None:
+        if stopped.is_set():
+            return None
+        return world.open_body(start.name, start.seed, start.snapshot, sink)
+
+    try:
+        return Lives().call(opened)
+    except (BodyError, WorldError):
+        return None
 
 
 def _gone() -> BodyError:

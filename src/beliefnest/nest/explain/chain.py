@@ -8,7 +8,6 @@ from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError, PathError, PositionError
-from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.explain.element_history import (
     Place,
     Step,
@@ -19,17 +18,10 @@ from beliefnest.nest.explain.element_history import (
     touches,
     value_in,
 )
-from beliefnest.nest.explain.explanation import (
-    Absence,
-    Element,
-    Explanation,
-    Fact,
-    Level,
-    Missed,
-    Sighting,
-    Value,
-)
+from beliefnest.nest.explain.explanation import Explanation
+from beliefnest.nest.explain.parts import Absence, Element, Fact, Level, Missed, Sighting, Value
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
+from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Edit
 from beliefnest.world.values import Point, Position
 
@@ -39,7 +31,7 @@ Path = tuple[str, ...]
 
 
 def element_of(
-    engine: Engine,
+    recording: Recording,
     container: Position | None,
     agent: str | None,
     block: Position | None,
@@ -58,16 +50,16 @@ def element_of(
             "agent='name' and block=(x, y, z)"
         )
     if agent is not None:
-        if agent not in engine.agents:
-            raise PathError(f"no agent {agent!r}; there are {', '.join(engine.agents)}")
+        if agent not in recording.agents:
+            raise PathError(f"no agent {agent!r}; there are {', '.join(recording.agents)}")
         return Element("agent", agent)
     if container is not None:
-        return Element("container", _inside(engine, container))
-    return Element("block", _inside(engine, block))
+        return Element("container", _inside(recording, container))
+    return Element("block", _inside(recording, block))
 
 
-def _inside(engine: Engine, place: Position | None) -> Position:
-    box = engine.setting.snapshot.box
+def _inside(recording: Recording, place: Position | None) -> Position:
+    box = recording.setting.snapshot.box
     if not (
         isinstance(place, tuple) and len(place) == 3 and all(isinstance(p, int) for p in place)
     ):
@@ -77,11 +69,11 @@ def _inside(engine: Engine, place: Position | None) -> Position:
     return place
 
 
-def explain(engine: Engine, path: Path, tick: int | None, element: Element) -> Explanation:
+def explain(recording: Recording, path: Path, tick: int | None, element: Element) -> Explanation:
     """The chain of perceptions behind what a node holds of an element.
 
     Args:
-        engine: The nest's.
+        recording: The nest's.
         path: The node.
         tick: A past tick of the timeline it is on; None: now.
         element: What to explain.
@@ -89,29 +81,29 @@ def explain(engine: Engine, path: Path, tick: int | None, element: Element) -> E
     Raises:
         TickError: The tick is in the future, or before the start of everything.
     """
-    info = engine.info(path)
+    info = recording.info(path)
     if tick is None:
         place = Place(info.key, info.entries)
     else:
-        engine.reading(path, tick)
-        place = Place(*engine.place_of(info.key, tick))
-    return _explained(engine, path, place, info.head if tick is None else tick, element)
+        recording.reading(path, tick)
+        place = Place(*recording.place_of(info.key, tick))
+    return _explained(recording, path, place, info.head if tick is None else tick, element)
 
 
 def _explained(
-    engine: Engine, path: Path, place: Place, tick: int, element: Element
+    recording: Recording, path: Path, place: Place, tick: int, element: Element
 ) -> Explanation:
     root = place.key.path
     paths = [path[:depth] for depth in range(len(root), len(path) + 1)]
-    now = _held_now(engine, path, place, element)
-    fact = _fact(engine, place, now[root], element)
+    now = _held_now(recording, path, place, element)
+    fact = _fact(recording, place, now[root], element)
     traces = [_Trace(node, now[node]) for node in paths[1:]]
-    _follow(engine, path, place, tick, element, traces)
+    _follow(recording, path, place, tick, element, traces)
     before = None
-    base = engine.journal.info(place.key).base
+    base = recording.journal.info(place.key).base
     if base is not None and fact.since is None:
         earlier = Place(base.timeline, base.entries)
-        before = _explained(engine, root, earlier, base.tick, element)
+        before = _explained(recording, root, earlier, base.tick, element)
     levels = tuple(_level(trace, element) for trace in traces)
     return Explanation(element, tick, fact, levels, before)
 
@@ -145,14 +137,16 @@ class _Trace:
         return None if self.held.basis is None else self.held.basis.observed_at
 
 
-def _held_now(engine: Engine, path: Path, place: Place, element: Element) -> dict[Path, _Held]:
-    root, history = place.key.path, engine.history
+def _held_now(
+    recording: Recording, path: Path, place: Place, element: Element
+) -> dict[Path, _Held]:
+    root, history = place.key.path, recording.history
     cells = cells_of(element, history.context.box)
     held = {}
     (forest,) = history.steps(place.key, path, place.entries, place.entries, cells)
     for depth in range(len(root), len(path) + 1):
         node = path[:depth]
-        basis, current = _ground_of(engine, place, forest, node, element)
+        basis, current = _ground_of(recording, place, forest, node, element)
         block = None
         if not isinstance(element.where, str):
             cell = cell_of(history.context.box, element.where)
@@ -163,7 +157,7 @@ def _held_now(engine: Engine, path: Path, place: Place, element: Element) -> dic
 
 
 def _ground_of(
-    engine: Engine, place: Place, forest: Forest, node: Path, element: Element
+    recording: Recording, place: Place, forest: Forest, node: Path, element: Element
 ) -> tuple[Basis | None, bool]:
     """What a node's value rests on, and whether it is current."""
     reading = NodeView(forest, node)
@@ -173,15 +167,15 @@ def _ground_of(
     if element.kind == "container":
         content = reading.containers.get(element.where)
         return (None, False) if content is None else (content.basis, content.current)
-    cell = cell_of(engine.history.context.box, element.where)
+    cell = cell_of(recording.history.context.box, element.where)
     basis = forest.table.bases(forest.table.index[node], [cell])[cell]
-    current = engine.history.block_is_current(place.key, node, place.entries, element.where)
+    current = recording.history.block_is_current(place.key, node, place.entries, element.where)
     return basis, current
 
 
-def _fact(engine: Engine, place: Place, held: _Held, element: Element) -> Fact:
-    change = last_change(engine.history, engine.journal, place, element)
-    base = engine.journal.info(place.key).base
+def _fact(recording: Recording, place: Place, held: _Held, element: Element) -> Fact:
+    change = last_change(recording.history, recording.journal, place, element)
+    base = recording.journal.info(place.key).base
     return Fact(
         path=place.key.path,
         branch=place.key.branch,
@@ -195,29 +189,34 @@ def _fact(engine: Engine, place: Place, held: _Held, element: Element) -> Fact:
 
 
 def _follow(
-    engine: Engine, path: Path, place: Place, tick: int, element: Element, traces: list[_Trace]
+    recording: Recording,
+    path: Path,
+    place: Place,
+    tick: int,
+    element: Element,
+    traces: list[_Trace],
 ) -> None:
     """Go through the log from the oldest basis on, and note in each trace what happened."""
     if not traces:
         return
     # Whether something unknown was ever known only the whole log can tell.
-    first = engine.setting.snapshot.tick
+    first = recording.setting.snapshot.tick
     start = min(first if trace.observed_at is None else trace.observed_at for trace in traces)
     last = None
-    for step in steps_since(engine.history, engine.journal, path, place, start, element):
+    for step in steps_since(recording.history, recording.journal, path, place, start, element):
         last = step
         for trace in traces:
-            _take(engine, trace, step, element)
+            _take(recording, trace, step, element)
     for trace in traces:
         if last is not None and trace.held.basis is None:
             around = value_in(last.forest, trace.path[:-1], element)
             if around is not None:
                 # Nothing happened to be missed; the looks are those of now.
-                missed = _missed(engine, trace.path, last, element, around, acts=())
+                missed = _missed(recording, trace.path, last, element, around, acts=())
                 trace.missed = replace(missed, tick=tick)
 
 
-def _take(engine: Engine, trace: _Trace, step: Step, element: Element) -> None:
+def _take(recording: Recording, trace: _Trace, step: Step, element: Element) -> None:
     """Note what one entry means for one belief."""
     forest = step.forest
     there = value_in(forest, trace.path[:-1], element)
@@ -232,10 +231,10 @@ def _take(engine: Engine, trace: _Trace, step: Step, element: Element) -> None:
         trace.since, trace.around = forest.tick, there
         trace.stood = _feet(forest, trace.path)
     elif trace.missed is None and there != trace.around and trace.observed_at is not None:
-        edited = _is_edit(engine, step.place, trace.path[:-1])
+        edited = _is_edit(recording, step.place, trace.path[:-1])
         events = NodeView(forest, trace.path[:-1]).events()
         acts = () if edited else _acts(events, forest.tick, element)
-        missed = _missed(engine, trace.path, step, element, trace.around, acts)
+        missed = _missed(recording, trace.path, step, element, trace.around, acts)
         trace.missed = replace(missed, edited=edited)
 
 
@@ -246,7 +245,7 @@ def _feet(forest: Forest, path: Path) -> Point | None:
 
 
 def _missed(
-    engine: Engine,
+    recording: Recording,
     path: Path,
     step: Step,
     element: Element,
@@ -265,20 +264,20 @@ def _missed(
         acts=acts,
         edited=False,
         stood=_feet(forest, path),
-        absence=None if present else _absence(engine, forest, path),
-        sightings=_sightings(engine, around, path[-1], element, acts) if present else (),
+        absence=None if present else _absence(recording, forest, path),
+        sightings=_sightings(recording, around, path[-1], element, acts) if present else (),
         saw_acts=bool(acts) and all(act in mine for act in acts),
     )
 
 
-def _is_edit(engine: Engine, place: Place, path: Path) -> bool:
+def _is_edit(recording: Recording, place: Place, path: Path) -> bool:
     if place.entries == 0:
         return False
-    (entry,) = engine.journal.entries(place.key, place.entries - 1, place.entries)
+    (entry,) = recording.journal.entries(place.key, place.entries - 1, place.entries)
     return isinstance(entry, Edit) and entry.path == path
 
 
-def _absence(engine: Engine, forest: Forest, path: Path) -> Absence:
+def _absence(recording: Recording, forest: Forest, path: Path) -> Absence:
     """Why the simulator around a node does not know where its owner is."""
     around, table = path[:-1], forest.table
     node, number = table.index[around], forest.context.numbers[path[-1]]
@@ -286,19 +285,19 @@ def _absence(engine: Engine, forest: Forest, path: Path) -> Absence:
     if node == 0 or not table.is_present(node):
         return Absence(last_seen, None)
     outer = NodeView(forest, around[:-1])
-    box = engine.history.context.box
+    box = recording.history.context.box
     return Absence(last_seen, sighting_of_agent(outer, box, around[-1], path[-1]))
 
 
 def _sightings(
-    engine: Engine,
+    recording: Recording,
     around: NodeView,
     viewer: str,
     element: Element,
     acts: Iterable[PerceivedEvent],
 ) -> tuple[Sighting, ...]:
     """The looks that would have told a change: at who did it, and at the element."""
-    box = engine.history.context.box
+    box = recording.history.context.box
     if isinstance(element.where, str):
         return (sighting_of_agent(around, box, viewer, element.where),)
     actors: list[str] = []

@@ -8,8 +8,8 @@ import numpy as np
 
 from beliefnest.belief.entries import AgentBelief, Source
 from beliefnest.belief.node_view import NodeView
-from beliefnest.nest.acting.engine import Engine
-from beliefnest.nest.explain.explanation import Contents
+from beliefnest.nest.explain.parts import Contents
+from beliefnest.nest.past.recording import Recording
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Point, Position
@@ -53,16 +53,16 @@ class Difference:
 
 
 def compare(
-    engine: Engine, a: Path, b: Path, tick: int | None, *, unknown: bool
+    recording: Recording, a: Path, b: Path, tick: int | None, *, unknown: bool
 ) -> list[Difference]:
     """`differences` of two nodes at a tick; None: now."""
-    one, other = engine.reading(a, tick), engine.reading(b, tick)
-    context = engine.history.context
+    one, other = recording.reading(a, tick), recording.reading(b, tick)
+    context = recording.history.context
     return list(differences(one, other, context.box, context.registry, unknown=unknown))
 
 
 def false_beliefs(
-    engine: Engine,
+    recording: Recording,
     path: Path,
     tick: int | None,
     against: Path = (),
@@ -71,15 +71,15 @@ def false_beliefs(
     """`falsehoods` of a node at a tick; None: now.
 
     Args:
-        engine: Of the nest.
+        recording: The nest's.
         path: The node.
         tick: Its tick.
         against: The node that is taken for true.
         against_tick: Its tick; None: the same.
     """
-    belief = engine.reading(path, tick)
-    real = engine.reading(against, tick if against_tick is None else against_tick)
-    context = engine.history.context
+    belief = recording.reading(path, tick)
+    real = recording.reading(against, tick if against_tick is None else against_tick)
+    context = recording.history.context
     return list(falsehoods(real, belief, context.box, context.registry))
 
 

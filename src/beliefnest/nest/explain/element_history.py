@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.entries import PerceivedEvent
 from beliefnest.belief.forest import Forest
-from beliefnest.nest.explain.explanation import Contents, Element, Value
+from beliefnest.nest.explain.parts import Contents, Element, Value
 from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import Edit, Journal, Sift, TimelineKey
 from beliefnest.world.frames import Frame

@@ -8,7 +8,7 @@ import numpy as np
 
 from beliefnest.belief.entries import AgentBelief
 from beliefnest.belief.node_view import NodeView
-from beliefnest.nest.explain.explanation import Sighting, View
+from beliefnest.nest.explain.parts import Sighting, View
 from beliefnest.perception.sight import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT, Geometry
 from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position
 

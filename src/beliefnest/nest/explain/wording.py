@@ -3,10 +3,9 @@
 from collections.abc import Iterable
 
 from beliefnest.belief.entries import Basis, PerceivedEvent, Source
-from beliefnest.nest.explain.explanation import (
+from beliefnest.nest.explain.parts import (
     Contents,
     Element,
-    Explanation,
     Fact,
     Level,
     Missed,
@@ -17,21 +16,17 @@ from beliefnest.nest.explain.explanation import (
 from beliefnest.world.paths import path_text
 from beliefnest.world.values import EventKind, Items
 
-__all__ = ["explanation_text"]
+__all__ = ["explanation_lines"]
 
 
-def explanation_text(explanation: Explanation) -> str:
-    """An explanation in words, several lines of text."""
-    element = explanation.element
-    lines = [_fact_text(explanation.fact, element)]
-    for level in explanation.levels:
+def explanation_lines(element: Element, fact: Fact, levels: Iterable[Level]) -> list[str]:
+    """What is so, then what each belief along the path holds and why."""
+    lines = [_fact_text(fact, element)]
+    for level in levels:
         lines.append(_belief_text(level, element))
         if level.missed is not None:
-            lines.append(_missed_text(level.missed, level, explanation.fact, element))
-    if explanation.before is not None:
-        lines.append(f"Before the fork at tick {explanation.before.tick}:")
-        lines.extend(f"  {line}" for line in str(explanation.before).splitlines())
-    return "\n".join(lines)
+            lines.append(_missed_text(level.missed, level, fact, element))
+    return lines
 
 
 def _fact_text(fact: Fact, element: Element) -> str:

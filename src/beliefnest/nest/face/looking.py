@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from beliefnest.belief.view import State
 from beliefnest.errors import InputError
-from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.explain.comparison import Difference, Pose, false_beliefs
-from beliefnest.nest.explain.explanation import Contents
+from beliefnest.nest.explain.parts import Contents
+from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.figure import Figure, figure_of
 from beliefnest.pictures.scene import Scene, Wrong, best_height, read_scene
 from beliefnest.world.paths import parse_path, path_text
@@ -28,7 +28,7 @@ _APART = 0.5
 class _Node:
     """A simulator at a tick; None: at the latest of its timeline."""
 
-    engine: Engine
+    recording: Recording
     names: Path
     tick: int | None
 
@@ -40,17 +40,17 @@ class _Node:
     @property
     def state(self) -> State:
         """What it holds."""
-        return self.engine.state(self.names, self.tick)
+        return self.recording.state(self.names, self.tick)
 
     def visible_blocks(self, agent: str) -> npt.NDArray[np.bool_]:
         """Which blocks an agent sees in it."""
-        return self.engine.reading(self.names, self.tick).visible_from(agent)
+        return self.recording.reading(self.names, self.tick).visible_from(agent)
 
 
 class Looking:
     """Pictures of a nest: live, past, or recorded."""
 
-    _engine: Engine
+    _recording: Recording
 
     def _moment(self) -> int | None:
         """The tick it shows; None: each simulator's latest."""
@@ -82,7 +82,7 @@ class Looking:
         """
         wanted = [paths] if isinstance(paths, str) else list(paths)
         then = self._moment() if tick is None else tick
-        return figure(self._engine, wanted, then, against, sight=sight, height=height)
+        return figure(self._recording, wanted, then, against, sight=sight, height=height)
 
     def _repr_html_(self) -> str:
         return self.figure()._repr_html_()
@@ -91,7 +91,7 @@ class Looking:
 class LookingAtOne:
     """Pictures of one simulator."""
 
-    _engine: Engine
+    _recording: Recording
     _path: Path
 
     def _moment(self) -> int | None:
@@ -107,14 +107,14 @@ class LookingAtOne:
     ) -> Figure:
         """The simulator, drawn from what it holds itself; as `Nest.figure`."""
         paths = [path_text(self._path)]
-        return figure(self._engine, paths, self._moment(), against, sight=sight, height=height)
+        return figure(self._recording, paths, self._moment(), against, sight=sight, height=height)
 
     def _repr_html_(self) -> str:
         return self.figure()._repr_html_()
 
 
 def figure(
-    engine: Engine,
+    recording: Recording,
     paths: Sequence[str],
     tick: int | None,
     against: str | None,
@@ -125,12 +125,12 @@ def figure(
     """As `Looking.figure`."""
     if not paths:
         raise InputError("a figure of no simulator is empty; give a belief path")
-    with engine.turn:
-        other = parse_path("/" if against is None else against, engine.agents)
-        nodes = [_Node(engine, parse_path(path, engine.agents), tick) for path in paths]
+    with recording.turn:
+        other = parse_path("/" if against is None else against, recording.agents)
+        nodes = [_Node(recording, parse_path(path, recording.agents), tick) for path in paths]
         for name in sight or ():
-            parse_path(path_text((name,)), engine.agents)
-        low, high = engine.setting.snapshot.box.low[1], engine.setting.snapshot.box.high[1]
+            parse_path(path_text((name,)), recording.agents)
+        low, high = recording.setting.snapshot.box.low[1], recording.setting.snapshot.box.high[1]
         if height is not None and not low <= height <= high:
             raise InputError(f"height {height} lies outside the box; give {low} to {high}")
         # One storey for all of them, so that they can be compared.
@@ -139,9 +139,9 @@ def figure(
 
 
 def _scene(node: _Node, against: Path, sight: Sequence[str] | None, height: int) -> Scene:
-    engine = node.engine
-    setting = engine.setting
-    key = engine.selected.get(node.names)
+    recording = node.recording
+    setting = recording.setting
+    key = recording.selected.get(node.names)
     # Who is not there at this tick looks from a remembered place: nobody can tell what it sees.
     own = [name for name in node.names[-1:] if node.state.agents[name].current]
     return read_scene(
@@ -162,8 +162,8 @@ def _wrong(node: _Node, against: Path) -> list[Wrong]:
         return []
     tick = node.tick
     if tick is not None:
-        tick = min(tick, node.engine.info(against).head)
-    found = false_beliefs(node.engine, node.names, node.tick, against, tick)
+        tick = min(tick, node.recording.info(against).head)
+    found = false_beliefs(node.recording, node.names, node.tick, against, tick)
     return [
         Wrong(each.where, _instead(each))
         for each in found

@@ -1,14 +1,14 @@
 """What viewers read of a nest beside states: timelines, nodes over time, reasons, looks."""
 
 from collections.abc import Sequence
-from copy import copy
 
 from beliefnest.belief.forest import Forest
-from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.explain.chain import element_of, explain
-from beliefnest.nest.explain.explanation import Explanation, Sighting
+from beliefnest.nest.explain.explanation import Explanation
+from beliefnest.nest.explain.parts import Sighting
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
 from beliefnest.nest.past.history import History
+from beliefnest.nest.past.recording import Recording
 from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.journal import Entry, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
@@ -26,58 +26,58 @@ class Reader:
         history: From the journal to any node.
     """
 
-    def __init__(self, engine: Engine) -> None:
-        self._engine = engine
-        self.history: History = engine.history
+    def __init__(self, recording: Recording) -> None:
+        self._recording = recording
+        self.history: History = recording.history
 
     @property
     def setting(self) -> Setting:
         """What the nest started from."""
-        return self._engine.setting
+        return self._recording.setting
 
     @property
     def agents(self) -> tuple[str, ...]:
         """Names of all agents, sorted."""
-        return self._engine.agents
+        return self._recording.agents
 
     @property
     def seed(self) -> int:
         """Drives every random number."""
-        return self._engine.seed
+        return self._recording.seed
 
     def timelines(self) -> Sequence[TimelineInfo]:
         """All timelines, in order of creation."""
-        with self._engine.turn:
-            return tuple(self._engine.journal.timelines())
+        with self._recording.turn:
+            return tuple(self._recording.journal.timelines())
 
     def selected(self) -> set[TimelineKey]:
         """The timelines that simulators in control mode are on."""
-        with self._engine.turn:
-            return set(self._engine.selected.values())
+        with self._recording.turn:
+            return set(self._recording.selected.values())
 
     def programs(self) -> Sequence[ProgramRecord]:
         """All programs that ran, in order of their end."""
-        with self._engine.turn:
-            return tuple(self._engine.log.programs())
+        with self._recording.turn:
+            return tuple(self._recording.journal.records.programs())
 
     def prompts(self) -> Sequence[PromptRecord]:
         """All requests to models with what came of them, in order."""
-        with self._engine.turn:
-            return tuple(self._engine.log.prompts())
+        with self._recording.turn:
+            return tuple(self._recording.journal.records.prompts())
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Sequence[Entry]:
         """Entries of a timeline, from number `start` to before `stop`."""
-        with self._engine.turn:
-            return tuple(self._engine.journal.entries(key, start, stop))
+        with self._recording.turn:
+            return tuple(self._recording.journal.entries(key, start, stop))
 
     def walk(self, key: TimelineKey, paths: Sequence[Path]) -> Forest:
         """A forest with nodes of a timeline, at its beginning; `advance` takes it on."""
-        with self._engine.turn:
+        with self._recording.turn:
             return self.history.walk(key, paths)
 
     def advance(self, key: TimelineKey, forest: Forest, position: int) -> None:
         """Take a forest of `walk` on to a number of entries of its timeline."""
-        with self._engine.turn:
+        with self._recording.turn:
             self.history.advance(key, forest, position)
 
     def explain(
@@ -98,30 +98,19 @@ class Reader:
             PositionError: The position is outside the box.
             TickError: The tick is in the future or before the start.
         """
-        with self._engine.turn:
-            element = element_of(self._engine, container, agent, block)
-            return explain(self._on(key), path, tick, element)
+        with self._recording.turn:
+            element = element_of(self._recording, container, agent, block)
+            return explain(self._recording.on(key), path, tick, element)
 
     def look(
         self, key: TimelineKey, path: Path, tick: int, viewer: str, target: str | Position
     ) -> Sighting | None:
         """The look of an agent at another or at a block, in a simulator; None: it is nowhere."""
-        with self._engine.turn:
-            reading = self._on(key).reading(path, tick)
+        with self._recording.turn:
+            reading = self._recording.on(key).reading(path, tick)
             if reading.agents[viewer].position is None:
                 return None
             box = self.setting.snapshot.box
             if isinstance(target, str):
                 return sighting_of_agent(reading, box, viewer, target)
             return sighting_of_block(reading, box, viewer, target)
-
-    def _on(self, key: TimelineKey) -> Engine:
-        """The engine with the simulator of a timeline on it, and nobody below it on another."""
-        engine = copy(self._engine)
-        above = {
-            path: other
-            for path, other in self._engine.selected.items()
-            if key.path[: len(path)] == path
-        }
-        engine.selected = {**above, key.path: key}
-        return engine

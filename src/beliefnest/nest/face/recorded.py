@@ -4,17 +4,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Self
 
-from beliefnest.bodies.scripted import ScriptedBodies
-from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.face.looking import Looking
-from beliefnest.nest.face.nest import Past
+from beliefnest.nest.face.past_simulator import Past, PastSimulator
 from beliefnest.nest.face.reader import Reader
-from beliefnest.nest.face.simulator import PastSimulator
 from beliefnest.nest.past.over_time import Moment, over_time
-from beliefnest.nest.past.run_log import FileLog
-from beliefnest.nest.past.setting import MAIN, Setting
-from beliefnest.nest.past.setting_codec import decode_start
-from beliefnest.timeline.journal import FOLLOW, Journal, TimelineKey, lineage
+from beliefnest.nest.past.recording import Recording, read_recording
+from beliefnest.nest.past.run_log import RunJournal
+from beliefnest.nest.past.setting import Setting
+from beliefnest.timeline.journal import FOLLOW, TimelineKey, lineage
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import parse_path
@@ -30,9 +27,8 @@ class RecordedNest(Looking):
         journal: What it recorded; the caller closes it.
     """
 
-    def __init__(self, setting: Setting, journal: Journal) -> None:
-        self._engine = Engine(setting, journal, ScriptedBodies(), 0)
-        self._engine.selected[()] = TimelineKey((), MAIN)
+    def __init__(self, setting: Setting, journal: RunJournal) -> None:
+        self._recording = Recording(setting, journal)
 
     @classmethod
     def read(cls, store: str | Path) -> Self:
@@ -57,12 +53,8 @@ class RecordedNest(Looking):
         Raises:
             StoreError: It cannot be read.
         """
-        run = journal.records.run()
-        setting, _ = decode_start(run.setting)
         nest = cls.__new__(cls)
-        nest._engine = Engine(
-            setting, journal, ScriptedBodies(), run.seed, FileLog(journal)
-        ).resume()
+        nest._recording, _ = read_recording(journal)
         return nest
 
     def __enter__(self) -> Self:
@@ -73,26 +65,26 @@ class RecordedNest(Looking):
 
     def close(self) -> None:
         """Close the run file."""
-        self._engine.close()
+        self._recording.close()
 
     @property
     def setting(self) -> Setting:
         """What the run started from."""
-        return self._engine.setting
+        return self._recording.setting
 
     @property
     def agents(self) -> tuple[str, ...]:
         """Names of all agents, sorted."""
-        return self._engine.agents
+        return self._recording.agents
 
     @property
     def reader(self) -> Reader:
         """What viewers read of the run, on any of its timelines."""
-        return Reader(self._engine)
+        return Reader(self._recording)
 
     def versions(self) -> Sequence[Mapping[str, str]]:
         """Program to version, when the run began and whenever it was resumed with others."""
-        return self._engine.log.versions()
+        return self._recording.journal.records.versions()
 
     def __getitem__(self, path: str) -> PastSimulator:
         """A simulator at the latest tick of its timeline.
@@ -109,17 +101,17 @@ class RecordedNest(Looking):
             PathError: The path is malformed or names an unknown agent.
             BranchError: The simulator has no such branch.
         """
-        names = parse_path(path, self._engine.agents)
+        names = parse_path(path, self._recording.agents)
         if branch == FOLLOW and names:
-            self._engine.selected.pop(names, None)
+            self._recording.selected.pop(names, None)
             return
         key = TimelineKey(names, branch)
-        self._engine.journal.info(key)
-        self._engine.selected[names] = key
+        self._recording.journal.info(key)
+        self._recording.selected[names] = key
 
     def head(self, path: str) -> int:
         """The latest tick of the timeline that a simulator is on."""
-        return self._engine.info(parse_path(path, self._engine.agents)).head
+        return self._recording.info(parse_path(path, self._recording.agents)).head
 
     def over_time(self, path: str) -> Iterator[Moment]:
         """A simulator at every tick with a change, on every timeline that it has or can follow.
@@ -127,11 +119,11 @@ class RecordedNest(Looking):
         Raises:
             PathError: The path is malformed or names an unknown agent.
         """
-        return over_time(self._engine, parse_path(path, self._engine.agents))
+        return over_time(self._recording, parse_path(path, self._recording.agents))
 
     def branches(self) -> tuple[TimelineKey, ...]:
         """All timelines there are, in order of creation."""
-        return tuple(info.key for info in self._engine.journal.timelines())
+        return tuple(info.key for info in self._recording.journal.timelines())
 
     def programs(self, path: str | None = None) -> tuple[ProgramRecord, ...]:
         """Programs that ran, in order of their end.
@@ -143,11 +135,11 @@ class RecordedNest(Looking):
         Raises:
             PathError: The path is malformed or names an unknown agent.
         """
-        programs = tuple(self._engine.log.programs())
+        programs = tuple(self._recording.journal.records.programs())
         if path is None:
             return programs
-        names = parse_path(path, self._engine.agents)
-        key = self._engine.selected.get(names)
+        names = parse_path(path, self._recording.agents)
+        key = self._recording.selected.get(names)
         return tuple(p for p in programs if TimelineKey(p.path, p.branch) == key)
 
     def prompts(self, path: str | None = None) -> tuple[PromptRecord, ...]:
@@ -160,11 +152,11 @@ class RecordedNest(Looking):
         Raises:
             PathError: The path is malformed or names an unknown agent.
         """
-        prompts = tuple(self._engine.log.prompts())
+        prompts = tuple(self._recording.journal.records.prompts())
         if path is None:
             return prompts
-        names = parse_path(path, self._engine.agents)
-        until = dict(lineage(self._engine.journal, self._engine.controller(names)))
+        names = parse_path(path, self._recording.agents)
+        until = dict(lineage(self._recording.journal, self._recording.controller(names)))
         return tuple(p for p in prompts if p.path == names and p.tick <= until.get(p.timeline, -1))
 
     def at(self, tick: int) -> Past:
@@ -173,7 +165,7 @@ class RecordedNest(Looking):
         Raises:
             TickError: The tick is in the future or before the start, when a state is read.
         """
-        return Past(self._engine, tick)
+        return Past(self._recording, tick)
 
     def simulator(self, path: str, tick: int | None = None) -> PastSimulator:
         """A simulator at a tick; None: at the latest one of its timeline."""

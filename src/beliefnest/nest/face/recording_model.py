@@ -1,11 +1,11 @@
-"""A model around a model, which notes in the run what was asked and answered."""
+"""A recording model: asks another one, and notes in the run what was asked and answered."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from beliefnest.errors import ModelError
-from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.records import PromptRecord
 
 if TYPE_CHECKING:  # Models take long to import, and few nests have one.
@@ -21,16 +21,16 @@ class RecordingModel:
 
     Args:
         model: The model to ask.
-        engine: Where it is noted.
+        recording: Where it is noted.
         path: The simulator it is asked from.
         detail: Further facts to note.
     """
 
     def __init__(
-        self, model: "Model", engine: Engine, path: tuple[str, ...], detail: Mapping[str, str]
+        self, model: "Model", recording: Recording, path: tuple[str, ...], detail: Mapping[str, str]
     ) -> None:
         self._model = model
-        self._engine = engine
+        self._recording = recording
         self._path = path
         self._detail = detail
         self._asked = 0
@@ -48,8 +48,8 @@ class RecordingModel:
             StoreError: The run file cannot be written.
         """
         # Others may use the nest while the model thinks.
-        with self._engine.turn:
-            info = self._engine.info(self._path)
+        with self._recording.turn:
+            info = self._recording.info(self._path)
         self._asked += 1
         asked = PromptRecord(
             path=self._path,
@@ -86,5 +86,5 @@ class RecordingModel:
         return answer
 
     def _note(self, prompt: PromptRecord) -> None:
-        with self._engine.turn:
-            self._engine.log.add_prompt(prompt)
+        with self._recording.turn:
+            self._recording.journal.records.add_prompt(prompt)

@@ -1,27 +1,19 @@
 """One simulator of the nest, as its users hold it."""
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Literal
-
-import numpy as np
-import numpy.typing as npt
 
 from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.bodies.scripted import ScriptedBody
-from beliefnest.errors import BranchError, InputError, PathError, PositionError, WorldError
+from beliefnest.errors import BranchError, InputError, PositionError, WorldError
 from beliefnest.nest.acting.engine import Engine
-from beliefnest.nest.explain.chain import element_of, explain
-from beliefnest.nest.explain.explanation import Explanation
-from beliefnest.nest.face.looking import LookingAtOne
+from beliefnest.nest.face.past_simulator import ShownSimulator
 from beliefnest.nest.face.recording_model import RecordingModel
 from beliefnest.nest.face.ticks import tick_of, whole
 from beliefnest.nest.face.turns import in_turn
-from beliefnest.prompts import Template, render
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
-from beliefnest.world.paths import normalised, path_text
 from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.texts import is_well_formed
 from beliefnest.world.values import TICKS_PER_SECOND, Items, Position
@@ -29,156 +21,35 @@ from beliefnest.world.values import TICKS_PER_SECOND, Items, Position
 if TYPE_CHECKING:
     from beliefnest.llm.messages import Model
 
-__all__ = ["PastSimulator", "Simulator"]
+__all__ = ["Simulator"]
 
 Mode = Literal["control", "follow"]
 
 _LONGEST = 24 * 3600 * TICKS_PER_SECOND
 
 
-class _Seen(LookingAtOne):
-    """What a simulator shows of itself at one tick, now or in the past."""
+class Simulator(ShownSimulator):
+    """The real world or a belief, live; `Nest[path]` gives one."""
 
     def __init__(self, engine: Engine, path: tuple[str, ...]) -> None:
+        super().__init__(engine.recording, path)
         self._engine = engine
-        self._path = path
-
-    @property
-    def path(self) -> str:
-        """The normalised belief path, as text."""
-        return path_text(self._path)
-
-    @property
-    def owner(self) -> str | None:
-        """The agent whose belief this is; None in the real world."""
-        return self._path[-1] if self._path else None
-
-    @property
-    def tick(self) -> int:
-        """The tick it shows."""
-        raise NotImplementedError
-
-    @property
-    def state(self) -> State:
-        """What the simulator holds, read-only."""
-        raise NotImplementedError
-
-    def _reading(self) -> NodeView:
-        raise NotImplementedError
-
-    def render(self, template: Template | Path | str, **variables: object) -> str:
-        """The text of a prompt template, filled from this simulator.
-
-        Args:
-            template: A Jinja2 template: its text, or the path of its file.
-            variables: Further variables of the template, as `task`.
-
-        Raises:
-            TemplateError: The template is wrong; the message names its line.
-        """
-        with self._engine.turn:
-            return render(template, self, variables)
-
-    @in_turn
-    def explain(
-        self,
-        *,
-        container: Position | None = None,
-        agent: str | None = None,
-        block: Position | None = None,
-    ) -> Explanation:
-        """The chain of perceptions behind what it holds of one thing; `str()` puts it in words.
-
-        Args:
-            container: Position of a container, whose contents are explained.
-            agent: Name of an agent, whose place is explained.
-            block: Position of a block.
-
-        Raises:
-            InputError: None of the three was given, or several were.
-            PathError: There is no such agent.
-            PositionError: The position is outside the box.
-        """
-        element = element_of(self._engine, container, agent, block)
-        return explain(self._engine, self._path, self._explained_tick(), element)
-
-    def _explained_tick(self) -> int | None:
-        raise NotImplementedError
-
-    def child(self, agent: str) -> "_Seen":
-        """The simulator of what `agent` believes in this one."""
-        raise NotImplementedError
-
-    @in_turn
-    def visible_blocks(self, agent: str) -> npt.NDArray[np.bool_]:
-        """Which blocks an agent sees from its pose in this simulator.
-
-        Returns:
-            bool, shape of the box; all false where the agent's pose is unknown.
-
-        Raises:
-            PathError: There is no such agent.
-        """
-        self._child_path(agent)
-        return self._reading().visible_from(agent)
-
-    def _child_path(self, agent: str) -> tuple[str, ...]:
-        agents = self._engine.agents
-        if agent not in agents:
-            raise PathError(f"no agent {agent!r}; there are {', '.join(agents)}")
-        return normalised((*self._path, agent))
-
-
-class PastSimulator(_Seen):
-    """A simulator as it was at a past tick; read-only."""
-
-    def __init__(self, engine: Engine, path: tuple[str, ...], tick: int) -> None:
-        super().__init__(engine, path)
-        self._tick = tick
-
-    @property
-    def tick(self) -> int:
-        """The past tick."""
-        return self._tick
-
-    def child(self, agent: str) -> "PastSimulator":
-        """The simulator of what `agent` believed in this one."""
-        return PastSimulator(self._engine, self._child_path(agent), self._tick)
-
-    @property
-    @in_turn
-    def state(self) -> State:
-        """What the simulator held, read-only."""
-        return self._engine.state(self._path, self._tick)
-
-    def _reading(self) -> NodeView:
-        return self._engine.reading(self._path, self._tick)
-
-    def _explained_tick(self) -> int:
-        return self._tick
-
-    def _moment(self) -> int:
-        return self._tick
-
-
-class Simulator(_Seen):
-    """The real world or a belief, live; `Nest[path]` gives one."""
 
     @property
     def mode(self) -> Mode:
         """`control` with a timeline of its own, else `follow`."""
-        return "control" if self._path in self._engine.selected else "follow"
+        return "control" if self._path in self._recording.selected else "follow"
 
     @property
     def branch(self) -> str:
         """Name of the selected branch; `follow` in follow mode."""
-        key = self._engine.selected.get(self._path)
+        key = self._recording.selected.get(self._path)
         return FOLLOW if key is None else key.branch
 
     @property
     def tick(self) -> int:
         """The latest tick of the timeline it is on."""
-        return self._engine.info(self._path).head
+        return self._recording.info(self._path).head
 
     @property
     @in_turn
@@ -219,7 +90,7 @@ class Simulator(_Seen):
             self._engine.follow(self._path)
             return
         key = TimelineKey(self._path, name)
-        if all(info.key != key for info in self._engine.journal.timelines()):
+        if all(info.key != key for info in self._recording.journal.timelines()):
             self._engine.fork(self._path, name, None if at is None else tick_of(at))
         elif at is not None:
             raise BranchError(f"branch {name!r} exists; fork tick {at} under another name")
@@ -229,7 +100,7 @@ class Simulator(_Seen):
     @in_turn
     def branches(self) -> tuple[TimelineInfo, ...]:
         """The simulator's own timelines, in order of creation, each with its fork point."""
-        timelines = self._engine.journal.timelines()
+        timelines = self._recording.journal.timelines()
         return tuple(info for info in timelines if info.key.path == self._path)
 
     @in_turn
@@ -256,7 +127,7 @@ class Simulator(_Seen):
             BranchError: There is no such branch, a simulator is on it, or others are based
                 on it and `recursive` is not set.
         """
-        journal = self._engine.journal
+        journal = self._recording.journal
         key = journal.info(TimelineKey(self._path, name)).key
         self._engine.delete([*(_based_on(key, journal.timelines()) if recursive else ()), key])
 
@@ -270,7 +141,7 @@ class Simulator(_Seen):
         """
         if not isinstance(text, str):
             raise InputError(f"a description is a text, not {text!r}")
-        self._engine.journal.describe(TimelineKey(self._path, name), text)
+        self._recording.journal.describe(TimelineKey(self._path, name), text)
 
     def run(self, agent: str, code: str, timeout_ticks: int = 1200) -> ProgramResult:
         """Run a program as an agent of this simulator, which must be in control mode.
@@ -321,7 +192,7 @@ class Simulator(_Seen):
             model: Who is asked.
             detail: Facts to keep with every request, as `task`.
         """
-        return RecordingModel(model, self._engine, self._path, detail)
+        return RecordingModel(model, self._recording, self._path, detail)
 
     @in_turn
     def step(self, ticks: int = 1) -> None:
@@ -354,8 +225,8 @@ class Simulator(_Seen):
             PositionError: A position is outside the box.
             UnknownNameError: There is no such block or item.
         """
-        registry = self._engine.history.context.registry
-        box = self._engine.setting.snapshot.box
+        registry = self._recording.history.context.registry
+        box = self._recording.setting.snapshot.box
         for position in (*(blocks or {}), *(containers or {})):
             if position not in box:
                 raise PositionError(f"position {position} is outside the box {box.low}..{box.high}")
@@ -374,10 +245,10 @@ class Simulator(_Seen):
     @in_turn
     def state(self) -> State:
         """What the simulator holds, read-only."""
-        return self._engine.state(self._path)
+        return self._recording.state(self._path)
 
     def _reading(self) -> NodeView:
-        return self._engine.reading(self._path)
+        return self._recording.reading(self._path)
 
     def _explained_tick(self) -> None:
         return None

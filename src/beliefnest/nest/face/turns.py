@@ -9,16 +9,16 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Concatenate, ParamSpec, Protocol, TypeVar
 
-from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.past.recording import Recording
 
 __all__ = ["in_turn"]
 
 
-class _OfEngine(Protocol):
-    _engine: Engine
+class _InNest(Protocol):
+    _recording: Recording
 
 
-S = TypeVar("S", bound=_OfEngine)
+S = TypeVar("S", bound=_InNest)
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -28,7 +28,7 @@ def in_turn(method: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P
 
     @wraps(method)
     def waiting(self: S, /, *args: P.args, **kwargs: P.kwargs) -> R:
-        with self._engine.turn:
+        with self._recording.turn:
             return method(self, *args, **kwargs)
 
     return waiting

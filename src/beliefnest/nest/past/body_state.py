@@ -35,21 +35,16 @@ def snapshot_at(journal: Journal, history: History, path: Path, moment: ForkPoin
 def note_hidden(journal: Journal, moment: ForkPoint, hidden: bytes) -> None:
     """Keep what goes on in the timeline's body at a moment."""
     if hidden:
-        journal.put_checkpoint(moment.timeline, _name(moment), moment.entries, hidden)
+        journal.put_body_state(moment.timeline, moment.entries, moment.tick, hidden)
 
 
 def hidden_at(journal: Journal, moment: ForkPoint) -> bytes:
     """What was noted to go on in the timeline's body at a moment; empty if nothing was."""
-    found = journal.nearest_checkpoint(moment.timeline, _name(moment), moment.entries)
-    if found is not None and found[0] == moment.entries:
-        return found[1]
+    found = journal.body_state(moment.timeline, moment.entries, moment.tick)
+    if found is not None:
+        return found
     base = journal.info(moment.timeline).base
     begins = base is not None and moment.entries == 0 and moment.tick == base.tick
     if base is None or not begins or base.timeline.path != moment.timeline.path:
         return b""
     return hidden_at(journal, base)
-
-
-def _name(moment: ForkPoint) -> str:
-    # Several calls may end after the same entry, in ticks without one.
-    return f"hidden {moment.tick}"

@@ -126,6 +126,10 @@ class Checkpoints:
         """Drop what is remembered of a timeline that was deleted or renamed."""
         self._kept = {at: kept for at, kept in self._kept.items() if at[0] != key}
 
+    def forget_all(self) -> None:
+        """Drop what is remembered of all timelines."""
+        self._kept = {}
+
     def _save(self, key: TimelineKey, forest: Forest) -> None:
         if self._journal.writable:
             body = saved(forest)

@@ -175,6 +175,11 @@ class History:
         self._checkpoints.forget(key)
         self._pasts = [(other, forest) for other, forest in self._pasts if other != key]
 
+    def forget_all(self) -> None:
+        """Drop what is remembered of all timelines."""
+        self._stretches, self._logs, self._heads, self._pasts = {}, {}, {}, []
+        self._checkpoints.forget_all()
+
     def _forest(self, key: TimelineKey, path: Path, position: int) -> Forest:
         """A forest with a node, after some entries of a timeline."""
         if position == self._journal.info(key).entries:

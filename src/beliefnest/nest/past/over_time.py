@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beliefnest.belief.view import State
-from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Journal, TimelineInfo, TimelineKey
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
@@ -33,21 +33,21 @@ class Moment:
     blocks: Mapping[Position, str | None]
 
 
-def over_time(engine: Engine, path: tuple[str, ...]) -> Iterator[Moment]:
+def over_time(recording: Recording, path: tuple[str, ...]) -> Iterator[Moment]:
     """The first tick of each timeline that a simulator has or can follow, and each with a change.
 
     Timelines come in order of creation, each with its own ticks: what lies before its first is
     told of the one it goes on from.
     """
-    registry = engine.history.context.registry
-    box = engine.setting.snapshot.box
-    for info in engine.journal.timelines():
+    registry = recording.history.context.registry
+    box = recording.setting.snapshot.box
+    for info in recording.journal.timelines():
         if path[: len(info.key.path)] != info.key.path:
             continue
         before = np.full(box.shape, -1, dtype=np.int32)
-        for tick, entries in _places(engine.journal, info).items():
-            grid = engine.history.reading(info.key, path, entries).blocks.copy()
-            state = engine.state_after(info.key, path, entries, tick)
+        for tick, entries in _places(recording.journal, info).items():
+            grid = recording.history.reading(info.key, path, entries).blocks.copy()
+            state = recording.state_after(info.key, path, entries, tick)
             yield Moment(info.key, tick, state, _changed(before, grid, box, registry))
             before = grid
 

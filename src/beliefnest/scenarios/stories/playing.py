@@ -8,7 +8,8 @@ from typing import Self
 from beliefnest.belief.entries import Basis
 from beliefnest.errors import InputError, ProgramError
 from beliefnest.nest.face.nest import Nest
-from beliefnest.nest.face.simulator import PastSimulator, Simulator
+from beliefnest.nest.face.past_simulator import PastSimulator
+from beliefnest.nest.face.simulator import Simulator
 from beliefnest.nest.past.setting import Setting
 from beliefnest.perception.options import Perception
 from beliefnest.scenarios.stories.plan import WALL, FloorPlan, feet, lay_out

@@ -10,11 +10,10 @@ from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.errors import BranchError, InputError
 from beliefnest.nest.acting.engine import Engine
-from beliefnest.nest.acting.speculation import Outcome, Start, speculate
+from beliefnest.nest.acting.speculation import Speculation
 from beliefnest.nest.face.simulator import Simulator
-from beliefnest.nest.past.body_state import present, snapshot_at
+from beliefnest.nest.past.body_state import present
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
-from beliefnest.world.paths import path_text
 
 __all__ = ["Attempt", "Exploration", "Score"]
 
@@ -83,7 +82,7 @@ class Exploration:
         before, base = simulator.branch, self._present()
         decided_at = 1 if self.processes is None else 0
         attempts: list[Attempt] = []
-        ahead: Mapping[int, Outcome] = {}
+        ahead: Mapping[int, Speculation] = {}
         seconds = 0.0
         with ExitStack() as stack:
             stack.callback(simulator.switch, before)
@@ -93,9 +92,9 @@ class Exploration:
                 started = time.perf_counter()
                 simulator.switch(before)
                 # A score may have let the world go on that this simulator follows.
-                outcome = ahead.get(number) if self._present() == base else None
+                speculation = ahead.get(number) if self._present() == base else None
                 simulator.switch(branch)
-                result = self._run(simulator, number, outcome)
+                result = self._run(simulator, number, speculation)
                 seconds = time.perf_counter() - started
                 score = float(self.score(simulator, result))
                 attempts.append(
@@ -104,11 +103,11 @@ class Exploration:
         return tuple(attempts)
 
     def _present(self) -> ForkPoint:
-        return present(self.engine.journal, self.engine.controller(self.path))
+        return present(self.engine.recording.journal, self.engine.recording.controller(self.path))
 
     def _branches(self, simulator: Simulator) -> Sequence[str]:
         branches = [f"{self.name} {number}" for number in range(1, len(self.programs) + 1)]
-        taken = {info.key for info in self.engine.journal.timelines()}
+        taken = {info.key for info in self.engine.recording.journal.timelines()}
         for branch in branches:
             if TimelineKey(self.path, branch) in taken:
                 raise BranchError(
@@ -116,23 +115,25 @@ class Exploration:
                 )
         return branches
 
-    def _run(self, simulator: Simulator, number: int, outcome: Outcome | None) -> ProgramResult:
+    def _run(
+        self, simulator: Simulator, number: int, speculation: Speculation | None
+    ) -> ProgramResult:
         code = self.programs[number]
-        if outcome is None:
+        if speculation is None:
             return simulator.run(self.agent, code, self.timeout_ticks)
-        with self.engine.turn:
-            results = self.engine.take_over(
-                self.path, {self.agent: code}, self.timeout_ticks, outcome
+        with self.engine.recording.turn:
+            results = self.engine.run_speculated(
+                self.path, {self.agent: code}, self.timeout_ticks, speculation
             )
         return results[self.agent]
 
     def _ahead(
         self, stack: ExitStack, base: ForkPoint, first: int, seconds: float
-    ) -> Mapping[int, Outcome]:
-        """Outcomes of the programs from one on, if it is to be done at the same time.
+    ) -> Mapping[int, Speculation]:
+        """Speculations of the programs from one on, if it is to be done at the same time.
 
         Args:
-            stack: Keeps the simulator without a body as long as outcomes are used.
+            stack: Keeps the simulator without a body as long as speculations are used.
             base: Where they begin.
             first: Number of the first of them.
             seconds: What one took that ran before.
@@ -144,17 +145,10 @@ class Exploration:
         processes = min(processes, len(left))
         if processes < 2:
             return {}
-        engine = self.engine
-        with engine.turn:
-            stack.enter_context(engine.without_body(self.path))
-            start = Start(
-                f"{path_text(self.path)} ahead",
-                engine.seed_of(self.path),
-                snapshot_at(engine.journal, engine.history, self.path, base),
-            )
+        with self.engine.recording.turn:
+            stack.enter_context(self.engine.bodies.without(self.path))
             jobs = {number: {self.agent: self.programs[number]} for number in left}
-            worlds = [engine.world, *engine.others(processes - 1)]
-            return speculate(worlds, start, jobs, self.timeout_ticks)
+            return self.engine.speculate(self.path, base, jobs, self.timeout_ticks, processes)
 
 
 def _processors() -> int:

@@ -1,0 +1,213 @@
+"""The bodies of a nest's simulators: made when first needed, lost with their process, made again.
+
+Every body has a recorder, which appends its frames to the timeline that its simulator is on.
+"""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from beliefnest.bodies.protocol import Body, World
+from beliefnest.errors import BodyError, BranchError, WorldError
+from beliefnest.nest.acting.frame_recorder import FrameRecorder
+from beliefnest.nest.acting.lives import Lives
+from beliefnest.nest.acting.speculation import SpeculatedBody, Speculation
+from beliefnest.nest.past.body_state import note_hidden, present, snapshot_at
+from beliefnest.nest.past.recording import Recording
+from beliefnest.timeline.journal import TimelineKey
+from beliefnest.world.frames import Snapshot
+from beliefnest.world.paths import path_text
+
+__all__ = ["Bodies"]
+
+Path = tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _Embodied:
+    """A body and what records its frames."""
+
+    body: Body
+    recorder: FrameRecorder
+
+
+class Bodies:
+    """The bodies of simulators in control mode, by path.
+
+    Args:
+        recording: What they are filled from and recorded in.
+        world: Where they live.
+
+    Attributes:
+        world: Where they live.
+        others: Further worlds of the kind, for programs that run at the same time.
+    """
+
+    def __init__(self, recording: Recording, world: World) -> None:
+        self.world = world
+        self.others: list[World] = []
+        self._recording = recording
+        self._embodied: dict[Path, _Embodied] = {}
+        self._bodiless: set[Path] = set()
+
+    def __contains__(self, path: Path) -> bool:
+        return path in self._embodied
+
+    def lives(self) -> Lives:
+        """The processes that one call on bodies may use up."""
+        return Lives(self.forget_lost)
+
+    def of(self, path: Path) -> Body:
+        """The body of a simulator in control mode, made if there is none yet.
+
+        Raises:
+            BranchError: The simulator is in follow mode.
+            BodyError: The world could not be started.
+        """
+        if path not in self._recording.selected:
+            raise BranchError(
+                f"{path_text(path)} is in follow mode and has no body to act in; "
+                "switch it to a branch first: simulator.switch('my-branch')"
+            )
+        if path not in self._embodied:
+            key = self._recording.selected[path]
+            self.open(key, self.recorded(key))
+        return self._embodied[path].body
+
+    def open(self, key: TimelineKey, snapshot: Snapshot) -> None:
+        """Make the body of a simulator."""
+        recorder = FrameRecorder(self._recording.journal, self._recording.history, key)
+        body = self.world.open_body(path_text(key.path), self.seed_of(key.path), snapshot, recorder)
+        self._embodied[key.path] = _Embodied(body, recorder)
+        self._recording.journal.records.add_versions(self.world.versions)
+
+    def seed_of(self, path: Path) -> str:
+        """Seed of a simulator's body."""
+        return f"{self._recording.seed} {path_text(path)}"
+
+    def recorded(self, key: TimelineKey) -> Snapshot:
+        """What a body on a timeline has to be like now."""
+        journal = self._recording.journal
+        return snapshot_at(journal, self._recording.history, key.path, present(journal, key))
+
+    def give_up(self, path: Path) -> None:
+        """Close a simulator's body, if it has one."""
+        embodied = self._embodied.pop(path, None)
+        if embodied is not None:
+            embodied.body.close()
+
+    def forget_lost(self) -> None:
+        """Forget the bodies whose process has ended; others are made when they are needed."""
+        self._embodied = {p: each for p, each in self._embodied.items() if not each.body.lost}
+
+    def rename(self, key: TimelineKey) -> None:
+        """Record in the timeline that a simulator is on from now on."""
+        if key.path in self._embodied:
+            self._embodied[key.path].recorder.key = key
+
+    @contextmanager
+    def selecting(self, key: TimelineKey, snapshot: Snapshot) -> Iterator[None]:
+        """Give a simulator's body a state and, if the body of the block records that, select it.
+
+        If the world or the journal refuses, the simulator is where it was before.
+        """
+        embodied = self._embodied.get(key.path)
+        try:
+            if embodied is not None:
+                embodied.body.become(snapshot)
+            elif key.path not in self._bodiless:
+                self.open(key, snapshot)
+            yield
+        except BaseException:
+            self.restore(key.path)
+            raise
+        self._recording.selected[key.path] = key
+        self.rename(key)
+
+    @contextmanager
+    def acting(self, path: Path) -> Iterator[Body]:
+        """A call on a body; what happens and what is noted is kept once it ends, as a whole."""
+        body, recorder = self.of(path), self._embodied[path].recorder
+        journal = self._recording.journal
+        recorder.batched = True
+        try:
+            # What a world refuses it has not begun.
+            with self.changing(path, unless=WorldError):
+                yield body
+                recorder.flush(body.tick)
+                note_hidden(journal, present(journal, recorder.key), body.hidden)
+        finally:
+            recorder.batched = False
+        recorder.keep_up()
+
+    @contextmanager
+    def changing(self, path: Path, unless: type[BaseException] | tuple[()] = ()) -> Iterator[None]:
+        """What is recorded inside is kept as a whole.
+
+        If it raises, nothing of it is kept, and the body is again as its timeline says.
+
+        Args:
+            path: The simulator.
+            unless: What is raised only where the body was not changed.
+        """
+        try:
+            with self._recording.journal.together():
+                yield
+        except unless:
+            raise
+        except BaseException:
+            if path in self._embodied:
+                self._embodied[path].recorder.drop()
+            # What was read meanwhile, here or in what is based on it, has not happened.
+            self._recording.history.forget_all()
+            self.restore(path)
+            raise
+
+    def restore(self, path: Path) -> None:
+        """Make a simulator's body, after a fault, what its timeline says."""
+        self.forget_lost()
+        key, embodied = self._recording.selected.get(path), self._embodied.get(path)
+        if embodied is None:
+            return
+        if key is None:
+            self.give_up(path)
+            return
+        try:
+            embodied.body.become(self.recorded(key))
+        except BodyError:
+            # Not even that; another one is made when it is needed.
+            self.give_up(path)
+
+    @contextmanager
+    def without(self, path: Path) -> Iterator[None]:
+        """Give a simulator's body up, and make none for a branch that is only selected."""
+        self.give_up(path)
+        self._bodiless.add(path)
+        try:
+            yield
+        finally:
+            self._bodiless.discard(path)
+
+    @contextmanager
+    def speculated(self, path: Path, speculation: Speculation) -> Iterator[None]:
+        """Let programs that have run already run as in this simulator's body."""
+        recording = self._recording
+        self.give_up(path)
+        recorder = FrameRecorder(recording.journal, recording.history, recording.selected[path])
+        self._embodied[path] = _Embodied(SpeculatedBody(speculation, recorder), recorder)
+        try:
+            yield
+        finally:
+            self.give_up(path)
+
+    def further_worlds(self, count: int) -> Sequence[World]:
+        """That many worlds like this nest's own; each is started when it is first needed."""
+        while len(self.others) < count:
+            self.others.append(self.world.another())
+        return self.others[:count]
+
+    def close(self) -> None:
+        """Give up all bodies and their worlds."""
+        self._embodied.clear()
+        for world in (*self.others, self.world):
+            world.close()

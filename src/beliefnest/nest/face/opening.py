@@ -1,0 +1,120 @@
+"""How a nest is opened, in a new run or in one that was recorded."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol, Self
+
+from beliefnest.bodies.limits import ProcessLimits
+from beliefnest.bodies.protocol import World
+from beliefnest.bodies.worlds import LazyWorld, Worlds
+from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.past.recording import Recording, read_recording
+from beliefnest.nest.past.setting import Setting
+from beliefnest.nest.past.setting_codec import encode_start
+from beliefnest.nest.past.versions import own_versions
+from beliefnest.timeline.memory import MemoryJournal
+from beliefnest.timeline.records import RunRecord
+from beliefnest.timeline.store import SqliteJournal
+
+__all__ = ["HasSetting", "Start", "begun", "resumed"]
+
+
+class HasSetting(Protocol):
+    """Something a nest can open: a scenario with its condition chosen."""
+
+    @property
+    def setting(self) -> Setting:
+        """What the nest starts from."""
+
+    @property
+    def text(self) -> str:
+        """The text of the scenario's file, for the record; empty if there is none."""
+
+    @property
+    def templates(self) -> Mapping[str, str]:
+        """Texts of the prompt templates that the file names, for the record."""
+
+    @property
+    def condition(self) -> int | None:
+        """Number of the chosen condition; None if there is none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """What a run is started with.
+
+    Attributes:
+        setting: What the nest starts from.
+        world: Name of the world.
+        seed: Drives every random number.
+        text: The text of the scenario's file.
+        templates: Texts of the prompt templates that it names.
+        condition: Number of its chosen condition.
+    """
+
+    setting: Setting
+    world: str
+    seed: int
+    text: str = ""
+    templates: Mapping[str, str] = field(default_factory=dict)
+    condition: int | None = None
+
+    @classmethod
+    def of(cls, scenario: HasSetting | Setting, world: str, seed: int) -> Self:
+        """What a run of a scenario is started with."""
+        if isinstance(scenario, Setting):
+            return cls(scenario, world, seed)
+        return cls(
+            scenario.setting, world, seed, scenario.text, scenario.templates, scenario.condition
+        )
+
+    def record(self, world: World) -> RunRecord:
+        """What the run file keeps of it."""
+        return RunRecord(
+            scenario=self.setting.name,
+            text=self.text,
+            condition="" if self.condition is None else str(self.condition),
+            seed=self.seed,
+            versions={**own_versions(), **world.versions},
+            setting=encode_start(self.setting, self.world),
+            templates=self.templates,
+        )
+
+
+def begun(start: Start, world: World, store: str | Path | None) -> Engine:
+    """Begin a run in a world, in a file or in memory.
+
+    Raises:
+        StoreError: The file exists already, or cannot be written.
+        BodyError: The world could not be started.
+    """
+    if store is None:
+        recording = Recording(start.setting, MemoryJournal(), start.seed)
+        recording.journal.records.add_versions(own_versions())
+        return Engine(recording, world).begin()
+    journal = SqliteJournal.create_file(store)
+    try:
+        with journal.together():
+            journal.records.set_run(start.record(world))
+            return Engine(Recording(start.setting, journal, start.seed), world).begin()
+    except BaseException:
+        journal.close()
+        raise
+
+
+def resumed(store: str | Path, limits: ProcessLimits | None, worlds: Worlds | None) -> Engine:
+    """Go on with a recorded run; the world is started when it is first needed.
+
+    Raises:
+        StoreError: There is no such run, it cannot be read or written, or has another writer.
+    """
+    journal = SqliteJournal.open(store)
+    try:
+        recording, name = read_recording(journal)
+        lazy = LazyWorld(name, recording.seed, limits) if worlds is None else worlds.lend(name)
+        journal.records.add_versions(own_versions())
+        return Engine(recording, lazy)
+    except BaseException:
+        journal.close()
+        raise

@@ -1,0 +1,188 @@
+"""What a simulator shows of itself, and simulators as they were; nothing here acts."""
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.node_view import NodeView
+from beliefnest.belief.view import State
+from beliefnest.errors import PathError
+from beliefnest.nest.explain.chain import element_of, explain
+from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs
+from beliefnest.nest.explain.explanation import Explanation
+from beliefnest.nest.face.looking import Looking, LookingAtOne
+from beliefnest.nest.face.turns import in_turn
+from beliefnest.nest.past.recording import Recording
+from beliefnest.prompts import Template, render
+from beliefnest.world.paths import normalised, parse_path, path_text
+from beliefnest.world.values import Position
+
+__all__ = ["Past", "PastSimulator", "ShownSimulator"]
+
+
+class ShownSimulator(LookingAtOne):
+    """What a simulator shows of itself at one tick, now or in the past."""
+
+    def __init__(self, recording: Recording, path: tuple[str, ...]) -> None:
+        self._recording = recording
+        self._path = path
+
+    @property
+    def path(self) -> str:
+        """The normalised belief path, as text."""
+        return path_text(self._path)
+
+    @property
+    def owner(self) -> str | None:
+        """The agent whose belief this is; None in the real world."""
+        return self._path[-1] if self._path else None
+
+    @property
+    def tick(self) -> int:
+        """The tick it shows."""
+        raise NotImplementedError
+
+    @property
+    def state(self) -> State:
+        """What the simulator holds, read-only."""
+        raise NotImplementedError
+
+    def _reading(self) -> NodeView:
+        raise NotImplementedError
+
+    def render(self, template: Template | Path | str, **variables: object) -> str:
+        """The text of a prompt template, filled from this simulator.
+
+        Args:
+            template: A Jinja2 template: its text, or the path of its file.
+            variables: Further variables of the template, as `task`.
+
+        Raises:
+            TemplateError: The template is wrong; the message names its line.
+        """
+        with self._recording.turn:
+            return render(template, self, variables)
+
+    @in_turn
+    def explain(
+        self,
+        *,
+        container: Position | None = None,
+        agent: str | None = None,
+        block: Position | None = None,
+    ) -> Explanation:
+        """The chain of perceptions behind what it holds of one thing; `str()` puts it in words.
+
+        Args:
+            container: Position of a container, whose contents are explained.
+            agent: Name of an agent, whose place is explained.
+            block: Position of a block.
+
+        Raises:
+            InputError: None of the three was given, or several were.
+            PathError: There is no such agent.
+            PositionError: The position is outside the box.
+        """
+        element = element_of(self._recording, container, agent, block)
+        return explain(self._recording, self._path, self._explained_tick(), element)
+
+    def _explained_tick(self) -> int | None:
+        raise NotImplementedError
+
+    def child(self, agent: str) -> "ShownSimulator":
+        """The simulator of what `agent` believes in this one."""
+        raise NotImplementedError
+
+    @in_turn
+    def visible_blocks(self, agent: str) -> npt.NDArray[np.bool_]:
+        """Which blocks an agent sees from its pose in this simulator.
+
+        Returns:
+            bool, shape of the box; all false where the agent's pose is unknown.
+
+        Raises:
+            PathError: There is no such agent.
+        """
+        self._child_path(agent)
+        return self._reading().visible_from(agent)
+
+    def _child_path(self, agent: str) -> tuple[str, ...]:
+        agents = self._recording.agents
+        if agent not in agents:
+            raise PathError(f"no agent {agent!r}; there are {', '.join(agents)}")
+        return normalised((*self._path, agent))
+
+
+class PastSimulator(ShownSimulator):
+    """A simulator as it was at a past tick; read-only."""
+
+    def __init__(self, recording: Recording, path: tuple[str, ...], tick: int) -> None:
+        super().__init__(recording, path)
+        self._tick = tick
+
+    @property
+    def tick(self) -> int:
+        """The past tick."""
+        return self._tick
+
+    def child(self, agent: str) -> "PastSimulator":
+        """The simulator of what `agent` believed in this one."""
+        return PastSimulator(self._recording, self._child_path(agent), self._tick)
+
+    @property
+    @in_turn
+    def state(self) -> State:
+        """What the simulator held, read-only."""
+        return self._recording.state(self._path, self._tick)
+
+    def _reading(self) -> NodeView:
+        return self._recording.reading(self._path, self._tick)
+
+    def _explained_tick(self) -> int:
+        return self._tick
+
+    def _moment(self) -> int:
+        return self._tick
+
+
+class Past(Looking):
+    """All simulators at one past tick."""
+
+    def __init__(self, recording: Recording, tick: int) -> None:
+        self._recording = recording
+        self._tick = tick
+
+    def _moment(self) -> int:
+        return self._tick
+
+    def __getitem__(self, path: str) -> PastSimulator:
+        """The simulator of a belief path as it was."""
+        return PastSimulator(self._recording, parse_path(path, self._recording.agents), self._tick)
+
+    @in_turn
+    def compare(self, a: str, b: str, *, unknown: bool = True) -> list[Difference]:
+        """Where two simulators differ: blocks, containers, agents' poses, inventories.
+
+        Args:
+            a: Belief path of one.
+            b: Belief path of the other.
+            unknown: Whether to tell of what is unknown, or not there, in one of them.
+
+        Raises:
+            PathError: A path is malformed or names an unknown agent.
+        """
+        one, other = parse_path(a, self._recording.agents), parse_path(b, self._recording.agents)
+        return compare(self._recording, one, other, self._tick, unknown=unknown)
+
+    @in_turn
+    def false_beliefs(self, path: str) -> list[Difference]:
+        """What a simulator holds otherwise than reality (`a`) does; unknown is not false.
+
+        Contents are false if they claim items that are not there, or claim to be complete
+        and miss some.
+
+        Raises:
+            PathError: The path is malformed or names an unknown agent.
+        """
+        return false_beliefs(self._recording, parse_path(path, self._recording.agents), self._tick)

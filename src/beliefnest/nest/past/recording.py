@@ -1,0 +1,151 @@
+"""The recorded past of one nest: its timelines, who is on which, and any state from them.
+
+Nothing here acts in a world. What acts (`nest/acting`) appends to the journal and changes the
+selection; what reads (states, explanations, recorded runs) needs no more than this.
+"""
+
+from contextlib import suppress
+from copy import copy
+from threading import RLock
+from typing import Self
+
+from beliefnest.belief.node_view import NodeView
+from beliefnest.errors import BranchError, StoreError, TickError
+from beliefnest.nest.past.history import History
+from beliefnest.nest.past.run_log import RunJournal
+from beliefnest.nest.past.setting import MAIN, Setting
+from beliefnest.nest.past.setting_codec import decode_start
+from beliefnest.nest.past.views import Blocks, LiveState
+from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
+from beliefnest.timeline.store import SqliteJournal
+from beliefnest.world.paths import path_text
+
+__all__ = ["Recording", "read_recording"]
+
+Path = tuple[str, ...]
+
+
+class Recording:
+    """Timelines and states of one nest.
+
+    Args:
+        setting: What the nest started from.
+        journal: The timelines, with what ran on them.
+        seed: Drives every random number of the nest.
+
+    Attributes:
+        history: From the journal to any node.
+        selected: The timeline of every simulator in control mode.
+        turn: Held by the thread that is in the nest.
+    """
+
+    def __init__(self, setting: Setting, journal: RunJournal, seed: int = 0) -> None:
+        self.setting = setting
+        self.journal = journal
+        self.seed = seed
+        self.history = History(journal, setting)
+        self.selected: dict[Path, TimelineKey] = {(): TimelineKey((), MAIN)}
+        self.turn = RLock()
+
+    @classmethod
+    def resumed(cls, setting: Setting, journal: RunJournal, seed: int) -> Self:
+        """A recording with every simulator on the timeline that was noted last.
+
+        Raises:
+            StoreError: The run was stopped before it had begun.
+        """
+        recording = cls(setting, journal, seed)
+        recording.selected = {
+            path: journal.info(TimelineKey(path, branch)).key
+            for path, branch in journal.records.selected().items()
+            if branch != FOLLOW
+        }
+        if () not in recording.selected:
+            raise StoreError("the run was stopped while it began; start it again")
+        return recording
+
+    @property
+    def agents(self) -> tuple[str, ...]:
+        """All agents, sorted."""
+        return self.history.context.agents
+
+    def on(self, key: TimelineKey) -> Self:
+        """The same with a simulator on a timeline, and none below it on another."""
+        other = copy(self)
+        above = {p: k for p, k in self.selected.items() if key.path[: len(p)] == p}
+        other.selected = {**above, key.path: key}
+        return other
+
+    def controller(self, path: Path) -> TimelineKey:
+        """The timeline of the nearest simulator in control mode, the node itself included."""
+        for depth in range(len(path), -1, -1):
+            if path[:depth] in self.selected:
+                return self.selected[path[:depth]]
+        raise BranchError("the nest was not opened; use Nest.open or Nest(world)")
+
+    def info(self, path: Path) -> TimelineInfo:
+        """The timeline that a node's state comes from."""
+        return self.journal.info(self.controller(path))
+
+    def place_of(self, key: TimelineKey, tick: int) -> tuple[TimelineKey, int]:
+        """Timeline and number of entries that hold a tick, back through the bases.
+
+        Raises:
+            TickError: The tick lies before the first one.
+        """
+        info = self.journal.info(key)
+        while tick < info.start:
+            if info.base is None:
+                raise TickError(f"tick {tick} is before the start, which is tick {info.start}")
+            key = info.base.timeline
+            info = self.journal.info(key)
+        return key, self.journal.entries_until(key, tick)
+
+    def reading(self, path: Path, tick: int | None = None) -> NodeView:
+        """A node's state now, or at a past tick of the timeline it is on.
+
+        Raises:
+            TickError: The tick is in the future, or before the start of everything.
+        """
+        key, entries = self._when(path, tick)
+        return self.history.reading(key, path, entries)
+
+    def state(self, path: Path, tick: int | None = None) -> LiveState:
+        """The view of a node's state now, or at a past tick; TickError as for `reading`."""
+        key, entries = self._when(path, tick)
+        shown = self.journal.info(key).head if tick is None else tick
+        return self.state_after(key, path, entries, shown)
+
+    def state_after(self, key: TimelineKey, path: Path, entries: int, tick: int) -> LiveState:
+        """The view of a node's state on a timeline, after some of its entries, as of a tick."""
+        reading = self.history.reading(key, path, entries)
+        blocks = Blocks(self.history, key, entries, reading, self.turn)
+        return LiveState(reading, blocks, self.setting.snapshot.box, tick, self.turn)
+
+    def close(self) -> None:
+        """Leave checkpoints for who comes next, and close the journal."""
+        try:
+            # Whoever reads the run without checkpoints gets the same, later.
+            with suppress(StoreError):
+                self.history.close()
+        finally:
+            self.journal.close()
+
+    def _when(self, path: Path, tick: int | None) -> tuple[TimelineKey, int]:
+        info = self.info(path)
+        if tick is None:
+            return info.key, info.entries
+        if tick > info.head:
+            raise TickError(f"tick {tick} is in the future; {path_text(path)} is at {info.head}")
+        return self.place_of(info.key, tick)
+
+
+def read_recording(journal: SqliteJournal) -> tuple[Recording, str]:
+    """What a run file holds, as it was left, and the name of the world it ran in.
+
+    Raises:
+        StoreError: It cannot be read, or the run was stopped before it had begun.
+    """
+    run = journal.records.run()
+    setting, world = decode_start(run.setting)
+    return Recording.resumed(setting, journal, run.seed), world
