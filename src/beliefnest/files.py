@@ -16,7 +16,6 @@ __all__ = ["decode_json", "open_regular", "read_regular", "read_regular_text"]
 _T = TypeVar("_T")
 _LONGEST = 64 * 2**20
 _KINDS = (
-    (stat.S_ISDIR, "it is a folder"),
     (stat.S_ISFIFO, "it is a FIFO"),
     (stat.S_ISSOCK, "it is a socket"),
     (stat.S_ISCHR, "it is a device"),
@@ -35,6 +34,8 @@ def open_regular(path: Path) -> BinaryIO:
     mode = os.fstat(descriptor).st_mode
     if not stat.S_ISREG(mode):
         os.close(descriptor)
+        if stat.S_ISDIR(mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
         raise OSError(errno.EINVAL, f"{_kind(mode)}, not a regular file", str(path))
     return os.fdopen(descriptor, "rb")
 

@@ -1,5 +1,6 @@
 """What a document of the right form means: the setting, the probes, the expectations."""
 
+import math
 import re
 from collections.abc import Mapping
 from typing import Any
@@ -40,9 +41,10 @@ from beliefnest.scenarios.space import (
     entry_mask,
 )
 from beliefnest.world.frames import Snapshot
+from beliefnest.world.limits import container_slots
 from beliefnest.world.paths import parse_path
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import Position
+from beliefnest.world.values import Items, Position
 
 __all__ = ["build_scenario"]
 
@@ -165,7 +167,7 @@ class _Builder:
         alone = sum(kind is not None for kind in kinds) == 1
         if alone and entry.container is not None and entry.items is not None:
             self._check_container((*path, "container"), entry.container)
-            check_items(self._document, (*path, "items"), entry.items, self._registry)
+            self._check_items((*path, "items"), entry.container, entry.items)
             return Holds(entry.container, dict(entry.items))
         if alone and entry.agent is not None and entry.items is None:
             self._check_agent((*path, "agent"), entry.agent)
@@ -235,9 +237,15 @@ class _Builder:
         for index, container in enumerate(entry.containers):
             place = (*path, "containers", index)
             self._check_container((*place, "at"), container.at)
-            check_items(self._document, (*place, "items"), container.items, self._registry)
-        for agent in entry.agents:
+            self._check_items((*place, "items"), container.at, container.items)
+        for agent, feet in entry.agents.items():
             self._check_agent((*path, "agents", agent), agent)
+            x, y, z = (math.floor(value) for value in feet)
+            if (x, y, z) not in box:
+                raise self._document.fault(
+                    (*path, "agents", agent),
+                    f"{list(feet)} lies outside the box {list(box.low)} to {list(box.high)}",
+                )
         return InitialBelief(
             path=names,
             containers={c.at: (dict(c.items), c.complete) for c in entry.containers},
@@ -253,7 +261,7 @@ class _Builder:
         file = self._document.folder / name
         try:
             return read_regular_text(file)
-        except (OSError, UnicodeDecodeError) as error:
+        except (OSError, ValueError) as error:
             raise self._document.fault(path, f"{file} cannot be read: {error}") from None
 
     def _check_belief_path(self, path: KeyPath, text: str) -> tuple[str, ...]:
@@ -272,6 +280,13 @@ class _Builder:
             raise self._document.fault(
                 path, f"no container stands at {list(position)}; there are {known or 'none'}"
             )
+
+    def _check_items(self, path: KeyPath, place: Position, items: Items) -> None:
+        """Refuse what the container that stands there could not hold."""
+        box = self._snapshot.box
+        name = self._registry.name(int(self._snapshot.blocks[box.index(place)]))
+        slots = container_slots(name)
+        check_items(self._document, path, items, self._registry, slots, f"a {name}")
 
     def _check_block_name(self, path: KeyPath, name: str) -> None:
         with self._document.naming(path):

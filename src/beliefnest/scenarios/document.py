@@ -13,7 +13,10 @@ from typing import Any
 from beliefnest.errors import BeliefNestError, ScenarioError
 from beliefnest.scenarios.format import LABELLED
 
-__all__ = ["Document", "KeyPath", "Node", "merged", "plain", "wrapped"]
+__all__ = ["MAX_DEPTH", "Document", "KeyPath", "Node", "merged", "plain", "wrapped"]
+
+MAX_DEPTH = 40
+"""Lists and mappings inside each other."""
 
 KeyPath = tuple[str | int, ...]
 """Keys and list indices from the top of a document to a value."""
@@ -100,12 +103,18 @@ def plain(node: Node) -> object:
     return node.value
 
 
-def wrapped(value: object) -> Node:
-    """A document built in code, which has no lines."""
+def wrapped(value: object, depth: int = 0) -> Node:
+    """A document built in code, which has no lines.
+
+    Raises:
+        ScenarioError: It is nested too deep, perhaps in itself.
+    """
+    if depth > MAX_DEPTH:
+        raise ScenarioError(f"the scenario is nested more than {MAX_DEPTH} deep")
     if isinstance(value, Mapping):
-        return Node({key: wrapped(child) for key, child in value.items()})
+        return Node({key: wrapped(child, depth + 1) for key, child in value.items()})
     if isinstance(value, list | tuple):
-        return Node([wrapped(child) for child in value])
+        return Node([wrapped(child, depth + 1) for child in value])
     return Node(value)
 
 

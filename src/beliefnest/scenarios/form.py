@@ -8,6 +8,7 @@ import msgspec
 from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.document import Document, KeyPath, Node, plain
 from beliefnest.scenarios.format import ScenarioFile, allowed_keys, allowed_values
+from beliefnest.world.texts import is_well_formed
 
 __all__ = ["check_form"]
 
@@ -23,10 +24,25 @@ def check_form(document: Document) -> ScenarioFile:
     Raises:
         ScenarioError: A key is unknown or missing, or a value is of the wrong kind.
     """
+    _check_texts(document, document.root, ())
     error = _error_of(document.root)
     if error:
         raise _fault(document, error)
     return msgspec.convert(plain(document.root), ScenarioFile)
+
+
+def _check_texts(document: Document, node: Node, path: KeyPath) -> None:
+    """Refuse texts that cannot be stored."""
+    if isinstance(node.value, dict):
+        for key, child in node.value.items():
+            if isinstance(key, str) and not is_well_formed(key):
+                raise document.fault(path, "has a key with half a character in it")
+            _check_texts(document, child, (*path, key))
+    elif isinstance(node.value, list):
+        for index, child in enumerate(node.value):
+            _check_texts(document, child, (*path, index))
+    elif isinstance(node.value, str) and not is_well_formed(node.value):
+        raise document.fault(path, "has half a character in it; write whole ones")
 
 
 def _error_of(root: Node) -> str:

@@ -9,7 +9,8 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
-from beliefnest.world.values import Point, Position
+from beliefnest.world import values as world
+from beliefnest.world.limits import FARTHEST
 
 __all__ = [
     "LABELLED",
@@ -35,6 +36,16 @@ def _note(text: str) -> msgspec.Meta:
     return msgspec.Meta(description=text)
 
 
+_WIDEST = 1_000
+"""Radians either way."""
+_LONGEST_TIMEOUT = 10_000_000
+"""Ticks; about six days."""
+
+_Whole = Annotated[int, msgspec.Meta(ge=-FARTHEST, le=FARTHEST)]
+_Number = Annotated[float, msgspec.Meta(ge=-FARTHEST, le=FARTHEST)]
+Position = tuple[_Whole, _Whole, _Whole]
+Point = tuple[_Number, _Number, _Number]
+_Angle = Annotated[float, msgspec.Meta(ge=-_WIDEST, le=_WIDEST)]
 _ItemsField = Annotated[dict[str, int], _note("Item name to count.")]
 
 
@@ -79,13 +90,13 @@ class EquipmentEntry(_Entry, frozen=True):
 class AgentEntry(_Entry, frozen=True):
     """An agent, which is a Mineflayer bot in a Minecraft world."""
 
-    position: Annotated[Point, _note("Middle of the feet, in blocks.")]
+    position: Annotated[world.Point, _note("Middle of the feet, in blocks.")]
     facing: Annotated[
         Literal["north", "east", "south", "west"] | Point | None,
         _note("A direction, or a point to look at; in place of yaw and pitch."),
     ] = None
-    yaw: Annotated[float | None, _note("Radians; 0 looks north (-z), pi/2 west (-x).")] = None
-    pitch: Annotated[float | None, _note("Radians, positive upwards.")] = None
+    yaw: Annotated[_Angle | None, _note("Radians; 0 looks north (-z), pi/2 west (-x).")] = None
+    pitch: Annotated[_Angle | None, _note("Radians, positive upwards.")] = None
     inventory: Annotated[
         dict[str, int],
         _note("Item name to count; what is worn or held counts in and need not be listed."),
@@ -98,7 +109,7 @@ class AgentEntry(_Entry, frozen=True):
 class RadiusEntry(_Entry, frozen=True):
     """Hearing up to a distance."""
 
-    radius: Annotated[float, msgspec.Meta(gt=0, description="In blocks.")]
+    radius: Annotated[float, msgspec.Meta(gt=0, le=FARTHEST, description="In blocks.")]
 
 
 class PerceptionEntry(_Entry, frozen=True):
@@ -156,7 +167,12 @@ class StepEntry(_Entry, frozen=True):
     program: Annotated[str | None, _note("JavaScript, the body of an async function.")] = None
     programs: Annotated[dict[str, str], _note("Agent to program.")] = {}
     timeout_ticks: Annotated[
-        int, msgspec.Meta(gt=0, description="Ticks of 50 ms after which the step has failed.")
+        int,
+        msgspec.Meta(
+            gt=0,
+            le=_LONGEST_TIMEOUT,
+            description="Ticks of 50 ms after which the step has failed.",
+        ),
     ] = 1200
 
 
@@ -166,7 +182,8 @@ class ExpectEntry(_Entry, frozen=True):
     opens: Annotated[Position | None, _note("The container that is opened first.")] = None
     arrives: Annotated[Point | None, _note("Where the agent stands in the end.")] = None
     within: Annotated[
-        float, msgspec.Meta(gt=0, description="Greatest distance from there, in blocks.")
+        float,
+        msgspec.Meta(gt=0, le=FARTHEST, description="Greatest distance from there, in blocks."),
     ] = 2.0
 
 
@@ -183,7 +200,12 @@ class ProbeEntry(_Entry, frozen=True):
     ] = None
     expect: Annotated[ExpectEntry | None, _note("How the outcome is judged.")] = None
     timeout_ticks: Annotated[
-        int, msgspec.Meta(gt=0, description="Ticks of 50 ms after which the program has failed.")
+        int,
+        msgspec.Meta(
+            gt=0,
+            le=_LONGEST_TIMEOUT,
+            description="Ticks of 50 ms after which the program has failed.",
+        ),
     ] = 1200
 
 
@@ -199,7 +221,10 @@ class ExpectationEntry(_Entry, frozen=True):
     not_heard: Annotated[str | None, _note("Part of no utterance that is known of.")] = None
     position: Annotated[Point | None, _note("Middle of the feet.")] = None
     within: Annotated[
-        float, msgspec.Meta(gt=0, description="Greatest distance from `position`, in blocks.")
+        float,
+        msgspec.Meta(
+            gt=0, le=FARTHEST, description="Greatest distance from `position`, in blocks."
+        ),
     ] = 2.0
 
 

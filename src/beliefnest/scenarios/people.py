@@ -1,19 +1,18 @@
 """Agents of a scenario: entries of a file to states, and the check that they have room."""
 
 import math
-import re
 from itertools import combinations
 
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.format import AgentEntry, ScenarioFile
 from beliefnest.scenarios.space import check_items
 from beliefnest.world.frames import BlockGrid
+from beliefnest.world.limits import AGENT_SLOTS, MOST_AGENTS, agent_name_fault
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import EQUIPMENT_SLOTS, EYE_HEIGHT, AgentState, Box, Point
 
 __all__ = ["build_agents"]
 
-_NAME = re.compile(r"[A-Za-z0-9_]{1,16}", re.ASCII)
 _WIDTH = 0.6
 _HEIGHT = 1.8
 _SLACK = 1e-6
@@ -31,12 +30,13 @@ def build_agents(
 ) -> dict[str, AgentState]:
     """The agents by name, each on its own free place inside the box."""
     agents: dict[str, AgentState] = {}
+    if len(file.agents) > MOST_AGENTS:
+        found = len(file.agents)
+        raise document.fault(("agents",), f"are {found}; at most {MOST_AGENTS} are possible")
     for name, entry in file.agents.items():
         path = ("agents", name)
-        if not _NAME.fullmatch(name):
-            raise document.fault(
-                path, f"{name!r} is no agent name; use 1 to 16 letters, digits and _"
-            )
+        if fault := agent_name_fault(name):
+            raise document.fault(path, fault)
         agents[name] = _agent(document, name, entry, registry)
         _check_place(document, name, agents[name].position, grid, box, registry)
     for first, second in combinations(agents, 2):
@@ -52,12 +52,13 @@ def _agent(document: Document, name: str, entry: AgentEntry, registry: Registry)
     path = ("agents", name)
     if not all(math.isfinite(value) for value in entry.position):
         raise document.fault((*path, "position"), "must be three finite numbers")
-    check_items(document, (*path, "inventory"), entry.inventory, registry)
     slots = ((slot, getattr(entry.equipment, slot)) for slot in EQUIPMENT_SLOTS)
     equipment: dict[str, str] = {slot: item for slot, item in slots if item is not None}
     for slot, item in equipment.items():
-        check_items(document, (*path, "equipment", slot), {item: 1}, registry)
+        check_items(document, (*path, "equipment", slot), {item: 1}, registry, 1, "a slot")
     worn = list(equipment.values())
+    room = AGENT_SLOTS + sum(slot != "main_hand" for slot in equipment)
+    check_items(document, (*path, "inventory"), entry.inventory, registry, room, "an agent")
     inventory = dict(entry.inventory)
     for item in worn:
         inventory[item] = max(inventory.get(item, 0), worn.count(item))

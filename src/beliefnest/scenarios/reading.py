@@ -3,22 +3,28 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import msgspec
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
+from ruamel.yaml.composer import Composer, ComposerError
+from ruamel.yaml.constructor import ConstructorError, RoundTripConstructor
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
 from beliefnest.errors import ScenarioError
 from beliefnest.files import decode_json, read_regular_text
-from beliefnest.scenarios.document import Document, Node
+from beliefnest.scenarios.document import MAX_DEPTH, Document, Node
 
 __all__ = ["parse_yaml", "read_yaml", "templates_file"]
 
 _LONGEST = 4 * 2**20
 """Bytes of a scenario file."""
-_MAX_VALUES = 200_000
-_MAX_DEPTH = 40
+_MAX_VALUES = 50_000
+_TOO_MUCH = (
+    f"holds more than {_MAX_VALUES} values or is nested more than {MAX_DEPTH} deep, "
+    "aliases counted in"
+)
 
 
 def read_yaml(path: Path) -> Document:
@@ -48,7 +54,7 @@ def parse_yaml(text: str, source: str) -> Document:
         ScenarioError: It is not one YAML mapping.
     """
     try:
-        content = YAML(typ="rt", pure=True).load(text)
+        content = _parser().load(text)
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line = f":{mark.line + 1}" if mark is not None else ""
@@ -78,6 +84,42 @@ def _templates(path: Path) -> dict[str, str]:
         raise ScenarioError(f"{path}: is no mapping from names to texts: {error}") from None
 
 
+def _parser() -> YAML:
+    """A parser that gives up what is nested too deep or too much before it holds it."""
+    parser = YAML(typ="rt", pure=True)
+    parser.Composer = _Composer
+    parser.Constructor = _Constructor
+    return parser
+
+
+class _Composer(Composer):
+    """Counts what is written."""
+
+    _depth = 0
+    _values = 0
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        self._values += 1
+        self._depth += 1
+        if self._values > _MAX_VALUES or self._depth > MAX_DEPTH:
+            mark = self.parser.peek_event().start_mark
+            raise ComposerError(None, None, f"it {_TOO_MUCH}", mark)
+        node = super().compose_node(parent, index)
+        self._depth -= 1
+        return node
+
+
+class _Constructor(RoundTripConstructor):
+    """Names the line of a scalar that cannot be read, such as a number of 5,000 digits."""
+
+    def construct_object(self, node: Any, deep: bool = False) -> Any:
+        try:
+            return super().construct_object(node, deep)
+        except (ValueError, OverflowError, TypeError) as error:
+            problem = f"a value cannot be read: {str(error).partition(';')[0]}"
+            raise ConstructorError(None, None, problem, node.start_mark) from None
+
+
 class _Conversion:
     """Turns the parser's values into nodes.
 
@@ -90,11 +132,8 @@ class _Conversion:
 
     def node(self, value: object, line: int, depth: int) -> Node:
         self._values += 1
-        if self._values > _MAX_VALUES or depth > _MAX_DEPTH:
-            raise ScenarioError(
-                f"{self._source}:{line}: holds more than {_MAX_VALUES} values or is nested more "
-                f"than {_MAX_DEPTH} deep, aliases counted in"
-            )
+        if self._values > _MAX_VALUES or depth > MAX_DEPTH:
+            raise ScenarioError(f"{self._source}:{line}: {_TOO_MUCH}")
         if isinstance(value, CommentedMap):
             lines = value.lc.data or {}
             return Node(

@@ -8,6 +8,7 @@ import numpy.typing as npt
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.format import BlockEntry, ContainerEntry, ScenarioFile
 from beliefnest.world.frames import BlockGrid
+from beliefnest.world.limits import box_fault, container_slots, items_fault
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Items, Position
 
@@ -16,10 +17,6 @@ __all__ = ["UNKNOWN", "build_box", "build_containers", "build_grid", "check_item
 UNKNOWN = -1
 """Block state id of what is not known."""
 
-_MAX_BLOCKS = 8_000_000
-_SLOTS = {"furnace": 3, "blast_furnace": 3, "smoker": 3}
-_CHEST_SLOTS = 27
-
 
 def build_box(document: Document, file: ScenarioFile) -> Box:
     """The box between the two corners, whichever they are."""
@@ -27,11 +24,8 @@ def build_box(document: Document, file: ScenarioFile) -> Box:
     low = tuple(min(pair) for pair in zip(first, second, strict=True))
     high = tuple(max(pair) for pair in zip(first, second, strict=True))
     box = Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
-    volume = box.shape[0] * box.shape[1] * box.shape[2]
-    if volume > _MAX_BLOCKS:
-        raise document.fault(
-            ("box",), f"holds {volume} blocks; at most {_MAX_BLOCKS} are possible: make it smaller"
-        )
+    if fault := box_fault(box):
+        raise document.fault(("box",), fault)
     return box
 
 
@@ -69,9 +63,9 @@ def build_containers(
         path = ("containers", number)
         if entry.at in found:
             raise document.fault((*path, "at"), f"{list(entry.at)} has a container already")
-        check_items(document, (*path, "items"), entry.items, registry)
         name = registry.name(registry.state_id(entry.block))
-        _check_room(document, (*path, "items"), entry.items, name, registry)
+        slots = container_slots(name)
+        check_items(document, (*path, "items"), entry.items, registry, slots, f"a {name}")
         found[entry.at] = dict(entry.items)
     for state in np.unique(grid).tolist():
         if registry.is_container(registry.name(state)):
@@ -82,23 +76,21 @@ def build_containers(
 
 
 def check_items(
-    document: Document, path: KeyPath, items: Mapping[str, int], registry: Registry
+    document: Document,
+    path: KeyPath,
+    items: Mapping[str, int],
+    registry: Registry,
+    slots: int,
+    holder: str,
 ) -> None:
-    """Refuse unknown items and counts below 1."""
+    """Refuse unknown items, counts below 1, and more than fit into the slots of a holder."""
     for name, count in items.items():
         with document.naming((*path, name)):
             registry.item_stack(name)
         if count < 1:
             raise document.fault((*path, name), f"the count is {count}; it must be at least 1")
-
-
-def _check_room(
-    document: Document, path: KeyPath, items: Items, name: str, registry: Registry
-) -> None:
-    needed = sum(-(-count // registry.item_stack(item)) for item, count in items.items())
-    slots = _SLOTS.get(name, _CHEST_SLOTS)
-    if needed > slots:
-        raise document.fault(path, f"fill {needed} slots; a {name} has {slots}")
+    if fault := items_fault(items, registry, slots, holder):
+        raise document.fault(path, fault)
 
 
 def _check_inside(document: Document, path: KeyPath, position: Position, box: Box) -> None:

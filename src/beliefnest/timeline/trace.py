@@ -5,10 +5,10 @@ docs/export.md. All bad lines are found and told together.
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import msgspec
 import numpy as np
@@ -20,6 +20,17 @@ from beliefnest.timeline.events import event_from
 from beliefnest.timeline.journal import Entry, Journal, TimelineKey
 from beliefnest.world.claims import claims_of
 from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.limits import (
+    AGENT_SLOTS,
+    LATEST_TICK,
+    MOST_AGENTS,
+    WORN_SLOTS,
+    agent_name_fault,
+    box_fault,
+    container_slots,
+    items_fault,
+    point_fault,
+)
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import (
     EQUIPMENT_SLOTS,
@@ -27,12 +38,26 @@ from beliefnest.world.values import (
     Box,
     DroppedItem,
     Event,
+    EventKind,
     Items,
     Point,
     Position,
 )
 
 __all__ = ["BadLine", "Trace", "load_trace", "read_trace", "record_trace"]
+
+_LONGEST_LINE = 2**26
+"""Bytes."""
+
+_AGENT_SLOTS = AGENT_SLOTS + WORN_SLOTS
+_AT_CONTAINERS = frozenset(
+    {
+        EventKind.OPEN_CONTAINER,
+        EventKind.GET_ITEM_FROM_CHEST,
+        EventKind.DEPOSIT_ITEM_INTO_CHEST,
+    }
+)
+"""Kinds of events that happen at a container."""
 
 _TOLD = 10
 """Bad lines an error message quotes."""
@@ -145,7 +170,7 @@ def load_trace(path: Path, registry: Registry) -> Trace:
     """
     try:
         with open_regular(path) as file:
-            trace = read_trace(file, registry)
+            trace = read_trace(_lines(file), registry)
     except OSError as fault:
         raise InputError(f"{path} cannot be read ({fault.strerror}); check the path") from fault
     except InputError as fault:
@@ -203,9 +228,10 @@ class _Reader:
     def __init__(self, line: _FirstLine, registry: Registry) -> None:
         self._registry = registry
         self._box = Box(*line.box)
-        if min(self._box.shape) < 1:
-            raise InputError(f"box {line.box} is empty; give its lower corner first")
         self.names = tuple(line.agents)
+        _check(box_fault(self._box), _tick_fault(line.tick), *map(agent_name_fault, self.names))
+        if len(self.names) > MOST_AGENTS:
+            raise InputError(f"there are {len(self.names)} agents; at most {MOST_AGENTS} can be")
         self.perception = line.perception.value(registry)
         for name in line.static_blocks:
             registry.state_ids(name)
@@ -229,13 +255,14 @@ class _Reader:
             blocks,
             {place: items for place, items in containers.items() if items is not None},
             {name: agent for name, agent in self._agents.items() if agent is not None},
-            {number: self._item(item) for number, item in line.items.items()},
+            {n: item for n, item in self._entities(line.items).items() if item is not None},
         )
 
     def frame(self, line: _TickLine) -> Frame:
         """The frame a line tells; nothing is remembered of a line that raises."""
         if line.tick <= self._tick:
             raise InputError(f"tick {line.tick} does not come after tick {self._tick}")
+        _check(_tick_fault(line.tick))
         agents = self._changed_agents(line.agents)
         blocks = self._blocks(line.blocks)
         frame = Frame(
@@ -243,8 +270,8 @@ class _Reader:
             agents,
             blocks,
             self._containers(line.containers, blocks),
-            {n: None if item is None else self._item(item) for n, item in line.items.items()},
-            tuple(self._event(event) for event in line.events),
+            self._entities(line.items),
+            tuple(self._event(event, blocks) for event in line.events),
         )
         self._tick = line.tick
         self._agents |= agents
@@ -274,18 +301,27 @@ class _Reader:
             name = self._registry.name(state)
             if items is not None and not self._registry.is_container(name):
                 raise InputError(f"the block at {place} is {name}, which holds no items")
-            contents[place] = None if items is None else self._items(items)
+            slots = container_slots(name)
+            contents[place] = None if items is None else self._items(items, slots, f"a {name}")
         return contents
 
-    def _items(self, items: Mapping[str, int]) -> dict[str, int]:
+    def _items(self, items: Mapping[str, int], slots: int, holder: str) -> dict[str, int]:
         for name, count in items.items():
             self._registry.item_stack(name)
             if count < 1:
                 raise InputError(f"{count} of {name!r}; counts are positive")
+        _check(items_fault(items, self._registry, slots, holder))
         return dict(items)
 
+    def _entities(self, lines: Mapping[int, _ItemLine | None]) -> dict[int, DroppedItem | None]:
+        for number in lines:
+            if not 0 <= number <= LATEST_TICK:
+                raise InputError(f"item {number} has no number from 0 to {LATEST_TICK}")
+        return {n: None if item is None else self._item(item) for n, item in lines.items()}
+
     def _item(self, line: _ItemLine) -> DroppedItem:
-        self._items({line.name: line.count})
+        self._items({line.name: line.count}, 1, "what lies there")
+        self._inside(line.position)
         return DroppedItem(line.name, line.count, line.position)
 
     def _changed_agents(
@@ -303,9 +339,11 @@ class _Reader:
         if before is None and line.position is None:
             raise InputError(f"agent {name!r} comes without a position")
         if line.position is not None:
-            x, y, z = line.position
-            self._index((math.floor(x), math.floor(y), math.floor(z)))
-        self._items(line.inventory or {})
+            self._inside(line.position)
+        numbers = (line.yaw, line.pitch, line.health, line.food)
+        if not all(math.isfinite(number) for number in numbers if number is not None):
+            raise InputError(f"agent {name!r} has a yaw, pitch, health or food that is no number")
+        self._items(line.inventory or {}, _AGENT_SLOTS, f"agent {name!r}")
         for slot, item in (line.equipment or {}).items():
             self._registry.item_stack(item)
             if slot not in EQUIPMENT_SLOTS:
@@ -313,11 +351,55 @@ class _Reader:
                 raise InputError(f"there is no slot {slot!r}; there are {there}")
         return AgentState(**given) if before is None else replace(before, **given)
 
-    def _event(self, line: _EventLine) -> Event:
+    def _inside(self, point: Point) -> None:
+        _check(point_fault(point))
+        x, y, z = (math.floor(value) for value in point)
+        self._index((x, y, z))
+
+    def _event(self, line: _EventLine, changed: Mapping[Position, int]) -> Event:
         event = event_from(line.kind, line.actor, line.detail, self.names)
+        detail = event.detail
+        if "position" in detail:
+            self._check_place(event.kind, detail["position"], changed)
+        if "destination" in detail:
+            _check(point_fault(detail["destination"]))
+        if "block" in detail:
+            self._registry.state_id(detail["block"])
+        self._items(detail.get("items", {}), _AGENT_SLOTS, "an agent")
         for claim in claims_of(event):
             claim.check(self._box, self.names)
         return event
+
+    def _check_place(
+        self, kind: EventKind, place: Position, changed: Mapping[Position, int]
+    ) -> None:
+        before = int(self._grid[self._index(place)])
+        states = (before, changed.get(place, before))
+        names = [self._registry.name(state) for state in states]
+        if kind in _AT_CONTAINERS and not any(map(self._registry.is_container, names)):
+            raise InputError(
+                f"event {kind.value!r}: the block at {place} is {names[-1]}, which holds no items"
+            )
+
+
+def _lines(file: BinaryIO) -> Iterator[bytes]:
+    """The lines of a file, none of which goes on for ever."""
+    while line := file.readline(_LONGEST_LINE + 1):
+        if len(line) > _LONGEST_LINE:
+            raise InputError(f"a line is longer than {_LONGEST_LINE:,} bytes")
+        yield line
+
+
+def _check(*faults: str | None) -> None:
+    for fault in faults:
+        if fault:
+            raise InputError(fault)
+
+
+def _tick_fault(tick: int) -> str | None:
+    if not 0 <= tick <= LATEST_TICK:
+        return f"tick {tick} is none; ticks are from 0 to {LATEST_TICK}"
+    return None
 
 
 def _decoded(line: bytes, kind: Any) -> Any:

@@ -6,6 +6,8 @@ from beliefnest.errors import PathError
 
 __all__ = ["normalised", "parse_path", "path_text"]
 
+_LONGEST_TOLD = 100
+
 
 def parse_path(text: str, agents: Collection[str]) -> tuple[str, ...]:
     """Agent names of a path, normalised.
@@ -14,15 +16,17 @@ def parse_path(text: str, agents: Collection[str]) -> tuple[str, ...]:
         PathError: The text is no path, or names an agent that there is not.
     """
     if not isinstance(text, str) or not text.startswith("/"):
-        raise PathError(f"{text!r} is no belief path; write '/' or '/agent/agent'")
+        raise PathError(f"{_short(text)} is no belief path; write '/' or '/agent/agent'")
     if text == "/":
         return ()
     names = text[1:].removesuffix("/").split("/")
     if "" in names:
-        raise PathError(f"{text!r} is no belief path: a name between slashes is empty")
+        raise PathError(f"{_short(text)} is no belief path: a name between slashes is empty")
     for name in names:
         if name not in agents:
-            raise PathError(f"{text!r} names {name!r}; the agents are {', '.join(sorted(agents))}")
+            raise PathError(
+                f"{_short(text)} names {_short(name)}; the agents are {', '.join(sorted(agents))}"
+            )
     return normalised(names)
 
 
@@ -38,3 +42,9 @@ def normalised(names: Iterable[str]) -> tuple[str, ...]:
 def path_text(path: Iterable[str]) -> str:
     """The text of a path."""
     return "/" + "/".join(path)
+
+
+def _short(text: object) -> str:
+    """A text in a message, its beginning if it is long."""
+    written = repr(text)
+    return written if len(written) <= _LONGEST_TOLD else f"{written[:_LONGEST_TOLD]}..."

@@ -16,8 +16,19 @@ import numpy as np
 from beliefnest.errors import BeliefNestError, InputError, WorldError
 from beliefnest.world.claims import Claim, with_claims
 from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.limits import (
+    AGENT_SLOTS,
+    WORN_SLOTS,
+    agent_name_fault,
+    box_fault,
+    container_slots,
+    items_fault,
+    snapshot_fault,
+)
 from beliefnest.world.registry import Registry
+from beliefnest.world.texts import fault_of
 from beliefnest.world.values import (
+    EQUIPMENT_SLOTS,
     AgentState,
     Box,
     DroppedItem,
@@ -104,7 +115,9 @@ class ScriptedWorld:
         for name, items in (inventories or {}).items():
             self._set_agent(name, inventory=self._items(items))
         for name, worn in (equipment or {}).items():
-            self._set_agent(name, equipment=dict(worn))
+            self._set_agent(name, equipment=self._equipment(worn))
+        if fault := snapshot_fault(self.snapshot(), self._registry):
+            raise WorldError(fault)
 
     @classmethod
     def from_snapshot(cls, snapshot: Snapshot) -> "ScriptedWorld":
@@ -238,7 +251,7 @@ class ScriptedWorld:
                 raise WorldError(f"{name} cannot whisper to itself")
             self._agent(name)
             self._agent(other)
-            detail = self._claiming({"text": str(text), "to": other}, claims)
+            detail = self._claiming({"text": _utterance(text), "to": other}, claims)
             pending.events.append(Event(EventKind.CHAT, name, detail))
 
     def think(self, name: str, text: str) -> None:
@@ -254,7 +267,10 @@ class ScriptedWorld:
             moved = self._items(items)
             held = _less(self._agent(giver).inventory, moved, f"{giver} cannot give {moved}: it")
             self._set_agent(giver, inventory=held)
-            self._set_agent(receiver, inventory=_more(other.inventory, moved))
+            self._set_agent(
+                receiver,
+                inventory=self._fitting(receiver, other.inventory, moved, AGENT_SLOTS + WORN_SLOTS),
+            )
             pending.agents |= {giver, receiver}
             for kind, name, partner in (
                 (EventKind.GIVE_ITEM_TO_OTHER, giver, receiver),
@@ -270,10 +286,14 @@ class ScriptedWorld:
             held, inside = agent.inventory, self._facts.containers[place]
             if kind is EventKind.DEPOSIT_ITEM_INTO_CHEST:
                 held = _less(held, moved, f"{name} cannot put {moved} into {place}: it")
-                inside = _more(inside, moved)
+                state = int(self._facts.blocks[self._box.index(place)])
+                there = self._registry.name(state)
+                inside = self._fitting(
+                    f"the {there} at {place}", inside, moved, container_slots(there)
+                )
             else:
                 inside = _less(inside, moved, f"{name} cannot take {moved}: the one at {place}")
-                held = _more(held, moved)
+                held = self._fitting(name, held, moved, AGENT_SLOTS + WORN_SLOTS)
             self._set_agent(name, inventory=held)
             self._facts.containers[place] = inside
             pending.agents.add(name)
@@ -283,7 +303,7 @@ class ScriptedWorld:
     def _utter(self, kind: EventKind, name: str, text: str, claims: Iterable[Claim] = ()) -> None:
         with self._act() as pending:
             self._agent(name)
-            detail = self._claiming({"text": str(text)}, claims)
+            detail = self._claiming({"text": _utterance(text)}, claims)
             pending.events.append(Event(kind, name, detail))
 
     def _claiming(self, detail: dict[str, Any], claims: Iterable[Claim]) -> dict[str, Any]:
@@ -406,18 +426,42 @@ class ScriptedWorld:
                 raise WorldError(f"{count!r} {name} cannot be; give a whole number above 0")
         return dict(items)
 
+    def _fitting(self, who: str, held: Items, moved: Items, slots: int) -> dict[str, int]:
+        """What somebody or something holds with what is moved there."""
+        items = _more(held, moved)
+        if fault := items_fault(items, self._registry, slots, who):
+            raise WorldError(f"{moved} cannot be moved: they would {fault}")
+        return items
+
+    def _equipment(self, worn: Mapping[str, str]) -> dict[str, str]:
+        for slot, item in worn.items():
+            if slot not in EQUIPMENT_SLOTS:
+                there = ", ".join(EQUIPMENT_SLOTS)
+                raise WorldError(f"there is no slot {slot!r}; there are {there}")
+            self._items({item: 1})
+        return dict(worn)
+
 
 def _checked_box(box: tuple[Position, Position]) -> Box:
     low, high = (tuple(int(value) for value in corner) for corner in box)
     if len(low) != 3 or len(high) != 3 or any(a > b for a, b in zip(low, high, strict=True)):
         raise WorldError(f"the box {box} is none; give its lower and its upper corner")
-    return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+    made = Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+    if fault := box_fault(made):
+        raise WorldError(fault)
+    return made
 
 
 def _agent_name(name: str) -> str:
-    if not (1 <= len(name) <= 16 and name.replace("_", "a").isalnum() and name.isascii()):
-        raise WorldError(f"{name!r} is no agent name; use 1 to 16 letters, digits or _")
+    if fault := agent_name_fault(name):
+        raise WorldError(fault)
     return name
+
+
+def _utterance(text: str) -> str:
+    if fault := fault_of(str(text)):
+        raise WorldError(fault)
+    return str(text)
 
 
 def _more(items: Items, change: Items) -> dict[str, int]:

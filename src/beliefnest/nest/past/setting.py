@@ -7,7 +7,9 @@ from beliefnest.belief.entries import InitialBelief
 from beliefnest.errors import InputError, PathError
 from beliefnest.perception.options import Perception
 from beliefnest.world.frames import Snapshot
+from beliefnest.world.limits import agent_name_fault, snapshot_fault
 from beliefnest.world.paths import parse_path, path_text
+from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 
 __all__ = ["MAIN", "Setting", "Step"]
@@ -61,6 +63,11 @@ class Setting:
 
     def __post_init__(self) -> None:
         agents = self.snapshot.agents.keys() | self.absent
+        fault = snapshot_fault(self.snapshot, Registry.load())
+        for name in self.absent:
+            fault = fault or agent_name_fault(name)
+        if fault:
+            raise InputError(f"setting {self.name!r}: {fault}")
         seen: set[tuple[str, ...]] = set()
         for belief in self.initial_beliefs:
             text = path_text(belief.path)

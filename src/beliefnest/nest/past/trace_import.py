@@ -1,5 +1,7 @@
 """A run made of a history that another program told."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from beliefnest.nest.past.setting import MAIN, Setting
@@ -29,7 +31,7 @@ def import_trace(trace: Trace, name: str, store: str | Path) -> None:
         name, trace.first, trace.perception, static_blocks=trace.static_blocks, absent=absent
     )
     key = TimelineKey((), MAIN)
-    with SqliteJournal.create_file(store) as journal, journal.together():
+    with _kept_whole(SqliteJournal.create_file(store)) as journal, journal.together():
         journal.records.set_run(
             RunRecord(
                 scenario=name,
@@ -42,3 +44,16 @@ def import_trace(trace: Trace, name: str, store: str | Path) -> None:
         )
         record_trace(trace, journal, key)
         journal.records.select(key.path, key.branch)
+
+
+@contextmanager
+def _kept_whole(journal: SqliteJournal) -> Iterator[SqliteJournal]:
+    """Close a new run file in the end, and leave nothing of it if anything raises."""
+    path = journal.path
+    try:
+        with journal:
+            yield journal
+    except BaseException:
+        for end in ("", "-wal", "-shm"):
+            path.with_name(path.name + end).unlink(missing_ok=True)
+        raise

@@ -1,0 +1,147 @@
+"""How large and how far what is told from outside may be: as in Minecraft, or as memory allows.
+
+Each function says what is wrong, None if nothing is; whoever calls it knows where that stands.
+"""
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+
+from beliefnest.world.frames import Snapshot
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Box
+
+__all__ = [
+    "AGENT_SLOTS",
+    "FARTHEST",
+    "LATEST_TICK",
+    "MOST_AGENTS",
+    "WORN_SLOTS",
+    "agent_name_fault",
+    "box_fault",
+    "container_slots",
+    "items_fault",
+    "point_fault",
+    "snapshot_fault",
+]
+
+FARTHEST = 30_000_000
+"""Greatest coordinate either way, in blocks, as in Minecraft."""
+
+LATEST_TICK = 2**53
+"""Ticks are exact numbers on either side of the channel."""
+
+MOST_AGENTS = 200
+
+AGENT_SLOTS = 36
+"""Slots of an inventory, without what is worn and the off hand."""
+
+WORN_SLOTS = 5
+"""Slots for what is worn, and the off hand."""
+
+_MOST_BLOCKS = 8_000_000
+_LONGEST_SIDE = 4096
+_AGENT_NAME = re.compile(r"[A-Za-z0-9_]{1,16}", re.ASCII)
+_FURNACES = frozenset({"furnace", "blast_furnace", "smoker"})
+_FURNACE_SLOTS = 3
+_CHEST_SLOTS = 27
+
+
+def agent_name_fault(name: object) -> str | None:
+    """What is wrong with the name of an agent."""
+    if not isinstance(name, str) or not _AGENT_NAME.fullmatch(name):
+        return f"{str(name)[:50]!r} is no agent name; use 1 to 16 letters, digits and _"
+    if name == "__proto__":
+        return f"{name!r} cannot be the name of an agent: it means something else in JavaScript"
+    return None
+
+
+def box_fault(box: Box) -> str | None:
+    """What is wrong with a box, given by its lower and its upper corner."""
+    for corner in (box.low, box.high):
+        if fault := point_fault(corner):
+            return fault
+    sides = [int(side) for side in box.shape]
+    if min(sides) < 1:
+        return f"the box {box.low} to {box.high} is empty; give its lower corner first"
+    volume = math.prod(sides)
+    if volume > _MOST_BLOCKS:
+        return f"holds {volume} blocks; at most {_MOST_BLOCKS} are possible: make it smaller"
+    if max(sides) > _LONGEST_SIDE:
+        return f"is {max(sides)} blocks long; at most {_LONGEST_SIDE} are possible: make it smaller"
+    return None
+
+
+def point_fault(point: Sequence[float]) -> str | None:
+    """What is wrong with a point or a block position."""
+    if not all(math.isfinite(value) and abs(value) <= FARTHEST for value in point):
+        return f"{_short(point)} is nowhere; coordinates are numbers from -{FARTHEST} to {FARTHEST}"
+    return None
+
+
+def container_slots(name: str) -> int:
+    """Slots of a container block."""
+    return _FURNACE_SLOTS if name in _FURNACES else _CHEST_SLOTS
+
+
+def items_fault(
+    items: Mapping[str, int], registry: Registry, slots: int, holder: str
+) -> str | None:
+    """What is wrong with items of known names that somebody or something holds.
+
+    Args:
+        items: Name to count.
+        registry: Knows how many fit into a slot.
+        slots: There are so many.
+        holder: What has the slots, for the message.
+    """
+    needed = 0
+    for name, count in items.items():
+        if not isinstance(count, int) or isinstance(count, bool) or count < 1:
+            return f"the count of {name!r} is {_short(count)}; it must be a whole number above 0"
+        needed += -(-count // registry.item_stack(name))
+    if needed > slots:
+        return f"fill {_short(needed)} slots; {holder} has {slots}"
+    return None
+
+
+def snapshot_fault(snapshot: Snapshot, registry: Registry) -> str | None:
+    """What is wrong with a state of the world, whoever made it."""
+    faults = [box_fault(snapshot.box)]
+    if not 0 <= snapshot.tick <= LATEST_TICK:
+        faults.append(f"tick {_short(snapshot.tick)} is none; ticks are from 0 to {LATEST_TICK}")
+    if len(snapshot.agents) > MOST_AGENTS:
+        faults.append(
+            f"there are {len(snapshot.agents)} agents; at most {MOST_AGENTS} are possible"
+        )
+    if snapshot.blocks.shape != snapshot.box.shape:
+        faults.append(f"blocks of shape {snapshot.blocks.shape} do not fill {snapshot.box.shape}")
+    elif snapshot.blocks.size and not (
+        snapshot.blocks.min() >= -1 and snapshot.blocks.max() < registry.states
+    ):
+        faults.append(f"a block has a state that is not from -1 to {registry.states - 1}")
+    for name, agent in snapshot.agents.items():
+        numbers = (agent.yaw, agent.pitch, agent.health, agent.food)
+        faults += [agent_name_fault(name), point_fault(agent.position)]
+        if not all(map(math.isfinite, numbers)):
+            faults.append(f"yaw, pitch, health and food of {name} are {numbers}; give numbers")
+        faults.append(
+            items_fault(agent.inventory, registry, AGENT_SLOTS + WORN_SLOTS, f"agent {name}")
+        )
+    for place, items in snapshot.containers.items():
+        if place not in snapshot.box:
+            faults.append(f"the container at {place} lies outside the box")
+        else:
+            state = int(snapshot.blocks[snapshot.box.index(place)])
+            name = registry.name(state) if state >= 0 else "chest"
+            faults.append(
+                items_fault(items, registry, container_slots(name), f"the {name} at {place}")
+            )
+    return next((fault for fault in faults if fault), None)
+
+
+def _short(value: object) -> str:
+    # Whole numbers beyond what Python writes are told by their size.
+    if isinstance(value, int) and value.bit_length() > 200:
+        return f"a number of {value.bit_length()} bits"
+    return str(value) if not isinstance(value, Sequence) else f"({', '.join(map(_short, value))})"
