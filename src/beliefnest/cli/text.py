@@ -1,8 +1,10 @@
 """Texts of others on a terminal."""
 
+from beliefnest.world.texts import escaped
+
 __all__ = ["printable"]
 
 
 def printable(text: str) -> str:
     """A text that others wrote, with nothing in it that commands the terminal."""
-    return "".join(c if c.isprintable() or c == "\n" else "\ufffd" for c in text)
+    return "\n".join(escaped(line) for line in text.split("\n"))

@@ -46,7 +46,7 @@ _FIELDS: Mapping[str, Callable[[Any], str]] = {
     "other": str,
     "to": str,
     "items": text.mapping,
-    "name": str,
+    "name": text.one_line,
     "text": text.one_line,
 }
 """Detail of an event to how it is written, in the order in which details are written."""

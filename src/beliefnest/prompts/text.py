@@ -5,6 +5,7 @@ import json
 from collections.abc import Iterable, Mapping
 from typing import Final
 
+from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import Point, Position
 
 __all__ = [
@@ -61,7 +62,7 @@ def as_json(value: object) -> str:
 
 def one_line(text: str) -> str:
     """A text that agents made, on one line, so that it cannot pass for another section."""
-    return " ".join(text.split())
+    return on_one_line(text)
 
 
 def block_name(block: str) -> str:
