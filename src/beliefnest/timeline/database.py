@@ -8,8 +8,9 @@ others read meanwhile.
 import os
 import sqlite3
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ from beliefnest.timeline.schema import (
     expected_schema,
 )
 
-__all__ = ["Database", "Row", "checked", "seal"]
+__all__ = ["Database", "OlderFormat", "Row", "checked", "seal"]
 
 Row = tuple[Any, ...]
 
@@ -86,6 +87,21 @@ def checked(row: Row, path: Path, what: str) -> Row:
     return tuple(values)
 
 
+@dataclass(frozen=True, slots=True)
+class OlderFormat:
+    """A format of run files that is converted when a file is opened.
+
+    Attributes:
+        version: Its number.
+        statements: What a file of it consists of.
+        convert: Makes it a file of this format; the path is for messages.
+    """
+
+    version: int
+    statements: tuple[str, ...]
+    convert: Callable[[sqlite3.Connection, Path], None]
+
+
 class Database:
     """An open run file; made by `create`, `open` or `read`."""
 
@@ -118,8 +134,8 @@ class Database:
         return database
 
     @classmethod
-    def open(cls, path: Path) -> "Database":
-        """Open a run file to go on with it.
+    def open(cls, path: Path, older: Sequence[OlderFormat] = ()) -> "Database":
+        """Open a run file to go on with it; one of an older format is converted for good.
 
         Raises:
             StoreError: There is none, it is foreign, newer, damaged, read-only, or has
@@ -130,15 +146,18 @@ class Database:
             raise StoreError(f"{path} {_FAULTS[sqlite3.SQLITE_READONLY]}")
         database = cls._locked(path, "rw")
         with database.closed_on_fault():
-            database._recognise()
+            found = database._recognise(older)
             database.execute("PRAGMA synchronous = NORMAL")
             with database.transaction():
+                database._convert(found)
                 database._check_small_tables()
         return database
 
     @classmethod
-    def read(cls, path: Path) -> "Database":
+    def read(cls, path: Path, older: Sequence[OlderFormat] = ()) -> "Database":
         """Open a run file to look at it, also while another process writes it.
+
+        Of one of an older format a copy in memory is converted, as it is now.
 
         Raises:
             StoreError: There is none, or it is foreign, newer or damaged.
@@ -146,17 +165,13 @@ class Database:
         _recognise_start(path)
         database = cls(_connected(path, "ro"), path, None)
         try:
-            with database.closed_on_fault():
-                database._recognise()
-                database._check_small_tables()
+            database._look(older)
         except StoreError as fault:
             if not _is_unshareable(fault) or _wal(path).exists():
                 raise
             # Where SQLite cannot share the file with a writer, there can be none either.
             database = cls(_connected(path, "ro&immutable=1"), path, None)
-            with database.closed_on_fault():
-                database._recognise()
-                database._check_small_tables()
+            database._look(older)
         return database
 
     @classmethod
@@ -263,7 +278,28 @@ class Database:
         if found is None or found[0] != "ok":
             raise StoreError(f"{self.path} {_DAMAGED} ({found[0] if found else 'check failed'})")
 
-    def _recognise(self) -> None:
+    def _look(self, older: Sequence[OlderFormat]) -> None:
+        """Check a file that is only read, and go over to a converted copy if it is an older one."""
+        with self.closed_on_fault():
+            found = self._recognise(older)
+            if found is not None:
+                copy = sqlite3.connect(":memory:", isolation_level=None, check_same_thread=False)
+                self._connection.backup(copy)
+                self._connection.close()
+                self._connection = copy
+                self._convert(found)
+            self._check_small_tables()
+
+    def _convert(self, found: OlderFormat | None) -> None:
+        if found is not None:
+            try:
+                found.convert(self._connection, self.path)
+            except _REFUSALS as fault:
+                raise self._fault(fault) from fault
+            self.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
+
+    def _recognise(self, older: Sequence[OlderFormat]) -> OlderFormat | None:
+        """Check that a file is a run; returns the older format that it has."""
         application = self.row("PRAGMA application_id")
         version = self.row("PRAGMA user_version")
         if application != (APPLICATION_ID,):
@@ -272,18 +308,20 @@ class Database:
             if not tables:
                 what = "an SQLite file without content, perhaps of a run stopped while it began"
             raise StoreError(f"{self.path} is no run: it is {what}; give the file of a run")
-        found = version[0] if version else None
-        if found != SCHEMA_VERSION:
-            older = isinstance(found, int) and found < SCHEMA_VERSION
+        number = version[0] if version else None
+        found = next((each for each in older if each.version == number), None)
+        if number != SCHEMA_VERSION and found is None:
+            is_older = isinstance(number, int) and number < SCHEMA_VERSION
             raise StoreError(
-                f"{self.path} has the format {found} and this program reads {SCHEMA_VERSION}; "
-                f"use {'an older' if older else 'a newer'} version of beliefnest"
+                f"{self.path} has the format {number} and this program reads {SCHEMA_VERSION}; "
+                f"use {'an older' if is_older else 'a newer'} version of beliefnest"
             )
-        self._check_schema()
+        self._check_schema(STATEMENTS if found is None else found.statements)
+        return found
 
-    def _check_schema(self) -> None:
+    def _check_schema(self, statements: Iterable[str]) -> None:
         """Refuse a file that defines anything else: a view has no end, a trigger acts."""
-        expected = expected_schema()
+        expected = expected_schema(statements)
         found = self.rows(
             "SELECT type, name, tbl_name, sql FROM sqlite_master LIMIT ?", [len(expected) + 1]
         )

@@ -5,9 +5,17 @@ notice a flipped bit inside a value.
 """
 
 import sqlite3
+from collections.abc import Iterable
 from contextlib import closing
 
-__all__ = ["APPLICATION_ID", "SCHEMA_VERSION", "SMALL_TABLES", "STATEMENTS", "expected_schema"]
+__all__ = [
+    "APPLICATION_ID",
+    "BODY_STATE",
+    "SCHEMA_VERSION",
+    "SMALL_TABLES",
+    "STATEMENTS",
+    "expected_schema",
+]
 
 APPLICATION_ID = 0x42656C4E
 """Marks an SQLite file as a run ("BelN")."""
@@ -16,6 +24,17 @@ SCHEMA_VERSION = 3
 
 SMALL_TABLES = ("timeline", "meta", "selected", "program", "prompt")
 """Tables whose structure is checked whenever a file is opened; the others can be large."""
+
+# What goes on in a timeline's body after its first `entries` entries, at a tick, and cannot be
+# perceived, compressed. No cache: nothing else tells it.
+BODY_STATE = """CREATE TABLE body_state (
+        timeline INTEGER NOT NULL,
+        entries INTEGER NOT NULL,
+        tick INTEGER NOT NULL,
+        state BLOB NOT NULL,
+        seal INTEGER NOT NULL,
+        PRIMARY KEY (timeline, entries, tick)
+    )"""
 
 STATEMENTS = (
     # A path is a JSON array of agent names. `packed` of the entries lie in compressed pieces.
@@ -67,16 +86,7 @@ STATEMENTS = (
         seal INTEGER NOT NULL,
         UNIQUE (timeline, name, entries)
     )""",
-    # What goes on in a timeline's body after its first `entries` entries, at a tick, and cannot be
-    # perceived, compressed. No cache: nothing else tells it.
-    """CREATE TABLE body_state (
-        timeline INTEGER NOT NULL,
-        entries INTEGER NOT NULL,
-        tick INTEGER NOT NULL,
-        state BLOB NOT NULL,
-        seal INTEGER NOT NULL,
-        PRIMARY KEY (timeline, entries, tick)
-    )""",
+    BODY_STATE,
     """CREATE TABLE meta (
         name TEXT PRIMARY KEY,
         value BLOB NOT NULL,
@@ -104,12 +114,12 @@ STATEMENTS = (
 )
 
 
-def expected_schema() -> frozenset[tuple[object, ...]]:
-    """What a run file defines: kind, name, table and text, as `sqlite_master` lists them.
+def expected_schema(statements: Iterable[str]) -> frozenset[tuple[object, ...]]:
+    """What statements define: kind, name, table and text, as `sqlite_master` lists them.
 
     Tables that SQLite makes of its own accord are in it.
     """
     with closing(sqlite3.connect(":memory:")) as connection:
-        for statement in STATEMENTS:
+        for statement in statements:
             connection.execute(statement)
         return frozenset(connection.execute("SELECT type, name, tbl_name, sql FROM sqlite_master"))

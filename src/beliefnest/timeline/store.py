@@ -13,7 +13,8 @@ import zstandard
 
 from beliefnest.errors import BranchError, StoreError
 from beliefnest.timeline import codec
-from beliefnest.timeline.database import Database, Row, checked, seal
+from beliefnest.timeline.database import Database, OlderFormat, Row, checked, seal
+from beliefnest.timeline.format_2 import FORMAT_2, convert_2
 from beliefnest.timeline.journal import (
     Entry,
     ForkPoint,
@@ -37,6 +38,8 @@ __all__ = ["SqliteJournal"]
 
 _FACTS = "facts"
 """Name of the checkpoints that are snapshots of the timeline's own simulator."""
+
+_OLDER = (OlderFormat(2, FORMAT_2, convert_2),)
 
 _COMPRESSION = 1
 """Level of zstandard; higher ones save nothing on poses, which are noise in their last digits."""
@@ -112,7 +115,7 @@ class SqliteJournal:
             StoreError: There is none, it is foreign, newer, damaged, read-only, or has
                 another writer.
         """
-        return cls._sound(Database.open(Path(path)))
+        return cls._sound(Database.open(Path(path), _OLDER))
 
     @classmethod
     def read(cls, path: Path | str) -> "SqliteJournal":
@@ -121,7 +124,7 @@ class SqliteJournal:
         Raises:
             StoreError: There is none, or it is foreign, newer or damaged.
         """
-        return cls._sound(Database.read(Path(path)))
+        return cls._sound(Database.read(Path(path), _OLDER))
 
     @classmethod
     def _sound(cls, database: Database) -> "SqliteJournal":
