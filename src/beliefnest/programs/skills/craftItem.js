@@ -55,7 +55,7 @@ module.exports = {
   ],
   example: 'await craftItem(bot, "oak_planks", null, 4)',
   async run (context, name, craftingTablePos, count = 1) {
-    const { bot, fail, emit } = context
+    const { bot, fail } = context
     const item = checkItem(context, 'name', name)
     const wanted = checkCount(context, 'count', count)
     const hasTable = craftingTablePos !== null && craftingTablePos !== undefined
@@ -66,8 +66,6 @@ module.exports = {
       await bot.craft(recipe, times, table)
     } finally {
       await answered(context)
-      const made = countOf(bot, item) - before
-      if (made > 0) emit({ kind: 'craft_item', detail: { items: { [item.name]: made } } })
     }
     if (countOf(bot, item) - before < wanted) fail(`only ${countOf(bot, item) - before} of ${wanted} ${item.name} came out. Make room in the inventory and try again.`)
   }

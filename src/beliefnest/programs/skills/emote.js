@@ -1,5 +1,6 @@
 'use strict'
-const { text, show } = require('./lib/arguments')
+const { show } = require('./lib/arguments')
+const { utterance } = require('./lib/speech')
 
 module.exports = {
   name: 'emote',
@@ -15,8 +16,8 @@ module.exports = {
     if (!Object.keys(bot.players).includes(name)) {
       fail(`name must be the name of an agent; it is ${show(name)}, here are: ${Object.keys(bot.players).join(', ')}`)
     }
-    const detail = { name: text(context, 'type', type) }
-    bot.swingArm('right')
+    const detail = { name: utterance(context, 'type', type) }
     emit({ kind: 'emote', detail: name === bot.username ? detail : { ...detail, other: name } })
+    bot.swingArm('right')
   }
 }

@@ -15,6 +15,15 @@ could do, returns when it is done, and otherwise throws an error that says what 
 what was found and what to do; \`error.skill\` is its name. Positions are scenario
 coordinates; 20 ticks are a second.
 
+Blocks are used, mined and placed where an arm reaches (6 blocks from the eye) and a free line leads there
+from the eye: not through walls, glass among them. Skills that use a block walk first to where there is such a line.
+What agents did is told by the world and not by the skills: a gift, once somebody has thrown something and somebody
+else has picked it up within 240 ticks; an arrival, once somebody has walked and stands there.
+
+What is said, whispered, thought or shown as a gesture is one line of at most 256 characters, and no more
+than 20 such things a tick. A text with line breaks, control characters or the separators U+2028 and
+U+2029, or a longer one, is refused with an error.
+
 This page is generated from the skills' own files by \`src/beliefnest/programs/skills/generate.js\`.
 `
 

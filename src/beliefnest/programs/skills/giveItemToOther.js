@@ -42,7 +42,7 @@ module.exports = {
   ],
   example: 'await giveItemToOther(bot, "anne", "diamond", 1)',
   async run (context, otherName, itemName, num = 1) {
-    const { bot, fail, emit } = context
+    const { bot, fail } = context
     const body = bodyOf(context, 'otherName', otherName)
     const item = checkItem(context, 'item', itemName)
     const wanted = checkCount(context, 'num', num)
@@ -60,7 +60,6 @@ module.exports = {
       watcher.stop()
     }
     const given = watcher.takenBy(otherName)
-    if (given > 0) emit({ kind: 'give_item_to_other', detail: { other: otherName, items: { [item.name]: given } } })
     if (given < wanted) fail(`${otherName} picked up ${given} of the ${wanted} ${item.name} that were tossed. The rest lies on the ground, was taken by somebody else, or came back.`)
   }
 }

@@ -17,14 +17,13 @@ module.exports = {
   ],
   example: 'await receiveItemFromOther(bot, "sally", "diamond", 1)',
   async run (context, otherName, itemName, num = 1) {
-    const { bot, fail, emit } = context
+    const { bot, fail } = context
     const other = otherAgent(context, 'otherName', otherName)
     const item = checkItem(context, 'item', itemName)
     const wanted = checkCount(context, 'num', num)
     const before = countOf(bot, item)
     const received = () => countOf(bot, item) - before
     const done = await until(() => received() >= wanted, PATIENCE_TICKS)
-    if (received() > 0) emit({ kind: 'receive_item_from_other', detail: { other, items: { [item.name]: received() } } })
     if (!done) fail(`${received()} of ${wanted} ${item.name} came from ${other} within ${PATIENCE_TICKS} ticks. Ask ${other} to give it at the same time.`)
   }
 }

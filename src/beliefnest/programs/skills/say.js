@@ -3,8 +3,6 @@ const { claims: checked, PARAMETER } = require('./lib/claims')
 const { speech } = require('./lib/speech')
 const { ticks } = require('./lib/waiting')
 
-const LONGEST = 256
-
 module.exports = {
   name: 'say',
   signature: 'say(bot, msg, claims=[])',
@@ -17,7 +15,7 @@ module.exports = {
   ],
   example: 'await say(bot, "Hello, Anne! The diamond is here.", [located("diamond", new Vec3(2, -51, -4))])',
   async run (context, msg, claims) {
-    const text = speech(context, 'msg', msg, LONGEST)
+    const text = speech(context, 'msg', msg)
     const told = checked(context, claims)
     if (told.length > 0) context.emit({ kind: 'claims', detail: { text, claims: told } })
     context.bot.chat(text)

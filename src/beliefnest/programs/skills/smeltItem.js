@@ -98,7 +98,7 @@ module.exports = {
   ],
   example: 'await smeltItem(bot, "raw_iron", "coal", new Vec3(4, -51, 2), 3)',
   async run (context, itemName, fuelName, furnacePos, count = 1) {
-    const { bot, fail, emit } = context
+    const { bot, fail } = context
     const item = checkItem(context, 'itemName', itemName)
     const fuel = checkItem(context, 'fuelName', fuelName)
     const position = blockPosition(context, 'furnacePos', furnacePos)
@@ -117,7 +117,6 @@ module.exports = {
       } finally {
         const output = await emptyFurnace(context, furnace)
         made = output?.count ?? 0
-        if (output) emit({ kind: 'smelt_item', detail: { items: { [output.name]: output.count } } })
       }
     } finally {
       if (bot.currentWindow === furnace) await furnace.close()

@@ -1,5 +1,5 @@
 'use strict'
-const { text } = require('./lib/arguments')
+const { utterance } = require('./lib/speech')
 
 module.exports = {
   name: 'think',
@@ -11,6 +11,6 @@ module.exports = {
   ],
   example: 'await think(bot, "Where is the diamond?")',
   async run (context, msg) {
-    context.emit({ kind: 'think', detail: { text: text(context, 'msg', msg) } })
+    context.emit({ kind: 'think', detail: { text: utterance(context, 'msg', msg) } })
   }
 }

@@ -10,7 +10,8 @@ class Runner {
    *   unfinished: {what: string, line: number | null}[]}>} runProgram never rejects for a fault of the
    *   program; ends as soon as `signal` is aborted
    * @param {(bot: object, emit: (event: object) => void, signal: AbortSignal) => object} scopeOf what a
-   *   program of this bot finds in scope; `emit` hears what its skills report until `signal` is aborted
+   *   program of this bot finds in scope; `emit` hears what its skills report until `signal` is aborted, and throws
+   *   what they may not
    */
   constructor (regions, runProgram, scopeOf) {
     this.regions = regions
@@ -44,7 +45,7 @@ class Runner {
   start (region, agent, { bot }, code) {
     const abort = new AbortController()
     const run = { agent, abort, result: null, endTick: null, end: null, crash: null }
-    const emit = event => region.emit({ ...event, actor: bot.username })
+    const emit = event => region.report(agent, event)
     const request = { code, bot, scope: this.scopeOf(bot, emit, abort.signal), signal: abort.signal }
     this.runProgram(request).then(report => {
       abort.abort()

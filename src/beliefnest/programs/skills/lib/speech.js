@@ -1,13 +1,20 @@
 'use strict'
 const { show, text } = require('./arguments')
+const { flawOf } = require('./text')
 
-/** @returns {string} what can be said at once: one line of at most so many characters, no command */
-function speech (context, name, value, longest) {
+/** @returns {string} what can be uttered at once, or a failure */
+function utterance (context, name, value, longest) {
   const words = text(context, name, value)
-  if (words.trimStart().startsWith('/')) context.fail(`${name} must not begin with a slash, agents have no commands; it is ${show(words)}`)
-  if (/[\n\r]/.test(words)) context.fail(`${name} must be one line; it is ${show(words)}. Say the lines one after the other.`)
-  if (words.length > longest) context.fail(`${name} must have at most ${longest} characters; it has ${words.length}. Say it in parts.`)
+  const flaw = flawOf(words, longest)
+  if (flaw !== null) context.fail(`${name} ${flaw}.`)
   return words
 }
 
-module.exports = { speech }
+/** @returns {string} what can be said at once: an utterance that is no command */
+function speech (context, name, value, longest) {
+  const words = utterance(context, name, value, longest)
+  if (words.trimStart().startsWith('/')) context.fail(`${name} must not begin with a slash, agents have no commands; it is ${show(words)}`)
+  return words
+}
+
+module.exports = { speech, utterance }

@@ -3,11 +3,14 @@
 const { until } = require('./waiting')
 const { show } = require('./arguments')
 const { passOneDoor } = require('./doors')
+const { hindranceOf } = require('./sight')
 
 const REACH = 4
 const EYES = 1.62
 const STILL = 0.01
 const SETTLE_TICKS = 10
+const MIDDLE = 0.15
+const STEP_TICKS = 40
 
 const REASONS = {
   NoPath: 'there is no way to it on foot',
@@ -95,10 +98,25 @@ function viewpoint ({ bot, goals }, block, accepts) {
   return { goal, arrived }
 }
 
+/**
+ * What can be used from the middle of the block somebody stands on cannot always be from its edge: goes there
+ * if the server would refuse it from here.
+ */
+async function stepToView ({ bot }, block) {
+  const middle = bot.entity.position.floored().offset(0.5, 0, 0.5)
+  if (hindranceOf(bot, block) === null || hindranceOf(bot, block, middle) !== null) return
+  const near = () => bot.entity.position.xzDistanceTo(middle) < MIDDLE || hindranceOf(bot, block) === null
+  await bot.lookAt(middle.offset(0, EYES, 0), true)
+  bot.setControlState('forward', true)
+  await until(near, STEP_TICKS)
+  await settle(bot)
+}
+
 /** Walks to where a block can be used. */
 async function walkToUse (context, block, what) {
   const { goal, arrived } = viewpoint(context, block, (_, eye) => canUse(context.bot, eye, block))
   await walk(context, goal, arrived, block, what)
+  await stepToView(context, block)
 }
 
-module.exports = { walk, walkNear, walkToUse, viewpoint, canUse, settle, centreOf, rounded }
+module.exports = { stepToView, walk, walkNear, walkToUse, viewpoint, canUse, settle, centreOf, rounded }

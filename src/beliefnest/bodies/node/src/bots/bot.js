@@ -5,6 +5,7 @@ const mineflayer = require('mineflayer')
 const { pathfinder } = require('mineflayer-pathfinder')
 const { equipHeldSlot } = require('./equipping')
 const { chargePathfinder } = require('./pathing')
+const { refuseUnreachable } = require('./reaching')
 
 // mineflayer injects its plugins in a timer of its own, which Node fires after this long.
 const INJECTION_MS = 1
@@ -30,6 +31,7 @@ function startBot (client, clock) {
     bot.loadPlugin(pathfinder)
     chargePathfinder(bot, clock)
     equipHeldSlot(bot)
+    refuseUnreachable(bot)
   })
   return bot
 }

@@ -47,11 +47,17 @@ class Recorder {
     })
   }
 
+  /** Lets go of claims that were told and never said: nothing of a call or branch is left to the next. */
+  forgetClaims () {
+    this.claims = new Claims(this.region)
+  }
+
   /** Takes the present state as known, so that frames tell only what differs from it. */
   settle () {
     this.changes('agents', agentStates(this.serv, this.region))
     this.changes('items', itemStates(this.serv, this.region))
     changedContainers(this.serv, this.region)
+    this.forgetClaims()
     this.clear()
   }
 

@@ -53,6 +53,19 @@ class Region {
     return body
   }
 
+  /** What bots are told as their spawn point: the box's lowest corner, whatever happened (server). */
+  get spawnPoint () {
+    return this.toServer(this.box.low)
+  }
+
+  /**
+   * What an agent's skills tell; positions in `detail` are scenario coordinates.
+   * @throws {RangeError} for what the server does not let it tell
+   */
+  report (agent, event) {
+    this.body(agent).player.report(event)
+  }
+
   /**
    * An event of this tick; positions in `detail` are scenario coordinates. The kind `claims` is none of its own:
    * it is what the actor's next utterance of `detail.text` claims.

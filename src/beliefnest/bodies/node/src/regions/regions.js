@@ -124,6 +124,7 @@ class Regions {
   async resumed (region, action) {
     return this.inside(region, async () => {
       region.reseed()
+      region.recorder.forgetClaims()
       this.serv.numberItems()
       settleItems(this.serv, region)
       await this.bodies.settle(region)

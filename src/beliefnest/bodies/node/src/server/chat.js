@@ -2,7 +2,8 @@
 /** Chat among the players of a region. */
 const nbt = require('prismarine-nbt')
 
-const WHISPER = /^(?:tell|msg|w) (\S+) (.+)$/
+// Whatever stands in the words: what cannot be said is refused, not taken for another command.
+const WHISPER = /^(?:tell|msg|w) (\S+) (.+)$/s
 
 module.exports.name = 'chat'
 
@@ -24,6 +25,7 @@ module.exports.player = (player, serv) => {
   player.chat = player.system
 
   player._client.on('chat_message', ({ message }) => {
+    player.utter(message)
     serv.broadcast(`<${player.username}> ${message}`)
     serv.region.emit({ kind: 'chat', actor: player.agent, detail: { text: message } })
   })
@@ -39,6 +41,7 @@ module.exports.player = (player, serv) => {
 function whisper (player, serv, name, message) {
   const other = player.getOtherPlayers().find(({ username }) => username === name)
   if (other === undefined) return player.system(`There is no other agent ${name} here.`)
+  player.utter(message)
   player.system(`You whisper to ${name}: ${message}`)
   other.system(`${player.username} whispers to you: ${message}`)
   serv.region.emit({ kind: 'chat', actor: player.agent, detail: { text: message, to: other.agent } })

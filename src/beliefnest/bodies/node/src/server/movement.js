@@ -10,6 +10,8 @@ module.exports.name = 'updatePositions'
 
 module.exports.player = player => {
   player.pose = { yaw: 0, pitch: 0 }
+  // The block from which it has been walking.
+  player.stoodAt = player.position.floored()
   // In Minecraft's degrees, as plugins throw and place by it.
   Object.defineProperty(player, 'look', { get: () => toDegrees(player.pose) })
 
@@ -33,6 +35,7 @@ module.exports.player = player => {
     player.pose = { yaw, pitch }
     showTurn(player)
     moveTo(player, position.x, position.y, position.z)
+    player.stoodAt = player.position.floored()
     player.sendSelfPosition()
   }
   player.teleport = async position => { player.place(position) }

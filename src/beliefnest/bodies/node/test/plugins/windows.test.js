@@ -136,7 +136,10 @@ test('a chest under a stone stays shut, a barrel does not', async () => {
 test('a chest that is too far away stays shut, and so does one for who sneaks with something in hand', async () => {
   await inWorld({ agents: sallyAndAnne({ dirt: 1 }), blocks: [[9, FLOOR, 0, 'chest'], [...LEFT, 'chest']] }, async world => {
     const { sally } = world.bots
-    await world.during(sally.activateBlock(sally.blockAt(new Vec3(9, FLOOR, 0))))
+    await assert.rejects(world.during(sally.activateBlock(sally.blockAt(new Vec3(9, FLOOR, 0)))), /chest at \(9, -51, 0\) .*: it is 8\.3 blocks away/)
+    sally._client.write('block_place', { location: new Vec3(9, FLOOR, 0), direction: 1, hand: 0, cursorX: 0.5, cursorY: 0.5, cursorZ: 0.5, insideBlock: false, sequence: 0 })
+    await world.ticks(1)
+    assert.equal(sally.currentWindow, null)
     await world.during(sally.equip(idOf(sally, 'dirt'), 'hand'))
     sally.setControlState('sneak', true)
     await world.ticks(3)

@@ -36,7 +36,7 @@ async function withSkills ({ signal, ...setting }, body) {
  *   programs of several agents together in the sandbox, as a region does; gives RESULT by agent
  */
 function programsOf ({ bots, nextTick }, emitted) {
-  const region = { tick: 0, faults: [], body: name => ({ bot: bots[name] }), emit: event => emitted.push(event) }
+  const region = { tick: 0, faults: [], body: name => ({ bot: bots[name] }), report: (actor, event) => emitted.push({ actor, ...event }) }
   const regions = {
     get: () => region,
     resumed: (_, action) => action(),

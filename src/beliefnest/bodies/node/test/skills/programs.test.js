@@ -36,7 +36,7 @@ test('a long program of many skills does all of them', async () => {
     assert.deepEqual(await world.container(4, FLOOR, 3), { apple: 1, oak_planks: 3 })
     assert.equal((await world.block(-4, FLOOR, -4)).name, 'dirt')
     assert.equal((await world.block(-3, FLOOR, 2)).properties.powered, true)
-    assert.deepEqual(world.emitted.map(({ kind }) => kind), ['craft_item', 'think', 'move_to'])
+    assert.deepEqual(world.emitted.map(({ kind }) => kind), ['think', 'move_to'])
   })
 })
 

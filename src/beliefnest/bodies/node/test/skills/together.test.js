@@ -7,6 +7,18 @@ const both = (inventory, blocks = [], annes = {}) => ({
   agents: { sally: agent([0.5, FLOOR, 0.5], { inventory }), anne: agent([8.5, FLOOR, -6.5], { inventory: annes }) }, blocks
 })
 
+/** How many of what events of gifts tell of, by who did it, with whom and which item. */
+function given (events) {
+  const total = {}
+  for (const { actor, detail } of events) {
+    for (const [name, count] of Object.entries(detail.items)) {
+      const key = `${actor} ${detail.other} ${name}`
+      total[key] = (total[key] ?? 0) + count
+    }
+  }
+  return total
+}
+
 test('what is given is tossed, picked up and received', async () => {
   await withSkills(both({ diamond: 3 }), async world => {
     const { bots: { sally, anne }, skills } = world
@@ -17,10 +29,10 @@ test('what is given is tossed, picked up and received', async () => {
     await world.ticks(1)
     assert.deepEqual([await world.has('sally'), await world.has('anne')], [{ diamond: 1 }, { diamond: 2 }])
     assert.deepEqual(await world.everything(), before)
-    assert.deepEqual(world.emitted.sort((a, b) => (a.kind < b.kind ? -1 : 1)), [
-      { actor: 'sally', kind: 'give_item_to_other', detail: { other: 'anne', items: { diamond: 2 } } },
-      { actor: 'anne', kind: 'receive_item_from_other', detail: { other: 'sally', items: { diamond: 2 } } }
-    ])
+    // One event or two: both diamonds are picked up in one tick or in two.
+    assert.deepEqual(given(await world.events('give_item_to_other')), { 'sally anne diamond': 2 })
+    assert.deepEqual(given(await world.events('receive_item_from_other')), { 'anne sally diamond': 2 })
+    assert.deepEqual(world.emitted, [])
   })
 })
 
@@ -34,7 +46,7 @@ test('a gift whose program has ended is not watched any more', async () => {
     await world.until(() => listening() > before)
     abort.abort()
     await world.during(anne.toss(anne.registry.itemsByName.diamond.id, null, 1))
-    await assert.rejects(world.during(giving), { skill: 'giveItemToOther' })
+    await world.during(giving)
     assert.equal(listening(), before)
   })
 })

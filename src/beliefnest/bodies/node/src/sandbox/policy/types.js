@@ -7,8 +7,8 @@
 
 const { RefusedError, describeWire, isTagged, itemToGuest, vectorToGuest } = require('../exchange')
 const { buildGoal, buildMovements } = require('../constructions')
+const { flawOf } = require('../../../../../programs/skills/lib/text')
 
-const MAX_CHAT = 256
 const MAX_DISTANCE = 128
 const MAX_BLOCKS = 10_000
 const MAX_TICKS = 1_000_000
@@ -122,8 +122,9 @@ const later = (type) => ({ async: true, toGuest: type.toGuest })
 
 const chatText = {
   toHost: (x, wire, where) => {
-    const message = typeof wire === 'number' ? String(x.number(wire, where)) : x.text(wire, where, MAX_CHAT)
-    if (/[\n\r]/.test(message)) throw new RefusedError(`${where} must be one line`)
+    const message = typeof wire === 'number' ? String(x.number(wire, where)) : x.text(wire, where)
+    const flaw = flawOf(message)
+    if (flaw !== null) throw new RefusedError(`${where} ${flaw}`)
     if (message.trimStart().startsWith('/')) throw new RefusedError(`${where} is a command; an agent can only speak`)
     return message
   }

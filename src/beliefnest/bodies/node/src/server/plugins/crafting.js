@@ -16,8 +16,8 @@ module.exports.server = (serv) => {
   }
   const makeItem = (name) => new serv.Item(serv.registry.itemsByName[name].id, 1)
 
-  /** Slot 0 of `slots` shows what slots 1.. make; returns `{refresh, takeResult}`. */
-  serv.craftingGrid = (slots, width) => {
+  /** Slot 0 of `slots` shows what slots 1.. make; returns `{refresh, takeResult}`; what is taken `player` has crafted. */
+  serv.craftingGrid = (slots, width, player) => {
     function refresh () {
       const ingredients = slots.slice(1, width * width + 1)
       const result = ingredients.some(Boolean) ? match(recipes(), ingredients, width) : undefined
@@ -25,6 +25,7 @@ module.exports.server = (serv) => {
     }
     function takeResult () {
       const result = slots[0]
+      player.countAct('craft_item', result)
       consume(slots, width, makeItem)
       refresh()
       return result
@@ -34,7 +35,7 @@ module.exports.server = (serv) => {
 
   function openTable ({ player }) {
     const slots = new Array(TABLE_WIDTH ** 2 + 1).fill(null)
-    const grid = serv.craftingGrid(slots, TABLE_WIDTH)
+    const grid = serv.craftingGrid(slots, TABLE_WIDTH, player)
     const menu = containerMenu(slots.map((_, i) => cell(slots, i)), player, {
       result: 0,
       takeResult: grid.takeResult,

@@ -43,7 +43,7 @@ module.exports.player = (player, serv) => {
 
   player.digTick = () => { if (digging) digging.ticks += 1 }
 
-  const canMine = (position) => player.health > 0 && player.canReach(position) &&
+  const canMine = (position) => player.health > 0 && player.canUse(position) &&
     serv.registry.blocks[serv.blocks.at(position).type].diggable && serv.blocks.at(position).name !== 'air'
 
   function start (position) {

@@ -1,8 +1,9 @@
 'use strict'
 
-const { INPUT, FUEL, SIZE, coldFire, arrange, burn } = require('./lib/fire')
+const { INPUT, FUEL, OUTPUT, SIZE, coldFire, arrange, burn } = require('./lib/fire')
 const { KINDS, resultOf, ticksOf, burnTicks } = require('./lib/smelting')
 const { cell, containerMenu } = require('./lib/menus')
+const { withCount } = require('./lib/items')
 const { byPlace, keyOf, vecOf } = require('./lib/positions')
 
 const WINDOWS = { blast_furnace: 10, furnace: 14, smoker: 22 }
@@ -18,6 +19,20 @@ function rules (kind) {
       if (!item) return []
       if (smelts(item)) return [INPUT]
       return burns(item) ? [FUEL] : []
+    },
+  }
+}
+
+/** The slot of what was smelted, which is only ever taken from: that is told as smelting. */
+function outputCell (slots, player) {
+  const { get, set } = cell(slots, OUTPUT)
+  return {
+    get,
+    set (item) {
+      const there = get()
+      const taken = (there?.count ?? 0) - (item?.count ?? 0)
+      if (taken > 0) player.countAct('smelt_item', withCount(there, taken))
+      set(item)
     },
   }
 }
@@ -55,7 +70,7 @@ module.exports.server = (serv) => {
 
   function open ({ player, position, block: { name } }) {
     const slots = serv.containers.slots(position)
-    const menu = containerMenu(slots.map((_, i) => cell(slots, i)), player, rules(name))
+    const menu = containerMenu(slots.map((_, i) => (i === OUTPUT ? outputCell(slots, player) : cell(slots, i))), player, rules(name))
     player.lookInto({ type: WINDOWS[name], title: TITLES[name], positions: [vecOf(position)], menu }, position)
     showProgress(fireAt(position), name)
     return true

@@ -19,6 +19,8 @@ module.exports = [
   named('itemMotion', require('./itemMotion')),
   named('containers', require('./containers')),
   named('transfers', require('./transfers')),
+  named('acts', require('./acts')),
+  named('reports', require('./reports')),
   named('chests', require('./chests')),
   named('furnaces', require('./furnaces')),
   named('crafting', require('./crafting')),

@@ -1,17 +1,15 @@
 'use strict'
 
+const { Vec3 } = require('vec3')
 const { FACES } = require('./lib/directions')
-const { centreOf, vecOf } = require('./lib/positions')
+const { vecOf } = require('./lib/positions')
 const { HOTBAR_START, OFF_HAND } = require('./lib/menus')
-
-const REACH = 6
-const STANDING_EYES = 1.62
-const SNEAKING_EYES = 1.27
+const { eyeAbove, inReach, sees } = require('../../../../../programs/skills/lib/sight')
 
 /**
  * Use on a block: first what the block does (`serv.onInteraction(name, handler)`, the handler
  * is given `{player, position, block, face, cursor}` and returns whether it did something), then what
- * the item in hand does (`serv.useItemOn`).
+ * the item in hand does (`serv.useItemOn`). Blocks are used where a free line leads to them from the eye.
  */
 module.exports.server = (serv) => {
   const handlers = new Map()
@@ -27,8 +25,12 @@ module.exports.player = (player, serv) => {
     if (actionId === 'stop_sneaking' || actionId === 1) player.crouching = false
   })
 
-  player.eyes = () => player.position.offset(0, player.crouching ? SNEAKING_EYES : STANDING_EYES, 0)
-  player.canReach = (position) => player.eyes().distanceTo(centreOf(position)) <= REACH
+  const shapesAt = (x, y, z) => serv.blocks.at(new Vec3(x, y, z)).shapes
+
+  player.eyes = () => eyeAbove(player.position, player.crouching)
+  player.canReach = (position) => inReach(player.eyes(), position)
+  player.canSee = (position) => sees(shapesAt, player.eyes(), position)
+  player.canUse = (position) => player.canReach(position) && player.canSee(position)
   player.slotOfHand = (hand) => (hand === 1 ? OFF_HAND : HOTBAR_START + player.heldItemSlot)
   player.itemInHand = (hand = 0) => player.inventory.slots[player.slotOfHand(hand)] ?? null
 
@@ -49,7 +51,7 @@ module.exports.player = (player, serv) => {
       cursor: { x: packet.cursorX, y: packet.cursorY, z: packet.cursorZ },
       hand: packet.hand ?? 0,
     }
-    if ((!player.crouching || bareHands) && serv.interact(given)) return
+    if ((!player.crouching || bareHands) && player.canSee(position) && serv.interact(given)) return
     serv.useItemOn(given)
   }
 

@@ -17,7 +17,7 @@ const BELOW_EYES = 0.3
 const NUMBERS_PER_TICK = 100
 
 /**
- * Making dropped items: `serv.dropItem(position, item, {velocity, delay, id})` makes one, which
+ * Making dropped items: `serv.dropItem(position, item, {velocity, delay, id, thrown})` makes one, which
  * nobody can pick up for `delay` ticks; `serv.itemEntities(within)` lists them (`{id, item, position}`),
  * `serv.removeItem(id)` takes one away. What becomes of them is in itemMotion.js.
  *
@@ -33,10 +33,10 @@ module.exports.server = (serv) => {
 
   const nextNumber = () => Math.max(serv.entityMaxId + 1, (serv.region.tick + 1) * NUMBERS_PER_TICK)
 
-  serv.dropItem = (position, item, { velocity = new Vec3(0, 0, 0), delay = MINED_DELAY, id = nextNumber() } = {}) => {
+  serv.dropItem = (position, item, { velocity = new Vec3(0, 0, 0), delay = MINED_DELAY, id = nextNumber(), thrown = [] } = {}) => {
     serv.entityMaxId = id - 1
     const entity = serv.initEntity('object', type, serv.overworld, stepped(position))
-    becomeItem(entity, serv.Item, { item, velocity, delay, born: serv.region.tick })
+    becomeItem(entity, serv.Item, { item, velocity, delay, born: serv.region.tick, thrown })
     entity.updateAndSpawn()
     return entity
   }
@@ -51,6 +51,7 @@ module.exports.server = (serv) => {
   serv.tossItem = (player, item) => serv.dropItem(player.eyes().offset(0, -BELOW_EYES, 0), item, {
     velocity: direction(toDegrees(player.pose)).scaled(TOSS_SPEED).offset(0, TOSS_LIFT, 0),
     delay: TOSSED_DELAY,
+    thrown: [[player.agent, item.count, serv.region.tick]],
   })
 
   serv.itemEntities = (within) => Object.values(serv.entities).filter(
@@ -68,13 +69,13 @@ module.exports.server = (serv) => {
 
   serv.keeps('items', {
     save: (region) => serv.itemEntities((place) => region.contains(place)).map(
-      ({ id, velocity: { x, y, z }, delay, born, onGround }) => [id, x, y, z, delay, born, onGround]),
+      ({ id, velocity: { x, y, z }, delay, born, onGround, thrown }) => [id, x, y, z, delay, born, onGround, ...thrown]),
     restore (rows, region) {
       for (const entity of serv.itemEntities((place) => region.contains(place))) {
-        Object.assign(entity, { velocity: new Vec3(0, 0, 0), delay: 0, born: region.tick, onGround: true })
+        Object.assign(entity, { velocity: new Vec3(0, 0, 0), delay: 0, born: region.tick, onGround: true, thrown: [] })
       }
-      for (const [id, x, y, z, delay, born, onGround] of rows) {
-        if (serv.entities[id]?.item) Object.assign(serv.entities[id], { velocity: new Vec3(x, y, z), delay, born, onGround })
+      for (const [id, x, y, z, delay, born, onGround, ...thrown] of rows) {
+        if (serv.entities[id]?.item) Object.assign(serv.entities[id], { velocity: new Vec3(x, y, z), delay, born, onGround, thrown })
       }
     },
   })

@@ -3,10 +3,23 @@
 const { alike, withCount } = require('./lib/items')
 const { isInReach, metadataOf } = require('./lib/itemEntity')
 const { step } = require('./lib/motion')
+const { together, without } = require('./lib/throws')
 
 const LIFETIME = 6000
 const MERGE_DISTANCE = 0.5
+/** How long what was thrown is a gift to whoever picks it up; later it is found. */
+const GIFT_TICKS = 240
 const VOID_DEPTH = 64
+
+/** What somebody threw and somebody else picks up was given, unless it lay there for long. */
+function handOver (serv, player, throws, item) {
+  for (const [agent, count, tick] of throws) {
+    if (agent === player.agent || serv.region.tick - tick > GIFT_TICKS) continue
+    const given = withCount(item, count)
+    serv.players.find((other) => other.agent === agent)?.countAct('give_item_to_other', given, player.agent)
+    player.countAct('receive_item_from_other', given, agent)
+  }
+}
 
 /** Dropped items fall, lie, come together, are picked up as far as they fit, and vanish in the end. */
 module.exports.server = (serv) => {
@@ -18,6 +31,9 @@ module.exports.server = (serv) => {
     const rest = player.storeItem(entity.item)
     const taken = entity.item.count - (rest?.count ?? 0)
     if (taken === 0) return
+    const { by, left } = without(entity.thrown, taken)
+    entity.thrown = left
+    handOver(serv, player, by, withCount(entity.item, taken))
     serv._writeAll('collect', {
       collectedEntityId: entity.id, collectorEntityId: player.id, pickupItemCount: taken,
     })
@@ -37,6 +53,7 @@ module.exports.server = (serv) => {
       const count = other.item.count + entity.item.count
       if (count > entity.item.stackSize) continue
       entity.item = withCount(entity.item, count)
+      entity.thrown = together(entity.thrown, other.thrown)
       entity.delay = Math.max(entity.delay, other.delay)
       other.destroy()
       showItem(entity)

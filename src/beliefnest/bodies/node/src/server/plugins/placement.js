@@ -24,7 +24,8 @@ module.exports.server = (serv) => {
     const { player, hand } = use
     const item = player.itemInHand(hand)
     const plan = item && planPlacement(serv.registry, serv.blocks, use, item)
-    if (!plan || !plan.states.every(fits)) return false
+    // Seen from where the hand is: not through a wall to its far side.
+    if (!plan || !plan.states.every(fits) || !player.canSee(plan.position)) return false
     plan.states.forEach(([position, state]) => serv.blocks.set(position, state, player))
     joinChests(plan.position, player)
     player.inventory.slots[player.slotOfHand(hand)] = withCount(item, item.count - 1)

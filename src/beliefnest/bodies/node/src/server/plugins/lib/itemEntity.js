@@ -23,8 +23,8 @@ const metadataOf = (Item, { id, item }) => ({
   metadata: [{ key: METADATA_ITEM, type: 'item_stack', value: Item.toNotch(item) }],
 })
 
-/** Makes an entity of the server a dropped item; `itemId` and `itemCount` are those of `item`. */
-function becomeItem (entity, Item, { item, velocity, delay, born }) {
+/** Makes an entity of the server a dropped item; `thrown` as in throws.js; `itemId` and `itemCount` are those of `item`. */
+function becomeItem (entity, Item, { item, velocity, delay, born, thrown }) {
   Object.assign(entity, {
     uuid: `00000000-0000-4000-8000-${entity.id.toString(16).padStart(12, '0')}`,
     name: 'item',
@@ -32,6 +32,7 @@ function becomeItem (entity, Item, { item, velocity, delay, born }) {
     velocity,
     delay,
     born,
+    thrown,
     onGround: false,
     showMetadata: (player) => player._client.write('entity_metadata', metadataOf(Item, entity)),
   })

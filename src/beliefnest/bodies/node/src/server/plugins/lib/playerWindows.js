@@ -17,11 +17,11 @@ const shows = (window, slot) => slot >= 0 && slot < window.menu.size
  */
 class PlayerWindows {
   /**
-   * @param {object} player with `inventory`, `storeItem`, `inventoryChanged`, `canReach`
+   * @param {object} player with `inventory`, `storeItem`, `inventoryChanged`, `canUse`
    * @param {object} serv
    */
   constructor (player, serv) {
-    const grid = serv.craftingGrid(player.inventory.slots, OWN_GRID_WIDTH)
+    const grid = serv.craftingGrid(player.inventory.slots, OWN_GRID_WIDTH, player)
     const menu = inventoryMenu(player, grid)
     this.player = player
     this.serv = serv
@@ -156,7 +156,7 @@ class PlayerWindows {
   click (packet) {
     const window = this.current
     if (packet.windowId !== window.id) return
-    if (window.positions && !window.positions.some((position) => this.player.canReach(position))) {
+    if (window.positions && !window.positions.some((position) => this.player.canUse(position))) {
       this.forceClose()
       return
     }
