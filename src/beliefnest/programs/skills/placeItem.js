@@ -1,7 +1,7 @@
 'use strict'
 const { blockPosition, item: checkItem, show } = require('./lib/arguments')
 const { answered } = require('./lib/answers')
-const { canUse, stepToView, walk, viewpoint } = require('./lib/walking')
+const { canSee, canUse, stepToView, walk, viewpoint } = require('./lib/walking')
 const { hold, stackOf } = require('./lib/inventory')
 
 const FACES = [[0, -1, 0], [0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0]]
@@ -21,7 +21,7 @@ function inTheWay (feet, place) {
 
 async function walkToPlace (context, place, reference) {
   const { bot } = context
-  const sees = eye => canUse(bot, eye, place) || canUse(bot, eye, reference.position)
+  const sees = eye => canUse(bot, eye, place) || (canUse(bot, eye, reference.position) && canSee(bot, eye, place))
   const { goal, arrived } = viewpoint(context, place, (feet, eye) => !inTheWay(feet, place) && sees(eye))
   await walk(context, goal, arrived, place, 'a place to build from, near the position')
   await stepToView(context, place)

@@ -110,10 +110,12 @@ function hindrance (shapesAt, eye, block) {
 /** Where the eye of somebody is whose feet are at a position. */
 const eyeAbove = (feet, sneaks) => feet.offset(0, sneaks ? SNEAKING_EYES : STANDING_EYES, 0)
 
+/** Boxes of the blocks that a bot knows, as `sees` asks for them. */
+const shapesOf = bot => (x, y, z) => bot.world.blockIn(x, y, z)?.shapes ?? []
+
 /** @returns {string | null} as `hindrance`, for a bot as it stands and for the blocks it knows */
 function hindranceOf (bot, position, place = bot.entity.position) {
-  const shapesAt = (x, y, z) => bot.world.blockIn(x, y, z)?.shapes ?? []
-  return hindrance(shapesAt, eyeAbove(place, bot.getControlState('sneak')), position)
+  return hindrance(shapesOf(bot), eyeAbove(place, bot.getControlState('sneak')), position)
 }
 
-module.exports = { eyeAbove, hindrance, hindranceOf, inReach, sees }
+module.exports = { eyeAbove, hindrance, hindranceOf, inReach, sees, shapesOf }

@@ -3,7 +3,7 @@
 const { until } = require('./waiting')
 const { show } = require('./arguments')
 const { passOneDoor } = require('./doors')
-const { hindranceOf } = require('./sight')
+const { hindranceOf, sees, shapesOf } = require('./sight')
 
 const REACH = 4
 const EYES = 1.62
@@ -75,7 +75,10 @@ async function walkNear (context, target, dist, what = 'the position') {
 
 const SAMPLES = [[0, 0, 0], [0.45, 0, 0], [-0.45, 0, 0], [0, 0.45, 0], [0, -0.45, 0], [0, 0, 0.45], [0, 0, -0.45]]
 
-/** Whether a block can be used from an eye: near enough, with nothing before its centre or one of its sides. */
+/**
+ * Whether a block can be used from an eye with ease: near enough, with nothing before its centre or one of its sides.
+ * Rays leave out the block the eye is in, whose boxes the server does not leave out.
+ */
 function canUse (bot, eye, block) {
   if (eye.distanceTo(centreOf(block)) > REACH) return false
   return SAMPLES.some(sample => {
@@ -83,8 +86,11 @@ function canUse (bot, eye, block) {
     const distance = way.norm()
     const hit = bot.world.raycast(eye, way.scaled(1 / distance), distance)
     return !hit || hit.position.equals(block)
-  })
+  }) && canSee(bot, eye, block)
 }
+
+/** Whether the server finds a free line from an eye to a block. */
+const canSee = (bot, eye, block) => sees(shapesOf(bot), eye, block)
 
 /** A goal of the pathfinder, and whether it is reached, judged by the eyes of who stands at a place. */
 function viewpoint ({ bot, goals }, block, accepts) {
@@ -119,4 +125,4 @@ async function walkToUse (context, block, what) {
   await stepToView(context, block)
 }
 
-module.exports = { stepToView, walk, walkNear, walkToUse, viewpoint, canUse, settle, centreOf, rounded }
+module.exports = { canSee, stepToView, walk, walkNear, walkToUse, viewpoint, canUse, settle, centreOf, rounded }

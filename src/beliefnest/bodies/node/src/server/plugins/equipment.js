@@ -31,11 +31,8 @@ module.exports.player = (player, serv) => {
     send(serv.players.filter((other) => other !== player), changes)
   }
 
-  /** Tells one player all of it, as this one appears to it. */
-  player.showEquipment = (other) => {
-    const all = worn().flatMap((item, part) => (item ? [entry(item, part)] : []))
-    send([other], all)
-  }
+  /** Tells one player all of it, empty hands too: bots tell what never was there from what is there no more. */
+  player.showEquipment = (other) => send([other], worn().map(entry))
 
   player._client.on('held_item_slot', ({ slotId }) => {
     if (!(slotId >= 0 && slotId < HOTBAR_SIZE)) return
