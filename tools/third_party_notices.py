@@ -1,6 +1,6 @@
-"""Write THIRD_PARTY_NOTICES.md: what the JavaScript bundle contains, and under which licence.
+"""Write THIRD_PARTY_NOTICES.md: what the JavaScript bundles contain, and under which licence.
 
-Reads the list of packages that the build writes beside the bundle, and the licence files of
+Reads the list of packages that the build writes beside each bundle, and the licence files of
 these packages in `node_modules`. Run it with `make notices` after a change of dependencies.
 """
 
@@ -9,8 +9,11 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ROOT / "src" / "beliefnest" / "_bundle" / "packages.json"
-MODULES = ROOT / "src" / "beliefnest" / "bodies" / "node" / "node_modules"
+SOURCE = ROOT / "src" / "beliefnest"
+BUNDLES = {
+    SOURCE / "_bundle" / "packages.json": SOURCE / "bodies" / "node" / "node_modules",
+    SOURCE / "_page" / "packages.json": SOURCE / "viewer" / "page" / "web" / "node_modules",
+}
 NOTICES = ROOT / "THIRD_PARTY_NOTICES.md"
 
 _HEAD = """\
@@ -31,19 +34,22 @@ This file is written by `make notices`.
 
 def notices() -> str:
     """The whole text."""
-    packages = json.loads(PACKAGES.read_text(encoding="utf-8"))
+    packages, folders = {}, {}
+    for listed, modules in BUNDLES.items():
+        found = json.loads(listed.read_text(encoding="utf-8"))
+        packages |= found
+        folders |= {name: modules / name for name in found}
     lines = [_HEAD, "| package | version | licence |", "|---|---|---|"]
     lines += [f"| {name} | {p['version']} | {p['license']} |" for name, p in packages.items()]
     by_text: dict[str, list[str]] = {}
     for name in packages:
-        by_text.setdefault(_licence(name), []).append(name)
+        by_text.setdefault(_licence(folders[name]), []).append(name)
     for text, names in by_text.items():
         lines += ["", f"## {', '.join(names)}", "", "```text", text, "```"]
     return "\n".join(lines) + "\n"
 
 
-def _licence(package: str) -> str:
-    folder = MODULES / package
+def _licence(folder: Path) -> str:
     files = sorted(
         path
         for path in folder.iterdir()

@@ -138,9 +138,18 @@ def show(
     tick: Annotated[int | None, typer.Option(help="Tick; the latest if not given.")] = None,
     branch: Annotated[str | None, typer.Option(help="Branch of the simulator.")] = None,
     png: Annotated[Path | None, typer.Option(help="Draw the world at that tick.")] = None,
+    html: Annotated[
+        Path | None, typer.Option(help="Write all of the run as one page that needs no network.")
+    ] = None,
+    depth: Annotated[int, typer.Option(help="How deep all beliefs in that page go.")] = 2,
     json: Json = False,
 ) -> None:
     """Show what a simulator of a recorded run held."""
+    if html is not None:
+        from beliefnest.cli.page import PageOptions, write_page
+
+        write_page(PageOptions(run, html, path, tick, depth))
+        return
     from beliefnest.cli.show import ShowOptions, show_run
 
     show_run(ShowOptions(run, path, tick, branch, png, json))

@@ -14,7 +14,16 @@ from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Point, Position
 
-__all__ = ["Difference", "Pose", "compare", "differences", "false_beliefs", "falsehoods"]
+__all__ = [
+    "Difference",
+    "Pose",
+    "are_apart",
+    "are_false",
+    "compare",
+    "differences",
+    "false_beliefs",
+    "falsehoods",
+]
 
 Path = tuple[str, ...]
 
@@ -110,13 +119,22 @@ def falsehoods(
     """
     for found in _all_differences(real, belief, box, registry):
         if isinstance(found.b, Contents):
-            true = found.a.items if isinstance(found.a, Contents) else {}
-            claimed = found.b.items
-            too_much = any(count > true.get(name, 0) for name, count in claimed.items())
-            if too_much or (found.b.complete and dict(claimed) != dict(true)):
+            if are_false(found.a if isinstance(found.a, Contents) else None, found.b):
                 yield found
         elif found.b is not None:
             yield found
+
+
+def are_false(real: Contents | None, belief: Contents) -> bool:
+    """Whether contents claim items that are not there, or to be all and miss some.
+
+    Args:
+        real: What there is; None: there is nothing that could hold items.
+        belief: What is claimed.
+    """
+    true, claimed = {} if real is None else real.items, belief.items
+    too_much = any(count > true.get(name, 0) for name, count in claimed.items())
+    return too_much or (belief.complete and dict(claimed) != dict(true))
 
 
 def _all_differences(
@@ -133,7 +151,7 @@ def _all_differences(
             yield Difference("container", place, held[0], held[1])
     for name in a.agents:
         poses = _pose(a.agents[name]), _pose(b.agents[name])
-        if _apart(*poses):
+        if are_apart(*poses):
             yield Difference("agent", name, *poses)
     for name in a.agents:
         owned = [_owned(reading.agents[name]) for reading in (a, b)]
@@ -155,7 +173,8 @@ def _pose(agent: AgentBelief) -> Pose | None:
     return Pose(agent.position, agent.yaw, agent.pitch)
 
 
-def _apart(a: Pose | None, b: Pose | None) -> bool:
+def are_apart(a: Pose | None, b: Pose | None) -> bool:
+    """Whether two poses differ; angles that a prior does not tell differ from none."""
     if a is None or b is None:
         return a is not b
     if a.yaw is None or b.yaw is None:

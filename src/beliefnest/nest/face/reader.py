@@ -2,6 +2,9 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+import numpy.typing as npt
+
 from beliefnest.belief.forest import Forest
 from beliefnest.nest.explain.chain import element_of, explain
 from beliefnest.nest.explain.explanation import Explanation
@@ -70,6 +73,11 @@ class Reader:
         with self._recording.turn:
             return tuple(self._recording.journal.entries(key, start, stop))
 
+    def entries_until(self, key: TimelineKey, tick: int) -> int:
+        """How many entries of a timeline lie at a tick or before."""
+        with self._recording.turn:
+            return self._recording.journal.entries_until(key, tick)
+
     def walk(self, key: TimelineKey, paths: Sequence[Path]) -> Forest:
         """A forest with nodes of a timeline, at its beginning; `advance` takes it on."""
         with self._recording.turn:
@@ -114,3 +122,10 @@ class Reader:
             if isinstance(target, str):
                 return sighting_of_agent(reading, box, viewer, target)
             return sighting_of_block(reading, box, viewer, target)
+
+    def visible_blocks(
+        self, key: TimelineKey, path: Path, tick: int, viewer: str
+    ) -> npt.NDArray[np.bool_]:
+        """Which blocks an agent sees from its pose in a simulator: bool, shape of the box."""
+        with self._recording.turn:
+            return self._recording.on(key).reading(path, tick).visible_from(viewer)

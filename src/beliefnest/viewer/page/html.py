@@ -1,0 +1,81 @@
+"""The page as one HTML text: program, style and data inlined, nothing fetched from anywhere."""
+
+import base64
+import hashlib
+import html
+import json
+import zlib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from beliefnest.errors import InputError
+
+__all__ = ["page_html"]
+
+_BUILT = Path(__file__).parents[2] / "_page"
+
+_SHELL = """<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="referrer" content="no-referrer">
+<link rel="icon" href="data:,">
+<title>{title}</title>
+<style>{style}</style>
+</head>
+<body>
+<div id="page"></div>
+<script type="application/json" id="data">{data}</script>
+<script>{program}</script>
+</body>
+</html>
+"""
+
+
+def page_html(title: str, content: Mapping[str, Any], *, served: bool) -> str:
+    """The page.
+
+    Args:
+        title: For the browser's tab.
+        content: The page's data: packed into it, with deflate, as base64.
+        served: Whether it is to talk to the server it comes from.
+
+    Raises:
+        InputError: The page was not built with the package.
+    """
+    text = json.dumps(content, separators=(",", ":"), ensure_ascii=False)
+    packed = base64.b64encode(zlib.compress(text.encode(), 9)).decode()
+    style, program = _part("page.css"), _part("page.js")
+    return _SHELL.format(
+        policy=html.escape(_policy(style, program, served=served)),
+        title=html.escape(title),
+        style=style,
+        # Base64 has no `<`: nothing in the data can end the element.
+        data=json.dumps({"served": served, "packed": packed}),
+        program=program,
+    )
+
+
+def _policy(style: str, program: str, *, served: bool) -> str:
+    """What the page may do: run what it carries, and talk to its own server if it has one."""
+    connect = "'self'" if served else "'none'"
+    return (
+        f"default-src 'none'; script-src {_digest(program)}; style-src {_digest(style)}; "
+        f"img-src data: blob:; connect-src {connect}; base-uri 'none'; form-action 'none'"
+    )
+
+
+def _digest(text: str) -> str:
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+def _part(name: str) -> str:
+    file = _BUILT / name
+    if not file.is_file():
+        raise InputError(f"the page is missing at {file}: run `pip install .` to build it")
+    text = file.read_text(encoding="utf-8")
+    # Texts that a browser would take for the end of the element, in strings of the program.
+    return text.replace("</script", "<\\/script").replace("<!--", "<\\!--")

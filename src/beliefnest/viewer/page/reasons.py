@@ -1,0 +1,262 @@
+"""Explanations and looks: one when it is asked for, or many ahead, for a page without a server."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+from beliefnest.belief.columns import place_of
+from beliefnest.belief.node_view import NodeView
+from beliefnest.errors import InputError, PathError
+from beliefnest.nest.explain.parts import Sighting
+from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
+from beliefnest.nest.face.reader import Reader
+from beliefnest.timeline.journal import TimelineInfo, TimelineKey
+from beliefnest.viewer.page.run import RunData
+from beliefnest.world.frames import Frame
+from beliefnest.world.paths import path_text
+from beliefnest.world.values import EventKind, Position
+
+__all__ = ["ahead", "explanation_of", "look_of", "name_of", "sight_of"]
+
+Path = tuple[str, ...]
+
+_DEEDS = frozenset(
+    {
+        EventKind.GET_ITEM_FROM_CHEST,
+        EventKind.DEPOSIT_ITEM_INTO_CHEST,
+        EventKind.OPEN_CONTAINER,
+        EventKind.CHAT,
+        EventKind.USE_LEVER,
+        EventKind.PLACE_BLOCK,
+        EventKind.MINE_BLOCK,
+    }
+)
+
+_EXPLANATIONS = 60
+"""How many explanations a page without a server carries; each takes some 0.1 s to work out."""
+
+_TICKS = 150
+"""At how many ticks of a timeline such a page knows who sees what."""
+
+_NODES = 12
+"""In how many nodes of a timeline it knows that."""
+
+
+def explanation_of(
+    reader: Reader, key: TimelineKey, path: Path, tick: int, thing: str
+) -> dict[str, Any]:
+    """Why a node holds what it holds of a thing, in words.
+
+    Args:
+        reader: Where to read.
+        key: The timeline.
+        path: The node.
+        tick: When.
+        thing: `a1`, agent number 1; `c7`, contents of cell 7; `b7`, block of cell 7.
+
+    Raises:
+        InputError: There is no such thing.
+        TickError: The timeline has no such tick.
+    """
+    kind, number = thing[:1], thing[1:]
+    if kind not in {"a", "b", "c", "i"} or not number.isdecimal():
+        raise InputError(f"{thing!r} is no thing; write a, b or c and a number")
+    if kind in "ai":
+        told = reader.explain(key, path, tick, agent=_agent(reader, int(number)))
+    else:
+        place = _place(reader, int(number))
+        told = (
+            reader.explain(key, path, tick, container=place)
+            if kind == "c"
+            else reader.explain(key, path, tick, block=place)
+        )
+    return {"t": tick, "lines": str(told).splitlines()}
+
+
+def look_of(
+    reader: Reader, key: TimelineKey, path: Path, tick: int, viewer: str, target: str
+) -> list[Any] | None:
+    """The look of an agent at a thing in a node: `[how it ended, distance, blocker]`.
+
+    Args:
+        reader: Where to read.
+        key: The timeline.
+        path: The node.
+        tick: When.
+        viewer: Name of who looks.
+        target: `a1` or `b7`, as for `explanation_of`.
+
+    Returns:
+        None where the viewer's pose is unknown.
+    """
+    number = int(target[1:]) if target[1:].isdecimal() else -1
+    what = _agent(reader, number) if target[:1] == "a" else _place(reader, number)
+    return _told(reader.look(key, path, tick, viewer, what))
+
+
+def sight_of(reader: Reader, key: TimelineKey, path: Path, tick: int, viewer: str) -> list[int]:
+    """What an agent sees in a node: lengths of runs of cells, unseen first, then seen, ..."""
+    return _runs(reader.visible_blocks(key, path, tick, viewer).ravel().tolist())
+
+
+def ahead(data: RunData) -> dict[str, Any]:
+    """Explanations, looks and views for all that is recorded, as far as there is room.
+
+    Looks and views are told where they change. Where there are more than there is room for,
+    only some ticks are looked at.
+    """
+    views = _Views(data.reader)
+    nodes = list(data.nodes())
+    for info in data.reader.timelines():
+        paths = [path for other, path in nodes if other.key == info.key]
+        views.follow(info, paths[:_NODES])
+    return {
+        "explanations": _explanations(data, nodes),
+        "looks": views.looks,
+        "sights": views.sights,
+    }
+
+
+class _Views:
+    """Who sees what in the nodes of some timelines, where it changes."""
+
+    def __init__(self, reader: Reader) -> None:
+        self._reader = reader
+        # The same place, seen from the same place in the same surroundings, is seen the same way.
+        self._known: dict[Any, Any] = {}
+        self.looks: dict[str, list[Any]] = {}
+        self.sights: dict[str, list[Any]] = {}
+
+    def follow(self, info: TimelineInfo, paths: Sequence[Path]) -> None:
+        """Look at some ticks of a timeline."""
+        reader = self._reader
+        forest = reader.walk(info.key, paths)
+        for tick in _some(range(info.start, info.head + 1), _TICKS):
+            reader.advance(info.key, forest, reader.entries_until(info.key, tick))
+            for path in paths:
+                self._look_around(info, tick, NodeView(forest, path))
+
+    def _look_around(self, info: TimelineInfo, tick: int, reading: NodeView) -> None:
+        agents = self._reader.agents
+        grid = hash(reading.blocks.tobytes())
+        cells = sorted(self._reader.history.context.tracked)
+        for number, viewer in enumerate(agents):
+            name = f"{name_of(info.key, reading.path)} a{number}"
+            here = _standing(reading, viewer)
+            _add(self.sights, name, tick, self._sight(reading, viewer, (grid, here)))
+            for at, other in enumerate(agents):
+                if at != number:
+                    mark = (grid, here, _standing(reading, other))
+                    _add(
+                        self.looks, f"{name} a{at}", tick, self._look(reading, viewer, other, mark)
+                    )
+            for cell in cells:
+                place = place_of(self._reader.setting.snapshot.box, cell)
+                look = self._look(reading, viewer, place, (grid, here, cell))
+                _add(self.looks, f"{name} c{cell}", tick, look)
+
+    def _sight(self, reading: NodeView, viewer: str, mark: Any) -> Any:
+        if mark[1] is None:
+            return []
+        if mark not in self._known:
+            self._known[mark] = _runs(reading.visible_from(viewer).ravel().tolist())
+        return self._known[mark]
+
+    def _look(self, reading: NodeView, viewer: str, target: str | Position, mark: Any) -> Any:
+        if mark[1] is None:
+            return None
+        if mark not in self._known:
+            box = self._reader.setting.snapshot.box
+            if isinstance(target, str):
+                look = sighting_of_agent(reading, box, viewer, target)
+            else:
+                look = sighting_of_block(reading, box, viewer, target)
+            self._known[mark] = _told(look)
+        return self._known[mark]
+
+
+def _standing(reading: NodeView, name: str) -> Any:
+    agent = reading.agents[name]
+    return None if agent.position is None else (agent.position, agent.yaw, agent.pitch)
+
+
+def _add(rows: dict[str, list[Any]], name: str, tick: int, value: Any) -> None:
+    told = rows.setdefault(name, [])
+    if not told or told[-1][1] != value:
+        told.append([tick, value])
+
+
+def _explanations(
+    data: RunData, nodes: Sequence[tuple[TimelineInfo, Path]]
+) -> dict[str, list[Any]]:
+    reader, found = data.reader, {}
+    wanted = sorted(nodes, key=lambda each: (each[1] not in data.about.paths, bool(each[0].base)))
+    left = _EXPLANATIONS
+    for kind in ("c", "a"):
+        for info, path in wanted:
+            for thing in _things(reader, kind) if path else ():
+                rows = []
+                for tick in _deeds(reader, info)[: max(0, left)]:
+                    rows.append(explanation_of(reader, info.key, path, tick, thing))
+                    left -= 1
+                if rows:
+                    found[f"{name_of(info.key, path)} {thing}"] = rows
+    return found
+
+
+def _deeds(reader: Reader, info: TimelineInfo) -> list[int]:
+    """Ticks at which something was done that beliefs are about, and the last one."""
+    ticks = {
+        entry.tick
+        for entry in reader.entries(info.key, 0, info.entries)
+        if isinstance(entry, Frame) and any(event.kind in _DEEDS for event in entry.events)
+    }
+    return sorted(ticks | {info.head}, reverse=True)
+
+
+def _things(reader: Reader, kind: str) -> Iterator[str]:
+    numbers: Iterable[int] = range(len(reader.agents))
+    if kind == "c":
+        numbers = sorted(reader.history.context.tracked)
+    yield from (f"{kind}{number}" for number in numbers)
+
+
+def _some(ticks: range, count: int) -> list[int]:
+    """At most so many of some ticks, evenly spread, the last one among them."""
+    step = -(-len(ticks) // count)
+    return [*ticks[:-1:step], ticks[-1]]
+
+
+def _runs(flags: Iterable[bool]) -> list[int]:
+    """Lengths of runs of equal flags, the first of them false."""
+    runs, last = [0], False
+    for flag in flags:
+        if flag is not last:
+            runs.append(0)
+            last = flag
+        runs[-1] += 1
+    return runs
+
+
+def name_of(key: TimelineKey, path: Path) -> str:
+    """What the page calls a node of a timeline."""
+    return " ".join((path_text(key.path), path_text(path), key.branch))
+
+
+def _told(look: Sighting | None) -> list[Any] | None:
+    if look is None:
+        return None
+    distance = None if look.distance is None else round(look.distance, 1)
+    blocker = None if look.blocker is None else [*look.blocker, look.blocker_name]
+    return [look.view.value, distance, blocker]
+
+
+def _agent(reader: Reader, number: int) -> str:
+    if not 0 <= number < len(reader.agents):
+        raise PathError(f"no agent number {number}; there are {', '.join(reader.agents)}")
+    return reader.agents[number]
+
+
+def _place(reader: Reader, cell: int) -> Position:
+    if not 0 <= cell < reader.history.context.cells:
+        raise InputError(f"no cell {cell}; the box has {reader.history.context.cells}")
+    return place_of(reader.history.context.box, cell)

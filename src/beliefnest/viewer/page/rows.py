@@ -1,0 +1,125 @@
+"""Tracks as rows of plain data, each sent once: at first all, later what is new."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from beliefnest.viewer.page.blocks import BlockPalette
+from beliefnest.viewer.page.poses import Pose, Stand
+from beliefnest.viewer.page.tracks import PLACED, Row, Track
+
+__all__ = ["StandRows", "TrackRows", "fresh_rows"]
+
+_THOUSAND = 1000
+
+
+class _Sent:
+    """How much of each list was sent, and its last row."""
+
+    def __init__(self) -> None:
+        self._done: dict[str, tuple[int, Any]] = {}
+
+    def fresh(self, name: str, rows: Sequence[Any]) -> tuple[int, Sequence[Any]] | None:
+        """Number of the first row that is new, and these rows; None: there are none."""
+        count, last = self._done.get(name, (0, None))
+        # Of several changes in one tick the last one counts, so the last row may be another now.
+        first = count - 1 if count and rows[count - 1] != last else count
+        if first == len(rows):
+            return None
+        self._done[name] = (len(rows), rows[-1])
+        return first, rows[first:]
+
+
+def fresh_rows(sent: dict[str, int], name: str, rows: Sequence[Any]) -> list[Any] | None:
+    """Of a list that only grows: the number of the first new row, and the new ones."""
+    first = sent.get(name, 0)
+    sent[name] = len(rows)
+    return [first, list(rows[first:])] if first < len(rows) else None
+
+
+class TrackRows:
+    """Says what is new in one track."""
+
+    def __init__(self, track: Track, palette: BlockPalette) -> None:
+        self._track, self._palette = track, palette
+        self._sent = _Sent()
+        self._begun = False
+
+    def update(self) -> dict[str, Any]:
+        """What is new: by list `[number of its first row, rows]`; empty if nothing is."""
+        track = self._track
+        told: dict[str, Any] = {}
+        if not self._begun:
+            self._begun = True
+            told["grid"] = self._runs(track.grid.tolist())
+        lists: dict[str, Sequence[Any]] = {
+            "blocks": track.blocks,
+            "items": track.items,
+            "wrong": track.wrong,
+            "heard": track.heard,
+        }
+        for part in ("agents", "holds", "owns"):
+            rows_by_agent: list[list[Row]] = getattr(track, part)
+            lists |= {f"{part} {n}": rows for n, rows in enumerate(rows_by_agent)}
+        lists |= {f"contents {cell}": rows for cell, rows in track.contents.items()}
+        for name, rows in lists.items():
+            found = self._sent.fresh(name, rows)
+            if found is not None:
+                told[name] = [found[0], [self._row(name, row) for row in found[1]]]
+        return told
+
+    def _row(self, name: str, row: Any) -> Any:
+        if name == "blocks":
+            pairs: list[int] = row[1:]
+            return [row[0], *self._numbered(pairs)]
+        if name.startswith("agents") and row[1] == PLACED:
+            tick, code, seen, pose, *more = row
+            return [tick, code, seen, _rounded(pose), *more]
+        return row
+
+    def _numbered(self, pairs: Sequence[int]) -> list[int]:
+        return [self._palette.number(value) if at % 2 else value for at, value in enumerate(pairs)]
+
+    def _runs(self, grid: Sequence[int]) -> list[int]:
+        """The grid as [state, how often, state, how often, ...]."""
+        runs: list[int] = []
+        last = None
+        for state in grid:
+            if state == last:
+                runs[-1] += 1
+            else:
+                runs.extend((self._palette.number(state), 1))
+                last = state
+        return runs
+
+
+class StandRows:
+    """Says what is new of where one agent stood, in columns of differences."""
+
+    def __init__(self, stand: Stand) -> None:
+        self._stand = stand
+        self._sent = 0
+
+    def update(self) -> Mapping[str, Any] | None:
+        """Columns `t`, `x`, `y`, `z`, `yaw`, `pitch` (thousandths); None: nothing is new.
+
+        Each number but the first is the difference from the one before. `gone` numbers the rows
+        of the columns in which the agent is not there.
+        """
+        first, ticks = self._sent, self._stand.ticks
+        if first == len(ticks):
+            return None
+        self._sent = len(ticks)
+        poses = self._stand.poses[first:]
+        rows = [_rounded(pose) if pose is not None else [0] * 5 for pose in poses]
+        names = ("x", "y", "z", "yaw", "pitch")
+        columns = {name: _steps([row[at] for row in rows]) for at, name in enumerate(names)}
+        gone = [number for number, pose in enumerate(poses) if pose is None]
+        return {"from": first, "t": _steps(ticks[first:]), **columns, "gone": gone}
+
+
+def _rounded(pose: Pose | Sequence[float]) -> list[int]:
+    return [round(_THOUSAND * value) for value in pose]
+
+
+def _steps(values: Sequence[int]) -> list[int]:
+    return [value - before for value, before in zip(values, [0, *values[:-1]], strict=True)]

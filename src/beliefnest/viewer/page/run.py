@@ -1,0 +1,238 @@
+"""One run as the page's data: everything at first, then what is new."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, field
+from itertools import pairwise, product
+from typing import Any
+
+from beliefnest.nest.face.reader import Reader
+from beliefnest.pictures.palette import MARKS, agent_looks
+from beliefnest.timeline.journal import TimelineInfo, TimelineKey
+from beliefnest.timeline.records import ProgramRecord, PromptRecord
+from beliefnest.viewer.page.blocks import BlockPalette
+from beliefnest.viewer.page.poses import PoseBook
+from beliefnest.viewer.page.rows import StandRows, TrackRows, fresh_rows
+from beliefnest.viewer.page.tracks import TrackRecorder
+from beliefnest.viewer.page.words import event_text
+from beliefnest.world.frames import Frame
+from beliefnest.world.paths import path_text
+from beliefnest.world.values import EventKind, Position
+
+__all__ = ["About", "RunData", "paths_below"]
+
+Path = tuple[str, ...]
+
+_SPEECH = (EventKind.CHAT, EventKind.THINK)
+
+
+@dataclass(frozen=True, slots=True)
+class About:
+    """What people call a run and the things in it.
+
+    Attributes:
+        title: Name of the scenario.
+        subtitle: What is special about it, as its condition.
+        description: What it is about.
+        labels: What people call containers and places.
+        paths: Beliefs that the scenario asks about; they are shown from the start.
+    """
+
+    title: str
+    subtitle: str = ""
+    description: str = ""
+    labels: Mapping[Position, str] = field(default_factory=dict)
+    paths: tuple[Path, ...] = ()
+
+
+def paths_below(agents: Iterable[str], path: Path, depth: int) -> list[Path]:
+    """A path and all below it, down to `depth` more agents, shallow ones first."""
+    names = list(agents)
+    found = []
+    for length in range(depth + 1):
+        for more in product(names, repeat=length):
+            whole = (*path, *more)
+            new = whole[len(path) - 1 if path else 0 :]
+            if all(a != b for a, b in pairwise(new)):
+                found.append(whole)
+    return found
+
+
+@dataclass
+class _Line:
+    """A timeline that is recorded: its recorders, and what was told of it."""
+
+    info: TimelineInfo
+    book: PoseBook
+    recorders: list[TrackRecorder]
+    tracks: dict[Path, TrackRows]
+    stands: list[StandRows]
+    entries: int = 0
+    events: list[dict[str, Any]] = field(default_factory=list)
+    sent: dict[str, int] = field(default_factory=dict)
+    told: Any = None
+
+
+class RunData:
+    """Data of one run for one page, which grows with the run.
+
+    Args:
+        reader: Where to read.
+        about: What people call it.
+        depth: How deep beliefs of the real world are recorded from the start.
+    """
+
+    def __init__(self, reader: Reader, about: About, depth: int = 2) -> None:
+        self.reader, self.about, self.depth = reader, about, depth
+        self._palette = BlockPalette(reader.history.context.registry)
+        self._lines: dict[TimelineKey, _Line] = {}
+        self._sent: dict[str, int] = {}
+        self._begun = False
+
+    def update(self) -> dict[str, Any]:
+        """What is new since the last call; at first everything. Empty if nothing is."""
+        new: dict[str, Any] = {}
+        lines = {}
+        infos = self.reader.timelines()
+        for number, info in enumerate(infos):
+            line = self._lines.get(info.key) or self._begin(info)
+            line.info = info
+            told = self._line_update(line, infos)
+            if told:
+                lines[str(number)] = told
+        if lines:
+            new["timelines"] = lines
+        for name, rows in (("states", self._palette.entries), *self._records()):
+            fresh = fresh_rows(self._sent, name, rows)
+            if fresh is not None:
+                new[name] = fresh
+        if not self._begun:
+            self._begun = True
+            new["head"] = self._head()
+        return new
+
+    def deepen(self, key: TimelineKey, path: Path) -> None:
+        """Record one more node of a timeline from now on; the next update tells all of it."""
+        line = self._lines[key]
+        if path not in line.tracks:
+            recorder = TrackRecorder(self.reader, key, [path], line.book, fills=False)
+            line.recorders.append(recorder)
+            line.tracks[path] = TrackRows(recorder.tracks[0], self._palette)
+
+    def nodes(self) -> Iterable[tuple[TimelineInfo, Path]]:
+        """All that is recorded: each timeline with each node of it, shallow ones first."""
+        for line in self._lines.values():
+            for path in line.tracks:
+                yield line.info, path
+
+    def _head(self) -> dict[str, Any]:
+        reader, about = self.reader, self.about
+        box = reader.setting.snapshot.box
+        looks = agent_looks(reader.agents)
+        return {
+            "title": about.title,
+            "subtitle": about.subtitle,
+            "description": about.description,
+            "seed": reader.seed,
+            "agents": [asdict(looks[name]) for name in reader.agents],
+            "marks": {mark.value: asdict(look) for mark, look in MARKS.items()},
+            "box": {"low": box.low, "shape": box.shape},
+            "labels": [[*place, label] for place, label in sorted(about.labels.items())],
+            "asked": [path_text(path) for path in about.paths],
+        }
+
+    def _begin(self, info: TimelineInfo) -> _Line:
+        base = None if info.base is None else self._lines[info.base.timeline].book
+        book = PoseBook(len(self.reader.agents), info.start, base)
+        own = info.key.path
+        deep = max(1, self.depth - len(own))
+        paths = paths_below(self.reader.agents, own, deep if own else self.depth)
+        asked = [path for path in self.about.paths if path[: len(own)] == own]
+        paths += [path for path in dict.fromkeys(asked) if path not in paths]
+        recorder = TrackRecorder(self.reader, info.key, paths, book)
+        tracks = {track.path: TrackRows(track, self._palette) for track in recorder.tracks}
+        stands = [StandRows(stand) for stand in book.stands]
+        self._lines[info.key] = _Line(info, book, [recorder], tracks, stands)
+        return self._lines[info.key]
+
+    def _line_update(self, line: _Line, infos: Iterable[TimelineInfo]) -> dict[str, Any]:
+        for recorder in line.recorders:
+            recorder.advance(line.info.entries)
+        told: dict[str, Any] = {}
+        facts = self._facts(line.info, [info.key for info in infos])
+        if facts != line.told:
+            line.told = facts
+            told["facts"] = facts
+        self._read_events(line)
+        events = fresh_rows(line.sent, "events", line.events)
+        if events is not None:
+            told["events"] = events
+        poses = {n: rows.update() for n, rows in enumerate(line.stands)}
+        if any(rows is not None for rows in poses.values()):
+            told["poses"] = {str(n): rows for n, rows in poses.items() if rows is not None}
+        tracks = {path_text(path): rows.update() for path, rows in line.tracks.items()}
+        if any(tracks.values()):
+            told["tracks"] = {path: rows for path, rows in tracks.items() if rows}
+        return told
+
+    def _facts(self, info: TimelineInfo, keys: list[TimelineKey]) -> dict[str, Any]:
+        base = info.base
+        return {
+            "path": path_text(info.key.path),
+            "branch": info.key.branch,
+            "base": None if base is None else {"timeline": keys.index(base.timeline)},
+            "start": info.start,
+            "head": info.head,
+            "description": info.description,
+            "selected": info.key in self.reader.selected(),
+        }
+
+    def _read_events(self, line: _Line) -> None:
+        labels = self.about.labels
+        for entry in self.reader.entries(line.info.key, line.entries, line.info.entries):
+            for event in entry.events if isinstance(entry, Frame) else ():
+                place = event.detail.get("position")
+                told: dict[str, Any] = {
+                    "t": entry.tick,
+                    "kind": event.kind.value,
+                    "actor": event.actor,
+                    "text": event_text(event, labels),
+                    "spoken": event.kind in _SPEECH,
+                }
+                if place is not None:
+                    told["at"] = list(place)
+                line.events.append(told)
+        line.entries = line.info.entries
+
+    def _records(self) -> Iterable[tuple[str, list[Any]]]:
+        yield "programs", [_program(each) for each in self.reader.programs()]
+        yield "prompts", [_prompt(each) for each in self.reader.prompts()]
+
+
+def _program(record: ProgramRecord) -> dict[str, Any]:
+    return {
+        "path": path_text(record.path),
+        "branch": record.branch,
+        "agent": record.agent,
+        "t": record.tick,
+        "ticks": record.ticks,
+        "ok": record.ok,
+        "error": record.error,
+        "code": record.code,
+        "log": list(record.log),
+        "lines": list(record.lines),
+    }
+
+
+def _prompt(record: PromptRecord) -> dict[str, Any]:
+    return {
+        "path": path_text(record.path),
+        "at": path_text(record.timeline.path),
+        "branch": record.timeline.branch,
+        "t": record.tick,
+        "model": record.model,
+        "attempt": record.attempt,
+        "messages": [list(message) for message in record.messages],
+        "answer": record.answer,
+        "error": record.error,
+        "task": record.detail.get("task", ""),
+    }

@@ -1,0 +1,57 @@
+"""A page that needs no server: one file with all there is to see."""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from beliefnest.errors import InputError
+from beliefnest.nest.face.reader import Reader
+from beliefnest.viewer.page.html import page_html
+from beliefnest.viewer.page.reasons import ahead
+from beliefnest.viewer.page.run import About, RunData
+
+__all__ = ["still_page", "write_still_page"]
+
+
+def still_page(
+    runs: Iterable[tuple[Reader, About]], depth: int = 2, first: Mapping[str, Any] | None = None
+) -> str:
+    """The text of a page that shows some runs as they are now, for instance all conditions.
+
+    Args:
+        runs: Each with what people call it.
+        depth: How deep all beliefs go; those that `About.paths` names are there beside.
+        first: What is shown before anything is chosen: `at`, a path; `tick`.
+
+    Raises:
+        InputError: The depth is not from 0 to 4, or the page was not built with the package.
+    """
+    if not 0 <= depth <= 4:
+        raise InputError(f"depth is {depth}; give 0 to 4, and deeper beliefs one by one as paths")
+    told: list[dict[str, Any]] = []
+    title = ""
+    for reader, about in runs:
+        title = title or about.title
+        data = RunData(reader, about, depth)
+        told.append({**data.update(), "ahead": ahead(data)})
+    return page_html(title, {"runs": told, "first": dict(first or {})}, served=False)
+
+
+def write_still_page(
+    file: Path,
+    runs: Iterable[tuple[Reader, About]],
+    depth: int = 2,
+    first: Mapping[str, Any] | None = None,
+) -> None:
+    """Write `still_page` to a file.
+
+    Raises:
+        InputError: As there, or the file cannot be written.
+    """
+    text = still_page(runs, depth, first)
+    try:
+        file.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise InputError(
+            f"the page {file} cannot be written ({error.strerror or error}); check the path"
+        ) from None

@@ -1,0 +1,302 @@
+"""Nodes of one timeline over its ticks, as changes: what the page plays back.
+
+A track says what one node holds from which tick on. Nothing in it is worked out anew: values,
+and whether they are current, are those of the belief room; what is false is what
+`falsehoods` says. Where an agent is believed to be is told by the tick at which it stood there
+in the timeline's own world, which makes tracks of long runs short.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.entries import Basis
+from beliefnest.belief.node_view import NodeView
+from beliefnest.nest.face.reader import Reader
+from beliefnest.timeline.journal import TimelineKey
+from beliefnest.viewer.page.poses import Pose, PoseBook
+from beliefnest.viewer.page.wrong import WrongThings
+
+__all__ = ["CURRENT", "PLACED", "STALE", "UNKNOWN", "Track", "TrackRecorder"]
+
+Path = tuple[str, ...]
+
+UNKNOWN, CURRENT, STALE, PLACED = 0, 1, 2, 3
+"""Agents: of unknown pose, as in the timeline's world now, as there at a past tick, elsewhere."""
+
+Row = list[Any]
+
+
+@dataclass
+class Track:
+    """What one node holds over the ticks of one timeline, in rows that begin with a tick.
+
+    Attributes:
+        path: The node.
+        grid: Block states at first, flat, -1 unknown.
+        blocks: [tick, cell, state, cell, state, ...].
+        agents: By agent number: [tick, UNKNOWN | CURRENT], [tick, STALE, observed at] or
+            [tick, PLACED, observed at, pose, source, current, item in the main hand].
+        holds: By agent number: [tick, item in the main hand or None]; of the timeline's own
+            node alone, since what is believed to be held goes with where it is believed to be.
+        owns: By agent number: [tick, items, complete].
+        contents: By cell: [tick, items or None, complete, current, observed at, source, event].
+        items: [tick, number, None | [name, count, x, y, z]]: dropped items.
+        wrong: [tick, things that are false from then on].
+        heard: Numbers of the events that were perceived.
+    """
+
+    path: Path
+    grid: npt.NDArray[np.int16]
+    agents: list[list[Row]]
+    holds: list[list[Row]]
+    owns: list[list[Row]]
+    blocks: list[Row] = field(default_factory=list)
+    contents: dict[int, list[Row]] = field(default_factory=dict)
+    items: list[Row] = field(default_factory=list)
+    wrong: list[Row] = field(default_factory=list)
+    heard: list[int] = field(default_factory=list)
+
+
+@dataclass
+class _Last:
+    """What was recorded of all nodes last, to find what changed."""
+
+    blocks: npt.NDArray[np.int16]
+    code: npt.NDArray[np.int8]
+    seen_at: npt.NDArray[np.int32]
+    looks: list[Any]
+    owned: dict[int, Any]
+    contents: list[dict[int, Any]]
+    items: list[dict[int, Any]]
+    wrong: list[tuple[Any, ...]]
+
+
+class TrackRecorder:
+    """Records tracks of some nodes of a timeline, as far as it goes, and on when it goes on.
+
+    Args:
+        reader: Where to read.
+        key: The timeline.
+        paths: Nodes of it; its own comes first.
+        book: Where agents stood in the world of the timeline; filled here if `fills`.
+        fills: Whether this recorder is the one that fills the book.
+    """
+
+    def __init__(
+        self,
+        reader: Reader,
+        key: TimelineKey,
+        paths: Sequence[Path],
+        book: PoseBook,
+        *,
+        fills: bool = True,
+    ) -> None:
+        self.key = key
+        self._reader, self._book, self._fills = reader, book, fills
+        self._forest = reader.walk(key, paths)
+        index = self._forest.table.index
+        self._numbers = [index[path] for path in paths]
+        agents = len(reader.agents)
+        grids = self._forest.table.nodes().blocks[self._numbers]
+        self.tracks = [
+            Track(path, grid, *(_empty(agents), _empty(agents), _empty(agents)))
+            for path, grid in zip(paths, grids, strict=True)
+        ]
+        count = len(paths)
+        self._last = _Last(
+            blocks=np.stack([track.grid for track in self.tracks]),
+            code=np.full((count, agents), -1, dtype=np.int8),
+            seen_at=np.full((count, agents), -1, dtype=np.int32),
+            looks=[_NOTHING] * agents,
+            owned={},
+            contents=[{} for _ in range(count)],
+            items=[{} for _ in range(count)],
+            wrong=[() for _ in range(count)],
+        )
+        self._wrong = WrongThings(self._forest, self._numbers)
+        self._events = 0
+        self._note()
+
+    @property
+    def tick(self) -> int:
+        """Tick up to which it has recorded."""
+        return self._forest.tick
+
+    @property
+    def position(self) -> int:
+        """Entries of the timeline that it has recorded."""
+        return self._forest.position
+
+    def advance(self, entries: int) -> None:
+        """Record up to a number of entries of the timeline."""
+        while self._forest.position < entries:
+            self._reader.advance(self.key, self._forest, self._forest.position + 1)
+            self._note()
+
+    def _note(self) -> None:
+        """Record what changed with the last entry."""
+        forest, tick = self._forest, self._forest.tick
+        self._note_own_poses(tick)
+        self._note_blocks(tick)
+        self._note_agents(tick)
+        changed = self._owners()
+        for at, number in enumerate(self._numbers):
+            track = self.tracks[at]
+            self._note_contents(at, track, number, tick)
+            self._note_items(at, track, number, tick)
+            if number == 0:
+                self._note_looks(track, tick)
+            if number in changed:
+                self._note_owned(track, number, tick)
+        for at, things in enumerate(self._wrong.found(changed)):
+            if things != self._last.wrong[at]:
+                self._last.wrong[at] = things
+                _put(self.tracks[at].wrong, [tick, things])
+        count = forest.count_of_events
+        if count > self._events:
+            for at, number in enumerate(self._numbers):
+                heard = np.flatnonzero(forest.hearing.of(number, count)[self._events :])
+                self.tracks[at].heard += (heard + self._events).tolist()
+            self._events = count
+
+    def _note_own_poses(self, tick: int) -> None:
+        if not self._fills:
+            return
+        poses, own = self._forest.poses, self._forest.table.nodes().pose[0]
+        for agent, pose_id in enumerate(own.tolist()):
+            pose = None
+            if pose_id >= 0:
+                pose = (*poses.position(pose_id), *poses.angles(pose_id))
+            self._book.add(agent, tick, pose)
+
+    def _note_blocks(self, tick: int) -> None:
+        blocks = self._forest.table.nodes().blocks[self._numbers]
+        changed = np.argwhere(blocks != self._last.blocks)
+        rows: dict[int, Row] = {}
+        for at, cell in changed.tolist():
+            rows.setdefault(at, [tick]).extend((cell, int(blocks[at, cell])))
+        for at, row in rows.items():
+            self.tracks[at].blocks.append(row)
+        self._last.blocks = blocks
+
+    def _note_agents(self, tick: int) -> None:
+        nodes, last = self._forest.table.nodes(), self._last
+        pose_id, seen_at = nodes.pose[self._numbers], nodes.seen_at[self._numbers]
+        current = nodes.current[self._numbers].copy()
+        # In the world of the timeline everything is current.
+        current[np.array(self._numbers) == 0] = True
+        code = np.where(pose_id < 0, UNKNOWN, np.where(current, CURRENT, STALE)).astype(np.int8)
+        as_there = self._stands_there(pose_id) | (code != CURRENT)
+        code[~as_there] = STALE
+        stale = np.where(code == STALE, seen_at, -1).astype(np.int32)
+        for at, agent in np.argwhere((code != last.code) | (stale != last.seen_at)).tolist():
+            row = [tick, int(code[at, agent])]
+            if code[at, agent] == STALE:
+                row = self._stale(at, agent, tick, current=bool(current[at, agent]))
+            rows = self.tracks[at].agents[agent]
+            if not rows or rows[-1][1:] != row[1:]:
+                _put(rows, row)
+        last.code, last.seen_at = code, stale
+
+    def _stands_there(self, pose_id: npt.NDArray[np.int32]) -> npt.NDArray[np.bool_]:
+        """Whether poses are those of the timeline's own node."""
+        own = self._forest.table.nodes().pose[0]
+        there: npt.NDArray[np.bool_] = (pose_id >= 0) & (own >= 0)
+        for table in self._forest.poses.arrays():
+            if len(table):
+                there &= (table[pose_id] == table[own]).all(axis=2)
+        return there
+
+    def _stale(self, at: int, agent: int, tick: int, *, current: bool) -> Row:
+        """The row of an agent that is not where it stands in the timeline's world now."""
+        plots, poses = self._forest.table, self._forest.poses
+        number = self._numbers[at]
+        pose_id, seen = plots.pose(number, agent), plots.seen_at(number, agent)
+        pose: Pose = (*poses.position(pose_id), *poses.angles(pose_id))
+        if not current and self._book.at(agent, seen) == pose and poses.condition(pose_id):
+            return [tick, STALE, seen]
+        name = self._reader.agents[agent]
+        believed = NodeView(self._forest, self.tracks[at].path).agents[name]
+        source = "" if believed.basis is None else believed.basis.source.value
+        held = (believed.equipment or {}).get("main_hand")
+        return [tick, PLACED, seen, list(pose), source, current, held]
+
+    def _note_contents(self, at: int, track: Track, number: int, tick: int) -> None:
+        forest, held = self._forest, self._forest.holdings[number].containers
+        last, look = self._last.contents[at], forest.last_look(number)
+        for cell in last.keys() - held.keys():
+            del last[cell]
+            _put(track.contents[cell], [tick, None, False, False, -1, "", ""])
+        for cell, raw in held.items():
+            current = number == 0 or raw.entry == look
+            told = (raw.items, raw.complete, current, None if current else raw.basis)
+            if last.get(cell) == told:
+                continue
+            last[cell] = told
+            basis: Basis = forest.content(number, cell).basis
+            event = "" if basis.event is None else basis.event.value
+            row = [tick, dict(raw.items), raw.complete, current]
+            row += [basis.observed_at, basis.source.value, event]
+            _put(track.contents.setdefault(cell, []), row)
+
+    def _note_items(self, at: int, track: Track, number: int, tick: int) -> None:
+        lying = self._forest.holdings[number].items
+        last = self._last.items[at]
+        if not lying and not last:
+            return
+        for gone in last.keys() - lying.keys():
+            track.items.append([tick, gone, None])
+        for identity, each in lying.items():
+            if last.get(identity) != each.item:
+                item = each.item
+                place = [round(value, 3) for value in item.position]
+                track.items.append([tick, identity, [item.name, item.count, *place]])
+        self._last.items[at] = {identity: each.item for identity, each in lying.items()}
+
+    def _note_looks(self, track: Track, tick: int) -> None:
+        for agent, looks in enumerate(self._last.looks):
+            held = None if looks is None else (looks.equipment or {}).get("main_hand")
+            rows = track.holds[agent]
+            if not rows or rows[-1][1] != held:
+                _put(rows, [tick, held])
+
+    def _owners(self) -> set[int]:
+        """Numbers of the nodes in which possessions of agents may have changed."""
+        forest, last = self._forest, self._last
+        looks = [forest.table.condition_of(0, agent) for agent in range(len(last.looks))]
+        # An agent's own possessions are what the simulator around holds of them.
+        everywhere = looks != last.looks
+        last.looks = list(looks)
+        changed = set()
+        for number in range(forest.table.count):
+            owned = dict(forest.holdings[number].inventories)
+            around = forest.table.parent(number)
+            if everywhere or around in changed or owned != last.owned.get(number):
+                changed.add(number)
+            last.owned[number] = owned
+        return changed
+
+    def _note_owned(self, track: Track, number: int, tick: int) -> None:
+        for agent, rows in enumerate(track.owns):
+            items, complete = self._forest.inventory(number, agent)
+            if not rows or rows[-1][1:] != [dict(items), complete]:
+                _put(rows, [tick, dict(items), complete])
+
+
+_NOTHING = object()
+
+
+def _empty(agents: int) -> list[list[Row]]:
+    return [[] for _ in range(agents)]
+
+
+def _put(rows: list[Row], row: Row) -> None:
+    """Add a row; of several of one tick the last one counts."""
+    if rows and rows[-1][0] == row[0]:
+        rows[-1] = row
+    else:
+        rows.append(row)

@@ -1,0 +1,54 @@
+/** What is looked at: kept in the address, so that every view has a link. */
+
+const NUMBERS = new Set(['run', 'on', 'tick'])
+
+export const DEFAULTS = { run: 0, on: 0, at: '/', beside: '/', tick: null, thing: null, sees: null, view: null, cut: null, note: null }
+
+/** @returns {object} the choice that an address's hash tells */
+export function readHash (hash, first = {}) {
+  const told = Object.fromEntries(new URLSearchParams(hash.replace(/^#/, '')))
+  const choice = { ...DEFAULTS, ...first }
+  for (const name of Object.keys(DEFAULTS)) {
+    if (told[name] === undefined) continue
+    if (!NUMBERS.has(name)) choice[name] = told[name]
+    else if (/^\d+$/.test(told[name])) choice[name] = Number(told[name])
+  }
+  return choice
+}
+
+export function hashOf (choice) {
+  const told = Object.entries(choice).filter(([name, value]) => value !== null && value !== DEFAULTS[name])
+  return '#' + told.map(([name, value]) => `${name}=${encodeURIComponent(value).replaceAll('%2F', '/')}`).join('&')
+}
+
+/** The choice, its listeners, and the address. */
+export class Chooser {
+  /** @param {object} first - what is shown where the address tells nothing */
+  constructor (first) {
+    this.choice = readHash(location.hash, first)
+    this.listeners = []
+    addEventListener('hashchange', () => {
+      if (location.hash !== hashOf(this.choice)) this.set(readHash(location.hash, first))
+    })
+  }
+
+  set (changes) {
+    this.choice = { ...this.choice, ...changes }
+    this.keepAddress()
+    for (const listener of this.listeners) listener(this.choice, changes)
+  }
+
+  /** Writes the address, not more than ten times a second: browsers refuse more. */
+  keepAddress () {
+    if (this.waiting) return
+    this.waiting = setTimeout(() => {
+      this.waiting = null
+      try {
+        history.replaceState(null, '', hashOf(this.choice))
+      } catch {
+        // In a frame without an address of its own there is nothing to be kept.
+        this.keepAddress = () => {}
+      }
+    }, 100)
+  }
+}

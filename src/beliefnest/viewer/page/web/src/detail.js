@@ -1,0 +1,160 @@
+/** Words beside the pictures: what a simulator holds, and why it holds what was clicked. */
+
+import { ago, badge, button, element, itemsText, pointText, refill } from './elements.js'
+import { lookWords } from './ray.js'
+import { contentsText, markWords } from './things.js'
+
+export class Detail {
+  constructor (choose, source) {
+    this.choose = choose
+    this.source = source
+    this.title = element('h2')
+    this.about = element('p', { class: 'about' })
+    this.holds = element('div', { class: 'holds' })
+    this.chosen = element('section', { class: 'chosen-thing', 'aria-live': 'polite' })
+    this.element = element('aside', { class: 'detail', 'aria-label': 'what it holds' }, this.title, this.about, this.holds, this.chosen)
+    this.shown = null
+    this.asked = null
+  }
+
+  draw (scene) {
+    const { run, track, tick, choice, things } = scene
+    this.title.textContent = believesText(track)
+    const own = track.path === track.timeline.facts.path
+    const mode = own ? `control mode, branch “${track.timeline.facts.branch}”` : `follow mode, on ${track.timeline.name}`
+    this.about.textContent = `${track.path} · ${mode} · tick ${tick}`
+    const held = document.activeElement?.dataset?.row
+    refill(this.holds,
+      table('Containers', things.containers.map(each => this.row(run, each, contentsText(each.contents), choice))),
+      table('Agents', things.agents.map(each => this.row(run, each, placeText(each.pose), choice))),
+      this.others(run, things))
+    if (held !== undefined) this.holds.querySelector(`[data-row="${CSS.escape(held)}"]`)?.focus()
+    this.drawChosen(scene)
+  }
+
+  row (run, each, value, choice) {
+    const name = each.look?.name ?? each.name
+    const marks = each.marks.map(mark => element('span', { class: `mark ${mark}`, 'data-mark': mark }, `${run.head.marks[mark].sign} ${markWords(run, mark, each.age)}`))
+    return element('button', {
+      type: 'button',
+      class: `thing${choice.thing === each.thing ? ' chosen' : ''}`,
+      'data-row': each.thing,
+      onclick: () => this.choose({ thing: each.thing, note: null })
+    }, each.look ? badge(each.look, { small: true, ghost: !each.pose?.current }) : element('span', { class: 'crate', 'aria-hidden': 'true' }),
+    element('span', { class: 'name' }, name), element('span', { class: 'value' }, value), element('span', { class: 'marks' }, ...marks))
+  }
+
+  others (run, things) {
+    const told = []
+    if (things.wrongBlocks.length) told.push(`${things.wrongBlocks.length} blocks are false`)
+    for (const each of things.agents) if (each.wrongItems) told.push(`what ${each.look.name} has is false`)
+    return told.length ? element('p', { class: 'mark false' }, `${run.head.marks.false.sign} ${told.join('; ')}.`) : null
+  }
+
+  drawChosen (scene) {
+    const { run, track, tick, choice, noted } = scene
+    const version = [run.number, track.timeline.number, track.path, tick, choice.thing, choice.note, choice.beside, choice.sees, JSON.stringify(scene.look)].join('|')
+    if (version === this.shown) return
+    this.shown = version
+    if (noted) refill(this.chosen, ...noteParts(noted))
+    else if (choice.thing) this.drawThing(scene)
+    else refill(this.chosen, element('p', { class: 'hint' }, 'Click an agent, a container, a block or an event: why it is held is told here.'))
+  }
+
+  drawThing (scene) {
+    const { run, track, tick, choice, beside } = scene
+    const thing = choice.thing
+    const why = element('div', { class: 'why' }, element('p', { class: 'hint' }, 'Looking up why …'))
+    refill(this.chosen,
+      element('h3', {}, run.thingName(thing)),
+      element('dl', {},
+        ...pair(track.path, valueText(run, track, tick, thing)),
+        ...(beside && beside !== track ? pair(beside.path, valueText(run, beside, Math.min(tick, beside.timeline.facts.head), thing)) : [])),
+      scene.viewer === null || thing === `a${scene.viewer}` ? null : element('p', { class: 'look' }, lookWords(run, scene.viewer, thing, scene.look)),
+      element('h4', {}, 'Why'), why,
+      button('Copy a link to this', 'copy a link to this view', event => copyLink(event.currentTarget), { class: 'link' }))
+    clearTimeout(this.waiting)
+    // While time runs there is no need to ask at every tick.
+    this.waiting = setTimeout(() => this.explain(scene, thing, why), this.source.live ? 120 : 0)
+  }
+
+  async explain ({ run, track, tick }, thing, why) {
+    const asked = this.asked = {}
+    let told
+    try {
+      told = await this.source.explain(run, track, tick, thing.replace('i', 'a'))
+    } catch (error) {
+      told = { error: `The server does not answer (${error.message}).` }
+    }
+    if (asked !== this.asked) return
+    if (told === null) refill(why, ...groundParts(run, track, tick, thing))
+    else if (told.error) refill(why, element('p', {}, told.error))
+    else {
+      const lines = told.lines.map(line => element('p', {}, line))
+      if (told.t !== tick) lines.push(element('p', { class: 'hint' }, `This was worked out for tick ${told.t}.`))
+      refill(why, ...lines)
+    }
+  }
+}
+
+/** @returns {string} whose belief a simulator is */
+export function believesText (track) {
+  if (track.path === '/') return 'Reality'
+  if (track.path === track.timeline.facts.path) return `${track.path}, acted out`
+  return `What ${track.agents.join(' thinks ')} believes`
+}
+
+function placeText (pose) {
+  return pose === null ? 'place not known' : pointText(pose)
+}
+
+function table (name, rows) {
+  return rows.length ? element('section', {}, element('h3', {}, name), ...rows) : null
+}
+
+function pair (path, value) {
+  return [element('dt', {}, path), element('dd', {}, value)]
+}
+
+function valueText (run, track, tick, thing) {
+  const number = Number(thing.slice(1))
+  if (thing[0] === 'c') return contentsText(track.contents(number, tick))
+  if (thing[0] === 'b') {
+    const state = track.grid(tick)[number]
+    return state < 0 ? 'not known' : run.states[state].text
+  }
+  const [items, complete] = track.owned(number, tick)
+  const has = itemsText(items) || (complete ? 'nothing' : 'nothing known')
+  if (thing[0] === 'i') return has
+  const pose = track.agent(number, tick)
+  const age = pose && !pose.current ? `, seen ${ago(tick - pose.seenAt)}` : ''
+  return `${placeText(pose)}${age}; has ${has}${complete ? '' : ', perhaps more'}`
+}
+
+/** What the data itself says of a thing, where the whole chain was not written into the page. */
+function groundParts (run, track, tick, thing) {
+  const number = Number(thing.slice(1))
+  const held = thing[0] === 'c' ? track.contents(number, tick) : thing[0] === 'a' ? track.agent(number, tick) : null
+  const parts = []
+  if (held !== null) {
+    const event = held.event ? ` (${held.event.replaceAll('_', ' ')})` : ''
+    const source = held.source === 'prior' ? 'a prior belief' : `${held.source}${event}`
+    parts.push(element('p', {}, held.current ? 'It is perceived at this tick.' : `It rests on tick ${held.seenAt}: ${source}.`))
+  }
+  parts.push(element('p', { class: 'hint' }, 'The whole chain of perceptions is told by “beliefnest serve RUN”.'))
+  return parts
+}
+
+function noteParts ({ title, facts, texts }) {
+  return [element('h3', {}, title), element('dl', {}, ...facts.flatMap(([name, value]) => pair(name, value))),
+    ...texts.flatMap(([name, text]) => [element('h4', {}, name), element('pre', { tabindex: '0' }, text)])]
+}
+
+async function copyLink (pressed) {
+  try {
+    await navigator.clipboard.writeText(location.href)
+    pressed.textContent = 'Copied'
+  } catch {
+    pressed.textContent = location.href
+  }
+}

@@ -1,0 +1,36 @@
+/** Programs, prompts and answers of models, as marks on the time line and as texts. */
+
+/** @returns {object[]} what to list beside events: t, key, text, actor */
+export function notesOf (run, timeline) {
+  const { path, branch } = timeline.facts
+  const programs = run.programs.map((each, number) => ({ each, number }))
+    .filter(({ each }) => each.path === path && each.branch === branch)
+    .map(({ each, number }) => ({ t: each.t, note: `program-${number}`, actor: each.agent, text: `begins a program of ${each.ticks} ticks${each.ok ? '' : ', which fails'}` }))
+  const prompts = run.prompts.map((each, number) => ({ each, number }))
+    .filter(({ each }) => each.at === path && each.branch === branch)
+    .map(({ each, number }) => ({ t: each.t, note: `prompt-${number}`, actor: null, text: `${each.model} is asked from ${each.path}: ${each.task}` }))
+  return [...programs, ...prompts]
+}
+
+/** @returns {object|null} title, facts and texts of a note */
+export function noteNamed (run, name) {
+  const [kind, number] = (name ?? '').split('-')
+  if (kind === 'program' && run.programs[number]) return programNote(run.programs[number])
+  if (kind === 'prompt' && run.prompts[number]) return promptNote(run.prompts[number])
+  return null
+}
+
+function programNote (program) {
+  const facts = [['ran in', `${program.path}, branch “${program.branch}”`], ['ticks', `${program.t} to ${program.t + program.ticks}`],
+    ['ended', program.ok ? 'well' : program.error]]
+  const texts = [['Program', program.code]]
+  if (program.log.length) texts.push(['It wrote', program.log.join('\n')])
+  return { title: `Program of ${program.agent}`, facts, texts }
+}
+
+function promptNote (prompt) {
+  const facts = [['asked from', prompt.path], ['at', `tick ${prompt.t}`], ['model', prompt.model], ['attempt', prompt.attempt], ['task', prompt.task]]
+  const texts = prompt.messages.map(([role, text]) => [`Prompt (${role})`, text])
+  texts.push(['Answer', prompt.answer ?? `none: ${prompt.error}`])
+  return { title: `What ${prompt.model} was asked`, facts, texts }
+}

@@ -1,0 +1,212 @@
+/** A simulator from above: blocks on a canvas, and over it what can be pointed at. */
+
+import { ago, element, refill, svg } from './elements.js'
+import { contentsText, markSign } from './things.js'
+
+const LIGHT = { wall: '#7d7a78', nowhere: '#d9d5cc', unknown: '#eeeae2', hatch: '#b9b4aa', unseen: 'rgba(43,42,51,.30)', blend: '#fcfbf8' }
+const DARK = { wall: '#9a979c', nowhere: '#17161b', unknown: '#2b2930', hatch: '#56525e', unseen: 'rgba(0,0,0,.55)', blend: '#24232a' }
+const LEAST = 6
+
+/** Draws plans into an element that it fills. */
+export class Plan {
+  constructor (choose) {
+    this.choose = choose
+    this.canvas = element('canvas', { 'aria-hidden': 'true' })
+    this.over = svg('svg', { class: 'over', role: 'group', 'aria-label': 'plan' })
+    this.element = element('div', { class: 'plan' }, this.canvas, this.over)
+    this.drawn = null
+  }
+
+  /**
+   * @param {object} scene - run, track, tick, things, storey, seen (Uint8Array or null), ray, chosen, dark
+   */
+  draw (scene) {
+    const { run } = scene
+    const [width, , depth] = run.shape
+    const room = this.element.getBoundingClientRect()
+    this.size = Math.max(LEAST, Math.min(room.width / width, room.height / depth))
+    this.low = run.head.box.low
+    this.drawBlocks(scene, width, depth)
+    const [w, d] = [width * this.size, depth * this.size]
+    this.over.setAttribute('viewBox', `0 0 ${w} ${d}`)
+    for (const part of [this.canvas, this.over]) {
+      part.style.width = `${w}px`
+      part.style.height = `${d}px`
+    }
+    refill(this.over,
+      ...this.wrongBlocks(scene), ...this.ray(scene), ...this.containers(scene), ...this.items(scene), ...this.agents(scene))
+  }
+
+  drawBlocks (scene, width, depth) {
+    const { run, track, tick, storey, seen, dark } = scene
+    const version = `${track.gridVersion(tick)} ${storey} ${this.size} ${dark} ${scene.seenVersion}`
+    if (version === this.drawn) return
+    this.drawn = version
+    const scale = Math.min(2, devicePixelRatio || 1) * this.size
+    this.canvas.width = Math.round(width * scale)
+    this.canvas.height = Math.round(depth * scale)
+    const paint = this.canvas.getContext('2d')
+    const tones = dark ? DARK : LIGHT
+    const grid = track.grid(tick)
+    const layer = storey - run.head.box.low[1]
+    const height = run.shape[1]
+    for (let i = 0; i < width; i++) {
+      for (let k = 0; k < depth; k++) {
+        const cell = (i * height + layer) * depth + k
+        const below = layer > 0 ? grid[cell - depth] : undefined
+        paintCell(paint, run, [i, k, scale], grid[cell], below, tones)
+        if (seen !== null && !seen[cell]) fill(paint, [i, k, scale], tones.unseen)
+      }
+    }
+  }
+
+  /** @returns {number[]} where a point of the world lies on the plan */
+  at (x, z) {
+    return [(x - this.low[0]) * this.size, (z - this.low[2]) * this.size]
+  }
+
+  target (thing, words, chosen, ...parts) {
+    const pick = event => { event.stopPropagation(); this.choose({ thing, note: null }) }
+    return svg('g', {
+      class: `target${chosen === thing ? ' chosen' : ''}`,
+      tabindex: '0',
+      role: 'button',
+      'aria-label': words,
+      'data-thing': thing,
+      onclick: pick,
+      onkeydown: event => { if (event.key === 'Enter' || event.key === ' ') { event.preventDefault(); pick(event) } }
+    }, svg('title', {}, words), ...parts)
+  }
+
+  containers ({ run, things, chosen, storey }) {
+    return things.containers.filter(each => each.place[1] === storey && (each.contents || each.marks.length)).map(each => {
+      const [x, y] = this.at(each.place[0], each.place[2])
+      const s = this.size
+      const text = each.contents === null ? '?' : contentsText(each.contents)
+      const marks = each.marks.map(mark => markSign(run, mark, each.age)).join(' ')
+      const words = `${each.name}: ${contentsText(each.contents)}${each.marks.length ? ` (${each.marks.join(', ')})` : ''}`
+      const wrong = each.marks.includes('false')
+      return this.target(each.thing, words, chosen,
+        svg('rect', { class: `box${each.contents === null ? ' unsure' : ''}`, x: x + 0.08 * s, y: y + 0.12 * s, width: 0.84 * s, height: 0.76 * s, rx: 0.12 * s }),
+        svg('line', { class: 'lid', x1: x + 0.08 * s, x2: x + 0.92 * s, y1: y + 0.42 * s, y2: y + 0.42 * s }),
+        wrong ? svg('rect', { class: 'wrong', x, y, width: s, height: s, rx: 0.16 * s }) : null,
+        label(x + s / 2, y - 5, [text, marks].filter(Boolean).join(' '), wrong))
+    })
+  }
+
+  agents ({ run, things, chosen, storey }) {
+    return things.agents.filter(each => each.pose !== null).map(each => {
+      const { pose, look } = each
+      const [x, y] = this.at(pose.x, pose.z)
+      const r = Math.max(7, 0.42 * this.size)
+      const [dx, dy] = [-Math.sin(pose.yaw), -Math.cos(pose.yaw)]
+      const far = Math.abs(pose.y - storey) > 1.5
+      const wrong = each.marks.includes('false')
+      const sign = each.marks.map(mark => markSign(run, mark, each.age)).join(' ')
+      const when = pose.current ? '' : `, seen ${ago(each.age)}`
+      const side = [-dy * 0.55 * r, dx * 0.55 * r]
+      const nose = [[x + dx * 1.55 * r, y + dy * 1.55 * r], [x + dx * 0.7 * r + side[0], y + dy * 0.7 * r + side[1]],
+        [x + dx * 0.7 * r - side[0], y + dy * 0.7 * r - side[1]]]
+      return this.target(each.thing, `${look.name}${when}${wrong ? ', false' : ''}`, chosen,
+        svg('polygon', { points: nose.map(point => point.join()).join(' '), style: { fill: look.colour } }),
+        ...Array.from({ length: look.rings }, (_, n) => svg('circle', { class: 'ring', cx: x, cy: y, r: r + 2 + 3 * n, style: { stroke: look.colour } })),
+        svg('circle', { class: `disc${pose.current ? '' : ' stale'}${far ? ' far' : ''}`, cx: x, cy: y, r, style: { fill: look.colour } }),
+        wrong ? svg('circle', { class: 'wrong', cx: x, cy: y, r: r + 4 }) : null,
+        svg('text', { class: 'letters', x, y, style: { fill: look.ink, 'font-size': `${Math.max(9, 0.9 * r)}px` } }, look.badge),
+        label(x, y + r + 14, [look.name, sign].filter(Boolean).join(' '), wrong))
+    })
+  }
+
+  items ({ things }) {
+    return things.items.map(([name, count, x, , z]) => {
+      const [left, top] = this.at(x, z)
+      const r = 0.14 * this.size
+      return svg('g', { class: 'lying' }, svg('title', {}, `${count} ${name} on the ground`),
+        svg('rect', { x: left - r, y: top - r, width: 2 * r, height: 2 * r, transform: `rotate(45 ${left} ${top})` }))
+    })
+  }
+
+  wrongBlocks ({ run, things, storey, chosen }) {
+    return things.wrongBlocks.filter(cell => run.place(cell)[1] === storey).slice(0, 200).map(cell => {
+      const [x, , z] = run.place(cell)
+      const [left, top] = this.at(x, z)
+      return this.target(`b${cell}`, `block at ${run.place(cell).join(', ')}: false`, chosen,
+        svg('rect', { class: 'wrong', x: left + 1, y: top + 1, width: this.size - 2, height: this.size - 2 }))
+    })
+  }
+
+  ray ({ ray }) {
+    if (ray === null) return []
+    const [x1, y1] = this.at(ray.from.x, ray.from.z)
+    const [x2, y2] = this.at(ray.stop.x, ray.stop.z)
+    const [x3, y3] = this.at(ray.to.x, ray.to.z)
+    const parts = [svg('line', { class: `ray ${ray.seen ? 'free' : 'stopped'}`, x1, y1, x2, y2 })]
+    if (!ray.seen) parts.push(svg('line', { class: 'ray beyond', x1: x2, y1: y2, x2: x3, y2: y3 }))
+    if (ray.blocker) {
+      const [left, top] = this.at(ray.blocker[0], ray.blocker[2])
+      parts.push(svg('rect', { class: 'blocker', x: left, y: top, width: this.size, height: this.size }))
+    }
+    return parts
+  }
+}
+
+function label (x, y, text, wrong) {
+  return svg('text', { class: `label${wrong ? ' false' : ''}`, x, y }, text)
+}
+
+function fill (paint, [i, k, scale], colour) {
+  const [left, top] = [Math.round(i * scale), Math.round(k * scale)]
+  paint.fillStyle = colour
+  paint.fillRect(left, top, Math.round((i + 1) * scale) - left, Math.round((k + 1) * scale) - top)
+}
+
+function paintCell (paint, run, at, state, below, tones) {
+  const here = state >= 0 ? run.states[state] : null
+  if (state < 0) {
+    fill(paint, at, tones.unknown)
+    hatch(paint, at, tones.hatch)
+  } else if (here.air || here.container) {
+    const floor = below === undefined || below < 0 ? null : run.states[below]
+    fill(paint, at, floor === null || floor.air ? tones.nowhere : mixed(floor.colour, tones.blend, 0.62))
+  } else {
+    const floor = below === undefined || below < 0 || run.states[below].air ? tones.nowhere : mixed(run.states[below].colour, tones.blend, 0.62)
+    fill(paint, at, floor)
+    shape(paint, at, here, tones)
+  }
+}
+
+/** A block's boxes from above; one that stands open is drawn as its thin side. */
+function shape (paint, [i, k, scale], block, tones) {
+  for (const [x0, , z0, x1, , z1] of block.boxes) {
+    const [left, top] = [(i + x0 / 32) * scale, (k + z0 / 32) * scale]
+    const [wide, high] = [(x1 - x0) / 32 * scale, (z1 - z0) / 32 * scale]
+    paint.fillStyle = block.colour
+    paint.fillRect(left, top, wide, high)
+    paint.strokeStyle = tones.wall
+    paint.lineWidth = Math.max(1, scale / 22)
+    paint.strokeRect(left + 0.5, top + 0.5, wide - 1, high - 1)
+  }
+}
+
+function hatch (paint, [i, k, scale], colour) {
+  paint.save()
+  paint.beginPath()
+  paint.rect(i * scale, k * scale, scale, scale)
+  paint.clip()
+  paint.strokeStyle = colour
+  paint.lineWidth = 1
+  paint.beginPath()
+  const step = Math.max(5, scale / 3)
+  for (let at = -scale; at < scale; at += step) {
+    paint.moveTo(i * scale + at, (k + 1) * scale)
+    paint.lineTo(i * scale + at + scale, k * scale)
+  }
+  paint.stroke()
+  paint.restore()
+}
+
+export function mixed (one, other, share) {
+  const parts = [1, 3, 5].map(at => [parseInt(one.slice(at, at + 2), 16), parseInt(other.slice(at, at + 2), 16)])
+  return `rgb(${parts.map(([a, b]) => Math.round(a + (b - a) * share)).join(',')})`
+}
+

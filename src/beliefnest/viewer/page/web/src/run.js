@@ -1,0 +1,269 @@
+/**
+ * A run as Python exported it: timelines, and on each of them tracks of simulators, as rows that begin
+ * with a tick. Updates add rows; nothing here works out what anybody believes.
+ */
+
+export const UNKNOWN = 0
+export const CURRENT = 1
+export const STALE = 2
+
+const MILLI = 1000
+
+/** @returns {number} index of the last row at or before a tick; -1 if there is none */
+export function rowIndex (rows, tick, tickOf = row => row[0]) {
+  let low = 0
+  let high = rows.length
+  while (low < high) {
+    const middle = (low + high) >> 1
+    if (tickOf(rows[middle]) <= tick) low = middle + 1
+    else high = middle
+  }
+  return low - 1
+}
+
+function rowAt (rows, tick) {
+  return rows === undefined ? undefined : rows[rowIndex(rows, tick)]
+}
+
+function put (list, [first, rows]) {
+  list.length = first
+  for (const row of rows) list.push(row)
+}
+
+/** Where one agent stood in the world of a timeline. */
+class Stand {
+  constructor () {
+    this.ticks = []
+    this.poses = []
+  }
+
+  put (columns) {
+    this.ticks.length = this.poses.length = columns.from
+    const gone = new Set(columns.gone)
+    const sum = { t: 0, x: 0, y: 0, z: 0, yaw: 0, pitch: 0 }
+    for (let row = 0; row < columns.t.length; row++) {
+      for (const name of Object.keys(sum)) sum[name] += columns[name][row]
+      this.ticks.push(sum.t)
+      this.poses.push(gone.has(row) ? null : poseOf([sum.x, sum.y, sum.z, sum.yaw, sum.pitch]))
+    }
+  }
+
+  at (tick) {
+    return this.poses[rowIndex(this.ticks, tick, each => each)] ?? null
+  }
+}
+
+function poseOf ([x, y, z, yaw, pitch]) {
+  return { x: x / MILLI, y: y / MILLI, z: z / MILLI, yaw: yaw / MILLI, pitch: pitch / MILLI }
+}
+
+/** What one simulator holds over the ticks of one timeline. */
+class Track {
+  constructor (timeline, path) {
+    this.timeline = timeline
+    this.path = path
+    this.agents = path === '/' ? [] : path.slice(1).split('/')
+    this.lists = {}
+    this.first = null
+    this.heard = new Set()
+    this.cursor = null
+  }
+
+  put (told) {
+    for (const [name, rows] of Object.entries(told)) {
+      if (name === 'grid') this.first = unrolled(rows)
+      else put(this.lists[name] ??= [], rows)
+    }
+    if (told.heard !== undefined) this.heard = new Set(this.lists.heard)
+    if (told.grid !== undefined || told.blocks !== undefined) this.cursor = null
+  }
+
+  list (name) {
+    return this.lists[name] ?? []
+  }
+
+  /** @returns {Int16Array} numbers of block states; -1 is unknown. It changes with the next call. */
+  grid (tick) {
+    if (this.first === null) return new Int16Array(0)
+    const rows = this.list('blocks')
+    const wanted = rowIndex(rows, tick) + 1
+    if (this.cursor === null || this.cursor.done > wanted) {
+      this.cursor = { grid: Int16Array.from(this.first), done: 0 }
+    }
+    for (; this.cursor.done < wanted; this.cursor.done++) {
+      const row = rows[this.cursor.done]
+      for (let at = 1; at < row.length; at += 2) this.cursor.grid[row[at]] = row[at + 1]
+    }
+    return this.cursor.grid
+  }
+
+  /** @returns {string} the same for as long as no block changes */
+  gridVersion (tick) {
+    return `${this.timeline.number} ${this.path} ${rowIndex(this.list('blocks'), tick)} ${this.list('blocks').length}`
+  }
+
+  /** @returns {object|null} where an agent is believed to be; null if that is unknown */
+  agent (number, tick) {
+    const row = rowAt(this.list(`agents ${number}`), tick)
+    if (row === undefined || row[1] === UNKNOWN) return null
+    if (row[1] === CURRENT) {
+      const pose = this.timeline.stand(number, tick)
+      return pose && { ...pose, current: true, seenAt: tick, source: 'seen', holds: this.timeline.holds(number, tick) }
+    }
+    if (row[1] === STALE) {
+      const pose = this.timeline.stand(number, row[2])
+      return pose && { ...pose, current: false, seenAt: row[2], source: 'seen', holds: this.timeline.holds(number, row[2]) }
+    }
+    const [, , seenAt, pose, source, current, holds] = row
+    return { ...poseOf(pose), current, seenAt, source, holds }
+  }
+
+  /** @returns {Array} [items, complete] an agent is believed to have */
+  owned (number, tick) {
+    const row = rowAt(this.list(`owns ${number}`), tick)
+    return row === undefined ? [{}, false] : [row[1], row[2]]
+  }
+
+  /** @returns {number[]} cells of containers whose contents are told of at any tick */
+  cells () {
+    const names = Object.keys(this.lists).filter(name => name.startsWith('contents '))
+    return names.map(name => Number(name.slice(9))).sort((a, b) => a - b)
+  }
+
+  contents (cell, tick) {
+    const row = rowAt(this.list(`contents ${cell}`), tick)
+    if (row === undefined || row[1] === null) return null
+    const [, items, complete, current, seenAt, source, event] = row
+    return { items, complete, current, seenAt: current ? tick : seenAt, source, event }
+  }
+
+  /** @returns {string[]} what is false: see `wrong.py` */
+  wrong (tick) {
+    return rowAt(this.list('wrong'), tick)?.[1] ?? []
+  }
+
+  /** @returns {Map} dropped items by number */
+  items (tick) {
+    const lying = new Map()
+    for (const [when, number, item] of this.list('items')) {
+      if (when > tick) break
+      if (item === null) lying.delete(number)
+      else lying.set(number, item)
+    }
+    return lying
+  }
+}
+
+function unrolled (runs) {
+  let length = 0
+  for (let at = 1; at < runs.length; at += 2) length += runs[at]
+  const grid = new Int16Array(length)
+  let from = 0
+  for (let at = 0; at < runs.length; at += 2) {
+    grid.fill(runs[at], from, from + runs[at + 1])
+    from += runs[at + 1]
+  }
+  return grid
+}
+
+/** One timeline: facts about it, what happened, where agents stood in its world, tracks. */
+class Timeline {
+  constructor (run, number) {
+    this.run = run
+    this.number = number
+    this.facts = {}
+    this.events = []
+    this.stands = []
+    this.tracks = new Map()
+  }
+
+  put (told) {
+    if (told.facts !== undefined) this.facts = told.facts
+    if (told.events !== undefined) put(this.events, told.events)
+    for (const [number, columns] of Object.entries(told.poses ?? {})) (this.stands[number] ??= new Stand()).put(columns)
+    for (const [path, rows] of Object.entries(told.tracks ?? {})) {
+      if (!this.tracks.has(path)) this.tracks.set(path, new Track(this, path))
+      this.tracks.get(path).put(rows)
+    }
+  }
+
+  get name () {
+    return this.facts.path === '/' ? 'real world' : `${this.facts.path} on “${this.facts.branch}”`
+  }
+
+  get base () {
+    return this.facts.base === null ? null : this.run.timelines[this.facts.base.timeline]
+  }
+
+  /** Where an agent stood in the world of this timeline, or of its base before it began. */
+  stand (agent, tick) {
+    if (tick < this.facts.start && this.base) return this.base.stand(agent, tick)
+    return this.stands[agent]?.at(tick) ?? null
+  }
+
+  holds (agent, tick) {
+    if (tick < this.facts.start && this.base) return this.base.holds(agent, tick)
+    return rowAt(this.tracks.get(this.facts.path)?.list(`holds ${agent}`), tick)?.[1] ?? null
+  }
+
+  track (path) {
+    return this.tracks.get(path)
+  }
+}
+
+/** One run. */
+export class Run {
+  constructor () {
+    this.head = null
+    this.states = []
+    this.programs = []
+    this.prompts = []
+    this.timelines = []
+    this.ahead = { explanations: {}, looks: {}, sights: {} }
+  }
+
+  put (told) {
+    if (told.head !== undefined) this.head = told.head
+    for (const name of ['states', 'programs', 'prompts']) if (told[name] !== undefined) put(this[name], told[name])
+    for (const [number, rows] of Object.entries(told.timelines ?? {})) {
+      (this.timelines[number] ??= new Timeline(this, Number(number))).put(rows)
+    }
+    if (told.ahead !== undefined) this.ahead = told.ahead
+  }
+
+  get shape () {
+    return this.head.box.shape
+  }
+
+  /** @returns {number[]} the position of a cell */
+  place (cell) {
+    const [, height, depth] = this.shape
+    const [x, y, z] = this.head.box.low
+    return [x + Math.floor(cell / (height * depth)), y + Math.floor(cell / depth) % height, z + cell % depth]
+  }
+
+  cell ([x, y, z]) {
+    const [width, height, depth] = this.shape
+    const [i, j, k] = [x, y, z].map((value, axis) => Math.floor(value) - this.head.box.low[axis])
+    const inside = i >= 0 && j >= 0 && k >= 0 && i < width && j < height && k < depth
+    return inside ? (i * height + j) * depth + k : -1
+  }
+
+  label (place) {
+    return this.head.labels.find(([x, y, z]) => x === place[0] && y === place[1] && z === place[2])?.[3] ?? null
+  }
+
+  /** @returns {string} what people call a thing */
+  thingName (thing) {
+    const number = Number(thing.slice(1))
+    if (thing[0] === 'a') return this.head.agents[number].name
+    if (thing[0] === 'i') return `what ${this.head.agents[number].name} has`
+    const place = this.place(number)
+    return this.label(place) ?? `${thing[0] === 'c' ? 'container' : 'block'} at ${place.join(', ')}`
+  }
+
+  /** @returns {string} the name by which explanations and looks of a track are kept */
+  nameOf (track) {
+    return `${track.timeline.facts.path} ${track.path} ${track.timeline.facts.branch}`
+  }
+}

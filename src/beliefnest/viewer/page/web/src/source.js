@@ -1,0 +1,86 @@
+/** Where answers come from: from the page itself, or from the server that it comes from. */
+
+import { rowIndex } from './run.js'
+
+/** Answers that were worked out ahead and packed into the page. */
+export class PackedSource {
+  live = false
+
+  async explain (run, track, tick, thing) {
+    const rows = run.ahead.explanations[`${run.nameOf(track)} ${thing}`] ?? []
+    const earlier = rows.filter(row => row.t <= tick).sort((a, b) => b.t - a.t)
+    return earlier[0] ?? null
+  }
+
+  look (run, track, tick, viewer, thing) {
+    const rows = run.ahead.looks[`${run.nameOf(track)} a${viewer} ${thing.replace('b', 'c')}`] ?? []
+    return rows[rowIndex(rows, tick)]?.[1] ?? null
+  }
+
+  sight (run, track, tick, viewer) {
+    const rows = run.ahead.sights[`${run.nameOf(track)} a${viewer}`] ?? []
+    return rows[rowIndex(rows, tick)]?.[1] ?? null
+  }
+
+  async deepen () {
+    return 'This file carries the beliefs that were written into it. Write it again with ' +
+      '“beliefnest show RUN --html FILE --depth 3”, or look with “beliefnest serve RUN”, which works out any belief when it is asked for.'
+  }
+}
+
+/** Answers of `beliefnest serve`; looks come a moment later, and the page draws again then. */
+export class ServedSource {
+  live = true
+
+  constructor (again) {
+    this.again = again
+    this.known = new Map()
+  }
+
+  /** What a server does not know yet of a run that goes on is asked for anew when it has grown. */
+  forget () {
+    this.known.clear()
+  }
+
+  async explain (run, track, tick, thing) {
+    return await this.ask('explain', { ...placeOf(run, track), tick, thing })
+  }
+
+  look (run, track, tick, viewer, thing) {
+    return this.later('look', { ...placeOf(run, track), tick, viewer: run.head.agents[viewer].name, thing: thing.replace('c', 'b') })
+  }
+
+  sight (run, track, tick, viewer) {
+    return this.later('sight', { ...placeOf(run, track), tick, viewer: run.head.agents[viewer].name })
+  }
+
+  async deepen (run, timeline, path) {
+    const told = await this.ask('deepen', { run: run.number, on: timeline.number, path })
+    return told.error ?? null
+  }
+
+  later (what, query) {
+    const name = addressOf(what, query)
+    if (!this.known.has(name)) {
+      this.known.set(name, null)
+      this.ask(what, query).then(told => {
+        this.known.set(name, told.answer ?? null)
+        this.again()
+      }, () => this.known.delete(name))
+    }
+    return this.known.get(name)
+  }
+
+  async ask (what, query) {
+    const response = await fetch(addressOf(what, query), { credentials: 'same-origin' })
+    return await response.json()
+  }
+}
+
+function placeOf (run, track) {
+  return { run: run.number, on: track.timeline.number, path: track.path }
+}
+
+function addressOf (what, query) {
+  return `api/${what}?${new URLSearchParams(query)}`
+}

@@ -1,0 +1,251 @@
+/** A simulator in three dimensions: plain boxes for blocks, figures for agents, labels as text over it. */
+
+import {
+  BoxGeometry, CapsuleGeometry, Color, ConeGeometry, DirectionalLight, EdgesGeometry, Group, HemisphereLight, InstancedMesh,
+  Line, LineBasicMaterial, LineDashedMaterial, LineSegments, BufferGeometry, Matrix4, Mesh, MeshLambertMaterial, Quaternion,
+  Raycaster, Scene, SphereGeometry, TorusGeometry, Vector2, Vector3, WebGLRenderer
+} from 'three'
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
+import { element, refill } from './elements.js'
+import { contentsText, markSign } from './things.js'
+
+const WRONG = 0xd55e00
+const EYE = 1.62
+const MOST = 60000
+const CUBE = new BoxGeometry(1, 1, 1)
+const EDGES = new EdgesGeometry(CUBE)
+const BODY = new CapsuleGeometry(0.28, 0.75, 4, 12)
+const HEAD = new SphereGeometry(0.26, 16, 12)
+const NOSE = new ConeGeometry(0.12, 0.32, 10)
+const RING = new TorusGeometry(0.5, 0.045, 8, 32)
+const UNSEEN = new Color('#55535c')
+
+/** @returns {boolean} whether the browser can draw in three dimensions */
+export function hasWebGL () {
+  try {
+    return document.createElement('canvas').getContext('webgl2') !== null
+  } catch {
+    return false
+  }
+}
+
+/** One picture in three dimensions; several share a camera. */
+export class Space {
+  constructor (camera, target, choose, moved) {
+    this.choose = choose
+    this.camera = camera
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, powerPreference: 'low-power' })
+    this.canvas = this.renderer.domElement
+    this.canvas.setAttribute('role', 'img')
+    this.labels = element('div', { class: 'labels' })
+    this.element = element('div', { class: 'space' }, this.canvas, this.labels)
+    this.scene = new Scene()
+    this.light = new HemisphereLight(0xffffff, 0xb8b0a4, 2.2)
+    this.sun = new DirectionalLight(0xffffff, 1.6)
+    this.sun.position.set(0.5, 1, 0.3)
+    this.blocks = new Group()
+    this.figures = new Group()
+    this.scene.add(this.light, this.sun, this.blocks, this.figures)
+    this.controls = new OrbitControls(camera, this.canvas)
+    this.controls.target = target
+    this.controls.maxPolarAngle = 0.495 * Math.PI
+    this.controls.update()
+    this.controls.addEventListener('change', moved)
+    this.built = null
+    this.marks = []
+    this.listen()
+  }
+
+  listen () {
+    let down = null
+    this.canvas.addEventListener('pointerdown', event => { down = [event.clientX, event.clientY] })
+    this.canvas.addEventListener('pointerup', event => {
+      if (down !== null && Math.hypot(event.clientX - down[0], event.clientY - down[1]) < 4) this.pick(event)
+      down = null
+    })
+  }
+
+  dispose () {
+    this.controls.dispose()
+    this.renderer.dispose()
+    this.renderer.forceContextLoss()
+  }
+
+  /** @param {object} scene - as for `Plan.draw` */
+  draw (scene) {
+    this.canvas.setAttribute('aria-label', `${scene.track.path} in three dimensions; the list beside it says what it holds`)
+    this.buildBlocks(scene)
+    this.buildFigures(scene)
+    this.render()
+  }
+
+  render () {
+    const { width, height } = this.element.getBoundingClientRect()
+    if (width < 2 || height < 2) return
+    const scale = Math.min(1.5, devicePixelRatio || 1)
+    if (this.size !== `${width} ${height} ${scale}`) {
+      this.size = `${width} ${height} ${scale}`
+      this.renderer.setPixelRatio(scale)
+      this.renderer.setSize(width, height)
+    }
+    this.camera.aspect = width / height
+    this.camera.updateProjectionMatrix()
+    this.renderer.render(this.scene, this.camera)
+    this.placeLabels(width, height)
+  }
+
+  buildBlocks (scene) {
+    const version = `${scene.track.gridVersion(scene.tick)} ${scene.storey} ${scene.seenVersion} ${scene.dark}`
+    if (version === this.built) return
+    this.built = version
+    for (const mesh of this.blocks.children) mesh.dispose?.()
+    this.blocks.clear()
+    const { solid, clear } = boxesOf(scene)
+    this.blocks.add(instances(solid, 1), instances(clear, 0.35))
+  }
+
+  buildFigures (scene) {
+    this.figures.clear()
+    refill(this.labels)
+    this.marks = []
+    for (const each of scene.things.containers) this.addContainer(scene, each)
+    for (const each of scene.things.agents) if (each.pose !== null) this.addAgent(scene, each)
+    for (const cell of scene.things.wrongBlocks.slice(0, 100)) this.outline(scene.run.place(cell), WRONG)
+    for (const [, , x, y, z] of scene.things.items) this.add(CUBE, '#3fa7a7', [x, y + 0.15, z], { size: 0.22 })
+    if (scene.ray !== null) this.addRay(scene.ray)
+  }
+
+  add (geometry, colour, [x, y, z], { ghost = false, size = 1, thing = null } = {}) {
+    const mesh = new Mesh(geometry, new MeshLambertMaterial({ color: colour, transparent: ghost, opacity: ghost ? 0.45 : 1 }))
+    mesh.position.set(x, y, z)
+    mesh.scale.setScalar(size)
+    mesh.userData.thing = thing
+    this.figures.add(mesh)
+    return mesh
+  }
+
+  addAgent (scene, each) {
+    const { pose, look, thing } = each
+    const ghost = !pose.current
+    const at = { ghost, thing }
+    this.add(BODY, look.colour, [pose.x, pose.y + 0.68, pose.z], at)
+    this.add(HEAD, look.colour, [pose.x, pose.y + 1.55, pose.z], at)
+    const [dx, dz] = [-Math.sin(pose.yaw) * Math.cos(pose.pitch), -Math.cos(pose.yaw) * Math.cos(pose.pitch)]
+    const dy = Math.sin(pose.pitch)
+    const nose = this.add(NOSE, look.colour, [pose.x + 0.36 * dx, pose.y + 1.55 + 0.36 * dy, pose.z + 0.36 * dz], at)
+    nose.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), new Vector3(dx, dy, dz).normalize())
+    const wrong = each.marks.includes('false')
+    if (wrong || scene.chosen === thing) {
+      const ring = this.add(RING, wrong ? WRONG : '#2b2a33', [pose.x, pose.y + 0.06, pose.z], {})
+      ring.rotation.x = Math.PI / 2
+    }
+    const sign = each.marks.map(mark => markSign(scene.run, mark, each.age)).join(' ')
+    this.label(thing, [pose.x, pose.y + 2.15, pose.z], [look.name, sign].filter(Boolean).join(' '), wrong, look)
+  }
+
+  addContainer (scene, each) {
+    const [x, y, z] = each.place
+    const wrong = each.marks.includes('false')
+    if (wrong) this.outline(each.place, WRONG)
+    else if (scene.chosen === each.thing) this.outline(each.place, 0x2b2a33)
+    if (each.contents === null && scene.track.grid(scene.tick)[each.cell] < 0) this.outline(each.place, 0x8a8890)
+    const sign = each.marks.map(mark => markSign(scene.run, mark, each.age)).join(' ')
+    this.label(each.thing, [x + 0.5, y + 1.35, z + 0.5], `${contentsText(each.contents)} ${sign}`.trim(), wrong)
+  }
+
+  outline ([x, y, z], colour) {
+    const lines = new LineSegments(EDGES, new LineBasicMaterial({ color: colour, linewidth: 2 }))
+    lines.position.set(x + 0.5, y + 0.5, z + 0.5)
+    lines.scale.setScalar(1.04)
+    this.figures.add(lines)
+  }
+
+  addRay (ray) {
+    const points = (a, b) => new BufferGeometry().setFromPoints([new Vector3(a.x, a.y, a.z), new Vector3(b.x, b.y, b.z)])
+    const free = new Line(points(ray.from, ray.stop), new LineBasicMaterial({ color: ray.seen ? 0x009e73 : WRONG }))
+    this.figures.add(free)
+    if (!ray.seen) {
+      const beyond = new Line(points(ray.stop, ray.to), new LineDashedMaterial({ color: 0x8a8890, dashSize: 0.3, gapSize: 0.2 }))
+      beyond.computeLineDistances()
+      this.figures.add(beyond)
+    }
+    if (ray.blocker) this.outline(ray.blocker, WRONG)
+  }
+
+  label (thing, place, text, wrong, look = null) {
+    const made = element('button', { type: 'button', class: `tag${wrong ? ' false' : ''}`, tabindex: '-1', onclick: () => this.choose({ thing, note: null }) }, text)
+    if (look !== null) made.style.borderColor = look.colour
+    this.labels.append(made)
+    this.marks.push({ made, at: new Vector3(...place) })
+  }
+
+  placeLabels (width, height) {
+    for (const { made, at } of this.marks) {
+      const point = at.clone().project(this.camera)
+      made.hidden = point.z > 1
+      const [x, y] = [(point.x + 1) / 2 * width, (1 - point.y) / 2 * height]
+      made.style.transform = `translate(-50%, -100%) translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`
+    }
+  }
+
+  pick (event) {
+    const room = this.canvas.getBoundingClientRect()
+    const point = new Vector2((event.clientX - room.left) / room.width * 2 - 1, 1 - (event.clientY - room.top) / room.height * 2)
+    const caster = new Raycaster()
+    caster.setFromCamera(point, this.camera)
+    const [hit] = caster.intersectObjects([...this.figures.children.filter(each => each.userData.thing), ...this.blocks.children])
+    if (hit === undefined) return
+    const cell = hit.instanceId === undefined ? null : hit.object.userData.cells[hit.instanceId]
+    this.choose({ thing: hit.object.userData.thing ?? cell, note: null })
+  }
+}
+
+/** @returns {object} boxes of blocks up to a storey's head height: what is hidden all around is left out */
+function boxesOf ({ run, track, tick, storey, seen }) {
+  const grid = track.grid(tick)
+  const [width, height, depth] = run.shape
+  const top = Math.min(height, storey - run.head.box.low[1] + 2)
+  const found = { solid: [], clear: [] }
+  const full = cell => grid[cell] >= 0 && isFull(run.states[grid[cell]])
+  for (let i = 0; i < width; i++) {
+    for (let j = 0; j < top; j++) {
+      for (let k = 0; k < depth; k++) {
+        const cell = (i * height + j) * depth + k
+        const block = grid[cell] >= 0 ? run.states[grid[cell]] : null
+        if (block === null || block.air) continue
+        const inside = i > 0 && i < width - 1 && j < top - 1 && k > 0 && k < depth - 1 && full(cell - height * depth) &&
+          full(cell + height * depth) && full(cell + depth) && full(cell - 1) && full(cell + 1)
+        if (inside) continue
+        const list = block.glassy && !block.container ? found.clear : found.solid
+        const colour = new Color(block.colour)
+        if (seen !== null && !seen[cell]) colour.lerp(UNSEEN, 0.6)
+        else if ((i + k) % 2 === 0) colour.multiplyScalar(0.97)
+        for (const box of block.boxes) if (list.length < MOST) list.push({ box, cell, colour, container: block.container, place: run.place(cell) })
+      }
+    }
+  }
+  return found
+}
+
+function isFull (block) {
+  if (block.full === undefined) {
+    const [box] = block.boxes
+    block.full = block.boxes.length === 1 && !block.glassy && box.every((edge, at) => edge === (at < 3 ? 0 : 32))
+  }
+  return block.full
+}
+
+function instances (boxes, opacity) {
+  const material = new MeshLambertMaterial({ transparent: opacity < 1, opacity })
+  const mesh = new InstancedMesh(CUBE, material, boxes.length)
+  const still = new Quaternion()
+  mesh.userData.cells = boxes.map(({ cell, container }) => `${container ? 'c' : 'b'}${cell}`)
+  boxes.forEach(({ box: [x0, y0, z0, x1, y1, z1], colour, place: [x, y, z] }, number) => {
+    const middle = new Vector3(x + (x0 + x1) / 64, y + (y0 + y1) / 64, z + (z0 + z1) / 64)
+    mesh.setMatrixAt(number, new Matrix4().compose(middle, still, new Vector3((x1 - x0) / 32, (y1 - y0) / 32, (z1 - z0) / 32)))
+    mesh.setColorAt(number, colour)
+  })
+  return mesh
+}
+
+export { EYE }

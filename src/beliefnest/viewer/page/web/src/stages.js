@@ -1,0 +1,117 @@
+/** The pictures in the middle: the chosen simulator, and another one beside it, with linked cameras. */
+
+import { PerspectiveCamera, Vector3 } from 'three'
+import { believesText } from './detail.js'
+import { element, refill } from './elements.js'
+import { Plan } from './plan.js'
+import { Space, hasWebGL } from './space.js'
+import { thingsOf } from './things.js'
+
+const VIEWS = { space: '3D', plan: 'Plan', both: 'Both' }
+const NARROW = 720
+
+export class Stages {
+  constructor (choose) {
+    this.choose = choose
+    this.webgl = hasWebGL()
+    this.camera = new PerspectiveCamera(42, 1, 0.1, 2000)
+    this.target = new Vector3()
+    this.stages = [new Stage(this), new Stage(this)]
+    this.views = element('div', { class: 'views', role: 'group', 'aria-label': 'how it is drawn' })
+    this.sees = element('select', { onchange: event => choose({ sees: event.target.value || null }) })
+    this.storey = element('select', { onchange: event => choose({ cut: event.target.value }) })
+    this.other = element('select', { onchange: event => choose({ beside: event.target.value }) })
+    this.bar = element('div', { class: 'bar-of-tools' }, this.views,
+      element('label', {}, 'beside ', this.other), element('label', {}, 'sight of ', this.sees), element('label', {}, 'storey ', this.storey))
+    this.element = element('section', { class: 'stages', 'aria-label': 'pictures' }, this.bar, element('div', { class: 'pair' }, ...this.stages.map(stage => stage.element)))
+    this.aimed = null
+  }
+
+  draw (scene) {
+    const wanted = scene.choice.view ?? (innerWidth < NARROW ? 'plan' : 'space')
+    const view = this.webgl && VIEWS[wanted] ? wanted : 'plan'
+    this.drawBar(scene, view)
+    this.aim(scene)
+    const { beside, run, track } = scene
+    this.stages[0].draw(scene, view)
+    const two = beside !== null && beside !== track
+    this.stages[1].element.hidden = !two
+    if (two) {
+      const tick = Math.max(beside.timeline.facts.start, Math.min(beside.timeline.facts.head, scene.tick))
+      const things = thingsOf(run, beside, tick)
+      this.stages[1].draw({ ...scene, track: beside, tick, things, seen: null, seenVersion: '', ray: null }, view)
+    }
+  }
+
+  drawBar ({ run, timeline, choice, storey, beside, track }, view) {
+    const options = [...timeline.tracks.keys()].map(path => [path, path])
+    if (timeline.number !== 0) options.push(...[...run.timelines[0].tracks.keys()].map(path => [`0 ${path}`, `${path} (real run)`]))
+    const version = [run.number, view, choice.sees, storey, choice.beside, track.path, timeline.number, options.length].join('|')
+    if (version === this.shown) return
+    this.shown = version
+    const held = document.activeElement?.dataset?.view
+    refill(this.views, ...Object.entries(VIEWS).map(([name, words], number) => element('button', {
+      type: 'button', 'data-view': name, 'aria-pressed': String(view === name), disabled: name !== 'plan' && !this.webgl,
+      title: this.webgl ? `${words} (${number + 1})` : 'this browser has no WebGL', onclick: () => this.choose({ view: name })
+    }, words)))
+    if (held) this.views.querySelector(`[data-view="${held}"]`)?.focus()
+    const chosen = beside === null ? 'none' : beside.timeline === timeline ? beside.path : `${beside.timeline.number} ${beside.path}`
+    fillOptions(this.other, [['none', 'nothing'], ...options], chosen)
+    fillOptions(this.sees, [['', 'nobody'], ...run.head.agents.map(({ name }) => [name, name])], choice.sees ?? '')
+    const [low] = [run.head.box.low[1]]
+    fillOptions(this.storey, Array.from({ length: run.shape[1] }, (_, n) => [String(low + n), String(low + n)]), String(storey))
+  }
+
+  /** Turns the camera to a run once; later its user turns it. */
+  aim ({ run }) {
+    if (this.aimed === run) return
+    this.aimed = run
+    const [width, , depth] = run.shape
+    const { low } = run.head.box
+    this.target.set(low[0] + width / 2, low[1] + 1, low[2] + depth / 2)
+    const far = 1.02 * Math.max(width, depth) + 4
+    this.camera.position.set(this.target.x, this.target.y + 0.92 * far, this.target.z + 0.78 * far)
+    this.camera.lookAt(this.target)
+  }
+
+  moved () {
+    this.turning ??= requestAnimationFrame(() => {
+      this.turning = undefined
+      for (const stage of this.stages) if (!stage.element.hidden) stage.space?.render()
+    })
+  }
+}
+
+class Stage {
+  constructor (stages) {
+    this.stages = stages
+    this.title = element('figcaption', {})
+    this.holder = element('div', { class: 'holder' })
+    this.plan = new Plan(stages.choose)
+    this.element = element('figure', { class: 'stage' }, this.title, this.holder)
+    this.view = null
+  }
+
+  draw (scene, view) {
+    const { track, tick, things, run } = scene
+    const count = things.wrong.size
+    refill(this.title, element('strong', {}, believesText(track)), element('span', { class: 'path' }, ` ${track.path} `),
+      element('span', { class: 'at' }, `tick ${tick}`), count ? element('span', { class: 'mark false' }, ` ${run.head.marks.false.sign} ${count} false`) : null)
+    this.arrange(view)
+    if (view !== 'space') this.plan.draw(scene)
+    if (view !== 'plan') this.space.draw(scene)
+  }
+
+  arrange (view) {
+    if (view === this.view) return
+    this.view = view
+    if (view !== 'plan') this.space ??= new Space(this.stages.camera, this.stages.target, this.stages.choose, () => this.stages.moved())
+    this.plan.drawn = null
+    this.holder.className = `holder ${view}`
+    refill(this.holder, ...[view !== 'plan' ? this.space.element : null, view !== 'space' ? this.plan.element : null].filter(Boolean))
+  }
+}
+
+function fillOptions (select, options, chosen) {
+  refill(select, ...options.map(([value, words]) => element('option', { value, selected: value === chosen }, words)))
+}

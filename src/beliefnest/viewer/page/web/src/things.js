@@ -1,0 +1,73 @@
+/** What there is to show of one simulator at one tick: values of its track, with the marks they carry. */
+
+import { ago, itemsText } from './elements.js'
+
+/** @returns {object} agents, containers, dropped items and false blocks of a track at a tick */
+export function thingsOf (run, track, tick) {
+  const wrong = new Set(track.wrong(tick))
+  const known = new Set([...track.cells(), ...(run.timelines[0]?.track('/')?.cells() ?? [])])
+  return {
+    agents: run.head.agents.map((look, number) => agentThing(run, track, tick, look, number, wrong)),
+    containers: [...known].sort((a, b) => a - b).map(cell => containerThing(run, track, tick, cell, wrong)),
+    items: [...track.items(tick).values()],
+    wrong,
+    wrongBlocks: [...wrong].filter(thing => thing[0] === 'b').map(thing => Number(thing.slice(1)))
+  }
+}
+
+function agentThing (run, track, tick, look, number, wrong) {
+  const pose = track.agent(number, tick)
+  const thing = `a${number}`
+  const marks = []
+  if (wrong.has(thing)) marks.push('false')
+  if (pose === null) marks.push('unknown')
+  else if (!pose.current) marks.push('stale')
+  return { thing, number, look, pose, marks, age: pose === null ? null : tick - pose.seenAt, wrongItems: wrong.has(`i${number}`) }
+}
+
+function containerThing (run, track, tick, cell, wrong) {
+  const contents = track.contents(cell, tick)
+  const thing = `c${cell}`
+  const marks = []
+  if (wrong.has(thing)) marks.push('false')
+  if (contents === null || (!contents.complete && Object.keys(contents.items).length === 0)) marks.push('unknown')
+  else if (!contents.complete) marks.push('incomplete')
+  if (contents !== null && !contents.current && !marks.includes('unknown')) marks.push('stale')
+  const age = contents === null ? null : tick - contents.seenAt
+  return { thing, cell, place: run.place(cell), name: run.thingName(thing), contents, marks, age }
+}
+
+/** @returns {string} what a container is believed to hold, shortly */
+export function contentsText (contents) {
+  if (contents === null) return 'not known to be there'
+  const items = itemsText(contents.items)
+  if (items) return contents.complete ? items : `${items}, perhaps more`
+  return contents.complete ? 'empty' : 'not known'
+}
+
+/** @returns {string} a mark in words, with its age */
+export function markWords (run, mark, age) {
+  if (mark === 'stale' && age !== null) return `remembered, seen ${ago(age)}`
+  return run.head.marks[mark].words
+}
+
+/** @returns {string} a mark as short as fits beside a thing */
+export function markSign (run, mark, age) {
+  const { sign } = run.head.marks[mark]
+  return mark === 'stale' && age !== null ? `${sign}${age}` : sign
+}
+
+/** @returns {number} the storey where most containers are, or else agents' feet, or else the lowest but one */
+export function mainStorey (run, track, tick) {
+  const heights = thingsOf(run, track, tick).containers.map(each => each.place[1])
+  if (heights.length === 0) {
+    for (let number = 0; number < run.head.agents.length; number++) {
+      const pose = track.agent(number, tick)
+      if (pose) heights.push(Math.floor(pose.y + 0.01))
+    }
+  }
+  if (heights.length === 0) return run.head.box.low[1] + 1
+  const counts = new Map()
+  for (const height of heights) counts.set(height, (counts.get(height) ?? 0) + 1)
+  return [...counts].sort((a, b) => b[1] - a[1] || a[0] - b[0])[0][0]
+}

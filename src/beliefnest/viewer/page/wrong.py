@@ -1,0 +1,119 @@
+"""What nodes hold otherwise than the world of their timeline does, entry by entry."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from beliefnest.belief.forest import Forest
+from beliefnest.nest.explain.comparison import Pose, are_apart, are_false
+from beliefnest.nest.explain.parts import Contents
+
+__all__ = ["WrongThings"]
+
+Things = tuple[str, ...]
+"""`a1`: the pose of agent 1; `i1`: its inventory; `c7`, `b7`: contents, block of cell 7."""
+
+
+class WrongThings:
+    """Follows a forest; the rules are those of `false_beliefs`.
+
+    Only what changed since the last look is judged again.
+
+    Args:
+        forest: What is followed.
+        numbers: The nodes that are asked about.
+    """
+
+    def __init__(self, forest: Forest, numbers: Sequence[int]) -> None:
+        self._forest, self._numbers = forest, list(numbers)
+        self._blocks: Any = None
+        self._block_things: list[Things] = [() for _ in numbers]
+        self._held: list[Any] = [None for _ in numbers]
+        self._content_things: list[Things] = [() for _ in numbers]
+        self._owned: dict[int, Any] = {}
+        self._owner_things: list[Things] = [() for _ in numbers]
+
+    def found(self, owned_changed: set[int]) -> list[Things]:
+        """What is false in each node after the entry the forest is at.
+
+        Args:
+            owned_changed: Numbers of the nodes in which an inventory changed.
+        """
+        self._judge_blocks()
+        self._judge_contents()
+        for at, number in enumerate(self._numbers):
+            if number in owned_changed or 0 in owned_changed:
+                self._owner_things[at] = self._inventories(number)
+        parts = (self._block_things, self._content_things, self._poses(), self._owner_things)
+        return [sum(each, ()) for each in zip(*parts, strict=True)]
+
+    def _judge_blocks(self) -> None:
+        blocks = self._forest.table.nodes().blocks
+        if self._blocks is not None and np.array_equal(blocks, self._blocks):
+            return
+        self._blocks = blocks.copy()
+        for at, number in enumerate(self._numbers):
+            held = blocks[number]
+            cells = np.flatnonzero((held >= 0) & (held != blocks[0]))
+            self._block_things[at] = tuple(f"b{cell}" for cell in cells.tolist())
+
+    def _judge_contents(self) -> None:
+        forest = self._forest
+        real = forest.holdings[0].containers
+        for at, number in enumerate(self._numbers):
+            held = forest.holdings[number].containers
+            mark = (_told(real), _told(held))
+            if mark == self._held[at]:
+                continue
+            self._held[at] = mark
+            self._content_things[at] = tuple(
+                f"c{cell}"
+                for cell in sorted(held)
+                if are_false(_contents(real, cell), _contents(held, cell) or _NONE)
+            )
+
+    def _poses(self) -> list[Things]:
+        plots, poses = self._forest.table, self._forest.poses
+        pose_id, feet = plots.nodes().pose, poses.arrays().feet
+        known = pose_id >= 0
+        if len(feet):
+            moved = (feet[pose_id] != feet[pose_id[0]]).any(axis=2)
+        else:
+            moved = np.zeros(pose_id.shape, dtype=np.bool_)
+        apart = known & (moved | ~known[0])
+        for number, agent in np.argwhere(known & ~apart & (pose_id != pose_id[0])).tolist():
+            pair = (self._pose(int(pose_id[at, agent])) for at in (0, number))
+            apart[number, agent] = are_apart(*pair)
+        return [
+            tuple(f"a{agent}" for agent in np.flatnonzero(apart[number]).tolist())
+            for number in self._numbers
+        ]
+
+    def _pose(self, pose_id: int) -> Pose:
+        poses = self._forest.poses
+        place = poses.position(pose_id)
+        if poses.condition(pose_id) is None:
+            return Pose(place, None, None)
+        return Pose(place, *poses.angles(pose_id))
+
+    def _inventories(self, number: int) -> Things:
+        forest = self._forest
+        things = []
+        for agent in range(len(forest.context.agents)):
+            real, held = (Contents(*forest.inventory(node, agent)) for node in (0, number))
+            if are_false(real, held):
+                things.append(f"i{agent}")
+        return tuple(things)
+
+
+_NONE = Contents({}, complete=False)
+
+
+def _contents(containers: Mapping[int, Any], cell: int) -> Contents | None:
+    content = containers.get(cell)
+    return None if content is None else Contents(content.items, content.complete)
+
+
+def _told(containers: Mapping[int, Any]) -> dict[int, tuple[Any, bool]]:
+    return {cell: (content.items, content.complete) for cell, content in containers.items()}
