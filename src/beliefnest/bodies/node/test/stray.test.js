@@ -29,6 +29,7 @@ const MISUSES = {
   'turning round and round': `${quiet('bot.look(1000, -1000, true)')}; ${quiet('bot.look(-999, 999)')}; ${quiet('bot.lookAt(bot.entity.position.offset(0, 1.62, 0))')}`,
   'strange words': String.raw`for (const words of ["", "\u0000", "\ud800", "%s {0}", '{"text": []}']) bot.chat(words); bot.whisper("nobody", "x")`,
   'eating nothing, twice': `${quiet('bot.consume()')}; ${quiet('bot.consume()')}; bot.deactivateItem(); bot.setQuickBarSlot(3)`,
+  'packets without end, and what stops the bot': 'bot.activateItem(); for (let i = 0; i < 6000; i++) try { bot.swingArm() } catch {}',
   'throwing in a listener': 'bot.on("physicsTick", () => { throw new Error("mine") })'
 }
 

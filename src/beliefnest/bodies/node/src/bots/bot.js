@@ -47,6 +47,13 @@ function stopBot (bot) {
   else if (CONTROLS.some(control => bot.getControlState(control))) doing.push('a movement')
   if (bot.targetDigBlock) doing.push('digging')
   if (bot.currentWindow) doing.push('an open window')
+  // A connection of the game's own has no such bound.
+  if (bot._client.beyond) bot._client.beyond(() => letGo(bot))
+  else letGo(bot)
+  return doing
+}
+
+function letGo (bot) {
   bot.pathfinder.setGoal(null)
   bot.pathfinder.reset()
   if (bot.targetDigBlock) bot.stopDigging()
@@ -54,7 +61,6 @@ function stopBot (bot) {
   bot.jumpQueued = false
   if (bot.currentWindow) bot.closeWindow(bot.currentWindow)
   bot.deactivateItem()
-  return doing
 }
 
 /** @returns {string} a player id (UUID) that depends on nothing but the agent's name */

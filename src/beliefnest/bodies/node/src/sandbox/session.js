@@ -5,7 +5,7 @@
  */
 
 const { describeWire, Exchange, RefusedError } = require('./exchange')
-const { COST, kinds, tables } = require('./policy/kinds')
+const { COST, kinds, skillCosts, tables } = require('./policy/kinds')
 const { events } = require('./policy/events')
 const { GuestEnded } = require('./engine')
 const { stateOf } = require('./policy/types')
@@ -235,7 +235,7 @@ class Session {
   callSkill (name, wires) {
     if (typeof name !== 'string' || !Object.hasOwn(this.skills, name)) throw new RefusedError('there is no such skill')
     const type = { toGuest: (exchange, value) => exchange.toGuest(value, `the result of ${name}`) }
-    this.guest.charge(COST.call)
+    this.guest.charge(Object.hasOwn(skillCosts, name) ? skillCosts[name] : COST.call)
     return this.outcomeOf(name, () => {
       const args = wires.map((wire, i) => this.exchange.toHost(wire, `argument ${i + 1} of ${name}`))
       return this.skills[name](...args)

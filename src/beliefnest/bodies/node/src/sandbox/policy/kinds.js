@@ -9,6 +9,8 @@
 const t = require('./types')
 
 const COST = { call: 10_000, message: 200_000, section: 5000, ray: 20_000, recipes: 50_000 }
+// What is perceived and recorded for ever costs as much as a message, whichever way it is said.
+const skillCosts = { think: COST.message, say: COST.message, whisper: COST.message, emote: COST.message }
 const SECTION = 16
 const ofSearch = ([{ maxDistance }]) => COST.section * (2 * Math.ceil(maxDistance / SECTION) + 1) ** 3
 
@@ -153,4 +155,4 @@ const tables = {
   effects: 'table', effectsByName: 'table', materials: 'table', version: 'value'
 }
 
-module.exports = { COST, kinds, kindNames, tables }
+module.exports = { COST, skillCosts, kinds, kindNames, tables }
