@@ -158,9 +158,7 @@ def _peak_megabytes() -> float:
 
 def _drop_checkpoints(path: Path) -> None:
     with closing(sqlite3.connect(path)) as connection, connection:
-        connection.execute(
-            "DELETE FROM keyframe WHERE name LIKE 'beliefs %' OR name LIKE 'world %'"
-        )
+        connection.execute("DELETE FROM keyframe")
 
 
 def _one_by_one(journal: SqliteJournal, walk: Sequence[Frame]) -> float:

@@ -1,0 +1,35 @@
+"""The drawing of the rooms, their table and the folders say the same."""
+
+import re
+import tomllib
+from pathlib import Path
+
+TOP = Path(__file__).parents[2]
+SOURCES = TOP / "src" / "beliefnest"
+
+
+def rooms_in(folder):
+    return {each.name for each in folder.iterdir() if (each / "__init__.py").exists()}
+
+
+def layers_of(container):
+    contracts = tomllib.loads((TOP / "pyproject.toml").read_text())["tool"]["importlinter"]
+    (found,) = [c for c in contracts["contracts"] if c.get("containers") == [container]]
+    return {name.strip("() ") for layer in found["layers"] for name in layer.split("|")}
+
+
+def test_files_that_the_architecture_names_are_there():
+    text = (TOP / "design" / "architecture.md").read_text()
+    named = re.findall(r"`([\w/]+/[\w.]*|[\w/]+\.(?:py|js|md|toml))`", text)
+    assert len(named) > 30
+    missing = [name for name in named if not any((at / name).exists() for at in (SOURCES, TOP))]
+    assert missing == []
+
+
+def test_every_room_is_in_the_table_and_in_the_contract():
+    table = (TOP / "CONTRIBUTING.md").read_text()
+    rooms = rooms_in(SOURCES) | {f"nest/{room}" for room in rooms_in(SOURCES / "nest")}
+    told = set(re.findall(r"^\| `([\w/]+?)/?` \|", table, re.MULTILINE))
+    assert rooms - {"nest"} <= told
+    assert rooms_in(SOURCES) <= layers_of("beliefnest")
+    assert rooms_in(SOURCES / "nest") == layers_of("beliefnest.nest")
