@@ -5,10 +5,14 @@ a row of a pose table: one agent's pose as it was from some tick on. Nodes are t
 simulators below one timeline, shallower ones first; node 0 is the timeline's own.
 """
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from beliefnest.perception.beams import Beam
+    from beliefnest.perception.shadows import Shadows
 
 __all__ = [
     "HEAR_ALL",
@@ -50,34 +54,6 @@ HEAR_ALL, HEAR_SEEN, HEAR_NEAR = range(3)
 """Hearing modes: global, sight, radius."""
 
 
-class Space(NamedTuple):
-    """The box and its shapes, as the ray kernels want them.
-
-    Attributes:
-        sizes: Cells along x, y, z, with a margin of one on every side.
-        starts: int32, rows of each shape (see `perception.rays`).
-        boxes: float64 (n, 6), shapes' boxes.
-        reaches: uint8 by code, sides a shape reaches out of.
-        codes: uint16 by block state, and at the end that of unknown.
-        holds: bool by block state, and at the end that of unknown: is it a container.
-        origin: float64 (3,), added to scenario coordinates to get the grid's.
-        slopes, opens, counts, suspects: Room to work in, from `beams.beam_room` and
-            `shadows.nothing_noted`.
-    """
-
-    sizes: tuple[int, int, int]
-    starts: Ints
-    boxes: Floats
-    reaches: npt.NDArray[np.uint8]
-    codes: npt.NDArray[np.uint16]
-    holds: Flags
-    origin: Floats
-    slopes: Floats
-    opens: npt.NDArray[np.int64]
-    counts: npt.NDArray[np.uint8]
-    suspects: Ints
-
-
 class Senses(NamedTuple):
     """What agents can perceive.
 
@@ -94,6 +70,33 @@ class Senses(NamedTuple):
     hearing: int
     radius: float
     negative: bool
+
+
+class Space(NamedTuple):
+    """The box and its shapes, as the ray kernels want them.
+
+    Attributes:
+        sizes: Cells along x, y, z, with a margin of one on every side.
+        starts: int32, rows of each shape (see `perception.rays`).
+        boxes: float64 (n, 6), shapes' boxes.
+        reaches: uint8 by code, sides a shape reaches out of.
+        codes: uint16 by block state, and at the end that of unknown.
+        holds: bool by block state, and at the end that of unknown: is it a container.
+        origin: float64 (3,), added to scenario coordinates to get the grid's.
+        senses: What agents can perceive.
+        beam, shadows: Room to work in, from `beams.beam_room` and `shadows.no_shadows`.
+    """
+
+    sizes: tuple[int, int, int]
+    starts: Ints
+    boxes: Floats
+    reaches: npt.NDArray[np.uint8]
+    codes: npt.NDArray[np.uint16]
+    holds: Flags
+    origin: Floats
+    senses: Senses
+    beam: "Beam"
+    shadows: "Shadows"
 
 
 class Poses(NamedTuple):
@@ -145,7 +148,7 @@ class Nodes(NamedTuple):
         pending: (N, words), bit set of cells that the parent knows otherwise.
         fresh: (N,), whether a bit of pending was set since they were last tried.
         eye: (N,), id of the pose the owner last looked from; -1: it was not present.
-        scene: (N,), the parent's geometry it last looked at.
+        seen_geometry: (N,), the parent's geometry it last looked at.
         tried: (N, A), pose id of each agent that `sees` is about.
         sees: (N, A), whether the owner sees the agent in the parent.
         tracked: (T,), cells whose basis is tracked: those that ever hold a container.
@@ -168,7 +171,7 @@ class Nodes(NamedTuple):
     pending: npt.NDArray[np.uint64]
     fresh: Flags
     eye: Ints
-    scene: Ints
+    seen_geometry: Ints
     tried: Ints
     sees: Flags
     tracked: Ints

@@ -81,12 +81,13 @@ class BeliefContext:
             tables.codes,
             self.holds,
             1.0 - np.array(self.box.low, dtype=np.float64),
-            *beams.beam_room(),
-            *shadows.nothing_noted()[1:],
+            self._senses,
+            beams.beam_room(),
+            shadows.no_shadows(),
         )
 
     @cached_property
-    def senses(self) -> Senses:
+    def _senses(self) -> Senses:
         """What agents can perceive, for the kernel."""
         options = self.options
         far = options.max_visible_distance

@@ -134,17 +134,12 @@ class Forest:
 
     def block_is_current(self, node: int, cell: int) -> bool:
         """Whether a node's block is backed by a perception in the last entry (5.4)."""
-        context, nodes, poses = self.context, self.table.nodes(), self.poses.arrays()
         while node > 0:
-            around = self.table.parent(node)
             if not self.table.is_present(node) or (node, cell) in self.edited_cells:
                 return False
-            pose = self.table.pose(around, self.table.owner(node))
-            if not kernel.sees_cell(
-                context.space, context.senses, poses, nodes, around, pose, cell
-            ):
+            if not self._sees_cell(node, cell):
                 return False
-            node = around
+            node = self.table.parent(node)
         return self.table.block(0, cell) >= 0
 
     def vitals(self, node: int, agent: int) -> tuple[float | None, float | None]:
@@ -282,7 +277,7 @@ class Forest:
         everywhere = np.ones(self.table.count, dtype=np.bool_)
         where = start - columns.first, stop - columns.first
         reached = columns.first + kernel.fold(
-            context.space, context.senses, poses, facts, nodes, changes, *where, everywhere
+            context.space, poses, facts, nodes, changes, *where, everywhere
         )
         count = columns.events_until(reached) - first
         self.hearing.note(first, changes.perceived[:count])
@@ -319,7 +314,7 @@ class Forest:
             *(at, nothing, nothing, nothing, nothing),
         )
         poses = self.poses.arrays()
-        kernel.fold(context.space, context.senses, poses, facts, nodes, changes, 0, 1, below)
+        kernel.fold(context.space, poses, facts, nodes, changes, 0, 1, below)
         entry = self.position - 1
         self.looked.update(dict.fromkeys(np.flatnonzero(below).tolist(), entry))
         self.edited_cells = {(node, cell) for node, cell in self.edited_cells if not below[node]}
@@ -451,7 +446,7 @@ class Forest:
         pose = self.table.pose(around, self.table.owner(node))
         nodes, poses = self.table.nodes(), self.poses.arrays()
         wanted = np.array([*cells], dtype=np.int64)
-        seen = kernel.sees_cells(context.space, context.senses, poses, nodes, around, pose, wanted)
+        seen = kernel.sees_cells(context.space, poses, nodes, around, pose, wanted)
         return set(wanted[seen].tolist())
 
     def _see_into(self, node: int, tick: int, entry: int) -> set[int]:
@@ -496,7 +491,7 @@ class Forest:
         pose = self.table.pose(around, self.table.owner(node))
         nodes, poses = self.table.nodes(), self.poses.arrays()
         place = (x, y + _ITEM_HEIGHT, z)
-        return kernel.sees_point(context.space, context.senses, poses, nodes, around, pose, place)
+        return kernel.sees_point(context.space, poses, nodes, around, pose, place)
 
 
 def _by_entry(changes: Changes, first: int) -> dict[int, dict[int, list[Sequence[int]]]]:

@@ -1,7 +1,7 @@
 """Perception and belief update of all nodes below one timeline, compiled.
 
 The rules of semantics, sections 3 to 5, as far as they are about poses, blocks and who
-perceives which event. Contents, possessions and dropped items follow in `belief.effects`,
+perceives which event. Contents, possessions and dropped items follow in `belief.holdings`,
 from what this leaves in `Changes`. Cost grows with what changed: who looks from the same
 place at the same blocks as before is not asked again, and a block is looked for only
 where the believer's belief differs from what there is.
@@ -38,10 +38,10 @@ from beliefnest.perception.eyes import (
     eye_sees_point,
     set_code,
 )
-from beliefnest.perception.rays import Cell, compiled, inlined
+from beliefnest.perception.rays import Cell, Scene, compiled, inlined
 from beliefnest.world.values import EYE_HEIGHT
 
-__all__ = ["fold", "put", "refresh_pending", "sees_cell", "sees_cells", "sees_point"]
+__all__ = ["fold", "put", "refresh_pending", "sees_cells", "sees_point"]
 
 _WORD = 64
 
@@ -71,7 +71,7 @@ def _grid_cell(space: Space, cell: int) -> Cell:
 
 
 @inlined
-def _eye(space: Space, senses: Senses, poses: Poses, pose: int) -> Eye:
+def _eye(space: Space, poses: Poses, pose: int) -> Eye:
     x, y, z = poses.feet[pose]
     yaw, pitch = poses.angles[pose]
     level = math.cos(pitch)
@@ -81,31 +81,36 @@ def _eye(space: Space, senses: Senses, poses: Poses, pose: int) -> Eye:
         z + space.origin[2],
     )
     look = (-math.sin(yaw) * level, math.sin(pitch), -math.cos(yaw) * level)
-    return place, look, senses.cos_half, senses.far
+    return place, look, space.senses.cos_half, space.senses.far
+
+
+@inlined
+def _scene(space: Space, nodes: Nodes, node: int) -> Scene:
+    """What an eye in a node looks through."""
+    return Scene(nodes.codes[node], space.sizes, space.starts, space.boxes)
 
 
 @inner
-def _sees_agent(space: Space, nodes: Nodes, node: int, eye: Eye, poses: Poses, other: int) -> bool:
-    x, y, z = poses.feet[other]
+def _sees_agent(space: Space, poses: Poses, nodes: Nodes, node: int, eye: Eye, pose: int) -> bool:
+    """Whether an eye in a node sees an agent at a pose."""
+    x, y, z = poses.feet[pose]
     feet = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
-    codes = nodes.codes[node]
-    return eye_sees_agent(codes, space.sizes, space.starts, space.boxes, eye, feet)
+    return eye_sees_agent(_scene(space, nodes, node), eye, feet)
 
 
 @inner
 def _sees_cell(space: Space, nodes: Nodes, node: int, eye: Eye, cell: int) -> bool:
-    codes = nodes.codes[node]
-    room = space.slopes, space.opens, space.counts, space.suspects
+    """Whether an eye in a node sees a cell."""
     place = _grid_cell(space, cell)
-    return eye_sees_block(codes, space.sizes, space.starts, space.boxes, eye, place, *room)
+    return eye_sees_block(_scene(space, nodes, node), eye, place, space.beam, space.shadows)
 
 
 @inner
 def _mark(nodes: Nodes, node: int, cell: int) -> None:
     """Set or clear the pending bit of a cell in a node below node 0."""
-    there = nodes.blocks[nodes.parent[node], cell]
+    held = nodes.blocks[nodes.parent[node], cell]
     word, bit = cell // _WORD, np.uint64(1) << np.uint64(cell % _WORD)
-    if there != UNKNOWN and there != nodes.blocks[node, cell]:
+    if held != UNKNOWN and held != nodes.blocks[node, cell]:
         nodes.pending[node, word] |= bit
         nodes.fresh[node] = True
     else:
@@ -146,9 +151,9 @@ def _put(
         changes.rows[row, 4] = state
         for spot in range(len(nodes.tracked)):
             if nodes.tracked[spot] == cell:
-                around = max(nodes.parent[node], 0)
-                changes.rows[row, 5] = nodes.basis_at[around, spot]
-                changes.rows[row, 6] = nodes.basis_source[around, spot]
+                parent = max(nodes.parent[node], 0)
+                changes.rows[row, 5] = nodes.basis_at[parent, spot]
+                changes.rows[row, 6] = nodes.basis_source[parent, spot]
         changes.used[0] = row + 1
     put(space, nodes, node, cell, state)
 
@@ -162,7 +167,7 @@ def refresh_pending(nodes: Nodes, node: int) -> None:
 
 
 @inner
-def _happens(space: Space, facts: Facts, nodes: Nodes, changes: Changes, entry: int) -> None:
+def _apply_entry(space: Space, facts: Facts, nodes: Nodes, changes: Changes, entry: int) -> None:
     """An entry in node 0, where everything known is current."""
     for row in range(facts.pose_at[entry], facts.pose_at[entry + 1]):
         who, pose = facts.pose_agent[row], facts.pose_id[row]
@@ -183,53 +188,55 @@ def _happens(space: Space, facts: Facts, nodes: Nodes, changes: Changes, entry: 
 
 
 @inner
-def _watch(space: Space, nodes: Nodes, node: int, eye: Eye, moved: bool) -> None:
+def _propagate_bases(space: Space, nodes: Nodes, node: int, eye: Eye, moved: bool) -> None:
     """Hand on what tracked cells rest on, where the owner of a node sees them."""
-    around = _whole(nodes.parent[node])
+    parent = _whole(nodes.parent[node])
     for spot in range(len(nodes.tracked)):
         if moved:
             cell = _whole(nodes.tracked[spot])
-            nodes.watched[node, spot] = _sees_cell(space, nodes, around, eye, cell)
-        if nodes.watched[node, spot] and nodes.blocks[around, nodes.tracked[spot]] != UNKNOWN:
-            nodes.basis_at[node, spot] = nodes.basis_at[around, spot]
-            nodes.basis_source[node, spot] = nodes.basis_source[around, spot]
+            nodes.watched[node, spot] = _sees_cell(space, nodes, parent, eye, cell)
+        if nodes.watched[node, spot] and nodes.blocks[parent, nodes.tracked[spot]] != UNKNOWN:
+            nodes.basis_at[node, spot] = nodes.basis_at[parent, spot]
+            nodes.basis_source[node, spot] = nodes.basis_source[parent, spot]
 
 
 @inner
-def _meet(
-    space: Space, senses: Senses, poses: Poses, nodes: Nodes, node: int, eye: Eye, moved: bool
+def _observe_agents(
+    space: Space, poses: Poses, nodes: Nodes, node: int, eye: Eye, moved: bool
 ) -> None:
-    """What the owner of a node learns of the agents around it."""
-    around, me = _whole(nodes.parent[node]), _whole(nodes.agent[node])
+    """What the owner of a node learns of the other agents in its parent node."""
+    parent, me = _whole(nodes.parent[node]), _whole(nodes.agent[node])
     for who in range(nodes.pose.shape[1]):
-        pose = _whole(nodes.pose[around, who])
+        pose = _whole(nodes.pose[parent, who])
         seen = who == me
         if not seen and pose != UNKNOWN:
             if moved or nodes.tried[node, who] != pose:
-                nodes.sees[node, who] = _sees_agent(space, nodes, around, eye, poses, pose)
+                nodes.sees[node, who] = _sees_agent(space, poses, nodes, parent, eye, pose)
                 nodes.tried[node, who] = pose
             seen = nodes.sees[node, who]
         if seen:
             nodes.pose[node, who] = pose
-            if nodes.equipment[around, who] != UNKNOWN:
-                nodes.equipment[node, who] = nodes.equipment[around, who]
-            nodes.seen_at[node, who] = nodes.seen_at[around, who]
-            nodes.current[node, who] = nodes.current[around, who]
+            if nodes.equipment[parent, who] != UNKNOWN:
+                nodes.equipment[node, who] = nodes.equipment[parent, who]
+            nodes.seen_at[node, who] = nodes.seen_at[parent, who]
+            nodes.current[node, who] = nodes.current[parent, who]
             continue
         nodes.current[node, who] = False
         believed = _whole(nodes.pose[node, who])
         if (
-            senses.negative
+            space.senses.negative
             and believed != UNKNOWN
-            and _sees_agent(space, nodes, around, eye, poses, believed)
+            and _sees_agent(space, poses, nodes, parent, eye, believed)
         ):
             nodes.pose[node, who] = UNKNOWN
 
 
 @inner
-def _look(space: Space, nodes: Nodes, changes: Changes, entry: int, node: int, eye: Eye) -> None:
+def _observe_blocks(
+    space: Space, nodes: Nodes, changes: Changes, entry: int, node: int, eye: Eye
+) -> None:
     """Take over what the owner of a node sees of the blocks it knew otherwise."""
-    around = _whole(nodes.parent[node])
+    parent = _whole(nodes.parent[node])
     for word in range(nodes.pending.shape[1]):
         bits = nodes.pending[node, word]
         if bits == 0:
@@ -237,9 +244,9 @@ def _look(space: Space, nodes: Nodes, changes: Changes, entry: int, node: int, e
         for place in range(_WORD):
             if (bits >> np.uint64(place)) & np.uint64(1):
                 cell = word * _WORD + place
-                if _sees_cell(space, nodes, around, eye, cell):
-                    there = _whole(nodes.blocks[around, cell])
-                    _put(space, nodes, changes, entry, node, cell, there)
+                if _sees_cell(space, nodes, parent, eye, cell):
+                    state = _whole(nodes.blocks[parent, cell])
+                    _put(space, nodes, changes, entry, node, cell, state)
     nodes.fresh[node] = False
 
 
@@ -258,21 +265,20 @@ def _hears(senses: Senses, poses: Poses, nodes: Nodes, node: int, speaker: int) 
     if senses.hearing == HEAR_SEEN:
         known = nodes.pose[nodes.parent[node], speaker] != UNKNOWN
         return bool(nodes.sees[node, speaker] and known)
-    around = _whole(nodes.parent[node])
-    there = _whole(nodes.pose[around, speaker])
-    if there == UNKNOWN:
+    parent = _whole(nodes.parent[node])
+    other = _whole(nodes.pose[parent, speaker])
+    if other == UNKNOWN:
         return False
-    here = _whole(nodes.pose[around, nodes.agent[node]])
-    x = poses.feet[here, 0] - poses.feet[there, 0]
-    y = poses.feet[here, 1] - poses.feet[there, 1]
-    z = poses.feet[here, 2] - poses.feet[there, 2]
+    own = _whole(nodes.pose[parent, nodes.agent[node]])
+    x = poses.feet[own, 0] - poses.feet[other, 0]
+    y = poses.feet[own, 1] - poses.feet[other, 1]
+    z = poses.feet[own, 2] - poses.feet[other, 2]
     return math.sqrt(x * x + z * z + y * y) <= senses.radius
 
 
 @inner
-def _attend(
+def _perceive_events(
     space: Space,
-    senses: Senses,
     poses: Poses,
     facts: Facts,
     nodes: Nodes,
@@ -280,12 +286,11 @@ def _attend(
     entry: int,
     first_event: int,
     node: int,
-    eye: Eye,
 ) -> None:
     """Which events of an entry the present owner of a node perceives."""
-    around, me = _whole(nodes.parent[node]), _whole(nodes.agent[node])
+    parent, me = _whole(nodes.parent[node]), _whole(nodes.agent[node])
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
-        if not changes.perceived[event - first_event, around]:
+        if not changes.perceived[event - first_event, parent]:
             continue
         kind, actor = facts.event_kind[event], _whole(facts.event_actor[event])
         if actor == me:
@@ -293,17 +298,17 @@ def _attend(
         elif kind == KIND_THINK:
             got = False
         elif kind == KIND_CHAT:
-            got = _is_for(facts, event, me) and _hears(senses, poses, nodes, node, actor)
+            got = _is_for(facts, event, me) and _hears(space.senses, poses, nodes, node, actor)
         elif kind == KIND_UPDATE:
-            cell = _whole(facts.event_cell[event])
-            got = _sees_cell(space, nodes, around, eye, cell)
+            cell, eye = _whole(facts.event_cell[event]), _eye(space, poses, _whole(nodes.eye[node]))
+            got = _sees_cell(space, nodes, parent, eye, cell)
         else:
-            got = actor >= 0 and nodes.pose[around, actor] != UNKNOWN and nodes.sees[node, actor]
+            got = actor >= 0 and nodes.pose[parent, actor] != UNKNOWN and nodes.sees[node, actor]
         changes.perceived[event - first_event, node] = got
 
 
 @inner
-def _absent(
+def _update_absent(
     senses: Senses,
     facts: Facts,
     nodes: Nodes,
@@ -330,9 +335,8 @@ def _absent(
 
 
 @inner
-def _believe(
+def _update_node(
     space: Space,
-    senses: Senses,
     poses: Poses,
     facts: Facts,
     nodes: Nodes,
@@ -342,26 +346,25 @@ def _believe(
     node: int,
 ) -> None:
     """Fold an entry into one node, after its parent."""
-    around, me = _whole(nodes.parent[node]), _whole(nodes.agent[node])
-    if not nodes.current[around, me]:
-        _absent(senses, facts, nodes, changes, entry, first_event, node)
+    parent, me = _whole(nodes.parent[node]), _whole(nodes.agent[node])
+    if not nodes.current[parent, me]:
+        _update_absent(space.senses, facts, nodes, changes, entry, first_event, node)
         return
-    pose = _whole(nodes.pose[around, me])
-    eye = _eye(space, senses, poses, pose)
-    moved = nodes.eye[node] != pose or nodes.scene[node] != nodes.geometry[around]
+    pose = _whole(nodes.pose[parent, me])
+    eye = _eye(space, poses, pose)
+    moved = nodes.eye[node] != pose or nodes.seen_geometry[node] != nodes.geometry[parent]
     nodes.eye[node] = pose
-    nodes.scene[node] = nodes.geometry[around]
-    _meet(space, senses, poses, nodes, node, eye, moved)
+    nodes.seen_geometry[node] = nodes.geometry[parent]
+    _observe_agents(space, poses, nodes, node, eye, moved)
     if moved or nodes.fresh[node]:
-        _look(space, nodes, changes, entry, node, eye)
-    _attend(space, senses, poses, facts, nodes, changes, entry, first_event, node, eye)
-    _watch(space, nodes, node, eye, moved)
+        _observe_blocks(space, nodes, changes, entry, node, eye)
+    _perceive_events(space, poses, facts, nodes, changes, entry, first_event, node)
+    _propagate_bases(space, nodes, node, eye, moved)
 
 
 @compiled
 def fold(
     space: Space,
-    senses: Senses,
     poses: Poses,
     facts: Facts,
     nodes: Nodes,
@@ -382,27 +385,18 @@ def fold(
         if changes.used[0] > 0 and changes.used[0] > room // 2:
             return entry
         if which[0]:
-            _happens(space, facts, nodes, changes, entry)
+            _apply_entry(space, facts, nodes, changes, entry)
             for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
                 changes.perceived[event - first_event, 0] = True
         for node in range(1, len(nodes.parent)):
             if which[node]:
-                _believe(space, senses, poses, facts, nodes, changes, entry, first_event, node)
+                _update_node(space, poses, facts, nodes, changes, entry, first_event, node)
     return stop
-
-
-@compiled
-def sees_cell(
-    space: Space, senses: Senses, poses: Poses, nodes: Nodes, node: int, pose: int, cell: int
-) -> bool:
-    """Whether an eye at a pose's pose sees a cell in a node."""
-    return _sees_cell(space, nodes, node, _eye(space, senses, poses, pose), cell)
 
 
 @compiled
 def sees_cells(
     space: Space,
-    senses: Senses,
     poses: Poses,
     nodes: Nodes,
     node: int,
@@ -410,7 +404,7 @@ def sees_cells(
     cells: npt.NDArray[np.int64],
 ) -> npt.NDArray[np.bool_]:
     """Which of some cells an eye at a pose's pose sees in a node."""
-    eye = _eye(space, senses, poses, pose)
+    eye = _eye(space, poses, pose)
     seen = np.zeros(len(cells), dtype=np.bool_)
     for number in range(len(cells)):
         seen[number] = _sees_cell(space, nodes, node, eye, cells[number])
@@ -420,7 +414,6 @@ def sees_cells(
 @compiled
 def sees_point(
     space: Space,
-    senses: Senses,
     poses: Poses,
     nodes: Nodes,
     node: int,
@@ -428,8 +421,7 @@ def sees_point(
     point: tuple[float, float, float],
 ) -> bool:
     """Whether an eye at a pose's pose sees a point (scenario coordinates) in a node."""
-    eye = _eye(space, senses, poses, pose)
+    eye = _eye(space, poses, pose)
     x, y, z = point
-    there = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
-    codes = nodes.codes[node]
-    return eye_sees_point(codes, space.sizes, space.starts, space.boxes, eye, there)
+    place = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
+    return eye_sees_point(_scene(space, nodes, node), eye, place)

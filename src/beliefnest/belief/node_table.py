@@ -77,7 +77,7 @@ class NodeTable:
             "pending": np.zeros((2, -(-cells // 64)), dtype=np.uint64),
             "fresh": np.zeros(2, dtype=np.bool_),
             "eye": np.full(2, UNKNOWN, dtype=np.int32),
-            "scene": np.full(2, UNKNOWN, dtype=np.int32),
+            "seen_geometry": np.full(2, UNKNOWN, dtype=np.int32),
             "tried": np.full((2, agents), UNKNOWN, dtype=np.int32),
             "sees": np.zeros((2, agents), dtype=np.bool_),
             "watched": np.zeros((2, spots), dtype=np.bool_),
@@ -132,7 +132,7 @@ class NodeTable:
                 row[node] = wide[theirs]
             else:
                 row[node] = other._rows[name][source]
-        for name in ("eye", "scene", "tried"):
+        for name in ("eye", "seen_geometry", "tried"):
             self._rows[name][node] = UNKNOWN
         for name in ("pose", "equipment"):
             row = self._rows[name][node]

@@ -5,6 +5,7 @@ and each shape met is clipped against all rays in one loop. Grids and codes as i
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -12,10 +13,8 @@ import numpy.typing as npt
 from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, LIMIT_SLACK, OWN
 from beliefnest.perception.rays import (
     LEAST_LENGTH,
-    Boxes,
     Cell,
-    Codes,
-    Starts,
+    Scene,
     Vector,
     at,
     cell_at,
@@ -29,19 +28,26 @@ from beliefnest.perception.rays import (
     turned,
     turned_back,
 )
-from beliefnest.perception.shadows import ROOM, Counts, Suspects
+from beliefnest.perception.shadows import ROOM, Shadows
 
-__all__ = ["Eye", "beam_room", "in_field", "in_reach", "new_beam", "sees_block"]
+__all__ = ["Beam", "Eye", "beam_room", "in_field", "in_reach", "new_beam", "sees_block"]
 
 Eye = tuple[Vector, Vector, float, float]
 """Place, unit vector it looks along, cosine of half its field of view (-2: it sees all
 around), and how far it sees (infinite: no limit)."""
 
-Slopes = npt.NDArray[np.float64]
-"""Of each ray (second index) 1 / d along x, y and z, and the t that 1e-9 blocks take."""
 
-Open = npt.NDArray[np.int64]
-"""Of each ray -1 as long as nothing was found to hide its end, then 0."""
+class Beam(NamedTuple):
+    """The rays from an eye to the sample points of one block.
+
+    Attributes:
+        slopes: float64 (4, rays), 1 / d along x, y and z, and the t that 1e-9 blocks take.
+        opens: int64 (rays,), -1 as long as nothing was found to hide the ray's end, then 0.
+    """
+
+    slopes: npt.NDArray[np.float64]
+    opens: npt.NDArray[np.int64]
+
 
 _SAMPLES = 16
 # Face corners are pulled in by 0.01. Counted from the middle so that a mirrored block
@@ -52,9 +58,9 @@ _STEEP = 1e300
 _SPARE = 1e-9
 
 
-def beam_room() -> tuple[Slopes, Open]:
+def beam_room() -> Beam:
     """Room for the rays of one beam after the other."""
-    return np.ones((4, _SAMPLES)), np.empty(_SAMPLES, dtype=np.int64)
+    return Beam(np.ones((4, _SAMPLES)), np.empty(_SAMPLES, dtype=np.int64))
 
 
 new_beam = inlined(beam_room)
@@ -99,8 +105,9 @@ def _offset(eye: Vector, cell: Cell, number: int) -> Vector:
 
 
 @inlined
-def _block_box(eye: Vector, low: Vector, high: Vector, slopes: Slopes, opens: Open) -> bool:
+def _block_box(eye: Vector, low: Vector, high: Vector, beam: Beam) -> bool:
     """Close the rays that enter a box; whether any is left open."""
+    slopes, opens = beam
     x0, y0, z0 = low[0] - eye[0], low[1] - eye[1], low[2] - eye[2]
     x1, y1, z1 = high[0] - eye[0], high[1] - eye[1], high[2] - eye[2]
     left = 0
@@ -116,19 +123,11 @@ def _block_box(eye: Vector, low: Vector, high: Vector, slopes: Slopes, opens: Op
 
 
 @compiled
-def _block_cell(
-    codes: Codes,
-    sizes: Cell,
-    starts: Starts,
-    boxes: Boxes,
-    eye: Vector,
-    cell: Cell,
-    slopes: Slopes,
-    opens: Open,
-) -> bool:
+def _block_cell(scene: Scene, eye: Vector, cell: Cell, beam: Beam) -> bool:
     """Close the rays that enter the shape of a cell's own block; whether any is left open."""
     i, j, k = cell
-    code = codes[at(sizes, cell)] & OWN
+    starts, boxes = scene.starts, scene.boxes
+    code = scene.codes[at(scene.sizes, cell)] & OWN
     low, high = (float(i), float(j), float(k)), (i + 1.0, j + 1.0, k + 1.0)
     first, last = 0, 1
     if code != FULL:
@@ -138,7 +137,7 @@ def _block_cell(
         if code != FULL:
             low = (i + boxes[row, 0], j + boxes[row, 1], k + boxes[row, 2])
             high = (i + boxes[row, 3], j + boxes[row, 4], k + boxes[row, 5])
-        left = _block_box(eye, low, high, slopes, opens)
+        left = _block_box(eye, low, high, beam)
     return left
 
 
@@ -154,17 +153,9 @@ def _bounds(
 
 
 @compiled
-def _beam_ends(
-    codes: Codes,
-    sizes: Cell,
-    starts: Starts,
-    boxes: Boxes,
-    eye: Vector,
-    target: Cell,
-    slopes: Slopes,
-    opens: Open,
-) -> bool:
+def _beam_ends(scene: Scene, eye: Vector, target: Cell, beam: Beam) -> bool:
     """Whether any ray of a beam gets to the target, layer by layer along its longest axis."""
+    codes, sizes = scene.codes, scene.sizes
     axis = main_axis((target[0] + 0.5 - eye[0], target[1] + 0.5 - eye[1], target[2] + 0.5 - eye[2]))
     ea, eb, ec = turned(eye, axis)
     ta, tb, tc = turned(target, axis)
@@ -195,14 +186,14 @@ def _beam_ends(
                         block != target
                         and is_inside(sizes, block)
                         and codes[at(sizes, block)] & OWN > (EMPTY if side < 0 else FULL)
-                        and not _block_cell(codes, sizes, starts, boxes, eye, block, slopes, opens)
+                        and not _block_cell(scene, eye, block, beam)
                     ):
                         return False
     return True
 
 
 @inlined
-def _fill_axis(slopes: Slopes, axis: int, d: float, e: float, low: int) -> None:
+def _fill_axis(slopes: npt.NDArray[np.float64], axis: int, d: float, e: float, low: int) -> None:
     """Write the slopes of a beam's rays along one axis; d leads to the block's middle."""
     level, inner, outer = _inverse(d), _inverse(d - _CORNER), _inverse(d + _CORNER)
     face = _inverse(d + (0.5 if e > low else -0.5))
@@ -217,7 +208,7 @@ def _fill_axis(slopes: Slopes, axis: int, d: float, e: float, low: int) -> None:
 
 
 @inlined
-def _take_middles(opens: Open, levels: int) -> int:
+def _take_middles(opens: npt.NDArray[np.int64], levels: int) -> int:
     """Close the rays that may lie in the plane of a face; bit n of the result: ray n was open.
 
     Bit a of levels: the eye is level with the block's middle along axis a, in such a plane.
@@ -233,8 +224,9 @@ def _take_middles(opens: Open, levels: int) -> int:
 
 
 @inlined
-def _aim(eye: Eye, cell: Cell, slopes: Slopes, opens: Open) -> int:
+def _aim(eye: Eye, cell: Cell, beam: Beam) -> int:
     """Set up the beam from an eye to a block; rays in the plane of a face go to the result."""
+    slopes, opens = beam
     place = eye[0]
     x, y, z = cell[0] + 0.5 - place[0], cell[1] + 0.5 - place[1], cell[2] + 0.5 - place[2]
     # One length stands for all: that of a ray to a sample differs by less than a block.
@@ -261,39 +253,29 @@ def _aim(eye: Eye, cell: Cell, slopes: Slopes, opens: Open) -> int:
 
 @compiled
 def sees_block(
-    codes: Codes,
-    sizes: Cell,
-    starts: Starts,
-    boxes: Boxes,
-    eye: Eye,
-    cell: Cell,
-    slopes: Slopes,
-    opens: Open,
-    counts: Counts,
-    suspects: Suspects,
-    index: int,
+    scene: Scene, eye: Eye, cell: Cell, beam: Beam, shadows: Shadows, index: int
 ) -> bool:
     """Whether a block is seen, if near enough; index: of what `cast_shadows` noted, or -1."""
     place = eye[0]
     x, y, z = cell[0] + 0.5 - place[0], cell[1] + 0.5 - place[1], cell[2] + 0.5 - place[2]
-    in_plane = _aim(eye, cell, slopes, opens)
+    in_plane = _aim(eye, cell, beam)
     left = False
     for n in range(_SAMPLES):
-        left |= opens[n] != 0
-    known = counts[index] if index >= 0 else ROOM + 1
+        left |= beam.opens[n] != 0
+    known = shadows.counts[index] if index >= 0 else ROOM + 1
     if index >= 0:
         for n in range(min(known, ROOM)):
             if left:
-                by = cell_at(sizes, suspects[index, n])
-                left = _block_cell(codes, sizes, starts, boxes, place, by, slopes, opens)
+                by = cell_at(scene.sizes, shadows.suspects[index, n])
+                left = _block_cell(scene, place, by, beam)
     if left and known > ROOM:
-        left = _beam_ends(codes, sizes, starts, boxes, place, cell, slopes, opens)
+        left = _beam_ends(scene, place, cell, beam)
     if left:
         return True
     for number in range(_SAMPLES):
         if (in_plane >> number) & 1:
             offset = _offset(place, cell, number)
             d = (x + offset[0], y + offset[1], z + offset[2])
-            if hidden_by(codes, sizes, starts, boxes, cell, place, d)[0] < 0:
+            if hidden_by(scene, cell, place, d)[0] < 0:
                 return True
     return False

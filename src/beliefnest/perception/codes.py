@@ -18,7 +18,6 @@ __all__ = [
     "CodeGrid",
     "Reaches",
     "mark_intruded",
-    "put_code",
 ]
 
 CodeGrid = npt.NDArray[np.uint16]
@@ -46,28 +45,3 @@ def mark_intruded(codes: CodeGrid, reaches: Reaches) -> None:
     for side in range(6):
         step = (ny * nz, nz, 1)[side // 2] * (2 * (side % 2) - 1)
         flat[reaching[(sides >> side) & 1 != 0] + step] |= INTRUDED
-
-
-def put_code(codes: CodeGrid, reaches: Reaches, cell: tuple[int, int, int], code: int) -> None:
-    """Put another block into a cell of a grid, not of its margin."""
-    codes[cell] = codes[cell] & INTRUDED | code
-    for side in range(6):
-        beside = _neighbour(cell, side)
-        own = codes[beside] & OWN
-        # The neighbour across a low side reaches in through its own high side.
-        intruded = any(
-            reaches[codes[other] & OWN] >> (inward ^ 1) & 1
-            for inward in range(6)
-            if _is_inside(codes, other := _neighbour(beside, inward))
-        )
-        codes[beside] = own | INTRUDED if intruded else own
-
-
-def _neighbour(cell: tuple[int, int, int], side: int) -> tuple[int, int, int]:
-    moved = list(cell)
-    moved[side // 2] += 2 * (side % 2) - 1
-    return moved[0], moved[1], moved[2]
-
-
-def _is_inside(codes: CodeGrid, cell: tuple[int, int, int]) -> bool:
-    return all(0 <= c < size for c, size in zip(cell, codes.shape, strict=True))

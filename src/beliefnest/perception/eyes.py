@@ -4,15 +4,13 @@ Coordinates and codes are those of `rays`, an `Eye` is that of `beams`.
 """
 
 import numpy as np
-import numpy.typing as npt
 
-from beliefnest.perception.beams import Eye, in_field, in_reach, sees_block
-from beliefnest.perception.codes import INTRUDED, OWN
+from beliefnest.perception.beams import Beam, Eye, in_field, in_reach, sees_block
+from beliefnest.perception.codes import INTRUDED, OWN, Reaches
 from beliefnest.perception.rays import (
-    Boxes,
     Cell,
     Codes,
-    Starts,
+    Scene,
     Vector,
     at,
     compiled,
@@ -21,7 +19,7 @@ from beliefnest.perception.rays import (
     is_inside,
     neighbour,
 )
-from beliefnest.perception.shadows import Counts, Suspects
+from beliefnest.perception.shadows import Shadows
 from beliefnest.perception.sight import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT
 
 __all__ = ["Eye", "eye_sees_agent", "eye_sees_block", "eye_sees_point", "set_code"]
@@ -30,63 +28,46 @@ _HEIGHTS = np.array(AGENT_SAMPLE_HEIGHTS)
 
 
 @compiled
-def eye_sees_block(
-    codes: Codes,
-    sizes: Cell,
-    starts: Starts,
-    boxes: Boxes,
-    eye: Eye,
-    cell: Cell,
-    slopes: npt.NDArray[np.float64],
-    opens: npt.NDArray[np.int64],
-    counts: Counts,
-    suspects: Suspects,
-) -> bool:
-    """Whether a block is seen; the arrays are room to work in, from `beams.beam_room`."""
+def eye_sees_block(scene: Scene, eye: Eye, cell: Cell, beam: Beam, shadows: Shadows) -> bool:
+    """Whether a block is seen; the beam is room to work in, the shadows are `no_shadows()`."""
     x, y, z = eye[0]
     if not in_reach(eye, cell[0] + 0.5 - x, cell[1] + 0.5 - y, cell[2] + 0.5 - z):
         return False
-    return sees_block(codes, sizes, starts, boxes, eye, cell, slopes, opens, counts, suspects, -1)
+    return sees_block(scene, eye, cell, beam, shadows, -1)
 
 
 @compiled
-def _sees_sample(
-    codes: Codes, sizes: Cell, starts: Starts, boxes: Boxes, eye: Eye, d: Vector
-) -> bool:
+def _sees_sample(scene: Scene, eye: Eye, d: Vector) -> bool:
     if not in_field(eye, d[0], d[1], d[2]):
         return False
     # Not the constant: a tuple of literals would have the ray compiled a second time.
     nowhere = (-len(_HEIGHTS), -len(_HEIGHTS), -len(_HEIGHTS))
-    return hidden_by(codes, sizes, starts, boxes, nowhere, eye[0], d)[0] < 0
+    return hidden_by(scene, nowhere, eye[0], d)[0] < 0
 
 
 @inlined
-def eye_sees_point(
-    codes: Codes, sizes: Cell, starts: Starts, boxes: Boxes, eye: Eye, point: Vector
-) -> bool:
+def eye_sees_point(scene: Scene, eye: Eye, point: Vector) -> bool:
     """Whether a point is seen that is within the visible distance."""
     place = eye[0]
     d = (point[0] - place[0], point[1] - place[1], point[2] - place[2])
-    return in_reach(eye, d[0], d[1], d[2]) and _sees_sample(codes, sizes, starts, boxes, eye, d)
+    return in_reach(eye, d[0], d[1], d[2]) and _sees_sample(scene, eye, d)
 
 
 @compiled
-def eye_sees_agent(
-    codes: Codes, sizes: Cell, starts: Starts, boxes: Boxes, eye: Eye, feet: Vector
-) -> bool:
+def eye_sees_agent(scene: Scene, eye: Eye, feet: Vector) -> bool:
     """Whether an agent with its feet at a point is seen by one of its sample points."""
     place = eye[0]
     x, y, z = feet[0] - place[0], feet[1] - place[1], feet[2] - place[2]
     if not in_reach(eye, x, y + BODY_CENTRE_HEIGHT, z):
         return False
-    for height in _HEIGHTS:
-        if _sees_sample(codes, sizes, starts, boxes, eye, (x, y + height, z)):
+    for height in _HEIGHTS:  # noqa: SIM110 - kernels know no generators
+        if _sees_sample(scene, eye, (x, y + height, z)):
             return True
     return False
 
 
 @inlined
-def _update_intruded(codes: Codes, sizes: Cell, reaches: npt.NDArray[np.uint8], cell: Cell) -> None:
+def _update_intruded(codes: Codes, sizes: Cell, reaches: Reaches, cell: Cell) -> None:
     """Set or clear a cell's `INTRUDED` from the shapes of its neighbours."""
     intruded = False
     for side in range(6):
@@ -99,10 +80,8 @@ def _update_intruded(codes: Codes, sizes: Cell, reaches: npt.NDArray[np.uint8], 
 
 
 @compiled
-def set_code(
-    codes: Codes, sizes: Cell, reaches: npt.NDArray[np.uint8], cell: Cell, code: int
-) -> None:
-    """Put another block into a cell of the grid; `codes.put_code` for flat codes, compiled."""
+def set_code(codes: Codes, sizes: Cell, reaches: Reaches, cell: Cell, code: int) -> None:
+    """Put another block into a cell of the grid, not of its margin."""
     codes[at(sizes, cell)] = codes[at(sizes, cell)] & INTRUDED | code
     for side in range(6):
         _update_intruded(codes, sizes, reaches, neighbour(cell, side))

@@ -10,7 +10,7 @@ axis, as all shapes of Minecraft do; tests/world/test_registry.py holds that.
 
 import math
 from collections.abc import Callable
-from typing import Any, TypeVar, cast
+from typing import Any, NamedTuple, TypeVar, cast
 
 import numba
 import numpy as np
@@ -53,10 +53,25 @@ Codes = npt.NDArray[np.uint16]
 """The codes of a grid, flattened."""
 Starts = npt.NDArray[np.int32]
 Boxes = npt.NDArray[np.float64]
-Scene = tuple[Codes, Cell, Starts, Boxes]
-"""A grid, its sizes, and the shapes of its blocks."""
 Ray = tuple[Vector, Vector, Vector, float]
 """Eye, d, 1 / d (0 where d is 0), and the t that 1e-9 blocks take."""
+
+
+class Scene(NamedTuple):
+    """What kernels look through: a grid of codes, and the shapes that codes stand for.
+
+    Attributes:
+        codes: uint16, the grid, flattened.
+        sizes: Its cells along x, y, z.
+        starts: int32 (shapes + 1,), first row of each shape in `boxes`.
+        boxes: float64 (n, 6), low and high corners of shapes' boxes in their cells.
+    """
+
+    codes: Codes
+    sizes: Cell
+    starts: Starts
+    boxes: Boxes
+
 
 NOWHERE = (-1, -1, -1)
 
@@ -155,14 +170,14 @@ def span(ray: Ray, low: Vector, high: Vector) -> tuple[float, float]:
 
 
 @inlined
-def block_entry(starts: Starts, boxes: Boxes, code: int, cell: Cell, ray: Ray) -> float:
+def block_entry(scene: Scene, code: int, cell: Cell, ray: Ray) -> float:
     """Where a ray first enters a box of a cell's own shape; `MISSED` if nowhere."""
     i, j, k = cell
     least = ray[3]
     if code == FULL:
         t0, t1 = span(ray, (float(i), float(j), float(k)), (i + 1.0, j + 1.0, k + 1.0))
         return t0 if t1 - t0 > least else MISSED
-    entry = MISSED
+    entry, starts, boxes = MISSED, scene.starts, scene.boxes
     for row in range(starts[code - FIRST_SHAPE], starts[code - FIRST_SHAPE + 1]):
         low = (i + boxes[row, 0], j + boxes[row, 1], k + boxes[row, 2])
         high = (i + boxes[row, 3], j + boxes[row, 4], k + boxes[row, 5])
@@ -173,15 +188,14 @@ def block_entry(starts: Starts, boxes: Boxes, code: int, cell: Cell, ray: Ray) -
 
 
 @inlined
-def _cell_entry(
-    codes: Codes, sizes: Cell, starts: Starts, boxes: Boxes, cell: Cell, target: Cell, ray: Ray
-) -> tuple[float, Cell]:
+def _cell_entry(scene: Scene, cell: Cell, target: Cell, ray: Ray) -> tuple[float, Cell]:
     """Entry and place of the block met first among those in and reaching into a cell."""
+    codes, sizes = scene.codes, scene.sizes
     entry = MISSED
     hit = NOWHERE
     code = codes[at(sizes, cell)]
     if code & OWN != EMPTY and cell != target:
-        entry = block_entry(starts, boxes, code & OWN, cell, ray)
+        entry = block_entry(scene, code & OWN, cell, ray)
         if entry != MISSED:
             hit = cell
     if code & INTRUDED:
@@ -192,7 +206,7 @@ def _cell_entry(
                 and is_inside(sizes, other)
                 and codes[at(sizes, other)] & OWN >= FIRST_SHAPE
             ):
-                t = block_entry(starts, boxes, codes[at(sizes, other)] & OWN, other, ray)
+                t = block_entry(scene, codes[at(sizes, other)] & OWN, other, ray)
                 if t < entry:
                     entry = t
                     hit = other
@@ -248,15 +262,14 @@ def _part_inside(sizes: Cell, ray: Ray) -> tuple[float, float]:
 
 
 @compiled
-def _first_hit(
-    codes: Codes, sizes: Cell, starts: Starts, boxes: Boxes, target: Cell, ray: Ray
-) -> Cell:
+def _first_hit(scene: Scene, target: Cell, ray: Ray) -> Cell:
     """The cell of the first block whose shape a ray enters; `NOWHERE` if there is none.
 
     Goes layer by layer along the ray's longest axis. In a layer the ray lies in two cells
     at most along each other axis; what it enters of the shapes there is decided by
     clipping, so that the order in which it passes edges and corners plays no part.
     """
+    codes, sizes = scene.codes, scene.sizes
     t0, t1 = _part_inside(sizes, ray)
     if not t0 < t1:
         return NOWHERE
@@ -292,7 +305,7 @@ def _first_hit(
                 for nc in range(min(c0, c1), max(c0, c1) + 1):
                     cell = turned_back(layer, nb, nc, axis)
                     if codes[at(sizes, cell)] != EMPTY:
-                        t, block = _cell_entry(codes, sizes, starts, boxes, cell, target, ray)
+                        t, block = _cell_entry(scene, cell, target, ray)
                         if t < entry:
                             entry, hit = t, block
             if entry != MISSED:
@@ -309,16 +322,14 @@ def may_lie_in_face(e: float, d: float) -> bool:
 
 
 @compiled
-def hidden_by(
-    codes: Codes, sizes: Cell, starts: Starts, boxes: Boxes, target: Cell, eye: Vector, d: Vector
-) -> Cell:
+def hidden_by(scene: Scene, target: Cell, eye: Vector, d: Vector) -> Cell:
     """The cell of the first block that hides eye + d; `NOWHERE` if none does.
 
     The target hides nothing. A ray in the plane of a face is free if it is free on one
     side of the plane: two blocks side by side leave no crack, and one may be grazed.
     """
     if d[0] != 0.0 and d[1] != 0.0 and d[2] != 0.0:
-        return _first_hit(codes, sizes, starts, boxes, target, sloped(eye, d))
+        return _first_hit(scene, target, sloped(eye, d))
     hit = NOWHERE
     if d[0] == 0.0 and d[1] == 0.0 and d[2] == 0.0:
         return hit
@@ -333,7 +344,7 @@ def hidden_by(
             eye[1] + (sides_y - 1) * (2 * y - 1) * _NUDGE,
             eye[2] + (sides_z - 1) * (2 * z - 1) * _NUDGE,
         )
-        hit = _first_hit(codes, sizes, starts, boxes, target, sloped(moved, d))
+        hit = _first_hit(scene, target, sloped(moved, d))
         if hit[0] < 0:
             return hit
     return hit

@@ -8,16 +8,15 @@ their number, at most `ROOM` + 1.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, OWN
+from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, OWN, Reaches
 from beliefnest.perception.rays import (
-    Boxes,
     Cell,
-    Codes,
-    Starts,
+    Scene,
     Vector,
     at,
     compiled,
@@ -33,16 +32,25 @@ __all__ = [
     "HIDDEN",
     "ROOM",
     "UNSURE",
-    "Counts",
-    "Marks",
-    "Suspects",
+    "Shadows",
     "cast_shadows",
-    "nothing_noted",
+    "no_shadows",
 ]
 
-Marks = npt.NDArray[np.int8]
-Counts = npt.NDArray[np.uint8]
-Suspects = npt.NDArray[np.int32]
+
+class Shadows(NamedTuple):
+    """What is known of the cells of a grid after shadows were cast; empty if none were.
+
+    Attributes:
+        marks: int8 (cells,), `CLEAR`, `HIDDEN` or `UNSURE`.
+        counts: uint8 (cells,), how many blocks may hide parts of the cell.
+        suspects: int32 (cells, `ROOM`), the cells of these blocks.
+    """
+
+    marks: npt.NDArray[np.int8]
+    counts: npt.NDArray[np.uint8]
+    suspects: npt.NDArray[np.int32]
+
 
 CLEAR = 0
 UNSURE = 1
@@ -58,9 +66,7 @@ _TOUCHING = 1e-3
 
 
 @inlined
-def _is_enclosed(
-    codes: Codes, sizes: Cell, marks: Marks, sides: tuple[int, int, int], index: int
-) -> bool:
+def _is_enclosed(scene: Scene, shadows: Shadows, sides: Cell, index: int) -> bool:
     """Whether every ray to a cell comes out of a full cube or a hidden cell.
 
     Sides are the index steps to the neighbours nearer to the eye, 0 along an axis where
@@ -76,7 +82,7 @@ def _is_enclosed(
         before += sides[0] if n & 1 else 0
         before += sides[1] if n & 2 else 0
         before += sides[2] if n & 4 else 0
-        if marks[before] != HIDDEN and codes[before] & OWN != FULL:
+        if shadows.marks[before] != HIDDEN and scene.codes[before] & OWN != FULL:
             return False
     return True
 
@@ -120,26 +126,29 @@ def _may_enter(eye: Vector, cell: Cell, low: Vector, high: Vector) -> bool:
 
 
 @inlined
-def _suspect(counts: Counts, suspects: Suspects, cell: int, block: int) -> None:
+def _suspect(shadows: Shadows, cell: int, block: int) -> None:
     """Note a block that may hide parts of a cell; beyond the room for them only their number."""
+    counts = shadows.counts
     if cell != block and counts[cell] <= ROOM:
         if counts[cell] < ROOM:
-            suspects[cell, counts[cell]] = block
+            shadows.suspects[cell, counts[cell]] = block
         counts[cell] += 1
 
 
 @inlined
-def _doubt_all(marks: Marks, counts: Counts, suspects: Suspects, index: int) -> None:
+def _doubt_all(shadows: Shadows, index: int) -> None:
     """Note the block of that index, which the eye touches, for all cells."""
+    marks = shadows.marks
     for n in range(len(marks)):
-        _suspect(counts, suspects, n, index)
+        _suspect(shadows, n, index)
         if marks[n] == CLEAR:
             marks[n] = UNSURE
 
 
 @inlined
-def _prefer(counts: Counts, suspects: Suspects, cell: int, block: int) -> None:
+def _prefer(shadows: Shadows, cell: int, block: int) -> None:
     """Let the suspect noted last, which hides a cell's middle, be the first one tried."""
+    counts, suspects = shadows.counts, shadows.suspects
     if cell != block:
         if counts[cell] <= ROOM:
             suspects[cell, counts[cell] - 1] = suspects[cell, 0]
@@ -160,9 +169,7 @@ def _gap(eye: Vector, low: Vector, high: Vector) -> tuple[int, float]:
 
 @compiled
 def _cast_box(
-    marks: Marks,
-    counts: Counts,
-    suspects: Suspects,
+    shadows: Shadows,
     sizes: Cell,
     eye: Vector,
     low: Vector,
@@ -171,9 +178,10 @@ def _cast_box(
     casts_full: bool,
 ) -> None:
     """Mark the cells in the shadow of a box, which is part of the block of that index."""
+    marks = shadows.marks
     axis, near = _gap(eye, low, high)
     if near < _TOUCHING:
-        _doubt_all(marks, counts, suspects, index)
+        _doubt_all(shadows, index)
         return
     ea, eb, ec = turned(eye, axis)
     la, lb, lc = turned(low, axis)
@@ -203,7 +211,7 @@ def _cast_box(
                 n = layer * stride_a + b * stride_b + c * stride_c
                 if marks[n] == HIDDEN:
                     continue
-                _suspect(counts, suspects, n, index)
+                _suspect(shadows, n, index)
                 if (
                     is_b
                     and marks[n] == CLEAR
@@ -211,7 +219,7 @@ def _cast_box(
                     and _may_enter(eye, turned_back(layer, b, c, axis), low, high)
                 ):
                     marks[n] = UNSURE
-                    _prefer(counts, suspects, n, index)
+                    _prefer(shadows, n, index)
         if casts_full and d0 >= near:
             b0, b1 = _cells_within(eb, full_b0, full_b1, d0, d1, size_b)
             c0, c1 = _cells_within(ec, full_c0, full_c1, d0, d1, size_c)
@@ -238,19 +246,12 @@ def _outward(e: float, size: int) -> npt.NDArray[np.int64]:
 
 
 @compiled
-def cast_shadows(
-    codes: Codes,
-    sizes: Cell,
-    starts: Starts,
-    boxes: Boxes,
-    reaches: npt.NDArray[np.uint8],
-    eye: Vector,
-) -> tuple[Marks, Counts, Suspects]:
-    """Marks and suspects of all cells, near blocks first: the hidden cast no shadow."""
+def cast_shadows(scene: Scene, reaches: Reaches, eye: Vector) -> Shadows:
+    """The shadows of all blocks, near ones first: the hidden cast none."""
+    codes, sizes, starts, boxes = scene
     size = sizes[0] * sizes[1] * sizes[2]
     marks = np.zeros(size, dtype=np.int8)
-    counts = np.zeros(size, dtype=np.uint8)
-    suspects = np.empty((size, ROOM), dtype=np.int32)
+    shadows = Shadows(marks, np.zeros(size, dtype=np.uint8), np.empty((size, ROOM), dtype=np.int32))
     for i in _outward(eye[0], sizes[0]):
         for j in _outward(eye[1], sizes[1]):
             for k in _outward(eye[2], sizes[2]):
@@ -260,7 +261,7 @@ def cast_shadows(
                     _side(eye[1], j, sizes[2]),
                     _side(eye[2], k, 1),
                 )
-                if marks[index] != HIDDEN and _is_enclosed(codes, sizes, marks, sides, index):
+                if marks[index] != HIDDEN and _is_enclosed(scene, shadows, sides, index):
                     marks[index] = HIDDEN
                 mark = marks[index]
                 code = codes[index] & OWN
@@ -274,17 +275,15 @@ def cast_shadows(
                     if code != FULL:
                         low = (i + boxes[row, 0], j + boxes[row, 1], k + boxes[row, 2])
                         high = (i + boxes[row, 3], j + boxes[row, 4], k + boxes[row, 5])
-                    _cast_box(
-                        marks, counts, suspects, sizes, eye, low, high, index, reaches[code] == 0
-                    )
+                    _cast_box(shadows, sizes, eye, low, high, index, reaches[code] == 0)
                 # A block does not hide itself.
                 marks[index] = mark
-    return marks, counts, suspects
+    return shadows
 
 
-def nothing_noted() -> tuple[Marks, Counts, Suspects]:
+def no_shadows() -> Shadows:
     """What stands for the result of `cast_shadows` where it was not called."""
-    return (
+    return Shadows(
         np.empty(0, dtype=np.int8),
         np.empty(0, dtype=np.uint8),
         np.empty((0, ROOM), dtype=np.int32),

@@ -28,7 +28,6 @@ from beliefnest.perception.codes import (
     LIMIT_SLACK,
     CodeGrid,
     mark_intruded,
-    put_code,
 )
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
@@ -219,6 +218,8 @@ class Geometry:
             InputError: A position lies outside the grid.
             UnknownNameError: A value is neither a block state id nor -1.
         """
+        from beliefnest.perception.eyes import set_code
+
         codes = self.codes.copy()
         states = self.sight.registry.states
         for position, state in changes.items():
@@ -228,7 +229,8 @@ class Geometry:
             _check_states(state, state, states)
             i, j, k = cell
             code = int(self.sight._state_codes[state])
-            put_code(codes, self.sight._reaches, (i + 1, j + 1, k + 1), code)
+            place = (i + 1, j + 1, k + 1)
+            set_code(codes.reshape(-1), self._scene.sizes, self.sight._reaches, place, code)
         codes.flags.writeable = False
         return Geometry(self.sight, self.origin, codes)
 
@@ -237,9 +239,9 @@ class Geometry:
         from beliefnest.perception import shadows, views
 
         seer = self._eye(eye, yaw, pitch)
-        noted = shadows.cast_shadows(*self._scene, self.sight._reaches, seer[0])
+        noted = shadows.cast_shadows(self._scene, self.sight._reaches, seer[0])
         no_cells = np.empty((0, 3), dtype=np.int64)
-        seen = views.seen_blocks(*self._scene, seer, no_cells, *noted)
+        seen = views.seen_blocks(self._scene, seer, no_cells, noted)
         return seen.reshape(self.codes.shape)[1:-1, 1:-1, 1:-1]
 
     def sees_blocks(
@@ -257,7 +259,7 @@ class Geometry:
             raise InputError(f"block positions are of type {rows.dtype}; give integers")
         cells = rows.astype(np.int64) + (1 - np.array(self.origin))
         seer = self._eye(eye, yaw, pitch)
-        return views.seen_blocks(*self._scene, seer, cells, *shadows.nothing_noted())
+        return views.seen_blocks(self._scene, seer, cells, shadows.no_shadows())
 
     def sees_points(self, eye: Point, yaw: float, pitch: float, points: npt.ArrayLike) -> BoolArray:
         """Which of the points (n, 3) are seen; each has to be within the visible distance.
@@ -289,7 +291,7 @@ class Geometry:
 
         start, end = self._local(np.array([eye, point], dtype=np.float64)).tolist()
         d = (end[0] - start[0], end[1] - start[1], end[2] - start[2])
-        i, j, k = rays.hidden_by(*self._scene, rays.NOWHERE, (start[0], start[1], start[2]), d)
+        i, j, k = rays.hidden_by(self._scene, rays.NOWHERE, (start[0], start[1], start[2]), d)
         if i < 0:
             return None
         x, y, z = self.origin
@@ -297,9 +299,13 @@ class Geometry:
 
     @functools.cached_property
     def _scene(self) -> "Scene":
+        from beliefnest.perception.rays import Scene
+
+        nx, ny, nz = self.codes.shape
         registry = self.sight.registry
-        sizes = (self.codes.shape[0], self.codes.shape[1], self.codes.shape[2])
-        return self.codes.reshape(-1), sizes, registry.shape_start, registry.shape_boxes
+        return Scene(
+            self.codes.reshape(-1), (nx, ny, nz), registry.shape_start, registry.shape_boxes
+        )
 
     def _near(self, eye: Point, points: Points) -> BoolArray:
         far = self.sight.max_visible_distance
@@ -313,7 +319,7 @@ class Geometry:
         from beliefnest.perception import rays, views
 
         seer = self._eye(eye, yaw, pitch)
-        return views.seen_points(*self._scene, seer, self._local(points), rays.NOWHERE)
+        return views.seen_points(self._scene, seer, self._local(points), rays.NOWHERE)
 
     def _local(self, points: Points) -> Points:
         """Points in coordinates of the codes, which have a margin of one cell."""

@@ -8,40 +8,31 @@ import numpy.typing as npt
 
 from beliefnest.perception.beams import Eye, in_field, in_reach, new_beam, sees_block
 from beliefnest.perception.rays import (
-    Boxes,
     Cell,
-    Codes,
-    Starts,
+    Scene,
     cell_at,
     compiled,
     hidden_by,
     inlined,
 )
-from beliefnest.perception.shadows import CLEAR, HIDDEN, UNSURE, Counts, Marks, Suspects
+from beliefnest.perception.shadows import CLEAR, HIDDEN, UNSURE, Shadows
 
 __all__ = ["Eye", "seen_blocks", "seen_points"]
 
 
 @compiled
 def seen_blocks(
-    codes: Codes,
-    sizes: Cell,
-    starts: Starts,
-    boxes: Boxes,
-    eye: Eye,
-    cells: npt.NDArray[np.int64],
-    marks: Marks,
-    counts: Counts,
-    suspects: Suspects,
+    scene: Scene, eye: Eye, cells: npt.NDArray[np.int64], shadows: Shadows
 ) -> npt.NDArray[np.bool_]:
     """Which blocks are seen: those of the cells (n, 3), in or out of the grid.
 
-    With marks, counts and suspects from `cast_shadows` the cells are left out, and the
+    With shadows from `cast_shadows` the cells are left out, and the
     blocks are all of the grid, its margin included (which is never seen).
     """
+    sizes, marks = scene.sizes, shadows.marks
     whole = len(marks) > 0
     seen = np.zeros(len(marks) if whole else len(cells), dtype=np.bool_)
-    slopes, opens = new_beam()
+    beam = new_beam()
     px, py, pz = eye[0]
     for n in range(len(seen)):
         mark = marks[n] if whole else UNSURE
@@ -55,9 +46,7 @@ def seen_blocks(
             seen[n] = True
         else:
             index = n if whole else -1
-            seen[n] = sees_block(
-                codes, sizes, starts, boxes, eye, cell, slopes, opens, counts, suspects, index
-            )
+            seen[n] = sees_block(scene, eye, cell, beam, shadows, index)
     return seen
 
 
@@ -69,13 +58,7 @@ def _is_margin(sizes: Cell, cell: Cell) -> bool:
 
 @compiled
 def seen_points(
-    codes: Codes,
-    sizes: Cell,
-    starts: Starts,
-    boxes: Boxes,
-    eye: Eye,
-    points: npt.NDArray[np.float64],
-    target: Cell,
+    scene: Scene, eye: Eye, points: npt.NDArray[np.float64], target: Cell
 ) -> npt.NDArray[np.bool_]:
     """To which of the points (n, 3) a ray inside the field of view is free, however far.
 
@@ -87,6 +70,6 @@ def seen_points(
     for n in range(len(points)):
         d = (points[n, 0] - x, points[n, 1] - y, points[n, 2] - z)
         if in_field(eye, d[0], d[1], d[2]):
-            hit = hidden_by(codes, sizes, starts, boxes, target, eye[0], d)
+            hit = hidden_by(scene, target, eye[0], d)
             seen[n] = hit[0] < 0
     return seen
