@@ -51,6 +51,7 @@ class Columns:
         holds: By block state, and at the end for unknown, whether it is a container.
         first: Number of the first entry of the stretch.
         first_event: How many events lie before it.
+        poses: Where its agents' poses are kept; None: in a table of its own.
 
     Attributes:
         first: Number of the first entry.
@@ -71,12 +72,13 @@ class Columns:
         holds: npt.NDArray[np.bool_],
         first: int = 0,
         first_event: int = 0,
+        poses: PoseTable | None = None,
     ) -> None:
         self._box = box
         self._holds = holds
         self.first = first
         self._first_event = first_event
-        self.poses = PoseTable()
+        self.poses = PoseTable() if poses is None else poses
         self.held: list[int] = []
         self.item_entries: list[int] = []
         self.act_entries: list[int] = []

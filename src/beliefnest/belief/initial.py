@@ -1,6 +1,7 @@
 """Where forests begin: in the real world with its priors, or forked from another forest."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +12,9 @@ from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis, InitialBelief, Source
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.holdings import NEVER, BelievedItem, Content, Holdings
+from beliefnest.belief.holdings_table import HoldingsTable, RootFacts
+from beliefnest.belief.node_table import NodeTable
+from beliefnest.belief.poses import PoseTable
 from beliefnest.belief.protocols import EventHistory
 from beliefnest.world.frames import Snapshot
 
@@ -39,8 +43,6 @@ def initial_forest(
         path: The deepest node.
         extra: Further cells whose basis is to be tracked.
     """
-    forest = Forest(context, events, snapshot.tick, extra)
-    forest.facts_tick = snapshot.tick
     known = _states_of(context, static_blocks)
     prior = np.where(known[snapshot.blocks], snapshot.blocks, UNKNOWN).astype(np.int32)
     context.track(np.flatnonzero(context.holds[snapshot.blocks.ravel()]).tolist())
@@ -51,13 +53,15 @@ def initial_forest(
             for place, state in belief.blocks.items()
             if context.container_name(state)
         )
-    forest.table.track()
-    _add_world(forest, snapshot)
+    table = NodeTable(context, PoseTable(), extra)
+    holdings = HoldingsTable(table, RootFacts(seen_at=snapshot.tick))
+    holdings.add(_add_world(table, snapshot))
     for depth in range(1, len(path) + 1):
         node = path[:depth]
         mine = next((belief for belief in initial if belief.path == node), InitialBelief(node))
-        _add_prior(forest, node, prior, mine, snapshot.tick)
-    forest.table.link()
+        holdings.add(_add_prior(table, node, prior, mine, snapshot.tick))
+    table.link()
+    forest = Forest(events, table, holdings, snapshot.tick)
     forest.perceive_at_first()
     return forest
 
@@ -70,14 +74,15 @@ def _states_of(context: BeliefContext, names: frozenset[str]) -> npt.NDArray[np.
     return known
 
 
-def _add_world(forest: Forest, snapshot: Snapshot) -> None:
-    context, table = forest.context, forest.table
+def _add_world(table: NodeTable, snapshot: Snapshot) -> Holdings:
+    """Add the real world's node; returns its holdings."""
+    context = table.context
     node = table.add((), UNKNOWN)
     table.set_blocks(node, snapshot.blocks)
     basis = Basis(snapshot.tick, Source.SEEN)
     table.set_known_bases(node, basis)
     for name, agent in snapshot.agents.items():
-        pose = forest.poses.add(name, agent)
+        pose = table.poses.add(name, agent)
         number = context.numbers[name]
         table.set_pose(node, number, pose, snapshot.tick, current=True)
         table.set_equipment(node, number, pose)
@@ -86,13 +91,14 @@ def _add_world(forest: Forest, snapshot: Snapshot) -> None:
         holdings.containers[cell_of(context.box, place)] = Content(dict(items), True, basis, -1)
     for key, item in snapshot.items.items():
         holdings.items[key] = BelievedItem(item, basis, -1)
-    forest.holdings.append(holdings)
+    return holdings
 
 
 def _add_prior(
-    forest: Forest, path: Path, prior: npt.NDArray[np.int32], mine: InitialBelief, tick: int
-) -> None:
-    context, table = forest.context, forest.table
+    table: NodeTable, path: Path, prior: npt.NDArray[np.int32], mine: InitialBelief, tick: int
+) -> Holdings:
+    """Add a node with its priors; returns its holdings."""
+    context = table.context
     basis = Basis(tick, Source.PRIOR)
     node = table.add(path, table.index[path[:-1]])
     blocks = prior.copy()
@@ -100,7 +106,7 @@ def _add_prior(
         blocks[context.box.index(place)] = state
     table.set_blocks(node, blocks)
     for name, position in mine.agents.items():
-        pose = forest.poses.add_pose(position, 0.0, 0.0)
+        pose = table.poses.add_pose(position, 0.0, 0.0)
         table.set_pose(node, context.numbers[name], pose, tick, current=False)
     holdings = Holdings()
     for place, (items, complete) in mine.containers.items():
@@ -109,8 +115,7 @@ def _add_prior(
     for cell in context.tracked:
         if context.container_name(table.block(node, cell)):
             holdings.containers.setdefault(cell, Content({}, False, basis))
-    forest.holdings.append(holdings)
-    forest.doubt_contents(node)
+    return holdings
 
 
 def forked_forest(
@@ -134,34 +139,35 @@ def forked_forest(
         tick: Tick of the fork.
         extra: Further cells whose basis is to be tracked; the source tracks them too.
     """
-    forest = Forest(source.context, events, tick, extra)
     source.table.track()
+    first, agents = source.table.index[root], range(len(source.context.agents))
+    vitals = {agent: source.holdings.vitals(first, agent) for agent in agents}
+    table = NodeTable(source.context, PoseTable(), extra)
+    holdings = HoldingsTable(table, RootFacts(vitals=vitals))
     for depth in range(len(root), len(path) + 1):
         old = source.table.index[path[:depth]]
         is_root = depth == len(root)
-        node = forest.table.copy_node(source.table, old, is_root=is_root, recorded=False)
-        forest.holdings.append(_forked_holdings(source, old, is_root=is_root))
-        forest.doubt_contents(node)
-    node = source.table.index[root]
-    for agent in range(len(source.context.agents)):
-        forest.first_vitals[agent] = source.vitals(node, agent)
-    forest.table.link()
-    return forest
+        table.copy_node(source.table, old, is_root=is_root, recorded=False)
+        holdings.add(_forked_holdings(source.holdings, old, agents, is_root=is_root))
+    table.link()
+    return Forest(events, table, holdings, tick)
 
 
-def _forked_holdings(source: Forest, node: int, *, is_root: bool) -> Holdings:
-    """Holdings at a fork; what was current there is so until the new timeline's first entry."""
-    copied = source.holdings[node].copy()
+def _forked_holdings(
+    source: HoldingsTable, node: int, agents: Iterable[int], *, is_root: bool
+) -> Holdings:
+    """Holdings at a fork; what was current is so until the new timeline's first entry."""
+    copied = source.of(node).copy()
     last = source.last_look(node)
     for cell in copied.containers:
-        there = source.content(node, cell)
-        entry = -1 if is_root or there.entry == last else NEVER
-        copied.containers[cell] = Content(there.items, there.complete, there.basis, entry)
+        content = source.content(node, cell)
+        entry = -1 if is_root or content.entry == last else NEVER
+        copied.containers[cell] = replace(content, entry=entry)
     for number, believed in copied.items.items():
         entry = -1 if is_root or believed.entry == last else NEVER
-        copied.items[number] = BelievedItem(believed.item, believed.basis, entry)
+        copied.items[number] = replace(believed, entry=entry)
     if is_root:
-        for agent in range(len(source.context.agents)):
+        for agent in agents:
             items, complete = source.inventory(node, agent)
             copied.inventories.pop(agent, None)
             if not complete:

@@ -1,6 +1,6 @@
 """The kernel's arrays of the nodes of one forest, growing with the nodes that are asked for."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +14,7 @@ from beliefnest.belief.entries import SOURCES, Basis
 from beliefnest.belief.poses import Condition, PoseTable
 from beliefnest.perception.codes import mark_intruded
 from beliefnest.world.frames import BlockGrid
+from beliefnest.world.values import Point
 
 __all__ = ["NodeTable", "SavedNode"]
 
@@ -39,6 +40,7 @@ class SavedNode:
     current: bytes
     basis_at: bytes
     basis_source: bytes
+    edited_cells: list[int]
 
 
 _SAVED = ("blocks", "pose", "equipment", "seen_at", "current", "basis_at", "basis_source")
@@ -50,12 +52,15 @@ class NodeTable:
     Attributes:
         index: Number of each node by path; a node's number is above its parent's.
         count: How many nodes there are.
+        context: What all nodes share.
         poses: The pose table that the nodes' pose ids are rows of.
+        edited_cells: Nodes and cells of blocks changed by hand since somebody last looked there.
     """
 
     def __init__(self, context: BeliefContext, poses: PoseTable, extra: Sequence[int] = ()) -> None:
-        self._context = context
+        self.context = context
         self.poses = poses
+        self.edited_cells: set[tuple[int, int]] = set()
         self.index: dict[Path, int] = {}
         self.count = 0
         self._linked = 1
@@ -98,7 +103,7 @@ class NodeTable:
         self.index[path] = node
         self._rows["parent"][node] = parent
         if parent >= 0:
-            self._rows["agent"][node] = self._context.numbers[path[-1]]
+            self._rows["agent"][node] = self.context.numbers[path[-1]]
         return node
 
     def enter(self, poses: PoseTable) -> None:
@@ -138,6 +143,8 @@ class NodeTable:
             row = self._rows[name][node]
             row[row >= 0] = self.poses.take(other.poses, row[row >= 0], recorded=recorded)
         self._rows["geometry"][node] = 0
+        if recorded:
+            self.edited_cells |= {(node, c) for n, c in other.edited_cells if n == source}
         self.index[path] = node
         if is_root:
             self._rows["parent"][node] = self._rows["agent"][node] = UNKNOWN
@@ -165,7 +172,7 @@ class NodeTable:
 
     def set_blocks(self, node: int, blocks: npt.NDArray[np.signedinteger[Any]]) -> None:
         """Set all blocks of a node, and its geometry."""
-        space = self._context.space
+        space = self.context.space
         self._rows["blocks"][node] = blocks.ravel()
         codes = np.zeros(space.sizes, dtype=np.uint16)
         codes[1:-1, 1:-1, 1:-1] = space.codes[blocks]
@@ -208,13 +215,14 @@ class NodeTable:
 
     def put(self, node: int, cell: int, state: int, basis: Basis) -> None:
         """Let a node hold a block state by hand."""
-        kernel.put(self._context.space, self.nodes(), node, cell, state)
+        self.edited_cells.add((node, cell))
+        kernel.put(self.context.space, self.nodes(), node, cell, state)
         self.set_basis(node, cell, basis if state >= 0 else None)
 
     def track(self) -> None:
         """Track the cells that the context tracks by now."""
         known = set(self._tracked.tolist())
-        new = [cell for cell in self._context.tracked if cell not in known]
+        new = [cell for cell in self.context.tracked if cell not in known]
         if not new:
             return
         self._tracked = np.array([*self._tracked.tolist(), *new], dtype=np.int32)
@@ -229,18 +237,20 @@ class NodeTable:
     def saved(self, node: int) -> SavedNode:
         """What a node holds, as plain data; what it was asked last is not part of that."""
         row = {name: self._rows[name][node].tobytes() for name in _SAVED}
-        return SavedNode(self.path(node), **row)
+        edited = sorted(cell for other, cell in self.edited_cells if other == node)
+        return SavedNode(self.path(node), **row, edited_cells=edited)
 
     def restore(self, saved: SavedNode, tracked: npt.NDArray[np.int32]) -> None:
         """Add a node that was saved, with what was tracked then; `link` has to follow."""
         node = self.add(saved.path, self.index.get(saved.path[:-1], UNKNOWN))
+        self.edited_cells |= {(node, cell) for cell in saved.edited_cells}
         spots = {cell: spot for spot, cell in enumerate(self._tracked.tolist())}
         places = [spots[cell] for cell in tracked.tolist()]
         for name in _SAVED:
             row = self._rows[name]
             values = np.frombuffer(getattr(saved, name), dtype=row.dtype)
             if name == "blocks":
-                self.set_blocks(node, values.reshape(self._context.box.shape))
+                self.set_blocks(node, values.reshape(self.context.box.shape))
             elif name in _BY_SPOT:
                 row[node] = _BY_SPOT[name]
                 row[node, places] = values
@@ -253,7 +263,7 @@ class NodeTable:
         return self._tracked
 
     def parent(self, node: int) -> int:
-        """Number of the node around a node; -1 for node 0."""
+        """Number of the parent of a node; -1 for node 0."""
         return int(self._rows["parent"][node])
 
     def owner(self, node: int) -> int:
@@ -267,7 +277,7 @@ class NodeTable:
     def blocks(self, node: int) -> BlockGrid:
         """A copy of a node's blocks, of the box's shape."""
         blocks: BlockGrid = self._rows["blocks"][node].astype(np.int32)
-        return blocks.reshape(self._context.box.shape)
+        return blocks.reshape(self.context.box.shape)
 
     def pose(self, node: int, agent: int) -> int:
         """Id of an agent's believed pose; -1: unknown."""
@@ -291,8 +301,36 @@ class NodeTable:
         return bool(self._rows["current"][node, agent])
 
     def is_present(self, node: int) -> bool:
-        """Whether the owner of a node is present in the simulator around it (5.1)."""
+        """Whether the owner of a node is present in its parent node (5.1)."""
         return node == 0 or self.is_current(self.parent(node), self.owner(node))
+
+    def sees_cells(self, node: int, cells: Iterable[int]) -> set[int]:
+        """Those of some cells that the present owner of a node sees in the parent node."""
+        parent = self.parent(node)
+        eye = self.pose(parent, self.owner(node))
+        wanted = np.array([*cells], dtype=np.int64)
+        seen = kernel.sees_cells(
+            self.context.space, self.poses.arrays(), self.nodes(), parent, eye, wanted
+        )
+        return set(wanted[seen].tolist())
+
+    def sees_point(self, node: int, point: Point) -> bool:
+        """Whether the present owner of a node sees a point (scenario coordinates) in its parent."""
+        parent = self.parent(node)
+        eye = self.pose(parent, self.owner(node))
+        return kernel.sees_point(
+            self.context.space, self.poses.arrays(), self.nodes(), parent, eye, point
+        )
+
+    def block_is_current(self, node: int, cell: int) -> bool:
+        """Whether a node's block is backed by a perception in the last entry (5.4)."""
+        while node > 0:
+            if not self.is_present(node) or (node, cell) in self.edited_cells:
+                return False
+            if not self.sees_cells(node, (cell,)):
+                return False
+            node = self.parent(node)
+        return self.block(0, cell) >= 0
 
     def below(self, node: int) -> npt.NDArray[np.bool_]:
         """Which nodes lie below a node."""

@@ -37,7 +37,7 @@ class NodeView:
         self._forest = forest
         self._node = forest.table.index[path]
         self.count_of_events = forest.count_of_events
-        self._last_look = forest.last_look(self._node)
+        self._last_look = forest.holdings.last_look(self._node)
         forest.read_by(self)
 
     def keep(self) -> None:
@@ -60,8 +60,8 @@ class NodeView:
         """Known contents, in order of position."""
         forest = self._forest
         found = {}
-        for cell in sorted(forest.holdings[self._node].containers):
-            content = forest.content(self._node, cell)
+        for cell in sorted(forest.holdings.of(self._node).containers):
+            content = forest.holdings.content(self._node, cell)
             found[place_of(forest.context.box, cell)] = ContainerBelief(
                 content.items,
                 content.complete,
@@ -79,7 +79,9 @@ class NodeView:
     @cached_property
     def items(self) -> Mapping[int, DroppedItem]:
         """Dropped items last seen."""
-        return {n: believed.item for n, believed in self._forest.holdings[self._node].items.items()}
+        return {
+            n: believed.item for n, believed in self._forest.holdings.of(self._node).items.items()
+        }
 
     def events(self) -> tuple[PerceivedEvent, ...]:
         """All perceived events, oldest first."""
@@ -125,10 +127,10 @@ class NodeView:
     def _agent(self, number: int) -> AgentBelief:
         forest, node = self._forest, self._node
         table, poses = forest.table, forest.table.poses
-        inventory, complete = forest.inventory(node, number)
+        inventory, complete = forest.holdings.inventory(node, number)
         dressed = table.equipment(node, number)
         seen = poses.condition(dressed) if dressed >= 0 else None
-        health, food = forest.vitals(node, number)
+        health, food = forest.holdings.vitals(node, number)
         pose = table.pose(node, number)
         if pose < 0:
             return AgentBelief(

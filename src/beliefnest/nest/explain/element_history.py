@@ -83,9 +83,9 @@ def value_in(forest: Forest, path: Path, element: Element) -> Value:
     if element.kind == "block":
         state = forest.table.block(node, cell)
         return None if state < 0 else context.registry.text(state)
-    if cell not in forest.holdings[node].containers:
+    if cell not in forest.holdings.of(node).containers:
         return None
-    content = forest.content(node, cell)
+    content = forest.holdings.content(node, cell)
     return Contents(dict(content.items), content.complete)
 
 
@@ -100,9 +100,9 @@ def grounded_at(forest: Forest, path: Path, element: Element) -> int | None:
     if element.kind == "block":
         basis = forest.table.bases(node, [cell])[cell]
         return None if basis is None else basis.observed_at
-    if cell not in forest.holdings[node].containers:
+    if cell not in forest.holdings.of(node).containers:
         return None
-    return forest.content(node, cell).basis.observed_at
+    return forest.holdings.content(node, cell).basis.observed_at
 
 
 def touches(element: Element, event: PerceivedEvent) -> bool:

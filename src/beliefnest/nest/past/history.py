@@ -165,7 +165,9 @@ class History:
             # What agents believed at the fork stays as it was until something happens.
             return self.block_is_current(base.timeline, path, base.entries, place)
         forest = self._forest(key, path, position)
-        return forest.block_is_current(forest.table.index[path], cell_of(self.context.box, place))
+        return forest.table.block_is_current(
+            forest.table.index[path], cell_of(self.context.box, place)
+        )
 
     def forget(self, key: TimelineKey) -> None:
         """Drop what is remembered of a timeline that was deleted or renamed."""

@@ -1,0 +1,338 @@
+"""Contents, possessions and dropped items of all nodes of a forest, entry by entry.
+
+The kernel has folded poses and blocks of an entry; what follows from its changes, from frames and
+from perceived acts is done here, shallower nodes first. The rules of one node are in `holdings`.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.columns import cell_of
+from beliefnest.belief.entries import SOURCES, Basis, Source
+from beliefnest.belief.holdings import (
+    NEVER,
+    TOUCHES,
+    BelievedItem,
+    Content,
+    Holdings,
+    follow_acts,
+    learn,
+    replaced_block,
+    witness,
+)
+from beliefnest.belief.node_table import NodeTable
+from beliefnest.world.frames import Frame
+from beliefnest.world.values import Event, Items
+
+__all__ = ["HoldingsTable", "RootFacts", "SavedHoldings"]
+
+_ITEM_HEIGHT = 0.125
+
+Vitals = tuple[float | None, float | None]
+
+
+@dataclass(slots=True)
+class RootFacts:
+    """What is known of node 0 besides its holdings.
+
+    Attributes:
+        seen_at: Tick at which it was last seen to be as it is; None: not since a fork.
+        edited: Cells that were changed by hand since the last frame.
+        vitals: Health and food of agents as they were known at a fork.
+    """
+
+    seen_at: int | None = None
+    edited: set[int] = field(default_factory=set)
+    vitals: dict[int, Vitals] = field(default_factory=dict)
+
+    def copy(self) -> "RootFacts":
+        """The same facts, to be changed apart."""
+        return RootFacts(self.seen_at, set(self.edited), dict(self.vitals))
+
+
+@dataclass(frozen=True, slots=True)
+class SavedHoldings:
+    """Holdings of one node as plain data.
+
+    Attributes:
+        holdings: Contents, possessions and dropped items.
+        looked: Entry after which the owner last perceived what there is.
+        doubtful: Cells of contents where no container is known, with the block there.
+    """
+
+    holdings: Holdings
+    looked: int
+    doubtful: dict[int, int]
+
+
+class HoldingsTable:
+    """Contents, possessions and dropped items of all nodes.
+
+    Attributes:
+        root: What is known of node 0 besides.
+    """
+
+    def __init__(self, table: NodeTable, root: RootFacts) -> None:
+        self.root = root
+        self._table, self._context = table, table.context
+        self._holdings: list[Holdings] = []
+        # By node, the entry after which its owner last perceived what there is.
+        self._looked: dict[int, int] = {}
+        # Nodes and cells of contents where no container is known, with the block there.
+        self._doubtful: dict[tuple[int, int], int] = {}
+
+    def add(self, holdings: Holdings, looked: int | None = None) -> None:
+        """Add the holdings of the node that was added to the node table last."""
+        node = len(self._holdings)
+        self._holdings.append(holdings)
+        if looked is not None:
+            self._looked[node] = looked
+        for cell in holdings.containers:
+            self._doubt(node, cell)
+
+    def of(self, node: int) -> Holdings:
+        """Holdings of a node."""
+        return self._holdings[node]
+
+    def saved(self, node: int) -> SavedHoldings:
+        """Holdings of a node as plain data."""
+        doubtful = {cell: s for (other, cell), s in sorted(self._doubtful.items()) if other == node}
+        return SavedHoldings(self._holdings[node], self.last_look(node), doubtful)
+
+    def restore(self, saved: SavedHoldings) -> None:
+        """Add holdings that were saved."""
+        node = len(self._holdings)
+        self._holdings.append(saved.holdings)
+        self._looked[node] = saved.looked
+        self._doubtful |= {(node, cell): state for cell, state in saved.doubtful.items()}
+
+    def last_look(self, node: int) -> int:
+        """Entry after which a node's owner last perceived what there is; -1: at first."""
+        return self._looked.get(node, -1)
+
+    def content(self, node: int, cell: int) -> Content:
+        """A container's content in a node; in node 0 it is seen to be so all the time."""
+        content = self._holdings[node].containers[cell]
+        if node > 0:
+            return content
+        seen = self.root.seen_at is not None and cell not in self.root.edited
+        basis = Basis(self.root.seen_at or 0, Source.SEEN) if seen else content.basis
+        return Content(content.items, content.complete, basis, self.last_look(0))
+
+    def inventory(self, node: int, agent: int) -> tuple[Items, bool]:
+        """Believed possessions of an agent, and whether these are known to be all.
+
+        An agent's own are what the parent node holds of them, whatever the depth.
+        """
+        while node > 0 and self._table.owner(node) == agent:
+            node = self._table.parent(node)
+        known = self._holdings[node].inventories.get(agent)
+        if node == 0:
+            pose, condition = self._table.pose(0, agent), self._table.condition_of(0, agent)
+            if condition is not None and (known is None or self._table.poses.is_recorded(pose)):
+                return condition.inventory, known is None
+        return self._holdings[node].inventories.get(agent, {}), False
+
+    def vitals(self, node: int, agent: int) -> tuple[float | None, float | None]:
+        """Health and food of an agent, which only the agent itself perceives."""
+        while node > 0 and self._table.owner(node) == agent:
+            node = self._table.parent(node)
+        condition = self._table.condition_of(0, agent) if node == 0 else None
+        if condition is None or not self._table.poses.is_recorded(self._table.pose(0, agent)):
+            return self.root.vitals.get(agent, (None, None)) if node == 0 else (None, None)
+        return condition.health, condition.food
+
+    def needs_looks(self) -> bool:
+        """Whether there is something to be looked at that is no block and no agent."""
+        transparent = self._context.options.containers == "transparent"
+        return transparent or bool(self._doubtful) or any(h.items for h in self._holdings)
+
+    def note_look(self, nodes: Sequence[int], entry: int) -> None:
+        """Note that the owners of nodes perceived what there is after an entry."""
+        self._looked.update(dict.fromkeys(nodes, entry))
+
+    def see_root(self, tick: int) -> None:
+        """Note that node 0 is seen to be as it is."""
+        self.root.seen_at = tick
+        self.root.edited.clear()
+
+    def apply_frame(self, entry: int, frame: Frame | None) -> None:
+        """Take over contents and dropped items of node 0 from the frame of an entry."""
+        if frame is None:
+            return
+        holdings, basis = self._holdings[0], Basis(frame.tick, Source.SEEN)
+        for place, items in frame.containers.items():
+            cell = cell_of(self._context.box, place)
+            old = holdings.containers.pop(cell, None)
+            if items is not None:
+                complete = old is None or old.complete
+                holdings.containers[cell] = Content(dict(items), complete, basis, entry)
+        for number, item in frame.items.items():
+            holdings.items.pop(number, None)
+            if item is not None:
+                holdings.items[number] = BelievedItem(item, basis, entry)
+
+    def follow(
+        self,
+        entry: int,
+        tick: int,
+        rows: dict[int, list[Sequence[int]]],
+        acts: Mapping[int, list[Event]],
+        which: npt.NDArray[np.bool_],
+    ) -> None:
+        """What an entry does to contents, possessions and items, after `apply_frame`.
+
+        Args:
+            entry: Number of the entry.
+            tick: Its tick.
+            rows: Changes of blocks by node, as in `arrays.Changes`.
+            acts: Acts by the node that perceived them.
+            which: Nodes that are to follow.
+        """
+        for _, _, cell, _, new, _, _ in rows.get(0, ()):
+            if self._context.container_name(new) is None:
+                self._holdings[0].containers.pop(cell, None)
+            elif cell not in self._holdings[0].containers:
+                basis = Basis(tick, Source.SEEN)
+                self._holdings[0].containers[cell] = Content({}, True, basis, entry)
+        things = self.needs_looks()
+        for node in range(1, self._table.count):
+            for _, _, cell, old, new, observed_at, source in rows.get(node, ()):
+                names = self._context.block_name(old), self._context.container_name(new)
+                basis = Basis(observed_at, SOURCES[source])
+                replaced_block(self._holdings[node], cell, *names, basis)
+            perceived = acts.get(node, [])
+            if not which[node] or not (perceived or things) or not self._table.is_present(node):
+                continue
+            self._forget(node)
+            into = self._see_into(node, tick, entry)
+            if perceived:
+                self._follow_acts(node, perceived, into, tick, entry)
+            self._see_items(node, tick, entry)
+
+    def edit(
+        self, node: int, blocks: Mapping[int, int], contents: Mapping[int, Items], tick: int
+    ) -> None:
+        """Change blocks and contents of a node by hand; see `Forest.edit`."""
+        holdings, basis = self._holdings[node], Basis(tick, Source.EDITED)
+        self._context.track(c for c, s in blocks.items() if self._context.container_name(s))
+        self._context.track(contents)
+        self._table.track()
+        for cell, state in blocks.items():
+            old = self._context.container_name(self._table.block(node, cell))
+            self._table.put(node, cell, state, basis)
+            new = self._context.container_name(state)
+            if old != new:
+                holdings.containers.pop(cell, None)
+            if new is not None and cell not in holdings.containers:
+                holdings.containers[cell] = Content({}, complete=node == 0, basis=basis)
+        for cell, items in contents.items():
+            holdings.containers[cell] = Content(dict(items), complete=True, basis=basis)
+            self._doubt(node, cell)
+        if node == 0:
+            self.root.edited |= {*blocks, *contents}
+
+    def _follow_acts(
+        self, node: int, acts: list[Event], into: set[int], tick: int, entry: int
+    ) -> None:
+        """What perceived acts do to a node that sees into the containers of `into` anyway."""
+        holdings, owner = self._holdings[node], self._context.agents[self._table.owner(node)]
+        parent = self._table.parent(node)
+        box, known = self._context.box, self._holdings[parent].containers
+        touched = [(cell_of(box, a.detail["position"]), a) for a in acts if a.kind in TOUCHES]
+        own = {cell for cell, act in touched if act.actor == owner and cell in known}
+        for cell, act in touched:
+            if cell not in own | into and not self._is_gone(node, cell):
+                witness(holdings, cell, act, tick, entry)
+                self._doubt(node, cell)
+        for cell, act in touched:
+            if cell in own and act.actor == owner:
+                content = self._learnt(parent, cell, entry)
+                # What the parent node holds by hearsay of its own is no perception now.
+                kind = act.kind if content.entry == entry else None
+                learn(holdings, cell, content, kind, tick)
+                self._doubt(node, cell)
+        for name in {act.actor for act in acts if act.actor not in (None, owner)}:
+            number = self._context.numbers[str(name)]
+            before = holdings.inventories.get(number, {})
+            after = follow_acts(before, (act for act in acts if act.actor == name))
+            if after is not before:
+                holdings.inventories[number] = after
+
+    def _doubt(self, node: int, cell: int) -> None:
+        """Note a content at a place where a node knows no container."""
+        state = self._table.block(node, cell)
+        if node > 0 and cell in self._holdings[node].containers and not self._context.holds[state]:
+            self._doubtful[node, cell] = state
+
+    def _forget(self, node: int) -> None:
+        """Forget contents at places that are seen to hold no container."""
+        for (doubter, cell), before in list(self._doubtful.items()):
+            if doubter != node:
+                continue
+            state = self._table.block(node, cell)
+            parent = self._table.block(self._table.parent(node), cell)
+            if self._context.holds[state] or cell not in self._holdings[node].containers:
+                del self._doubtful[node, cell]
+            elif self._is_gone(node, cell) or (
+                before < 0
+                and parent >= 0
+                and not self._context.holds[parent]
+                and self._table.sees_cells(node, (cell,))
+            ):
+                del self._holdings[node].containers[cell]
+                del self._doubtful[node, cell]
+            else:
+                self._doubtful[node, cell] = state
+
+    def _is_gone(self, node: int, cell: int) -> bool:
+        """Whether the owner of a node perceives now that a cell holds no container."""
+        parent = self._table.parent(node)
+        state = self._table.block(parent, cell)
+        return (
+            state >= 0
+            and not self._context.holds[state]
+            and bool(self._table.sees_cells(node, (cell,)))
+            and self._table.block_is_current(parent, cell)
+        )
+
+    def _see_into(self, node: int, tick: int, entry: int) -> set[int]:
+        """Look into transparent containers; returns the cells looked into."""
+        if self._context.options.containers != "transparent":
+            return set()
+        parent = self._table.parent(node)
+        into = self._table.sees_cells(node, self._holdings[parent].containers)
+        for cell in into:
+            learn(self._holdings[node], cell, self._learnt(parent, cell, entry), None, tick)
+            self._doubt(node, cell)
+        return into
+
+    def _learnt(self, node: int, cell: int, entry: int) -> Content:
+        """A node's content of a container, as somebody in it learns it in an entry (5.4)."""
+        content = self.content(node, cell)
+        is_current = node == 0 or content.entry == self.last_look(node)
+        return replace(content, entry=entry if is_current else NEVER)
+
+    def _see_items(self, node: int, tick: int, entry: int) -> None:
+        """Seen items are taken over; one whose believed place is seen empty is dropped."""
+        parent, known = self._table.parent(node), self._holdings[node].items
+        if not known and not self._holdings[parent].items:
+            return
+        lying = {
+            number: BelievedItem(believed.item, Basis(tick, Source.SEEN), entry)
+            if parent == 0
+            else believed
+            for number, believed in self._holdings[parent].items.items()
+        }
+        seen = {n: believed for n, believed in lying.items() if self._sees_item(node, believed)}
+        for number in [n for n in known if n not in seen]:
+            if self._sees_item(node, known[number]):
+                del known[number]
+        known.update(seen)
+
+    def _sees_item(self, node: int, believed: BelievedItem) -> bool:
+        x, y, z = believed.item.position
+        return self._table.sees_point(node, (x, y + _ITEM_HEIGHT, z))
