@@ -5,7 +5,7 @@ import dataclasses
 import pytest
 
 from beliefnest.belief.entries import AgentBelief, PerceivedEvent
-from beliefnest.belief.view import State
+from beliefnest.belief.view import FixedState
 from beliefnest.errors import TemplateError
 from beliefnest.prompts import BUILT_IN, render
 from beliefnest.prompts.actions import ACTION_NAMES
@@ -29,7 +29,7 @@ def nothing_known(path=("sally",)):
     box = Box((0, 0, 0), (1, 1, 1))
     agents = {"sally": AgentBelief(), "anne": AgentBelief()}
     return ExampleBranch(
-        State(path, 0, box, ExampleBlocks(box, {}), {}, agents, {}, (), (), (), ())
+        FixedState(path, 0, box, ExampleBlocks(box, {}), {}, agents, {}, (), (), (), ())
     )
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
-from beliefnest.belief.view import State
+from beliefnest.belief.view import FixedState
 from beliefnest.prompts import BUILT_IN, built_in_template, render
 from beliefnest.prompts.example import ExampleBlocks, ExampleBranch
 from beliefnest.world.values import Box, EventKind
@@ -20,7 +20,7 @@ def sallys_belief(path=("sally",)):
     box = Box((-11, -52, -11), (11, -49, 11))
     early = Basis(12, Source.SEEN)
     return ExampleBranch(
-        State(
+        FixedState(
             path=path,
             tick=412,
             box=box,

@@ -208,9 +208,6 @@ class Forest:
             tick: Tick after which it is done.
         """
         self._let_read()
-        self.context.track(c for c, s in blocks.items() if self.context.container_name(s))
-        self.context.track(contents)
-        self.table.track()
         self.holdings.edit(node, blocks, contents, tick)
         self.position += 1
         self.tick = tick

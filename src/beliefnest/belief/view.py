@@ -7,7 +7,7 @@ from typing import Protocol
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent
 from beliefnest.world.values import Box, DroppedItem, Position
 
-__all__ = ["BlockView", "State"]
+__all__ = ["BlockView", "FixedState", "State"]
 
 
 class BlockView(Protocol):
@@ -36,24 +36,64 @@ class BlockView(Protocol):
         """What the block rests on; None where it is unknown."""
 
 
-@dataclass(frozen=True)
-class State:
-    """One simulator at one tick.
+class State(Protocol):
+    """One simulator at one tick."""
 
-    Attributes:
-        path: Normalised belief path, agent names from the outermost believer inwards;
-            empty for the real world.
-        tick: The tick it is the state of.
-        box: The part of space it covers.
-        blocks: Believed blocks.
-        containers: Known containers by position.
-        agents: Every agent of the scenario by name, unknown pose included.
-        items: Dropped items last seen.
-        events: Perceived events other than speech and thought, in order.
-        chat: What was heard: (tick, speaker, text).
-        thoughts: What the owner thought: (tick, thinker, text).
-        addressees: By line of `chat`, to whom it was whispered; None: it was said aloud.
-    """
+    @property
+    def path(self) -> tuple[str, ...]:
+        """Normalised belief path, agent names from the outermost believer inwards.
+
+        Empty for the real world.
+        """
+
+    @property
+    def tick(self) -> int:
+        """The tick it is the state of."""
+
+    @property
+    def box(self) -> Box:
+        """The part of space it covers."""
+
+    @property
+    def blocks(self) -> BlockView:
+        """Believed blocks."""
+
+    @property
+    def containers(self) -> Mapping[Position, ContainerBelief]:
+        """Known containers by position."""
+
+    @property
+    def agents(self) -> Mapping[str, AgentBelief]:
+        """Every agent of the scenario by name, unknown pose included."""
+
+    @property
+    def items(self) -> Mapping[int, DroppedItem]:
+        """Dropped items last seen."""
+
+    @property
+    def events(self) -> tuple[PerceivedEvent, ...]:
+        """Perceived events other than speech and thought, in order."""
+
+    @property
+    def chat(self) -> Sequence[tuple[int, str, str]]:
+        """What was heard: (tick, speaker, text)."""
+
+    @property
+    def thoughts(self) -> Sequence[tuple[int, str, str]]:
+        """What the owner thought: (tick, thinker, text)."""
+
+    @property
+    def addressees(self) -> Sequence[str | None]:
+        """By line of `chat`, to whom it was whispered; None: it was said aloud."""
+
+    @property
+    def owner(self) -> str | None:
+        """The agent whose belief this is; None in the real world."""
+
+
+@dataclass(frozen=True)
+class FixedState:
+    """A state whose parts are all at hand; attributes as those of `State`."""
 
     path: tuple[str, ...]
     tick: int

@@ -10,7 +10,7 @@ from beliefnest.belief.entries import (
     PerceivedEvent,
     Source,
 )
-from beliefnest.belief.view import State
+from beliefnest.belief.view import FixedState
 from beliefnest.errors import PathError, PositionError
 from beliefnest.world.values import Box, EventKind, Position
 
@@ -76,7 +76,7 @@ class ExampleBlocks:
 class ExampleBranch:
     """A simulator that is nothing but its state and those of the beliefs in it."""
 
-    state: State
+    state: FixedState
     children: Mapping[str, "ExampleBranch"] = field(default_factory=dict)
 
     def child(self, agent: str) -> "ExampleBranch":
@@ -112,9 +112,9 @@ def example_branch() -> ExampleBranch:
 
 def _state(
     path: tuple[str, ...], events: tuple[PerceivedEvent, ...], visible: frozenset[Position]
-) -> State:
+) -> FixedState:
     seen, opened = Basis(240, Source.SEEN), Basis(69, Source.WITNESSED)
-    return State(
+    return FixedState(
         path=path,
         tick=240,
         box=_BOX,

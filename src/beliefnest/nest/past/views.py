@@ -9,7 +9,7 @@ import numpy as np
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent
 from beliefnest.belief.node_view import NodeView
-from beliefnest.belief.view import BlockView, State
+from beliefnest.belief.view import BlockView
 from beliefnest.errors import PositionError
 from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import TimelineKey
@@ -21,6 +21,11 @@ __all__ = ["Blocks", "LiveState"]
 _FEW = 4
 
 _SPEECH = (EventKind.CHAT, EventKind.THINK)
+
+_PARTS = (
+    *("path", "tick", "box", "blocks", "containers", "agents", "items"),
+    *("events", "chat", "thoughts", "addressees"),
+)
 
 
 class Blocks:
@@ -102,8 +107,11 @@ class Blocks:
         return box.index(position)
 
 
-class LiveState(State):
-    """A node's state, read part by part when it is asked for, in the nest's `turn`."""
+class LiveState:
+    """A `State` that is read part by part when it is asked for, in the nest's `turn`.
+
+    Attributes as those of `State`.
+    """
 
     def __init__(
         self,
@@ -113,15 +121,20 @@ class LiveState(State):
         tick: int,
         turn: AbstractContextManager[object],
     ) -> None:
-        for name, value in (("path", reading.path), ("tick", tick), ("box", box)):
-            object.__setattr__(self, name, value)
-        object.__setattr__(self, "_reading", reading)
-        object.__setattr__(self, "_blocks", blocks)
-        object.__setattr__(self, "_turn", turn)
+        self.path, self.tick, self.box = reading.path, tick, box
+        self._reading, self._blocks, self._turn = reading, blocks, turn
 
-    _reading: NodeView
-    _blocks: Blocks
-    _turn: AbstractContextManager[object]
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, LiveState):
+            return NotImplemented
+        return all(getattr(self, part) == getattr(other, part) for part in _PARTS)
+
+    __hash__ = None  # type: ignore[assignment]  # compared by value, and values are large
+
+    @property
+    def owner(self) -> str | None:
+        """The agent whose belief this is; None in the real world."""
+        return self.path[-1] if self.path else None
 
     @property
     def blocks(self) -> BlockView:
