@@ -4,9 +4,11 @@ It is an advisory lock on a file beside the run file, so that the operating syst
 up when the process ends, however it ends, and so that it does not meet SQLite's own locks.
 """
 
-import fcntl
 import os
+from contextlib import suppress
 from pathlib import Path
+
+from filelock import lock_descriptor
 
 from beliefnest.errors import StoreError
 
@@ -32,33 +34,34 @@ class WriterLock:
         while True:
             descriptor = _opened(path, file)
             try:
-                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                if _is_at(descriptor, path):
-                    os.ftruncate(descriptor, 0)
-                    os.pwrite(descriptor, str(os.getpid()).encode(), 0)
+                is_free = lock_descriptor(descriptor, blocking=False)
+                if is_free and _is_at(descriptor, path):
+                    os.truncate(descriptor, 0)
+                    os.write(descriptor, f" {os.getpid()}".encode())
                     return cls(descriptor, path)
-            except BlockingIOError as fault:
-                holder = _holder(descriptor)
-                os.close(descriptor)
-                raise StoreError(
-                    f"{file} is being written by {holder}; a run has one writer: "
-                    "wait until it ends, or open the file for reading"
-                ) from fault
+                holder = "" if is_free else _holder(descriptor)
             except OSError as fault:
                 os.close(descriptor)
                 raise StoreError(f"{file} cannot be locked for writing: {fault}") from fault
-            # The holder removed the file between our opening and our locking it.
             os.close(descriptor)
+            if holder:
+                raise StoreError(
+                    f"{file} is being written by {holder}; a run has one writer: "
+                    "wait until it ends, or open the file for reading"
+                )
+            # The holder removed the file between our opening and our locking it.
 
     def release(self) -> None:
         """Give the lock up and remove its file."""
-        self._path.unlink(missing_ok=True)
+        # Windows does not remove a file that is open; one that is left behind refuses nobody.
+        with suppress(PermissionError):
+            self._path.unlink(missing_ok=True)
         os.close(self._descriptor)
 
 
 def _opened(path: Path, file: Path) -> int:
     try:
-        return os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+        return os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
     except FileNotFoundError as fault:
         raise StoreError(f"{file} cannot be made: there is no folder {path.parent}") from fault
     except OSError as fault:
@@ -76,5 +79,7 @@ def _is_at(descriptor: int, path: Path) -> bool:
 
 
 def _holder(descriptor: int) -> str:
-    text = os.pread(descriptor, 20, 0)
+    # Windows lets nobody else read the first byte, which is the one that is locked.
+    os.lseek(descriptor, 1, os.SEEK_SET)
+    text = os.read(descriptor, 20)
     return f"process {int(text)}" if text.isdigit() else "another process"
