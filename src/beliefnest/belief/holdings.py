@@ -130,10 +130,12 @@ def witness(holdings: Holdings, cell: int, event: Event, tick: int, entry: int) 
     )
 
 
-def learn(holdings: Holdings, cell: int, there: Content, kind: EventKind | None, tick: int) -> None:
-    """Learn what the simulator around holds, by touching the container or by seeing into it."""
-    basis = there.basis if kind is None else Basis(tick, Source.WITNESSED, kind)
-    holdings.containers[cell] = replace(there, basis=basis)
+def learn(
+    holdings: Holdings, cell: int, content: Content, kind: EventKind | None, tick: int
+) -> None:
+    """Learn what the parent node holds, by touching the container or by seeing into it."""
+    basis = content.basis if kind is None else Basis(tick, Source.WITNESSED, kind)
+    holdings.containers[cell] = replace(content, basis=basis)
 
 
 def follow_acts(inventory: Items, acts: Iterable[Event]) -> Items:

@@ -123,7 +123,7 @@ class NodeTable:
 
         Args:
             other: The other table.
-            source: Number of the node there.
+            source: Number of the node in them.
             is_root: Whether it becomes node 0.
             recorded: Whether what the other's timeline recorded counts as recorded by this one's.
         """
@@ -344,7 +344,7 @@ class NodeTable:
         node = self.count
         size = len(self._rows["parent"])
         if node == size:
-            # Room that is not written to yet takes no memory, so there may be plenty.
+            # Room that is not written to yet takes no memory, so plenty may be reserved.
             for name, row in self._rows.items():
                 self._rows[name] = np.empty((8 * size, *row.shape[1:]), dtype=row.dtype)
                 self._rows[name][:size] = row

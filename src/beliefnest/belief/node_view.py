@@ -89,11 +89,11 @@ class NodeView:
 
     def visible_from(self, agent: str) -> npt.NDArray[np.bool_]:
         """Which blocks an agent sees from its believed pose; none if that is unknown."""
-        there = self.agents[agent]
-        if there.position is None:
+        viewer = self.agents[agent]
+        if viewer.position is None:
             return np.zeros(self.blocks.shape, dtype=np.bool_)
-        x, y, z = there.position
-        return self.geometry.visible_blocks((x, y + EYE_HEIGHT, z), there.yaw, there.pitch)
+        x, y, z = viewer.position
+        return self.geometry.visible_blocks((x, y + EYE_HEIGHT, z), viewer.yaw, viewer.pitch)
 
     def snapshot(self) -> Snapshot:
         """What a body of the state is filled with.

@@ -1,4 +1,4 @@
-"""What a forest needs of others: who tells what happens, and who reads it."""
+"""What a forest needs of others: who lists events, and who reads states."""
 
 from collections.abc import Sequence
 from typing import Protocol
