@@ -65,6 +65,7 @@ class Forest:
         columns: The stretch of the timeline that it is in.
         table: The nodes' arrays.
         holdings: The nodes' contents, possessions and dropped items.
+        hearing: Who perceived which event.
         position: Entries folded.
         tick: Tick of the last of them, or of the beginning.
     """
@@ -76,7 +77,7 @@ class Forest:
         self.table, self.holdings = table, holdings
         self.position, self.tick = 0, tick
         self.columns = self._nowhere(0, 0, table.poses)
-        self._hearing = Hearing()
+        self.hearing = Hearing()
         self._readers: WeakSet[Reader] = WeakSet()
 
     def saved(self) -> tuple[ForestState, Iterator[NodeState]]:
@@ -92,7 +93,7 @@ class Forest:
             NodeState(
                 self.table.saved(node),
                 self.holdings.saved(node),
-                np.packbits(self._hearing.of(node, count)).tobytes(),
+                np.packbits(self.hearing.of(node, count)).tobytes(),
             )
             for node in range(self.table.count)
         )
@@ -119,7 +120,7 @@ class Forest:
             table.restore(node.row, tracked)
             forest.holdings.restore(node.holdings)
             heard = np.unpackbits(np.frombuffer(node.heard, dtype=np.uint8), count=state.events)
-            forest._hearing.set(number, 0, heard.astype(np.bool_))
+            forest.hearing.set(number, 0, heard.astype(np.bool_))
         table.link()
         return forest
 
@@ -145,7 +146,7 @@ class Forest:
         """
         self._let_read()
         count = self.count_of_events
-        self._hearing.set(0, count, np.ones(events - count, dtype=np.bool_))
+        self.hearing.set(0, count, np.ones(events - count, dtype=np.bool_))
         self.enter(self._nowhere(position, events, PoseTable()))
         self.position = position
         self.holdings.note_look((0,), position - 1)
@@ -164,7 +165,7 @@ class Forest:
     def heard(self, node: int, count: int) -> Iterator[PerceivedEvent]:
         """What a node perceived of the first `count` events, oldest first."""
         yield from self._events.before(self.table.path(node))
-        numbers = np.flatnonzero(self._hearing.of(node, count)).tolist()
+        numbers = np.flatnonzero(self.hearing.of(node, count)).tolist()
         events = self._events.events(numbers[-1] + 1) if numbers else ()
         for number in numbers:
             tick, event = events[number]
@@ -183,7 +184,7 @@ class Forest:
             source = other.table.index[path]
             node = self.table.copy_node(other.table, source, is_root=False, recorded=True)
             self.holdings.add(other.holdings.of(source).copy(), other.holdings.last_look(source))
-            self._hearing.set(node, 0, other._hearing.of(source, count))
+            self.hearing.set(node, 0, other.hearing.of(source, count))
         self.table.link()
 
     def perceive_at_first(self) -> None:
@@ -255,7 +256,7 @@ class Forest:
             context.space, poses, facts, nodes, changes, *where, everywhere
         )
         count = columns.events_until(reached) - first
-        self._hearing.note(first, changes.perceived[:count])
+        self.hearing.note(first, changes.perceived[:count])
         rows = _by_entry(changes, columns.first)
         entries = columns.with_effects(start, reached) | rows.keys()
         if self.holdings.needs_looks():

@@ -213,9 +213,9 @@ class TrackRecorder:
 
     def _stale(self, at: int, agent: int, tick: int, *, current: bool) -> Row:
         """The row of an agent that is not where it stands in the timeline's world now."""
-        plots, poses = self._forest.table, self._forest.poses
+        table, poses = self._forest.table, self._forest.poses
         number = self._numbers[at]
-        pose_id, seen = plots.pose(number, agent), plots.seen_at(number, agent)
+        pose_id, seen = table.pose(number, agent), table.seen_at(number, agent)
         pose: Pose = (*poses.position(pose_id), *poses.angles(pose_id))
         if not current and self._book.at(agent, seen) == pose and poses.condition(pose_id):
             return [tick, STALE, seen]
@@ -226,8 +226,8 @@ class TrackRecorder:
         return [tick, PLACED, seen, list(pose), source, current, held]
 
     def _note_contents(self, at: int, track: Track, number: int, tick: int) -> None:
-        forest, held = self._forest, self._forest.holdings[number].containers
-        last, look = self._last.contents[at], forest.last_look(number)
+        forest, held = self._forest, self._forest.holdings.of(number).containers
+        last, look = self._last.contents[at], forest.holdings.last_look(number)
         for cell in last.keys() - held.keys():
             del last[cell]
             _put(track.contents[cell], [tick, None, False, False, -1, "", ""])
@@ -237,14 +237,14 @@ class TrackRecorder:
             if last.get(cell) == told:
                 continue
             last[cell] = told
-            basis: Basis = forest.content(number, cell).basis
+            basis: Basis = forest.holdings.content(number, cell).basis
             event = "" if basis.event is None else basis.event.value
             row = [tick, dict(raw.items), raw.complete, current]
             row += [basis.observed_at, basis.source.value, event]
             _put(track.contents.setdefault(cell, []), row)
 
     def _note_items(self, at: int, track: Track, number: int, tick: int) -> None:
-        lying = self._forest.holdings[number].items
+        lying = self._forest.holdings.of(number).items
         last = self._last.items[at]
         if not lying and not last:
             return
@@ -273,7 +273,7 @@ class TrackRecorder:
         last.looks = list(looks)
         changed = set()
         for number in range(forest.table.count):
-            owned = dict(forest.holdings[number].inventories)
+            owned = dict(forest.holdings.of(number).inventories)
             around = forest.table.parent(number)
             if everywhere or around in changed or owned != last.owned.get(number):
                 changed.add(number)
@@ -282,7 +282,7 @@ class TrackRecorder:
 
     def _note_owned(self, track: Track, number: int, tick: int) -> None:
         for agent, rows in enumerate(track.owns):
-            items, complete = self._forest.inventory(number, agent)
+            items, complete = self._forest.holdings.inventory(number, agent)
             if not rows or rows[-1][1:] != [dict(items), complete]:
                 _put(rows, [tick, dict(items), complete])
 

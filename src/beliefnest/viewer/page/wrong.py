@@ -60,9 +60,9 @@ class WrongThings:
 
     def _judge_contents(self) -> None:
         forest = self._forest
-        real = forest.holdings[0].containers
+        real = forest.holdings.of(0).containers
         for at, number in enumerate(self._numbers):
-            held = forest.holdings[number].containers
+            held = forest.holdings.of(number).containers
             mark = (_told(real), _told(held))
             if mark == self._held[at]:
                 continue
@@ -74,8 +74,8 @@ class WrongThings:
             )
 
     def _poses(self) -> list[Things]:
-        plots, poses = self._forest.table, self._forest.poses
-        pose_id, feet = plots.nodes().pose, poses.arrays().feet
+        table, poses = self._forest.table, self._forest.poses
+        pose_id, feet = table.nodes().pose, poses.arrays().feet
         known = pose_id >= 0
         if len(feet):
             moved = (feet[pose_id] != feet[pose_id[0]]).any(axis=2)
@@ -101,7 +101,7 @@ class WrongThings:
         forest = self._forest
         things = []
         for agent in range(len(forest.context.agents)):
-            real, held = (Contents(*forest.inventory(node, agent)) for node in (0, number))
+            real, held = (Contents(*forest.holdings.inventory(node, agent)) for node in (0, number))
             if are_false(real, held):
                 things.append(f"i{agent}")
         return tuple(things)
