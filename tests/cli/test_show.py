@@ -72,11 +72,34 @@ def test_a_table_names_the_containers(run: Path, capsys: pytest.CaptureFixture[s
     assert any("left chest" in line and "1 diamond" in line for line in lines)
 
 
-def test_a_picture_of_a_past_tick(run: Path, tmp_path: Path) -> None:
-    file = tmp_path / "then.png"
-    assert run_command_line(["show", str(run), "--tick", "30", "--png", str(file)]) == 0
+def test_a_picture_of_a_belief_and_not_of_the_world(run: Path, tmp_path: Path) -> None:
+    drawn = []
+    for number, options in enumerate(([], ["--tick", "30"], ["--against", "/observer/sally"])):
+        file = tmp_path / f"{number}.svg"
+        asked = ["show", str(run), "--path", "/observer/sally", "--svg", str(file)]
+        assert run_command_line([*asked, *options]) == 0
+        drawn.append(file.read_text())
+    assert all("/observer/sally" in text for text in drawn)
+    assert "in reality: empty" in drawn[0]
+    assert "tick 30" in drawn[1]
+    assert "in reality" not in drawn[2]
+
+
+def test_pictures_in_several_forms_at_once(run: Path, tmp_path: Path) -> None:
+    png, pdf = tmp_path / "f.png", tmp_path / "f.pdf"
+    assert run_command_line(["show", str(run), "--png", str(png), "--pdf", str(pdf)]) == 0
+    assert pdf.read_bytes().startswith(b"%PDF")
+    with Image.open(png) as picture:
+        assert picture.width == pytest.approx(84 / 25.4 * 200, abs=1)
+
+
+@pytest.mark.parametrize("ending", ["gif", "webp"])
+def test_an_animation_moves(run: Path, tmp_path: Path, ending: str) -> None:
+    file = tmp_path / f"f.{ending}"
+    asked = ["show", str(run), "--path", "/sally", "--tick", "12", "--gif", str(file)]
+    assert run_command_line(asked) == 0
     with Image.open(file) as picture:
-        assert picture.size == (1280, 880)
+        assert picture.n_frames > 3
 
 
 def test_the_prompt_of_the_probe_is_rendered_again(
@@ -96,6 +119,9 @@ def test_the_prompt_of_the_probe_is_rendered_again(
         (["show", "RUN", "--path", "/observer", "--branch", "nothing"], "probe 1"),
         (["show", "nowhere"], "no run at"),
         (["show", "RUN", "--png", "nowhere/then.png"], "nowhere/then.png cannot be written"),
+        (["show", "RUN", "--png", "then.jpeg"], "does not end in .png"),
+        (["show", "RUN", "--gif", "then.png"], ".gif, .webp"),
+        (["show", "RUN", "--png", "then.png", "--height", "900"], "outside the box"),
         (["prompt", "RUN", "--path", "/sally"], "task"),
         (["prompt", "RUN", "--path", "/sally", "--var", "task"], "key=value"),
         (["prompt", "RUN", "--path", "/sally", "--template", "nowhere.txt"], "nowhere.txt"),

@@ -137,7 +137,16 @@ def show(
     path: Annotated[str, typer.Option(help="Belief path; / is the real world.")] = "/",
     tick: Annotated[int | None, typer.Option(help="Tick; the latest if not given.")] = None,
     branch: Annotated[str | None, typer.Option(help="Branch of the simulator.")] = None,
-    png: Annotated[Path | None, typer.Option(help="Draw the world at that tick.")] = None,
+    png: Annotated[Path | None, typer.Option(help="Draw it, as a PNG file.")] = None,
+    svg: Annotated[Path | None, typer.Option(help="Draw it, as an SVG file.")] = None,
+    pdf: Annotated[Path | None, typer.Option(help="Draw it, as a PDF file.")] = None,
+    gif: Annotated[
+        Path | None, typer.Option(help="Draw it up to that tick, as a moving GIF or WebP file.")
+    ] = None,
+    against: Annotated[str, typer.Option(help="Drawn as false is what differs from this.")] = "/",
+    height: Annotated[
+        int | None, typer.Option(help="The storey to draw, y of what stands on its floor.")
+    ] = None,
     html: Annotated[
         Path | None, typer.Option(help="Write all of the run as one page that needs no network.")
     ] = None,
@@ -152,7 +161,9 @@ def show(
         return
     from beliefnest.cli.show import ShowOptions, show_run
 
-    show_run(ShowOptions(run, path, tick, branch, png, json))
+    forms = {"png": png, "svg": svg, "pdf": pdf}
+    figures = {form: file for form, file in forms.items() if file is not None}
+    show_run(ShowOptions(run, path, tick, branch, json, figures, gif, against, height))
 
 
 @app.command()

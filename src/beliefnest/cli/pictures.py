@@ -1,34 +1,29 @@
-"""From an outcome to the words and rows of a picture."""
+"""From an outcome to the values of a picture."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
-from beliefnest.belief.entries import PerceivedEvent
 from beliefnest.belief.view import State
 from beliefnest.nest.face.nest import Nest
+from beliefnest.pictures.overview import Card, Condition
+from beliefnest.pictures.palette import Mark, age_text
+from beliefnest.pictures.scene import Scene, best_height, read_stores
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Arrives, Hears, Scenario, Stands
 from beliefnest.timeline.journal import Journal
-from beliefnest.viewer.scene import Caption, Row, Scene, decisive_tick, read_scene, read_trails
+from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import parse_path, path_text
-from beliefnest.world.values import EventKind, Position
+from beliefnest.world.values import Point, Position
 
-__all__ = ["container_name", "point_text", "read_outcome_scene", "state_row", "titled"]
+__all__ = ["container_name", "place_text", "point_text", "read_condition", "read_trails", "titled"]
 
-_DEEDS: Mapping[EventKind, str] = {
-    EventKind.DEPOSIT_ITEM_INTO_CHEST: "puts {items} into {place}",
-    EventKind.GET_ITEM_FROM_CHEST: "takes {items} out of {place}",
-    EventKind.OPEN_CONTAINER: "opens {place}",
-    EventKind.MINE_BLOCK: "mines the block at {place}",
-    EventKind.PLACE_BLOCK: "places a block at {place}",
-    EventKind.USE_LEVER: "uses the lever at {place}",
-    EventKind.PRESS_BUTTON: "presses the button at {place}",
-    EventKind.GIVE_ITEM_TO_OTHER: "gives {items} to {other}",
-    EventKind.RECEIVE_ITEM_FROM_OTHER: "receives {items} from {other}",
-}
+_NEAR = 3.0
+"""Blocks from a place with a name within which somebody is said to be there."""
 
 
-def read_outcome_scene(nest: Nest, journal: Journal, outcome: Outcome) -> Scene:
-    """The scene of the decisive moment of a run whose nest is still open.
+def read_condition(nest: Nest, journal: Journal, outcome: Outcome) -> Condition:
+    """The picture of a condition when its script has ended, from a nest that is still open.
 
     Args:
         nest: After the script.
@@ -36,23 +31,42 @@ def read_outcome_scene(nest: Nest, journal: Journal, outcome: Outcome) -> Scene:
         outcome: What came of it.
     """
     scenario = outcome.scenario
-    tick = decisive_tick(nest)
     title = scenario.name
     if scenario.condition is not None:
         title += f", condition {scenario.condition}"
-    caption = Caption(
+    tick = outcome.reality.tick
+    viewers = _viewers(scenario)
+    (scene,) = nest.scenes("/", tick, sight=viewers)
+    cards = [_state_card(state, outcome) for state in (outcome.reality, *outcome.beliefs.values())]
+    cards += [_prediction_card(probe, scenario) for probe in outcome.probes]
+    return Condition(
         title=title,
-        subtitle=scenario.condition_description or scenario.description,
-        moment=_moment(outcome.reality, tick, scenario),
-        verdicts=tuple(_verdict(probe, scenario) for probe in outcome.probes),
+        about=scenario.condition_description or scenario.description,
+        scene=_with_ghosts(scene, outcome.beliefs, viewers),
+        trails=read_trails(journal, scenario.setting.snapshot, tick),
+        cards=tuple(cards),
         story=tuple(step.label for step in scenario.setting.script),
     )
-    rows = [
-        state_row(state.path, state, _held(state, outcome), _notes(state, outcome))
-        for state in (outcome.reality, *outcome.beliefs.values())
-    ]
-    trails = read_trails(journal, scenario.setting.snapshot, tick)
-    return read_scene(nest, tick, caption, scenario.labels, _viewers(scenario), rows, trails)
+
+
+def read_trails(
+    journal: Journal, start: Snapshot, tick: int
+) -> dict[str, tuple[tuple[float, float], ...]]:
+    """Where the agents of the real world stood up to a tick: x and z, oldest first.
+
+    Args:
+        journal: The run's timelines.
+        start: The first tick.
+        tick: The last tick to read.
+    """
+    trails = {name: [agent.position] for name, agent in start.agents.items()}
+    key = next(info.key for info in journal.timelines() if not info.key.path)
+    for entry in journal.entries(key, 0, journal.entries_until(key, tick)):
+        if isinstance(entry, Frame):
+            for name, agent in entry.agents.items():
+                if agent is not None:
+                    trails.setdefault(name, []).append(agent.position)
+    return {name: tuple((x, z) for x, _, z in points) for name, points in trails.items()}
 
 
 def container_name(place: Position, scenario: Scenario) -> str:
@@ -79,53 +93,70 @@ def _viewers(scenario: Scenario) -> tuple[str, ...]:
     return max(paths, key=len, default=())
 
 
-def _moment(state: State, tick: int, scenario: Scenario) -> str:
-    deeds = [event for event in state.events if event.tick == tick and event.kind in _DEEDS]
-    return f"Tick {tick}: {_deed(deeds[-1], scenario)}." if deeds else f"Tick {tick}."
+def _with_ghosts(scene: Scene, beliefs: Mapping[str, State], viewers: Sequence[str]) -> Scene:
+    """With the places at which the first viewer believes the others to be, if they are not."""
+    state = beliefs.get(f"/{viewers[0]}") if viewers else None
+    if state is None:
+        return scene
+    ghosts = []
+    for person in scene.people:
+        held = state.agents[person.name]
+        if person.name not in viewers[1:] or held.position is None or person.position is None:
+            continue
+        if math.dist(held.position, person.position) > 1:
+            ghosts.append(
+                replace(
+                    person, position=held.position, mark=Mark.FALSE, believer=viewers[0], above=0
+                )
+            )
+    return replace(scene, people=(*scene.people, *ghosts))
 
 
-def _deed(event: PerceivedEvent, scenario: Scenario) -> str:
-    detail = event.detail
-    place = ""
-    if "position" in detail:
-        x, y, z = detail["position"]
-        name = container_name((x, y, z), scenario)
-        place = name if name.startswith("(") else f"the {name}"
-    items = ", ".join(
-        f"{count} {name.replace('_', ' ')}" for name, count in detail.get("items", {}).items()
-    )
-    words = _DEEDS[event.kind].format(items=items, place=place, other=detail.get("other", ""))
-    return f"{titled(event.actor or 'somebody')} {words}"
-
-
-def state_row(
-    path: tuple[str, ...], state: State, ok: bool | None, notes: tuple[str, ...] = ()
-) -> Row:
-    """The row of a simulator: what it holds of the containers, and other things of note."""
-    return Row(
-        label=" that ".join(f"{titled(name)} believes" for name in path) or "In reality",
-        path=path_text(path),
-        contents={place: held.items for place, held in state.containers.items()},
-        complete=frozenset(place for place, held in state.containers.items() if held.complete),
-        ok=ok,
+def _state_card(state: State, outcome: Outcome) -> Card:
+    """What a simulator holds of containers, and of what anything is expected of anybody."""
+    stores = read_stores(state, best_height([state]), outcome.scenario.labels, {})
+    notes = _notes(state, outcome)
+    if not stores and not notes:
+        notes = tuple(_place_note(name, state, outcome.scenario) for name in state.agents)
+    return Card(
+        title=" that ".join(f"{titled(name)} believes" for name in state.path) or "In reality",
+        path=path_text(state.path),
+        ok=_held(state, outcome),
+        stores=stores,
         notes=notes,
     )
 
 
 def _notes(state: State, outcome: Outcome) -> tuple[str, ...]:
-    """What a simulator holds of the agents and words that something is expected of."""
-    notes = []
-    for each in outcome.expectations:
-        content = each.expectation.content
-        if outcome.state(each.expectation.path) is not state:
-            continue
-        if isinstance(content, Stands):
-            place = state.agents[content.agent].position
-            notes.append(f"{content.agent} {'anywhere' if place is None else point_text(place)}")
-        elif isinstance(content, Hears):
-            heard = any(content.text in text for _, _, text in state.chat)
-            notes.append(f"{content.text}: {'' if heard else 'not '}heard")
+    """Where agents are and what was said, as far as anything is expected of it anywhere."""
+    contents = [each.expectation.content for each in outcome.expectations]
+    agents = dict.fromkeys(each.agent for each in contents if isinstance(each, Stands))
+    notes = [_place_note(name, state, outcome.scenario) for name in agents]
+    for text in dict.fromkeys(each.text for each in contents if isinstance(each, Hears)):
+        heard = any(text in said for _, _, said in state.chat)
+        notes.append(f"{text!r}: {'heard' if heard else 'not heard'}")
     return tuple(notes)
+
+
+def _place_note(name: str, state: State, scenario: Scenario) -> str:
+    agent = state.agents[name]
+    if agent.position is None:
+        return f"{name}: place not known"
+    where = place_text(agent.position, scenario)
+    if agent.current or agent.basis is None:
+        return f"{name}: {where}"
+    return f"{name}: {where}, {age_text(state.tick - agent.basis.observed_at)}"
+
+
+def place_text(point: Point, scenario: Scenario) -> str:
+    """A place for people: by its name, if it is near one that has a name."""
+    near = {
+        name: math.dist(point, (x + 0.5, y, z + 0.5))
+        for name, (x, y, z) in scenario.setting.places.items()
+    }
+    if near and min(near.values()) <= _NEAR:
+        return f"at {min(near, key=lambda name: near[name])}"
+    return f"at {point_text(point)}"
 
 
 def _held(state: State, outcome: Outcome) -> bool | None:
@@ -136,15 +167,25 @@ def _held(state: State, outcome: Outcome) -> bool | None:
     return all(verdicts) if verdicts else None
 
 
-def _verdict(outcome: ProbeOutcome, scenario: Scenario) -> tuple[str, bool | None]:
-    agent = titled(outcome.probe.agent)
-    if isinstance(outcome.probe.expect, Arrives):
-        where = "nowhere" if outcome.arrived is None else point_text(outcome.arrived)
-        deed = f"{agent} goes to {where}"
+def _prediction_card(outcome: ProbeOutcome, scenario: Scenario) -> Card:
+    """What a probe foretold: which probe, of which belief, what came, whether as expected."""
+    probe = outcome.probe
+    agent = titled(probe.agent)
+    if isinstance(probe.expect, Arrives):
+        where = "nowhere" if outcome.arrived is None else place_text(outcome.arrived, scenario)
+        deed = f"{agent} ends {where}"
     elif outcome.opened:
         deed = f"{agent} opens the {container_name(outcome.opened[0], scenario)}"
     else:
         deed = f"{agent} opens nothing"
     reported = f"{scenario.reported_by} reports" if scenario.reported_by else "expected"
     judged = {True: f", as {reported}", False: f", not as {reported}", None: ""}[outcome.ok]
-    return f"Predicted: {deed}{judged}", outcome.ok
+    label = f"Probe: {probe.label}" if probe.label else "Probe"
+    task = " ".join(probe.task.split())
+    return Card(
+        title=label,
+        path=f"asked of {probe.path}, acted out in {probe.acts_in}",
+        ok=outcome.ok,
+        notes=(f"\u201c{task}\u201d", f"{deed}{judged}"),
+        prediction=True,
+    )

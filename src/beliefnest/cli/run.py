@@ -16,7 +16,7 @@ from beliefnest.bodies.worlds import Worlds, check_world
 from beliefnest.cli.console import progress_on, stdout
 from beliefnest.cli.folder import ConditionFolder, RunFolder, kept_scenario_file
 from beliefnest.cli.matrix import score_runs, score_table, scores_json
-from beliefnest.cli.pictures import read_outcome_scene
+from beliefnest.cli.pictures import read_condition
 from beliefnest.cli.plan import Cell, plan_cells
 from beliefnest.cli.report import outcome_json, outcome_table, report_json
 from beliefnest.errors import InputError, ModelError, ScenarioError
@@ -25,12 +25,11 @@ from beliefnest.llm.cache import CacheMode
 from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.llm.resolve import Connection, open_model, resolve_model
 from beliefnest.nest.face.nest import Nest
+from beliefnest.pictures.overview import Condition, overview
 from beliefnest.scenarios.outcome import Outcome
 from beliefnest.scenarios.running import Asking, run_scenario
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
-from beliefnest.viewer.picture import draw_overview, draw_scene, save
-from beliefnest.viewer.scene import Scene
 
 __all__ = ["ModelOptions", "RunOptions", "run_scenarios"]
 
@@ -122,11 +121,9 @@ def run_scenarios(options: RunOptions) -> int:
         with Worlds(options.seed) as worlds:
             for cell in cells:
                 run.do(cell, worlds)
-        if len(run.scenes) == len(cells) > 1:
-            save(
-                draw_overview(run.scenes[: len(scenarios)], first.description or first.name),
-                folder.picture,
-            )
+        if len(run.pictures) == len(cells) > 1:
+            shown = run.pictures[: len(scenarios)]
+            overview(shown, first.description or first.name).save(folder.picture)
         status = "failed" if run.failures else "done"
     except KeyboardInterrupt:
         status = "interrupted"
@@ -156,7 +153,7 @@ class _Run:
         )
         self._models = {name: open_model(name, os.environ, connection) for name in options.models}
         self.outcomes: list[Outcome] = []
-        self.scenes: list[Scene] = []
+        self.pictures: list[Condition] = []
         self.results: list[dict[str, Any]] = []
         self.failures: list[dict[str, object]] = []
 
@@ -171,7 +168,7 @@ class _Run:
         place.begin()
         try:
             model = self._models[cell.model]
-            outcome, scene = _run(cell, place, model, self._options, worlds)
+            outcome, picture = _run(cell, place, model, self._options, worlds)
         except ModelError as error:
             self.failures.append(
                 {
@@ -183,7 +180,7 @@ class _Run:
             )
             return
         self.outcomes.append(outcome)
-        self.scenes.append(scene)
+        self.pictures.append(picture)
         self.results.append(outcome_json(outcome, cell.model, place.path))
         place.write_result(self.results[-1])
 
@@ -216,7 +213,7 @@ def _check_numbers(options: RunOptions) -> None:
 
 def _run(
     cell: Cell, place: ConditionFolder, model: Model, options: RunOptions, worlds: Worlds
-) -> tuple[Outcome, Scene]:
+) -> tuple[Outcome, Condition]:
     scenario = cell.scenario
     asking = Asking(options.asking.attempts, Sampling(options.asking.temperature, cell.seed))
     started = time.perf_counter()
@@ -228,9 +225,9 @@ def _run(
         for number, probe in enumerate(outcome.probes, start=1):
             place.write_probe(number, probe)
         with SqliteJournal.read(place.store) as journal:
-            scene = read_outcome_scene(nest, journal, outcome)
-        save(draw_scene(scene), place.picture)
-    return outcome, scene
+            picture = read_condition(nest, journal, outcome)
+        overview([picture], picture.title).save(place.picture)
+    return outcome, picture
 
 
 def _failures_text(failures: Sequence[Mapping[str, object]], total: int, folder: RunFolder) -> str:

@@ -1,10 +1,11 @@
 """`beliefnest show` and `beliefnest prompt`: reading a recorded run."""
 
+import itertools
 import json
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from rich import box
@@ -13,12 +14,16 @@ from rich.text import Text
 
 from beliefnest.belief.view import State
 from beliefnest.cli.console import stdout
-from beliefnest.cli.folder import store_in
-from beliefnest.cli.pictures import container_name, point_text, state_row, titled
+from beliefnest.cli.folder import store_in, stores_in
+from beliefnest.cli.pictures import container_name, place_text, titled
 from beliefnest.cli.report import state_json
 from beliefnest.cli.text import printable
 from beliefnest.errors import InputError
+from beliefnest.nest.face.past_simulator import PastSimulator
 from beliefnest.nest.face.recorded import RecordedNest
+from beliefnest.pictures.animation import check_animated, save_animation
+from beliefnest.pictures.figure import figure_of
+from beliefnest.pictures.scene import Scene
 from beliefnest.prompts.templates import Template, built_in_template, load_template
 from beliefnest.scenarios.loading import kept_scenario
 from beliefnest.scenarios.scenario import Scenario
@@ -26,10 +31,11 @@ from beliefnest.timeline.journal import FOLLOW
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.timeline.tables import prompt_row
-from beliefnest.viewer.picture import draw_scene, save
-from beliefnest.viewer.scene import Caption, read_scene, read_trails
 
 __all__ = ["ShowOptions", "print_prompt", "show_run"]
+
+_FRAMES = 120
+"""Most pictures of an animation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,38 +47,57 @@ class ShowOptions:
         path: Belief path.
         tick: Tick; None: the latest.
         branch: Branch of the simulator; None: the one it ended on, or `follow`.
-        png: File for a picture; None: none.
         as_json: Whether to print JSON.
+        figures: Files for figures, by their form: `png`, `svg`, `pdf`.
+        animation: File for an animation; None: none.
+        against: Path that the simulator is compared with in figures.
+        height: The storey of figures; None: that of most things.
     """
 
     run: Path
     path: str
     tick: int | None
     branch: str | None
-    png: Path | None
     as_json: bool
+    figures: Mapping[str, Path] = field(default_factory=dict)
+    animation: Path | None = None
+    against: str = "/"
+    height: int | None = None
 
 
 def show_run(options: ShowOptions) -> None:
-    """Print what a simulator of a run held, or draw the world at that tick.
+    """Print what a simulator of a run held, or draw it; of several conditions each.
 
     Raises:
-        BeliefNestError: There is no such run, simulator, branch or tick.
+        BeliefNestError: There is no such run, simulator, branch or tick, or a file cannot be
+            written.
     """
-    with _opened(options.run) as (scenario, nest, journal):
-        if options.branch is not None:
-            nest.select(options.path, options.branch)
-        simulator = nest.simulator(options.path, options.tick)
+    for form, file in options.figures.items():
+        if file.suffix.lower() != f".{form}":
+            raise InputError(f"--{form} writes {form.upper()}, and {file} does not end in .{form}")
+    if options.as_json or options.animation is not None:
+        stores: tuple[Path, ...] = (store_in(options.run),)
+    else:
+        stores = stores_in(options.run)
+    if options.animation is not None:
+        _animate(options, stores[0])
+    if options.figures:
+        figure = figure_of([scene for store in stores for scene in _scenes(options, store, stores)])
+        for file in options.figures.values():
+            figure.save(file)
+    if options.as_json or not (options.figures or options.animation):
+        for store in stores:
+            if len(stores) > 1:
+                stdout().print(f"[bold]{_name_in(store, options.run)}[/bold]", highlight=False)
+            _show(options, store)
+
+
+def _show(options: ShowOptions, store: Path) -> None:
+    with _opened(store) as (scenario, nest, _):
+        simulator = _simulator(options, nest)
         state = simulator.state
         asked = [each for each in nest.prompts(options.path) if each.tick <= state.tick]
         programs = [each for each in nest.programs(options.path) if each.tick <= state.tick]
-        if options.png is not None:
-            tick = min(state.tick, nest.head("/"))
-            caption = Caption(scenario.name, f"{simulator.path} at tick {tick}")
-            trails = read_trails(journal, scenario.setting.snapshot, tick)
-            rows = [state_row(state.path, state, None)]
-            scene = read_scene(nest, tick, caption, scenario.labels, state.path, rows, trails)
-            save(draw_scene(scene), options.png)
         if options.as_json:
             place = {"path": simulator.path, "branch": options.branch or FOLLOW, "tick": state.tick}
             content = {
@@ -82,10 +107,56 @@ def show_run(options: ShowOptions) -> None:
                 "prompts": [prompt_row(each)[1] for each in asked],
             }
             sys.stdout.write(json.dumps(content, indent=2) + "\n")
-        elif options.png is None:
+        else:
             _print_state(state, simulator.path, scenario)
             _print_programs(programs)
             _print_prompts(asked)
+
+
+def _simulator(options: ShowOptions, nest: RecordedNest) -> PastSimulator:
+    if options.branch is not None:
+        nest.select(options.path, options.branch)
+    return nest.simulator(options.path, options.tick)
+
+
+def _scenes(options: ShowOptions, store: Path, stores: Sequence[Path]) -> tuple[Scene, ...]:
+    """The simulator in one run, with the run's name if there are several."""
+    with _opened(store) as (_, nest, _):
+        tick = _simulator(options, nest).tick
+        (scene,) = nest.scenes(options.path, tick, options.against, height=options.height)
+    if len(stores) == 1:
+        return (scene,)
+    notes = [note for note in (scene.note, _name_in(store, options.run)) if note]
+    return (replace(scene, note=", ".join(notes)),)
+
+
+def _animate(options: ShowOptions, store: Path) -> None:
+    """The simulator at each tick with a change; at most so many, evenly chosen."""
+    file = options.animation
+    assert file is not None
+    check_animated(file)
+    with _opened(store) as (_, nest, _):
+        end = _simulator(options, nest).tick
+        ticks = chosen_ticks(nest.ticks(options.path), end, _FRAMES)
+        figures = [
+            nest.figure(options.path, tick, options.against, height=options.height)
+            for tick in ticks
+        ]
+        spans = [b - a for a, b in itertools.pairwise(ticks)]
+        times = [max(40, min(1500, span * 50)) for span in spans]
+        save_animation(figures, [*times, 2500], file)
+
+
+def chosen_ticks(changes: Sequence[int], end: int, most: int) -> list[int]:
+    """At most so many of the ticks with a change up to the end, evenly chosen, and the end."""
+    found = sorted({tick for tick in changes if tick < end})
+    step = max(1, -(-len(found) // max(1, most - 1)))
+    return [*found[::step], end]
+
+
+def _name_in(store: Path, run: Path) -> str:
+    """A condition by its folder."""
+    return str(store.parent.relative_to(run)).replace("-", " ")
 
 
 def print_prompt(run: Path, path: str, template: Path | None, variables: list[str]) -> None:
@@ -106,7 +177,7 @@ def print_prompt(run: Path, path: str, template: Path | None, variables: list[st
         if not sign or not key.isidentifier():
             raise InputError(f"{text!r} is no variable; write --var key=value")
         values[key] = value
-    with _opened(run) as (_, nest, journal):
+    with _opened(store_in(run)) as (_, nest, journal):
         source = _template(template, journal.records.run().templates)
         sys.stdout.write(nest.simulator(path).render(source, **values) + "\n")
 
@@ -120,8 +191,7 @@ def _template(wanted: Path | None, kept: Mapping[str, str]) -> Template:
 
 
 @contextmanager
-def _opened(run: Path) -> Iterator[tuple[Scenario, RecordedNest, SqliteJournal]]:
-    store = store_in(run)
+def _opened(store: Path) -> Iterator[tuple[Scenario, RecordedNest, SqliteJournal]]:
     with SqliteJournal.read(store) as journal, journal.unchanging():
         nest = RecordedNest.of(journal)
         yield _scenario(journal, nest), nest, journal
@@ -146,7 +216,7 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
         containers.add_row(name, items or "-", "yes" if held.complete else "not known")
     agents = Table("agent", "position", "seen now", "holds", box=box.SIMPLE_HEAVY)
     for name, agent in state.agents.items():
-        where = "unknown" if agent.position is None else point_text(agent.position)
+        where = "unknown" if agent.position is None else place_text(agent.position, scenario)
         holds = (agent.equipment or {}).get("main_hand", "-")
         agents.add_row(titled(name), where, "yes" if agent.current else "no", holds)
     console.print(containers, agents)

@@ -316,8 +316,12 @@ class _Sheet:
         self.marks += icons.agent(spot, radius, look, yaw, person.mark)
         if person.age or person.mark is Mark.STALE:
             self.kinds.add("remembered")
+        if person.mark is Mark.FALSE:
+            self.kinds.add("false")
         lines = [(_with_height(person.name, person.above), True)]
-        if person.age:
+        if person.believer:
+            lines.append((f"as {person.believer} has it", False))
+        elif person.age:
             lines.append((age_text(person.age), False))
         self._label(spot, size, tuple(lines))
 

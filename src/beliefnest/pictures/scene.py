@@ -27,6 +27,7 @@ __all__ = [
     "Wrong",
     "best_height",
     "read_scene",
+    "read_stores",
 ]
 
 Labels = Mapping[Position, str]
@@ -150,6 +151,7 @@ class Person:
         holds: Item in its main hand; empty: none, or not known.
         instead: Where it is elsewhere, if this is false.
         above: Blocks above the storey; below: negative.
+        believer: Whose belief has it there, if it is not the simulator's own; empty: nobody's.
     """
 
     name: str
@@ -160,6 +162,7 @@ class Person:
     holds: str
     instead: str
     above: int
+    believer: str = ""
 
 
 @dataclass(frozen=True)
@@ -279,7 +282,7 @@ def read_scene(
         low=(x0, z0),
         height=level,
         cells=cells,
-        stores=_stores(state, level, labels or {}, by_place),
+        stores=read_stores(state, level, labels or {}, by_place),
         devices=_devices(cells, (x0, level, z0)),
         items=tuple((item.name, item.position) for _, item in sorted(state.items.items())),
         places=tuple(sorted((places or {}).items())),
@@ -327,9 +330,17 @@ def _cell(state: State, at: Position, wrong: Mapping[Position | str, Wrong]) -> 
     return Cell(ground, state.blocks[at], not container and (at in wrong or below in wrong))
 
 
-def _stores(
+def read_stores(
     state: State, level: int, labels: Labels, wrong: Mapping[Position | str, Wrong]
 ) -> tuple[Store, ...]:
+    """The containers of a state.
+
+    Args:
+        state: What a simulator holds.
+        level: The storey.
+        labels: What people call them.
+        wrong: What is held otherwise elsewhere, by place.
+    """
     found = []
     for place, held in sorted(state.containers.items()):
         text = state.blocks[place]

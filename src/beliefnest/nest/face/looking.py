@@ -1,4 +1,4 @@
-"""What users see of a nest: figures, table of beliefs over time, what a notebook shows."""
+"""What users see of a nest: figures, plots of beliefs over time, what a notebook shows."""
 
 import math
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from beliefnest.pictures.figure import Figure, figure_of
 from beliefnest.pictures.scene import Scene, Wrong, best_height, read_scene
 from beliefnest.world.paths import parse_path, path_text
 
-__all__ = ["Looking", "LookingAtOne", "contents_words", "figure"]
+__all__ = ["Looking", "LookingAtOne", "contents_words"]
 
 Path = tuple[str, ...]
 
@@ -80,9 +80,21 @@ class Looking:
             TickError: The tick is in the future or before the start.
             InputError: There is no path, or the height lies outside the box.
         """
+        return figure_of(self.scenes(paths, tick, against, sight=sight, height=height))
+
+    def scenes(
+        self,
+        paths: str | Sequence[str] = "/",
+        tick: int | None = None,
+        against: str | None = None,
+        *,
+        sight: Sequence[str] | None = None,
+        height: int | None = None,
+    ) -> tuple[Scene, ...]:
+        """What `figure` draws, as values; arguments and errors are the same."""
         wanted = [paths] if isinstance(paths, str) else list(paths)
         then = self._moment() if tick is None else tick
-        return figure(self._recording, wanted, then, against, sight=sight, height=height)
+        return _scenes(self._recording, wanted, then, against, sight=sight, height=height)
 
     def _repr_html_(self) -> str:
         return self.figure()._repr_html_()
@@ -106,14 +118,15 @@ class LookingAtOne:
         height: int | None = None,
     ) -> Figure:
         """The simulator, drawn from what it holds itself; as `Nest.figure`."""
-        paths = [path_text(self._path)]
-        return figure(self._recording, paths, self._moment(), against, sight=sight, height=height)
+        paths, then = [path_text(self._path)], self._moment()
+        scenes = _scenes(self._recording, paths, then, against, sight=sight, height=height)
+        return figure_of(scenes)
 
     def _repr_html_(self) -> str:
         return self.figure()._repr_html_()
 
 
-def figure(
+def _scenes(
     recording: Recording,
     paths: Sequence[str],
     tick: int | None,
@@ -121,8 +134,7 @@ def figure(
     *,
     sight: Sequence[str] | None,
     height: int | None,
-) -> Figure:
-    """As `Looking.figure`."""
+) -> tuple[Scene, ...]:
     if not paths:
         raise InputError("a figure of no simulator is empty; give a belief path")
     with recording.turn:
@@ -135,7 +147,7 @@ def figure(
             raise InputError(f"height {height} lies outside the box; give {low} to {high}")
         # One storey for all of them, so that they can be compared.
         level = best_height([node.state for node in nodes]) if height is None else height
-        return figure_of([_scene(node, other, sight, level) for node in nodes])
+        return tuple(_scene(node, other, sight, level) for node in nodes)
 
 
 def _scene(node: _Node, against: Path, sight: Sequence[str] | None, height: int) -> Scene:

@@ -113,6 +113,18 @@ class RecordedNest(Looking):
         """The latest tick of the timeline that a simulator is on."""
         return self._recording.info(parse_path(path, self._recording.agents)).head
 
+    def ticks(self, path: str) -> tuple[int, ...]:
+        """The ticks at which anything happened on the timeline that a simulator is on.
+
+        Those before a fork belong to another timeline; the first one is the fork's.
+
+        Raises:
+            PathError: The path is malformed or names an unknown agent.
+        """
+        info = self._recording.info(parse_path(path, self._recording.agents))
+        entries = self._recording.journal.entries(info.key, 0, info.entries)
+        return (info.start, *(entry.tick for entry in entries))
+
     def over_time(self, path: str) -> Iterator[Moment]:
         """A simulator at every tick with a change, on every timeline that it has or can follow.
 

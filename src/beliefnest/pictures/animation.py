@@ -1,0 +1,74 @@
+"""Figures one after the other, as a file that moves."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from PIL import Image
+
+from beliefnest.errors import InputError
+from beliefnest.pictures.figure import Figure, Size
+from beliefnest.pictures.palette import PAPER
+
+__all__ = ["check_animated", "save_animation"]
+
+_FORMS: Mapping[str, str] = {".gif": "GIF", ".webp": "WEBP"}
+
+
+def check_animated(path: Path) -> str:
+    """The form that a file's ending names.
+
+    Raises:
+        InputError: It names none.
+    """
+    form = _FORMS.get(path.suffix.lower())
+    if form is None:
+        raise InputError(
+            f"{path} has the ending {path.suffix or '(none)'}; "
+            f"animations are written as {', '.join(_FORMS)}"
+        )
+    return form
+
+
+def save_animation(
+    figures: Sequence[Figure],
+    milliseconds: Sequence[int],
+    path: Path,
+    size: Size | None = None,
+    dpi: float = 110,
+) -> None:
+    """Write figures that are shown one after the other, again and again.
+
+    Args:
+        figures: What is shown.
+        milliseconds: How long each is shown.
+        path: A `.gif` or `.webp` file; it is replaced.
+        size: As for `Figure.drawing`.
+        dpi: Pixels to an inch.
+
+    Raises:
+        InputError: There is no such ending, or the file cannot be written.
+    """
+    form = check_animated(path)
+    images = [figure.image(size, dpi) for figure in figures]
+    width, height = max(i.width for i in images), max(i.height for i in images)
+    pages = [Image.new("RGB", (width, height), PAPER) for _ in images]
+    for page, image in zip(pages, images, strict=True):
+        page.paste(image, (0, 0))
+    if form == "GIF":
+        # One set of colours for all, so that nothing flickers.
+        colours = pages[-1].quantize(128, dither=Image.Dither.NONE)
+        pages = [page.quantize(palette=colours, dither=Image.Dither.NONE) for page in pages]
+    first, *others = pages
+    try:
+        first.save(
+            path,
+            format=form,
+            save_all=True,
+            append_images=others,
+            duration=list(milliseconds),
+            loop=0,
+        )
+    except OSError as error:
+        raise InputError(
+            f"the animation {path} cannot be written ({error.strerror or error}); check the path"
+        ) from None

@@ -1,0 +1,213 @@
+"""The picture of a run: for each condition the plan of the world, what is believed, what came."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from beliefnest.pictures import icons
+from beliefnest.pictures.figure import MARGIN, TEXT_SIZE, Figure, columns_for
+from beliefnest.pictures.legend import draw_legend
+from beliefnest.pictures.marks import XY, Drawing, Rectangle
+from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.palette import INK, PAPER, QUIET, AgentLook, agent_looks, mix
+from beliefnest.pictures.panel import Block, paragraph
+from beliefnest.pictures.plan import draw_plan
+from beliefnest.pictures.scene import Scene, Store
+
+__all__ = ["Card", "Condition", "overview"]
+
+_GAP = 12.0
+_LEAST = 148.0
+"""Least width of a condition, in points."""
+_BESIDE = 380.0
+"""Width, in points, from which on a single condition has its cards beside the plan."""
+_INSET = 5.0
+_BETWEEN = 4.0
+
+
+@dataclass(frozen=True, slots=True)
+class Card:
+    """What one simulator holds, or what was predicted from it.
+
+    Attributes:
+        title: What it is.
+        path: Belief path.
+        ok: Whether it is as expected; None: nothing was expected.
+        stores: Containers as it knows them.
+        notes: What else there is to say.
+        prediction: Whether it is a prediction.
+    """
+
+    title: str
+    path: str
+    ok: bool | None
+    stores: tuple[Store, ...] = ()
+    notes: tuple[str, ...] = ()
+    prediction: bool = False
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One condition of a run.
+
+    Attributes:
+        title: What it is.
+        about: What is special about it.
+        scene: The real world when the script has ended.
+        trails: Where agents have been: x and z, oldest first.
+        cards: What simulators held then, and what was predicted from them.
+        story: What has happened, in order.
+    """
+
+    title: str
+    about: str
+    scene: Scene
+    trails: Mapping[str, tuple[XY, ...]]
+    cards: tuple[Card, ...]
+    story: tuple[str, ...] = ()
+
+
+def overview(conditions: Sequence[Condition], title: str) -> Figure:
+    """The figure of a run; conditions stand side by side, and the same beliefs are level."""
+    count = len(conditions)
+    width = 180.0 if count == 1 else min(85.0 * count, 255.0)
+    return Figure(lambda points: _draw(conditions, title, points), width, title)
+
+
+@dataclass
+class _Page:
+    """A page under way."""
+
+    looks: Mapping[str, AgentLook]
+    marks: list[Drawn]
+    kinds: set[str]
+
+    def add(self, block: Block) -> None:
+        self.marks += block.marks
+        self.kinds |= block.kinds
+
+
+def _draw(conditions: Sequence[Condition], title: str, width: float) -> Drawing:
+    page = _Page(agent_looks(conditions[0].scene.agents), [], set())
+    inner = width - 2 * MARGIN
+    head = Block(bottom=MARGIN)
+    if len(conditions) > 1:
+        paragraph(head, title, MARGIN, inner, TEXT_SIZE * 1.6, bold=True)
+    page.add(head)
+    bottom = head.bottom
+    if len(conditions) == 1 and inner >= _BESIDE:
+        bottom = _beside(page, conditions[0], (MARGIN, bottom), inner)
+    else:
+        columns = columns_for(len(conditions), inner, _LEAST)
+        for start in range(0, len(conditions), columns):
+            row = conditions[start : start + columns]
+            bottom = _row(page, row, bottom + (_GAP if start else 2), inner, columns)
+    legend = draw_legend(page.kinds, page.looks, (MARGIN, bottom + 5), inner, TEXT_SIZE)
+    page.add(legend)
+    return Drawing(width, legend.bottom + MARGIN, tuple(page.marks), title)
+
+
+def _row(page: _Page, row: Sequence[Condition], top: float, inner: float, columns: int) -> float:
+    """Conditions side by side; returns where they end."""
+    wide = (inner - _GAP * (columns - 1)) / columns
+    lefts = [MARGIN + number * (wide + _GAP) for number in range(len(row))]
+    heads = [_head(each, (left, top), wide) for each, left in zip(row, lefts, strict=True)]
+    level = max(head.bottom for head in heads) + 3
+    bottom = level
+    for each, head, left in zip(row, heads, lefts, strict=True):
+        page.add(head)
+        plan = draw_plan(each.scene, page.looks, (left, level), wide, TEXT_SIZE, each.trails)
+        page.marks += plan.marks
+        page.kinds |= plan.kinds
+        below = Block(bottom=plan.bottom + 4)
+        if plan.unnamed:
+            words = f"too close for a name: {', '.join(plan.unnamed)}"
+            paragraph(below, words, left, wide, TEXT_SIZE)
+            page.add(below)
+        bottom = max(bottom, below.bottom)
+    most = max(len(each.cards) for each in row)
+    for number in range(most):
+        at = [
+            (each.cards[number], left)
+            for each, left in zip(row, lefts, strict=True)
+            if number < len(each.cards)
+        ]
+        bottom = _cards(page, at, bottom, wide) + _BETWEEN
+    return bottom
+
+
+def _beside(page: _Page, condition: Condition, at: XY, inner: float) -> float:
+    """One condition, its cards to the right of the plan; returns where it ends."""
+    left, top = at
+    head = _head(condition, at, inner)
+    page.add(head)
+    wide = (inner - _GAP) * 0.56
+    level = head.bottom + 4
+    plan = draw_plan(condition.scene, page.looks, (left, level), wide, TEXT_SIZE, condition.trails)
+    page.marks += plan.marks
+    page.kinds |= plan.kinds
+    story = Block(bottom=plan.bottom + 5)
+    if plan.unnamed:
+        paragraph(story, f"too close for a name: {', '.join(plan.unnamed)}", left, wide, TEXT_SIZE)
+    for number, step in enumerate(condition.story, start=1):
+        paragraph(story, f"{number}  {step}", left, wide, TEXT_SIZE, QUIET)
+    page.add(story)
+    bottom = level
+    for card in condition.cards:
+        place = left + wide + _GAP
+        bottom = _cards(page, [(card, place)], bottom, inner - wide - _GAP) + _BETWEEN
+    return max(bottom, story.bottom, top)
+
+
+def _head(condition: Condition, at: XY, width: float) -> Block:
+    block = Block(bottom=at[1])
+    paragraph(block, condition.title, at[0], width, TEXT_SIZE * 1.2, bold=True)
+    paragraph(block, condition.about, at[0], width, TEXT_SIZE, QUIET)
+    words = f"the real world at tick {condition.scene.tick}, after the script"
+    paragraph(block, words, at[0], width, TEXT_SIZE, QUIET)
+    return block
+
+
+def _cards(page: _Page, cards: Sequence[tuple[Card, float]], top: float, width: float) -> float:
+    """Cards of one kind side by side, all as high as the highest; returns where they end."""
+    blocks = [_card(card, (left, top), width) for card, left in cards]
+    bottom = max(block.bottom for block in blocks) + _INSET - 1
+    for (card, left), block in zip(cards, blocks, strict=True):
+        fill = mix(PAPER, INK, 0.07) if card.prediction else "#ffffff"
+        edge = mix(PAPER, INK, 0.16)
+        page.marks.append(
+            Rectangle(left, top, width, bottom - top, fill, edge, 0.5, 3.0, role="card")
+        )
+        page.add(block)
+    return bottom
+
+
+def _card(card: Card, at: XY, width: float) -> Block:
+    left, top = at
+    block = Block(bottom=top + _INSET)
+    inner = width - 2 * _INSET
+    radius = TEXT_SIZE * 0.6
+    room = inner if card.ok is None else inner - 2.6 * radius
+    if card.ok is not None:
+        middle = (left + width - _INSET - radius, top + _INSET + radius)
+        block.marks += icons.verdict(middle, radius, good=card.ok)
+        block.kinds.add("expected" if card.ok else "unexpected")
+    x = left + _INSET
+    paragraph(block, card.title, x, room, TEXT_SIZE, bold=True)
+    paragraph(block, card.path, x, room, TEXT_SIZE * 0.9, QUIET)
+    block.bottom += 1
+    for store in card.stores:
+        _store(block, store, x, inner)
+    for note in card.notes:
+        paragraph(block, note, x, inner, TEXT_SIZE)
+    return block
+
+
+def _store(block: Block, store: Store, left: float, width: float) -> None:
+    icon = TEXT_SIZE * 1.2
+    block.marks += icons.container((left + icon / 2, block.bottom + icon / 2), icon, store)
+    block.kinds.add("container")
+    top, inset = block.bottom, icon * 1.5
+    words = f"{store.label}: {store.words}"
+    block.bottom += (icon - TEXT_SIZE) / 2
+    paragraph(block, words, left + inset, width - inset, TEXT_SIZE)
+    block.bottom = max(block.bottom, top + icon + 1.6)
