@@ -31,11 +31,11 @@ _MOVES = {EventKind.DEPOSIT_ITEM_INTO_CHEST: 1, EventKind.GET_ITEM_FROM_CHEST: -
 TOUCHES = frozenset({EventKind.OPEN_CONTAINER, *_MOVES})
 """Acts by which an actor learns what a container holds."""
 
+# What was smelted comes out of its furnace, and is counted as that.
 _POSSESSION = {
     EventKind.GET_ITEM_FROM_CHEST: 1,
     EventKind.RECEIVE_ITEM_FROM_OTHER: 1,
     EventKind.CRAFT_ITEM: 1,
-    EventKind.SMELT_ITEM: 1,
     EventKind.DEPOSIT_ITEM_INTO_CHEST: -1,
     EventKind.GIVE_ITEM_TO_OTHER: -1,
 }
