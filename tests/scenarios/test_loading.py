@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from beliefnest.errors import ScenarioError, UnknownNameError
+from beliefnest.scenarios.content import Arrives, Holds, Opens, Stands
 from beliefnest.scenarios.format import schema
 from beliefnest.scenarios.loading import builtin_names
-from beliefnest.scenarios.scenario import Arrives, Holds, Opens, Scenario, Stands
+from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.registry import Registry
 
 ROOT = Path(__file__).parents[2]

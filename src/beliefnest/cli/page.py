@@ -8,7 +8,6 @@ from pathlib import Path
 from beliefnest.cli.console import stdout
 from beliefnest.cli.folder import stores_in
 from beliefnest.nest.face.recorded import RecordedNest
-from beliefnest.scenarios.loading import kept_scenario
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.viewer.page.run import About
@@ -61,7 +60,7 @@ def about_run(journal: SqliteJournal, nest: RecordedNest, paths: Sequence[str] =
     scenario = Scenario(nest.setting)
     if run.text:
         condition = int(run.condition) if run.condition else None
-        scenario = kept_scenario(run.text, run.templates, condition, f"scenario of {journal.path}")
+        scenario = Scenario.kept(run.text, run.templates, condition, f"scenario of {journal.path}")
     named = [probe.path for probe in scenario.probes]
     named += [each.path for each in scenario.expectations]
     wanted = [parse_path(path, nest.agents) for path in (*paths, *named)]

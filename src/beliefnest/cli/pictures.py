@@ -9,8 +9,9 @@ from beliefnest.nest.face.nest import Nest
 from beliefnest.pictures.overview import Card, Condition
 from beliefnest.pictures.palette import Mark, age_text
 from beliefnest.pictures.scene import Scene, best_height, read_stores
+from beliefnest.scenarios.content import Arrives, Hears, Stands
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
-from beliefnest.scenarios.scenario import Arrives, Hears, Scenario, Stands
+from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import Journal
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import parse_path, path_text

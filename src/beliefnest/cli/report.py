@@ -10,9 +10,10 @@ from beliefnest.belief.entries import Basis
 from beliefnest.belief.view import State
 from beliefnest.cli.pictures import container_name, point_text
 from beliefnest.llm.messages import Usage
+from beliefnest.scenarios.content import Arrives, Hears, Holds, Opens
 from beliefnest.scenarios.judging import places_of
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome, ProbeOutcome
-from beliefnest.scenarios.scenario import Arrives, Hears, Holds, Opens, Scenario
+from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.values import Point, Position
 
 __all__ = [

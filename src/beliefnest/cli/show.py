@@ -25,7 +25,6 @@ from beliefnest.pictures.animation import check_animated, save_animation
 from beliefnest.pictures.figure import figure_of
 from beliefnest.pictures.scene import Scene
 from beliefnest.prompts.templates import Template, built_in_template, load_template
-from beliefnest.scenarios.loading import kept_scenario
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import FOLLOW
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
@@ -203,7 +202,7 @@ def _scenario(journal: SqliteJournal, nest: RecordedNest) -> Scenario:
     if not run.text:
         return Scenario(nest.setting)
     condition = int(run.condition) if run.condition else None
-    return kept_scenario(run.text, run.templates, condition, f"scenario of {journal.path}")
+    return Scenario.kept(run.text, run.templates, condition, f"scenario of {journal.path}")
 
 
 def _print_state(state: State, path: str, scenario: Scenario) -> None:

@@ -11,6 +11,16 @@ from beliefnest.belief.entries import InitialBelief
 from beliefnest.files import read_regular_text
 from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.perception.options import Perception
+from beliefnest.scenarios.content import (
+    Arrives,
+    Expectation,
+    Hears,
+    Holds,
+    Opens,
+    Probe,
+    ScenarioContent,
+    Stands,
+)
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.format import (
     ExpectationEntry,
@@ -22,16 +32,6 @@ from beliefnest.scenarios.format import (
     StepEntry,
 )
 from beliefnest.scenarios.people import build_agents
-from beliefnest.scenarios.scenario import (
-    Arrives,
-    Expectation,
-    Hears,
-    Holds,
-    Opens,
-    Probe,
-    Scenario,
-    Stands,
-)
 from beliefnest.scenarios.space import (
     UNKNOWN,
     build_box,
@@ -56,7 +56,7 @@ def build_scenario(
     file: ScenarioFile,
     condition: int | None,
     conditions: Mapping[int, Mapping[str, Any]],
-) -> Scenario:
+) -> ScenarioContent:
     """The scenario that a document describes, its condition merged in already.
 
     Raises:
@@ -71,7 +71,7 @@ def build_scenario(
         number: str(conditions[number].get("description", "")) for number in sorted(conditions)
     }
     probes = tuple(builder.probe(n, entry) for n, entry in enumerate(file.probes))
-    return Scenario(
+    return ScenarioContent(
         setting=builder.setting(),
         description=file.description,
         reported_by=file.reported_by,

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 
 from beliefnest.belief.view import State
-from beliefnest.scenarios.scenario import Arrives, Hears, Holds, Opens, Stands
+from beliefnest.scenarios.content import Arrives, Hears, Holds, Opens, Stands
 from beliefnest.world.values import Event, EventKind, Items, Point, Position
 
 __all__ = ["arrives", "is_held", "opened_by", "opens", "places_of"]

@@ -8,10 +8,10 @@ from typing import Any
 
 from beliefnest.errors import UnknownNameError
 from beliefnest.scenarios.build import build_scenario
+from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document, merged, wrapped
 from beliefnest.scenarios.form import check_form
 from beliefnest.scenarios.reading import parse_yaml, read_yaml
-from beliefnest.scenarios.scenario import Scenario
 
 __all__ = ["builtin_names", "kept_scenario", "load_conditions", "load_scenario", "scenario_from"]
 
@@ -25,12 +25,12 @@ def builtin_names() -> list[str]:
     return sorted(name.removesuffix(".yaml") for name in names if name.endswith(".yaml"))
 
 
-def load_scenario(name_or_path: str, condition: int | None = None) -> Scenario:
+def load_scenario(name_or_path: str, condition: int | None = None) -> ScenarioContent:
     """See `Scenario.load`."""
     return _scenario(_document(name_or_path), condition)
 
 
-def load_conditions(name_or_path: str) -> tuple[Scenario, ...]:
+def load_conditions(name_or_path: str) -> tuple[ScenarioContent, ...]:
     """See `Scenario.load_all`."""
     document = _document(name_or_path)
     numbers = sorted(check_form(document).conditions)
@@ -39,25 +39,17 @@ def load_conditions(name_or_path: str) -> tuple[Scenario, ...]:
     return tuple(_scenario(document, number) for number in numbers)
 
 
-def scenario_from(content: Mapping[str, Any], condition: int | None, source: str) -> Scenario:
+def scenario_from(
+    content: Mapping[str, Any], condition: int | None, source: str
+) -> ScenarioContent:
     """See `Scenario.from_mapping`."""
     return _scenario(Document(source, wrapped(content), Path()), condition)
 
 
 def kept_scenario(
     text: str, templates: Mapping[str, str], condition: int | None, source: str
-) -> Scenario:
-    """A scenario as a run keeps it.
-
-    Args:
-        text: The text of its file.
-        templates: The templates that this names, by the name written there.
-        condition: Number of its condition; None: it was run as written.
-        source: What messages call it.
-
-    Raises:
-        ScenarioError: This version does not understand it.
-    """
+) -> ScenarioContent:
+    """See `Scenario.kept`."""
     return _scenario(replace(parse_yaml(text, source), templates=templates), condition)
 
 
@@ -77,7 +69,7 @@ def _document(name_or_path: str) -> Document:
     return read_yaml(path)
 
 
-def _scenario(document: Document, condition: int | None) -> Scenario:
+def _scenario(document: Document, condition: int | None) -> ScenarioContent:
     written = check_form(document)
     if condition is None:
         return build_scenario(document, written, None, written.conditions)

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.llm.messages import Usage
-from beliefnest.scenarios.scenario import Expectation, Probe, Scenario
+from beliefnest.scenarios.content import Expectation, Probe
+from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.values import Point, Position
 

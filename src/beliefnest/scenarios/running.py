@@ -12,9 +12,10 @@ from beliefnest.nest.face.simulator import Simulator
 from beliefnest.programs import skills
 from beliefnest.prompts import Template, built_in_template
 from beliefnest.prompts.rendering import LAST_ERROR
+from beliefnest.scenarios.content import Arrives, Opens, Probe
 from beliefnest.scenarios.judging import arrives, is_held, opened_by, opens
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome, ProbeOutcome
-from beliefnest.scenarios.scenario import Arrives, Opens, Probe, Scenario
+from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.values import Point, Position
 
