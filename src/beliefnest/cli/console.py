@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
+from beliefnest.cli.text import printable
 from beliefnest.nest.face.nest import Progress as OnProgress
 
 __all__ = ["progress_on", "stdout"]
@@ -22,24 +23,25 @@ def stdout() -> Console:
 @contextmanager
 def progress_on(title: str) -> Iterator[OnProgress]:
     """Show what is being done on stderr: a bar on a terminal, a line each elsewhere."""
-    console = Console(stderr=True)
+    console = Console(stderr=True, markup=False)
+    title = printable(title)
     if not console.is_terminal:
         console.width = _PLAIN_WIDTH
 
         def say(what: str, done: int, total: int) -> None:
-            console.print(f"{title}: {what} ({done}/{total})", highlight=False)
+            console.print(f"{title}: {printable(what)} ({done}/{total})", highlight=False)
 
         yield say
         return
     columns = (
         SpinnerColumn(),
-        TextColumn(title),
+        TextColumn(title, markup=False),
         BarColumn(bar_width=20),
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         TimeElapsedColumn(),
     )
     with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task("starting the world", total=None)
         yield lambda what, done, total: bar.update(
-            task, description=what, completed=done, total=total
+            task, description=printable(what), completed=done, total=total
         )

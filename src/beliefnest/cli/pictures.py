@@ -15,6 +15,7 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import Journal
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import parse_path, path_text
+from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import Point, Position
 
 __all__ = ["container_name", "place_text", "point_text", "read_condition", "read_trails", "titled"]
@@ -72,7 +73,7 @@ def read_trails(
 
 def container_name(place: Position, scenario: Scenario) -> str:
     """What people call a container."""
-    return scenario.labels.get(place, f"({', '.join(map(str, place))})")
+    return on_one_line(scenario.labels.get(place, f"({', '.join(map(str, place))})"))
 
 
 def point_text(point: tuple[float, float, float]) -> str:

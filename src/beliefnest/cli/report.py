@@ -4,11 +4,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from rich import box
+from rich.markup import escape
 from rich.table import Table
 
 from beliefnest.belief.entries import Basis
 from beliefnest.belief.view import State
 from beliefnest.cli.pictures import container_name, point_text
+from beliefnest.cli.text import printable
 from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.content import Arrives, Hears, Holds, Opens
 from beliefnest.scenarios.judging import places_of
@@ -219,7 +221,7 @@ def _cells(outcome: Outcome) -> dict[str, str]:
     for probe in outcome.probes:
         heading, text = _acted(probe, outcome.scenario)
         if len(outcome.probes) > 1 and probe.probe.label:
-            text = f"{probe.probe.label}: {text}"
+            text = f"{escape(printable(probe.probe.label))}: {text}"
         cells.setdefault(heading, []).append(text)
     return {heading: "\n".join(lines) for heading, lines in cells.items()}
 
@@ -227,11 +229,13 @@ def _cells(outcome: Outcome) -> dict[str, str]:
 def _found(outcome: ExpectationOutcome, state: State, scenario: Scenario) -> tuple[str, str]:
     content = outcome.expectation.content
     if isinstance(content, Holds) and content.items:
-        names = [container_name(place, scenario) for place in places_of(content.items, state)]
+        names = [
+            escape(container_name(place, scenario)) for place in places_of(content.items, state)
+        ]
         what, found = ", ".join(content.items), " and ".join(names) or "nowhere"
     elif isinstance(content, Holds):
         held = state.containers.get(content.container)
-        what, found = container_name(content.container, scenario), "nothing"
+        what, found = escape(container_name(content.container, scenario)), "nothing"
         if held is not None and held.items:
             found = ", ".join(f"{count} {name}" for name, count in sorted(held.items.items()))
     elif isinstance(content, Hears):
@@ -249,7 +253,7 @@ def _acted(outcome: ProbeOutcome, scenario: Scenario) -> tuple[str, str]:
     if isinstance(probe.expect, Arrives):
         where = "nowhere" if outcome.arrived is None else point_text(outcome.arrived)
         return f"predicted {probe.agent} arrives at", _marked(where, outcome.ok)
-    opened = container_name(outcome.opened[0], scenario) if outcome.opened else "nothing"
+    opened = escape(container_name(outcome.opened[0], scenario)) if outcome.opened else "nothing"
     heading = f"predicted {probe.agent} opens"
     if isinstance(probe.expect, Opens):
         return heading, _marked(opened, outcome.ok)

@@ -206,6 +206,8 @@ def _check_numbers(options: RunOptions) -> None:
     for name, number in (("--repeat", options.repeat), ("--attempts", options.asking.attempts)):
         if number < 1:
             raise InputError(f"{name} is {number}; it must be at least 1")
+    if not -(2**63) <= options.seed < 2**63 - options.repeat:
+        raise InputError(f"--seed is {options.seed}; it must be a number of 64 bits")
     twice = [name for name in options.models if options.models.count(name) > 1]
     if twice:
         raise InputError(f"the model {twice[0]} is named twice; use --repeat to ask it again")

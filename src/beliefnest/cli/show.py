@@ -212,12 +212,12 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
     for place, held in sorted(state.containers.items()):
         items = ", ".join(f"{count} {name}" for name, count in sorted(held.items.items()))
         name = container_name(place, scenario)
-        containers.add_row(name, items or "-", "yes" if held.complete else "not known")
+        containers.add_row(_foreign(name), items or "-", "yes" if held.complete else "not known")
     agents = Table("agent", "position", "seen now", "holds", box=box.SIMPLE_HEAVY)
     for name, agent in state.agents.items():
         where = "unknown" if agent.position is None else place_text(agent.position, scenario)
         holds = (agent.equipment or {}).get("main_hand", "-")
-        agents.add_row(titled(name), where, "yes" if agent.current else "no", holds)
+        agents.add_row(titled(name), _foreign(where), "yes" if agent.current else "no", holds)
     console.print(containers, agents)
     for (tick, speaker, text), to in zip(state.chat, state.addressees, strict=True):
         said = speaker if to is None else f"{speaker} whispers to {to}"

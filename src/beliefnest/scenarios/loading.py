@@ -61,7 +61,7 @@ def _document(name_or_path: str) -> Document:
         return replace(document, source=f"{name_or_path}.yaml")
     path = Path(name_or_path)
     looks_like_path = path.suffix in _SUFFIXES or len(path.parts) > 1
-    if not looks_like_path and not path.exists():
+    if not path.name or (not looks_like_path and not path.exists()):
         raise UnknownNameError(
             f"there is no scenario {name_or_path!r}; built in are {', '.join(names)}, "
             "or give the path of a .yaml file"

@@ -60,6 +60,10 @@ def parse_yaml(text: str, source: str) -> Document:
         line = f":{mark.line + 1}" if mark is not None else ""
         problem = " ".join((error.problem or "it cannot be parsed").split())
         raise ScenarioError(f"{source}{line}: broken YAML: {problem}") from None
+    except (TypeError, ValueError) as error:
+        # The parser builds collections late, where it knows no line any more.
+        said = " ".join(str(error).split())
+        raise ScenarioError(f"{source}: broken YAML: a key or value cannot be: {said}") from None
     except YAMLError as error:
         raise ScenarioError(f"{source}: broken YAML: {' '.join(str(error).split())}") from None
     if not isinstance(content, CommentedMap):
@@ -136,6 +140,8 @@ class _Conversion:
             raise ScenarioError(f"{self._source}:{line}: {_TOO_MUCH}")
         if isinstance(value, CommentedMap):
             lines = value.lc.data or {}
+            if not all(isinstance(_scalar(key), str | int | float | None) for key in value):
+                raise ScenarioError(f"{self._source}:{line}: has a key that is no text")
             return Node(
                 {
                     _scalar(key): self.node(child, _line(lines, key, line), depth + 1)
