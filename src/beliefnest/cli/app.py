@@ -167,6 +167,28 @@ def show(
 
 
 @app.command()
+def serve(
+    what: Annotated[
+        str,
+        typer.Argument(help="A run folder, or a scenario, which is run.", metavar="RUN|SCENARIO"),
+    ],
+    port: Annotated[int | None, typer.Option(help="Port; 8642 if it is free.")] = None,
+    address: Annotated[
+        str, typer.Option(help="Where to listen; on any but this machine a token is asked for.")
+    ] = "127.0.0.1",
+    condition: Annotated[
+        list[int] | None, typer.Option(help="Of a scenario, only this one; can be repeated.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Of a scenario, its run folder.")] = None,
+    depth: Annotated[int, typer.Option(help="How deep beliefs are shown from the start.")] = 2,
+) -> None:
+    """Show a run in the browser, live while it goes on."""
+    from beliefnest.cli.serve import ServeOptions, serve
+
+    serve(ServeOptions(what, port, address, tuple(condition or ()), out, depth))
+
+
+@app.command()
 def branches(
     run: Annotated[Path, typer.Argument(help="A run folder, or a run file.")], json: Json = False
 ) -> None:

@@ -1,6 +1,6 @@
 """One run as the page's data: everything at first, then what is new."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from itertools import pairwise, product
 from typing import Any
@@ -93,12 +93,12 @@ class RunData:
         new: dict[str, Any] = {}
         lines = {}
         infos = self.reader.timelines()
-        for number, info in enumerate(infos):
+        for info in infos:
             line = self._lines.get(info.key) or self._begin(info)
             line.info = info
-            told = self._line_update(line, infos)
+            told = self._line_update(line)
             if told:
-                lines[str(number)] = told
+                lines[str(self.keys().index(info.key))] = told
         if lines:
             new["timelines"] = lines
         for name, rows in (("states", self._palette.entries), *self._records()):
@@ -154,11 +154,15 @@ class RunData:
         self._lines[info.key] = _Line(info, book, [recorder], tracks, stands)
         return self._lines[info.key]
 
-    def _line_update(self, line: _Line, infos: Iterable[TimelineInfo]) -> dict[str, Any]:
+    def keys(self) -> Sequence[TimelineKey]:
+        """The timelines, by the numbers that the page knows them by."""
+        return list(self._lines)
+
+    def _line_update(self, line: _Line) -> dict[str, Any]:
         for recorder in line.recorders:
             recorder.advance(line.info.entries)
         told: dict[str, Any] = {}
-        facts = self._facts(line.info, [info.key for info in infos])
+        facts = self._facts(line.info)
         if facts != line.told:
             line.told = facts
             told["facts"] = facts
@@ -174,8 +178,8 @@ class RunData:
             told["tracks"] = {path: rows for path, rows in tracks.items() if rows}
         return told
 
-    def _facts(self, info: TimelineInfo, keys: list[TimelineKey]) -> dict[str, Any]:
-        base = info.base
+    def _facts(self, info: TimelineInfo) -> dict[str, Any]:
+        base, keys = info.base, self.keys()
         return {
             "path": path_text(info.key.path),
             "branch": info.key.branch,

@@ -11,31 +11,63 @@ const root = document.getElementById('page')
 
 async function begin () {
   const { served, content } = await packedData(document.getElementById('data'))
-  const runs = content.runs.map((told, number) => {
-    const run = new Run()
-    run.number = number
-    run.put(told)
-    return run
-  })
+  const runs = []
+  const updates = content.updates ?? content.runs.map((told, number) => [number, told])
+  for (const [number, told] of updates) take(runs, number, told)
+  if (served) forgetToken()
+  if (runs.length === 0) await waiting(runs, content)
   const chooser = new Chooser(content.first)
   const source = served ? new ServedSource(() => app.later()) : new PackedSource()
   const app = new App(root, runs, chooser, source)
   app.draw()
   document.documentElement.dataset.ready = 'true'
   performance.mark('first-picture')
-  if (served) follow(app, runs, source)
+  if (served) follow(app, runs, source, content)
 }
 
-/** Takes what the server tells of runs that go on. */
-function follow (app, runs, source) {
-  const stream = new EventSource('api/live')
-  stream.onmessage = ({ data }) => {
+function take (runs, number, told) {
+  if (runs[number] === undefined) {
+    runs[number] = new Run()
+    runs[number].number = number
+  }
+  runs[number].put(told)
+}
+
+/** A cookie knows the token by now; nobody is to read it off the address. */
+function forgetToken () {
+  if (location.search) history.replaceState(null, '', location.pathname + location.hash)
+}
+
+/** Waits for a run that has not begun yet. */
+async function waiting (runs, content) {
+  refill(root, element('p', { class: 'failed', role: 'status' }, 'The run has not begun yet …'))
+  await new Promise(resolve => {
+    const stream = new EventSource(`api/live?from=${content.count}`)
+    stream.onmessage = ({ data, lastEventId }) => {
+      const { run, update } = JSON.parse(data)
+      content.count = Number(lastEventId)
+      take(runs, run, update)
+      stream.close()
+      resolve()
+    }
+  })
+}
+
+/** Takes what the server tells of runs that go on; a stream that broke off goes on where it was. */
+function follow (app, runs, source, content) {
+  const stream = new EventSource(`api/live?from=${content.count}`)
+  stream.onmessage = ({ data, lastEventId }) => {
     const { run, update } = JSON.parse(data)
-    runs[run].put(update)
+    content.count = Number(lastEventId)
+    take(runs, run, update)
     source.forget()
     app.grown(run)
   }
-  stream.onerror = () => app.tell('The server does not answer; what is shown is what it told last.')
+  stream.onerror = () => {
+    app.tell('The server does not answer; what is shown is what it told last.')
+    stream.close()
+    setTimeout(() => follow(app, runs, source, content), 1000)
+  }
   stream.onopen = () => app.tell('')
 }
 

@@ -1,0 +1,161 @@
+"""`beliefnest serve`: the page of a run, live, or of a scenario that is run for it."""
+
+import secrets
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import datetime
+from ipaddress import ip_address
+from pathlib import Path
+
+from beliefnest.cli.console import stdout
+from beliefnest.cli.folder import STORE, stores_in
+from beliefnest.cli.page import about_run
+from beliefnest.errors import InputError
+from beliefnest.nest.face.recorded import RecordedNest
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.timeline.store import SqliteJournal
+from beliefnest.viewer.serving.host import Host, Opened
+
+__all__ = ["ServeOptions", "serve"]
+
+_PORT = 8642
+
+
+@dataclass(frozen=True, slots=True)
+class ServeOptions:
+    """What was asked for.
+
+    Attributes:
+        what: A run folder, a store, or a scenario, which is then run.
+        port: Port; None: 8642, or any other if that is taken.
+        address: Where to listen.
+        conditions: Of a scenario, numbers of the conditions to run; empty: all.
+        out: Of a scenario, the run folder; None: a new one in `runs`.
+        depth: How deep beliefs are shown from the start.
+    """
+
+    what: str
+    port: int | None
+    address: str
+    conditions: tuple[int, ...]
+    out: Path | None
+    depth: int
+
+
+def serve(options: ServeOptions) -> None:
+    """Serve the page until it is interrupted.
+
+    Raises:
+        InputError: The extra is not installed, there is no such run or scenario, or the address
+            cannot be listened on.
+    """
+    try:
+        import uvicorn
+
+        from beliefnest.viewer.serving.app import page_app
+    except ImportError:
+        raise InputError(
+            "serve needs starlette and uvicorn: run `pip install 'beliefnest[serve]'`"
+        ) from None
+    with _listening(options) as listener, _running(options) as folder:
+        port = listener.getsockname()[1]
+        token = None if _is_loopback(options.address) else secrets.token_urlsafe(24)
+        host = Host(lambda: _stores(folder), _open, options.depth)
+        host.discover()
+        host.follow()
+        app = page_app(host, _names(options.address, port), token)
+        query = "" if token is None else f"?token={token}"
+        address = f"http://{_host(options.address)}:{port}/{query}"
+        stdout().print(
+            f"The page is at {address} (stop with Ctrl-C)", highlight=False, soft_wrap=True
+        )
+        config = uvicorn.Config(
+            app, log_level="warning", access_log=False, timeout_graceful_shutdown=1
+        )
+        uvicorn.Server(config).run(sockets=[listener])
+
+
+@contextmanager
+def _listening(options: ServeOptions) -> Iterator[socket.socket]:
+    family = socket.AF_INET6 if ":" in options.address else socket.AF_INET
+    with socket.socket(family, socket.SOCK_STREAM) as listener:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        for port in (_PORT, 0) if options.port is None else (options.port,):
+            try:
+                listener.bind((options.address, port))
+                break
+            except (OSError, OverflowError) as error:
+                if port == 0 or options.port is not None:
+                    raise InputError(
+                        f"{options.address} port {port} cannot be listened on ({error}); "
+                        "choose another with --port"
+                    ) from None
+        yield listener
+
+
+@contextmanager
+def _running(options: ServeOptions) -> Iterator[Path]:
+    """The folder of the run; a scenario is run in a process of its own for as long."""
+    path = Path(options.what)
+    if path.is_dir() or path.suffix == Path(STORE).suffix:
+        stores_in(path)
+        yield path
+        return
+    name = Scenario.load_all(options.what)[0].name
+    folder = options.out or Path("runs") / f"{name}-{datetime.now():%Y%m%d-%H%M%S}"
+    command = [sys.executable, "-m", "beliefnest", "run", options.what, "--out", str(folder)]
+    for number in options.conditions:
+        command += ["--condition", str(number)]
+    # Its table would stand between the lines that say where the page is.
+    child = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    try:
+        yield folder
+    finally:
+        child.terminate()
+        child.wait()
+
+
+def _stores(folder: Path) -> Sequence[Path]:
+    return (folder,) if folder.is_file() else sorted(folder.rglob(STORE))
+
+
+def _open(store: Path) -> Opened:
+    journal = SqliteJournal.read(store)
+    try:
+        nest = RecordedNest.of(journal)
+        return Opened(nest.reader, about_run(journal, nest), journal.close)
+    except BaseException:
+        journal.close()
+        raise
+
+
+def _is_loopback(address: str) -> bool:
+    try:
+        return ip_address(address).is_loopback
+    except ValueError:
+        return address == "localhost"
+
+
+def _names(address: str, port: int) -> set[str]:
+    """What the `Host` of a request may be."""
+    names = {_host(address), "localhost", "127.0.0.1", "[::1]"}
+    if not _is_loopback(address):
+        # On another address the token keeps strangers out; these are the machine's own names.
+        names |= {socket.gethostname(), socket.getfqdn(), *_own_addresses()}
+    return {f"{name}:{port}" for name in names}
+
+
+def _own_addresses() -> set[str]:
+    try:
+        found = socket.getaddrinfo(socket.gethostname(), None)
+    except OSError:
+        return set()
+    return {_host(str(each[4][0])) for each in found}
+
+
+def _host(address: str) -> str:
+    return f"[{address}]" if ":" in address else address

@@ -1,0 +1,166 @@
+"""The routes: the page, what is new, and answers to what the page asks."""
+
+import asyncio
+import json
+import logging
+from collections.abc import AsyncIterator, Callable, Collection, Mapping
+from contextlib import asynccontextmanager, suppress
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.middleware import Middleware
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, JSONResponse, Response, StreamingResponse
+from starlette.routing import Route
+
+from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.viewer.page.html import page_html
+from beliefnest.viewer.serving.guard import Guard
+from beliefnest.viewer.serving.host import Host
+
+__all__ = ["page_app"]
+
+_PAUSE = 0.025
+"""Seconds between two looks for what is new; a change is to be on the page within 0.1 s."""
+
+_DISCOVERY = 20
+"""Looks between two searches for new runs."""
+
+_HEARTBEAT = 15.0
+_AFTER_FAULT = 2.0
+_LOG = logging.getLogger("uvicorn.error")
+
+
+class _News:
+    """Wakes who waits for updates."""
+
+    def __init__(self, host: Host) -> None:
+        self._host = host
+        self._woken = asyncio.Condition()
+
+    async def run(self) -> None:
+        """Look for what is new, for as long as the server runs."""
+        looks, count = 0, len(self._host.told)
+        while True:
+            try:
+                if looks % _DISCOVERY == 0:
+                    await run_in_threadpool(self._host.discover)
+                looks += 1
+                now = await run_in_threadpool(self._host.follow)
+            except BeliefNestError as error:
+                _LOG.error("%s", error)
+                await asyncio.sleep(_AFTER_FAULT)
+                continue
+            if now != count:
+                count = now
+                async with self._woken:
+                    self._woken.notify_all()
+            await asyncio.sleep(_PAUSE)
+
+    async def after(self, number: int) -> bool:
+        """Wait until there are more updates than that; False: nothing came for a while."""
+        async with self._woken:
+            with suppress(TimeoutError):
+                async with asyncio.timeout(_HEARTBEAT):
+                    await self._woken.wait_for(lambda: len(self._host.told) > number)
+                    return True
+        return False
+
+
+def page_app(host: Host, hosts: Collection[str], token: str | None) -> Starlette:
+    """The application.
+
+    Args:
+        host: What is shown.
+        hosts: Names and ports under which it may be asked for.
+        token: What who asks has to know; None: nothing.
+    """
+    news: list[_News] = []
+
+    @asynccontextmanager
+    async def lifespan(_: Starlette) -> AsyncIterator[None]:
+        news.append(_News(host))
+        looking = asyncio.create_task(news[0].run())
+        try:
+            yield
+        finally:
+            looking.cancel()
+            with suppress(asyncio.CancelledError):
+                await looking
+            await run_in_threadpool(host.close)
+
+    async def live(request: Request) -> Response:
+        first = _number(request.query_params, "from")
+        return StreamingResponse(_updates(host, news[0], first), media_type="text/event-stream")
+
+    routes = [
+        Route("/", lambda request: _page(host)),
+        Route("/api/live", live),
+        Route("/api/explain", _answer(lambda q: host.explain(*_place(q), *_when(q), q["thing"]))),
+        Route(
+            "/api/look",
+            _answer(
+                lambda q: {"answer": host.look(*_place(q), *_when(q), q["viewer"], q["thing"])}
+            ),
+        ),
+        Route(
+            "/api/sight",
+            _answer(lambda q: _told(host.sight(*_place(q), *_when(q), q["viewer"]))),
+        ),
+        Route("/api/deepen", _answer(lambda q: _told(host.deepen(*_place(q))))),
+    ]
+    guard = Middleware(Guard, hosts=hosts, token=token)
+    return Starlette(routes=routes, middleware=[guard], lifespan=lifespan)
+
+
+def _page(host: Host) -> Response:
+    told = list(host.told)
+    title = next((u["head"]["title"] for _, u in told if "head" in u), "BeliefNest")
+    content = {"updates": told, "count": len(told), "first": {}}
+    return HTMLResponse(page_html(title, content, served=True))
+
+
+async def _updates(host: Host, news: _News, first: int) -> AsyncIterator[str]:
+    """Updates from number `first` on, as server-sent events."""
+    number = first
+    while True:
+        for run, update in host.told[number:]:
+            number += 1
+            told = json.dumps({"run": run, "update": update}, separators=(",", ":"))
+            yield f"id: {number}\ndata: {told}\n\n"
+        if not await news.after(number):
+            yield ": still here\n\n"
+
+
+def _answer(ask: Callable[[Mapping[str, str]], Any]) -> Callable[[Request], Response]:
+    """A route that asks in a thread, and tells what is wrong with a question."""
+
+    def answer(request: Request) -> Response:
+        try:
+            return JSONResponse(ask(request.query_params))
+        except KeyError as missing:
+            return JSONResponse({"error": f"the question has no {missing}"}, 400)
+        except BeliefNestError as error:
+            return JSONResponse({"error": str(error)}, 400)
+
+    return answer
+
+
+def _told(answer: object) -> dict[str, object]:
+    return {"answer": answer}
+
+
+def _place(query: Mapping[str, str]) -> tuple[int, int, str]:
+    return _number(query, "run"), _number(query, "on"), query["path"]
+
+
+def _when(query: Mapping[str, str]) -> tuple[int]:
+    return (_number(query, "tick"),)
+
+
+def _number(query: Mapping[str, str], name: str) -> int:
+    text = query.get(name, "0")
+    if not text.isdecimal() or len(text) > 12:
+        raise InputError(f"{name} is {text!r}; give a whole number")
+    return int(text)

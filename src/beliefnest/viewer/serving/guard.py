@@ -1,0 +1,92 @@
+"""Who may ask: requests of other sites, of other names and without the token are turned away."""
+
+import hmac
+from collections.abc import Collection
+from http.cookies import CookieError, SimpleCookie
+from urllib.parse import parse_qs
+
+from starlette.responses import PlainTextResponse
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+__all__ = ["Guard"]
+
+_COOKIE = "beliefnest"
+
+_HEADERS = (
+    (b"x-frame-options", b"DENY"),
+    (b"x-content-type-options", b"nosniff"),
+    (b"referrer-policy", b"no-referrer"),
+    (b"cache-control", b"no-store"),
+    (b"cross-origin-resource-policy", b"same-origin"),
+)
+
+
+class Guard:
+    """Turns away what does not come from the page itself.
+
+    A name that a stranger's site had resolve to this machine is not among `hosts` (DNS
+    rebinding); the browser says of a request of another site that it is one.
+
+    Args:
+        app: What is guarded.
+        hosts: What `Host` may be.
+        token: What has to be known, by the query `token` or by the cookie that it was once
+            exchanged for; None: nothing.
+    """
+
+    def __init__(self, app: ASGIApp, hosts: Collection[str], token: str | None) -> None:
+        self._app, self._hosts, self._token = app, frozenset(hosts), token
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on, or turn it away with what to do."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        headers = {
+            name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]
+        }
+        problem = self._problem(scope, headers)
+        if problem is not None:
+            await PlainTextResponse(problem, 403)(scope, receive, send)
+            return
+        given = self._given(scope)
+
+        async def sending(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                message["headers"] = [*message["headers"], *_HEADERS]
+                if given is not None:
+                    cookie = f"{_COOKIE}={given}; HttpOnly; SameSite=Strict; Path=/"
+                    message["headers"].append((b"set-cookie", cookie.encode("latin-1")))
+            await send(message)
+
+        await self._app(scope, receive, sending)
+
+    def _problem(self, scope: Scope, headers: dict[str, str]) -> str | None:
+        if headers.get("host", "") not in self._hosts:
+            return "this server is not known by that name; use the address that it printed"
+        if headers.get("sec-fetch-site", "none") not in {"none", "same-origin"}:
+            return "requests of other sites are not answered"
+        if self._token is None:
+            return None
+        known = self._given(scope) or self._kept(headers)
+        if known is None or not _same(known, self._token):
+            return "the token is missing or wrong; use the address that the server printed"
+        return None
+
+    def _given(self, scope: Scope) -> str | None:
+        if self._token is None:
+            return None
+        given = parse_qs(scope["query_string"].decode("latin-1")).get("token")
+        return given[0] if given and _same(given[0], self._token) else None
+
+    def _kept(self, headers: dict[str, str]) -> str | None:
+        try:
+            cookies = SimpleCookie(headers.get("cookie", ""))
+        except CookieError:
+            return None
+        return cookies[_COOKIE].value if _COOKIE in cookies else None
+
+
+def _same(one: str, other: str) -> bool:
+    """Whether two texts are equal, in a time that does not tell how far they are."""
+    return hmac.compare_digest(one.encode(), other.encode())

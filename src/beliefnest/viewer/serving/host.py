@@ -1,0 +1,137 @@
+"""The runs that a server shows, and all that was told of them so far."""
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from threading import RLock
+from typing import Any
+
+from beliefnest.errors import InputError, StoreError
+from beliefnest.nest.face.reader import Reader
+from beliefnest.timeline.journal import TimelineKey
+from beliefnest.viewer.page.reasons import explanation_of, look_of, sight_of
+from beliefnest.viewer.page.run import About, RunData
+from beliefnest.world.paths import parse_path, path_text
+
+__all__ = ["Host", "Opened"]
+
+Path_ = tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """A run that is open for reading.
+
+    Attributes:
+        reader: Reads it, also while it goes on.
+        about: What people call it.
+        close: Closes it.
+    """
+
+    reader: Reader
+    about: About
+    close: Callable[[], None]
+
+
+@dataclass
+class Host:
+    """Follows runs that may go on, and answers questions about them. One thread at a time.
+
+    Args:
+        find: Lists the files of the runs there are now.
+        open: Opens one of them.
+        depth: How deep beliefs are recorded from the start.
+
+    Attributes:
+        told: All updates so far, each with the number of its run, in order. Who comes late
+            takes all of them.
+    """
+
+    find: Callable[[], Sequence[Path]]
+    open: Callable[[Path], Opened]
+    depth: int = 2
+    told: list[tuple[int, dict[str, Any]]] = field(default_factory=list)
+    _files: list[Path] = field(default_factory=list)
+    _opened: list[Opened] = field(default_factory=list)
+    _data: list[RunData] = field(default_factory=list)
+    _turn: RLock = field(default_factory=RLock)
+
+    def discover(self) -> None:
+        """Take up runs that have begun since."""
+        with self._turn:
+            for file in self.find():
+                if file in self._files:
+                    continue
+                # A run that has only just begun can be read a moment later.
+                with suppress(StoreError):
+                    opened = self.open(file)
+                    self._files.append(file)
+                    self._opened.append(opened)
+                    self._data.append(RunData(opened.reader, opened.about, self.depth))
+
+    def follow(self) -> int:
+        """Read what is new in all runs; returns how many updates there are now."""
+        with self._turn:
+            for number, data in enumerate(self._data):
+                update = data.update()
+                if update:
+                    self.told.append((number, update))
+            return len(self.told)
+
+    def deepen(self, run: int, on: int, path: str) -> str:
+        """Record one more node from now on; returns its path.
+
+        Raises:
+            InputError: There is no such run or timeline, or the path is not below the timeline's.
+            PathError: The path is malformed or names an unknown agent.
+        """
+        with self._turn:
+            _, key, node = self._named(run, on, path)
+            if node[: len(key.path)] != key.path:
+                raise InputError(f"{path!r} is not below the timeline's own simulator")
+            if len(node) > _DEEPEST:
+                raise InputError(f"{path!r} is deeper than {_DEEPEST} agents")
+            self._data[run].deepen(key, node)
+            return path_text(node)
+
+    def explain(self, run: int, on: int, path: str, tick: int, thing: str) -> dict[str, Any]:
+        """As `explanation_of`."""
+        with self._turn:
+            reader, key, node = self._named(run, on, path)
+            return explanation_of(reader, key, node, tick, thing)
+
+    def look(self, run: int, on: int, path: str, tick: int, viewer: str, thing: str) -> Any:
+        """As `look_of`."""
+        with self._turn:
+            reader, key, node = self._named(run, on, path)
+            parse_path(f"/{viewer}", reader.agents)
+            return look_of(reader, key, node, tick, viewer, thing)
+
+    def sight(self, run: int, on: int, path: str, tick: int, viewer: str) -> list[int]:
+        """As `sight_of`."""
+        with self._turn:
+            reader, key, node = self._named(run, on, path)
+            parse_path(f"/{viewer}", reader.agents)
+            return sight_of(reader, key, node, tick, viewer)
+
+    def close(self) -> None:
+        """Close all runs."""
+        with self._turn:
+            for opened in self._opened:
+                opened.close()
+            self._opened.clear()
+            self._data.clear()
+
+    def _named(self, run: int, on: int, path: str) -> tuple[Reader, TimelineKey, Path_]:
+        if not 0 <= run < len(self._data):
+            raise InputError(f"no run number {run}; there are {len(self._data)}")
+        keys = self._data[run].keys()
+        if not 0 <= on < len(keys):
+            raise InputError(f"no timeline number {on}; there are {len(keys)}")
+        reader = self._opened[run].reader
+        return reader, keys[on], parse_path(path, reader.agents)
+
+
+_DEEPEST = 8
+"""Agents in the path of a belief that is asked for over the network."""
