@@ -1,4 +1,4 @@
-"""What a body tells, on its way to the timeline it is on."""
+"""The recorder of one body: appends its frames to the timeline that the body is on."""
 
 from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import Journal, TimelineKey

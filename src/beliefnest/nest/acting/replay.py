@@ -1,4 +1,4 @@
-"""Running recorded programs again, each timeline in a fresh body, and comparing the frames."""
+"""Replays: recorded programs run again, each timeline in a fresh body, and frames compared."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -40,7 +40,7 @@ class Speculation:
     Attributes:
         tick: The body's tick in the end.
         hidden: What went on in it in the end.
-        frames: What it told.
+        frames: Its frames, in order.
         results: Results by agent; empty if the call raised.
         error: What it raised.
     """
@@ -80,7 +80,7 @@ class SpeculatedBody:
         raise _gone()
 
     def run(self, programs: Mapping[str, str], timeout_ticks: int) -> Mapping[str, ProgramResult]:
-        """Tell what the programs did; they are those that ran."""
+        """Hand out the frames of the programs, which have run already."""
         self._ran = True
         for frame in self._speculation.frames:
             self._sink(frame)

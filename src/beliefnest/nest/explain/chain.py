@@ -127,7 +127,7 @@ class _Trace:
     held: _Held
     since: int | None = None
     stood: Point | None = None
-    around: Value = None
+    parent: Value = None
     was_known: bool = False
     missed: Missed | None = None
 
@@ -209,17 +209,17 @@ def _follow(
             _take(recording, trace, step, element)
     for trace in traces:
         if last is not None and trace.held.basis is None:
-            around = value_in(last.forest, trace.path[:-1], element)
-            if around is not None:
+            parent = value_in(last.forest, trace.path[:-1], element)
+            if parent is not None:
                 # Nothing happened to be missed; the looks are those of now.
-                missed = _missed(recording, trace.path, last, element, around, acts=())
+                missed = _missed(recording, trace.path, last, element, parent, acts=())
                 trace.missed = replace(missed, tick=tick)
 
 
 def _take(recording: Recording, trace: _Trace, step: Step, element: Element) -> None:
     """Note what one entry means for one belief."""
     forest = step.forest
-    there = value_in(forest, trace.path[:-1], element)
+    outside = value_in(forest, trace.path[:-1], element)
     mine = value_in(forest, trace.path, element), grounded_at(forest, trace.path, element)
     if mine != (trace.held.value, trace.observed_at):
         trace.was_known = True
@@ -228,18 +228,18 @@ def _take(recording: Recording, trace: _Trace, step: Step, element: Element) -> 
     if trace.since is None:
         if trace.observed_at is None and not trace.was_known:
             return
-        trace.since, trace.around = forest.tick, there
+        trace.since, trace.parent = forest.tick, outside
         trace.stood = _feet(forest, trace.path)
-    elif trace.missed is None and there != trace.around and trace.observed_at is not None:
+    elif trace.missed is None and outside != trace.parent and trace.observed_at is not None:
         edited = _is_edit(recording, step.place, trace.path[:-1])
         events = NodeView(forest, trace.path[:-1]).events()
         acts = () if edited else _acts(events, forest.tick, element)
-        missed = _missed(recording, trace.path, step, element, trace.around, acts)
+        missed = _missed(recording, trace.path, step, element, trace.parent, acts)
         trace.missed = replace(missed, edited=edited)
 
 
 def _feet(forest: Forest, path: Path) -> Point | None:
-    """Where the owner of a node stands in the simulator around it."""
+    """Where the owner of a node stands in its parent node."""
     version = forest.table.pose(forest.table.index[path[:-1]], forest.context.numbers[path[-1]])
     return None if version < 0 else forest.poses.position(version)
 
@@ -252,11 +252,11 @@ def _missed(
     before: Value,
     acts: tuple[PerceivedEvent, ...],
 ) -> Missed:
-    """Why acts in the simulator around a node, or what there is, did not reach it."""
+    """Why acts in the parent of a node, or how things are in it, did not reach the node."""
     forest = step.forest
     mine = NodeView(forest, path).events() if acts else ()
     present = forest.table.is_present(forest.table.index[path])
-    around = NodeView(forest, path[:-1])
+    parent = NodeView(forest, path[:-1])
     return Missed(
         tick=forest.tick,
         before=before,
@@ -265,7 +265,7 @@ def _missed(
         edited=False,
         stood=_feet(forest, path),
         absence=None if present else _absence(recording, forest, path),
-        sightings=_sightings(recording, around, path[-1], element, acts) if present else (),
+        sightings=_sightings(recording, parent, path[-1], element, acts) if present else (),
         saw_acts=bool(acts) and all(act in mine for act in acts),
     )
 
@@ -278,34 +278,34 @@ def _is_edit(recording: Recording, place: Place, path: Path) -> bool:
 
 
 def _absence(recording: Recording, forest: Forest, path: Path) -> Absence:
-    """Why the simulator around a node does not know where its owner is."""
-    around, table = path[:-1], forest.table
-    node, number = table.index[around], forest.context.numbers[path[-1]]
+    """Why the parent of a node does not know where the node's owner is."""
+    parent, table = path[:-1], forest.table
+    node, number = table.index[parent], forest.context.numbers[path[-1]]
     last_seen = table.seen_at(node, number) if table.pose(node, number) >= 0 else None
     if node == 0 or not table.is_present(node):
         return Absence(last_seen, None)
-    outer = NodeView(forest, around[:-1])
+    outer = NodeView(forest, parent[:-1])
     box = recording.history.context.box
-    return Absence(last_seen, sighting_of_agent(outer, box, around[-1], path[-1]))
+    return Absence(last_seen, sighting_of_agent(outer, box, parent[-1], path[-1]))
 
 
 def _sightings(
     recording: Recording,
-    around: NodeView,
+    parent: NodeView,
     viewer: str,
     element: Element,
     acts: Iterable[PerceivedEvent],
 ) -> tuple[Sighting, ...]:
-    """The looks that would have told a change: at who did it, and at the element."""
+    """The looks that would have shown a change: at who did it, and at the element."""
     box = recording.history.context.box
     if isinstance(element.where, str):
-        return (sighting_of_agent(around, box, viewer, element.where),)
+        return (sighting_of_agent(parent, box, viewer, element.where),)
     actors: list[str] = []
     if element.kind == "container":
         actors = sorted({act.actor for act in acts if act.actor is not None})
     return (
-        *(sighting_of_agent(around, box, viewer, actor) for actor in actors),
-        sighting_of_block(around, box, viewer, element.where),
+        *(sighting_of_agent(parent, box, viewer, actor) for actor in actors),
+        sighting_of_block(parent, box, viewer, element.where),
     )
 
 

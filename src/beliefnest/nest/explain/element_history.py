@@ -1,4 +1,4 @@
-"""One element followed through the nodes of a path, entry by entry, up to what is explained."""
+"""The history of one element in the nodes of a path, entry by entry, up to what is explained."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -124,14 +124,14 @@ def last_change(
     for entry in entries:
         if isinstance(entry, Edit) and entry.path != path:
             continue
-        told = _told(entry, element, history.context.registry, held)
-        if told != held:
-            held = told
+        after = _after(entry, element, history.context.registry, held)
+        if after != held:
+            held = after
             last = Change(entry.tick, edited=isinstance(entry, Edit))
     return last
 
 
-def _told(entry: Frame | Edit, element: Element, registry: Registry, held: object) -> object:
+def _after(entry: Frame | Edit, element: Element, registry: Registry, held: object) -> object:
     """What an element is after an entry, as bare as `_bare` makes it."""
     if isinstance(element.where, str):
         if isinstance(entry, Edit) or element.where not in entry.agents:

@@ -10,7 +10,7 @@ __all__ = ["Explanation"]
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """The chain of perceptions behind a belief; `str()` tells it in words.
+    """The chain of perceptions behind a belief; `str()` puts it into words.
 
     Attributes:
         element: What is explained.

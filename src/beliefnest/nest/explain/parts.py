@@ -85,10 +85,10 @@ class Sighting:
 
 @dataclass(frozen=True, slots=True)
 class Absence:
-    """The simulator around could not tell what the perceiver saw: its pose was not current.
+    """The parent node cannot say what the perceiver saw: it did not see the perceiver itself.
 
     Attributes:
-        last_seen: Tick of the pose that the simulator around held; None: it held none.
+        last_seen: Tick of the pose that the parent node held; None: it held none.
         sighting: The look of that simulator's owner for the perceiver in that tick; None
             where the owner was itself not present one level up.
     """
@@ -99,18 +99,18 @@ class Absence:
 
 @dataclass(frozen=True, slots=True)
 class Missed:
-    """A change in the simulator around that did not reach the belief.
+    """A change in the parent node that did not reach the belief.
 
     Attributes:
         tick: When; for what was never known, the tick of the explanation.
-        before: What the simulator around held before; equal to `after` for what was never
+        before: What the parent node held before; equal to `after` for what was never
             known.
         after: What it held then.
-        acts: Who did what to it in that tick, as perceived in the simulator around.
-        edited: Whether the simulator around was changed by hand.
-        stood: The perceiver's feet in the simulator around; None: unknown.
+        acts: Who did what to it in that tick, as perceived in the parent node.
+        edited: Whether the parent node was changed by hand.
+        stood: The perceiver's feet in the parent node; None: unknown.
         absence: Set where the perceiver was not present.
-        sightings: The looks that would have told it, where it was present.
+        sightings: The looks that would have shown it, where the perceiver was present.
         saw_acts: Whether the perceiver perceived the acts, which did not tell the change.
     """
 
@@ -164,7 +164,7 @@ class Level:
         acts: What was perceived of acts on the element in the basis' tick.
         since: Tick from which on the belief held this; later than the basis where it was
             handed on stale; None where nothing was ever known.
-        stood: The holder's feet in the simulator around at tick `since`; None: unknown.
+        stood: The holder's feet in the parent node at tick `since`; None: unknown.
         missed: The first change since that did not reach the belief, or for what was never
             known, why it is not perceived now; None: there is none.
     """

@@ -57,10 +57,10 @@ def _view(geometry: Geometry, sees: _Sees) -> View:
     """What stops a look, found by looking without limits; distance before direction."""
     if sees(geometry):
         return View.SEEN
-    around = replace(geometry.sight, field_of_view=360.0)
-    if sees(replace(geometry, sight=around)):
+    all_round = replace(geometry.sight, field_of_view=360.0)
+    if sees(replace(geometry, sight=all_round)):
         return View.OUTSIDE_VIEW
-    if sees(replace(geometry, sight=replace(around, max_visible_distance=None))):
+    if sees(replace(geometry, sight=replace(all_round, max_visible_distance=None))):
         return View.TOO_FAR
     return View.BLOCKED
 

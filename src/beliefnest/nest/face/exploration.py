@@ -1,4 +1,4 @@
-"""Trying several programs, each on a branch of its own, from one tick."""
+"""Exploration: several programs tried from one tick, each on a branch of its own."""
 
 import os
 import time

@@ -33,7 +33,7 @@ __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 class Nest(Looking):
     """The real world and every belief in it; each node is made on first use.
 
-    `Nest(world)` wraps a `ScriptedWorld` and follows what it is told; `Nest.open` opens a
+    `Nest(world)` wraps a `ScriptedWorld` and follows what happens in it; `Nest.open` opens a
     scenario in a world of its own. Use it in a `with` block, or close it.
 
     Args:

@@ -1,4 +1,4 @@
-"""Ticks as callers give them."""
+"""Checks of ticks that callers give."""
 
 from operator import index
 from typing import SupportsIndex

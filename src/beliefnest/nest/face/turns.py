@@ -1,4 +1,4 @@
-"""One call at a time in a nest, whichever threads they come from.
+"""The turn of a thread in a nest: one call at a time, whichever thread it comes from.
 
 A nest's timelines, forests and bodies belong together, and Node does one thing at a time.
 Programs of different simulators can be asked for side by side, in threads: each runs in its

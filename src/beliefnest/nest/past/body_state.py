@@ -1,4 +1,4 @@
-"""What a body has to be like at a moment of a timeline, hidden things included.
+"""The state of a body at a moment of a timeline, its internal state included.
 
 Frames tell what can be perceived. What else goes on in a body is kept at the ends of calls; at
 any other moment, and where a belief is forked, nothing is under way.

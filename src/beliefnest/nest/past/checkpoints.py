@@ -2,7 +2,7 @@
 
 A checkpoint is a cache: without any, every answer is the same. Its name carries a digest of all
 that a forest follows from besides the journal: the setting, and the program that folds; under
-another name nobody looks.
+another name it is not looked for.
 """
 
 from collections.abc import Iterator
@@ -90,7 +90,7 @@ class Checkpoints:
             key: The timeline.
             position: Where it may lie at most.
             events: What happens on the timeline.
-            path: A node that has to be in it, and the only one wanted with those around it;
+            path: A node that has to be in it, and the only one wanted, with its ancestors;
                 None: all nodes that were saved.
             after: Where it does not lie any more.
         """

@@ -1,4 +1,4 @@
-"""The events of a timeline, read from its journal when somebody lists them."""
+"""The list of a timeline's events, read from its journal when it is needed."""
 
 from collections.abc import Callable, Sequence
 

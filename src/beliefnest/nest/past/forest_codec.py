@@ -1,4 +1,4 @@
-"""Forests as bytes, so that a timeline need not be folded from its beginning."""
+"""The codec of forests: their state as bytes, so that a timeline is not folded from the start."""
 
 import msgspec
 import zstandard

@@ -1,4 +1,4 @@
-"""From the journal alone to any node of any timeline, at any of its entries.
+"""The history of a nest: any node, at any entry of any timeline, from the journal alone.
 
 Follow-mode beliefs are pure functions of the control timelines (semantics, section 6). For
 the head of every timeline one forest is kept, with the nodes that someone asked for, and
@@ -230,7 +230,7 @@ class History:
     def _walk(
         self, key: TimelineKey, path: Path, position: int, extra: Sequence[int] = ()
     ) -> Forest:
-        """A new forest of a node and those around it, after some entries of a timeline."""
+        """A new forest of a node and its ancestors, after some entries of a timeline."""
         forest = None
         if not extra:
             forest = self._checkpoints.before(key, position, self._log(key), path)
@@ -239,7 +239,7 @@ class History:
         return forest
 
     def _begun(self, key: TimelineKey, path: Path, extra: Sequence[int] = ()) -> Forest:
-        """A forest of a node and those around it, at a timeline's beginning."""
+        """A forest of a node and its ancestors, at a timeline's beginning."""
         base = self._journal.info(key).base
         log = self._log(key)
         if base is None:
@@ -284,7 +284,7 @@ class History:
     def _leap(self, key: TimelineKey, forest: Forest, position: int) -> None:
         """Bring a forest without beliefs to a position, past entries that only tell of agents.
 
-        What they told last is all that is left of them in the end.
+        Only the last of them counts in the end.
         """
         first, last = forest.position, position
         while last > first and isinstance(self._entry(key, last - 1), Edit):

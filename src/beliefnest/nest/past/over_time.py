@@ -1,4 +1,4 @@
-"""One belief through all of its time, on every timeline there is of it."""
+"""One simulator over time, on every timeline that it has or can follow."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -37,7 +37,7 @@ def over_time(recording: Recording, path: tuple[str, ...]) -> Iterator[Moment]:
     """The first tick of each timeline that a simulator has or can follow, and each with a change.
 
     Timelines come in order of creation, each with its own ticks: what lies before its first is
-    told of the one it goes on from.
+    part of the timeline that it goes on from.
     """
     registry = recording.history.context.registry
     box = recording.setting.snapshot.box

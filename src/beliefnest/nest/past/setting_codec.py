@@ -1,4 +1,4 @@
-"""The bytes a run file keeps of what its nest started from."""
+"""The codec of settings: what a run file keeps of what its nest started from."""
 
 from typing import Literal
 

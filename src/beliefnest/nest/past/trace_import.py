@@ -1,4 +1,4 @@
-"""A run made of a history that another program told."""
+"""A run file made of a trace, which another program wrote."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
