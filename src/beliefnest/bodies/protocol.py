@@ -85,6 +85,11 @@ class ProgramResult:
     log: tuple[str, ...] = ()
     unfinished: tuple[Unfinished, ...] = ()
 
+    def __repr__(self) -> str:
+        ended = "ended well" if self.ok else f"failed: {self.error}"
+        deeds = f"{len(self.actions)} action{'s' * (len(self.actions) != 1)}"
+        return f"<program of {self.agent}, {self.ticks} ticks, {deeds}: {ended}>"
+
     @property
     def events(self) -> tuple[Event, ...]:
         """What happened in the simulator meanwhile, whoever did it, in order."""

@@ -77,6 +77,14 @@ class Outcome:
     expectations: tuple[ExpectationOutcome, ...]
     probes: tuple[ProbeOutcome, ...]
 
+    def __repr__(self) -> str:
+        number = self.scenario.condition
+        name = self.scenario.name + ("" if number is None else f", condition {number}")
+        held = f"{sum(each.ok for each in self.expectations)} of {len(self.expectations)} beliefs"
+        judged = [probe for probe in self.probes if probe.ok is not None]
+        right = f"{sum(bool(probe.ok) for probe in judged)} of {len(judged)} predictions"
+        return f"<{name}, {self.ticks} ticks: {held} and {right} as expected>"
+
     def state(self, path: str) -> State:
         """The state of a simulator that the scenario names, after the script."""
         names = parse_path(path, self.scenario.setting.snapshot.agents)

@@ -1,6 +1,6 @@
 """Where two simulators differ, and what in a belief is false."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -10,12 +10,15 @@ from beliefnest.belief.entries import AgentBelief, Source
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.parts import Contents
 from beliefnest.nest.past.recording import Recording
+from beliefnest.pictures.words import html_table, items_words, place_words, point_words
 from beliefnest.world.frames import BlockGrid
+from beliefnest.world.paths import path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Point, Position
 
 __all__ = [
     "Difference",
+    "Differences",
     "Pose",
     "are_apart",
     "are_false",
@@ -23,7 +26,11 @@ __all__ = [
     "differences",
     "false_beliefs",
     "falsehoods",
+    "value_words",
 ]
+
+_MOST = 12
+"""Differences that are told of in a terminal; more are counted."""
 
 Path = tuple[str, ...]
 
@@ -61,13 +68,62 @@ class Difference:
     b: str | Pose | Contents | None
 
 
+class Differences(list[Difference]):
+    """A list of differences that a terminal and a notebook show as a table.
+
+    Args:
+        found: The differences.
+        a: What `a` is, for the headings.
+        b: What `b` is.
+    """
+
+    def __init__(self, found: Iterable[Difference], a: str, b: str) -> None:
+        super().__init__(found)
+        self._headings = ("what", a, b)
+
+    def __repr__(self) -> str:
+        _, a, b = self._headings
+        lines = [
+            f"  {what}: {one} in {a}, {other} in {b}" for what, one, other in self._rows()[:_MOST]
+        ]
+        more = len(self) - len(lines)
+        lines += [f"  and {more} more"] if more else []
+        count = f"{len(self)} difference{'s' * (len(self) != 1)} of {a} and {b}"
+        return "\n".join([f"<{count}{':' if lines else ''}", *lines]) + ">"
+
+    def _repr_html_(self) -> str:
+        return html_table(self._headings, self._rows())
+
+    def _rows(self) -> list[tuple[str, str, str]]:
+        return [(_what(each), value_words(each.a), value_words(each.b)) for each in self]
+
+
+def value_words(value: str | Pose | Contents | None) -> str:
+    """One side of a difference, for people."""
+    match value:
+        case Pose(position=position):
+            return point_words(position)
+        case Contents(items=items, complete=complete):
+            return items_words(items, complete=complete)
+        case None:
+            return "not known"
+        case text:
+            return text
+
+
+def _what(difference: Difference) -> str:
+    where = difference.where
+    return f"{difference.kind} {where if isinstance(where, str) else place_words(where)}"
+
+
 def compare(
     recording: Recording, a: Path, b: Path, tick: int | None, *, unknown: bool
 ) -> list[Difference]:
     """`differences` of two nodes at a tick; None: now."""
     one, other = recording.reading(a, tick), recording.reading(b, tick)
     context = recording.history.context
-    return list(differences(one, other, context.box, context.registry, unknown=unknown))
+    found = differences(one, other, context.box, context.registry, unknown=unknown)
+    return Differences(found, path_text(a), path_text(b))
 
 
 def false_beliefs(
@@ -89,7 +145,8 @@ def false_beliefs(
     belief = recording.reading(path, tick)
     real = recording.reading(against, tick if against_tick is None else against_tick)
     context = recording.history.context
-    return list(falsehoods(real, belief, context.box, context.registry))
+    found = falsehoods(real, belief, context.box, context.registry)
+    return Differences(found, path_text(against), path_text(path))
 
 
 def differences(

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from beliefnest.nest.explain.parts import Element, Fact, Level
 from beliefnest.nest.explain.wording import explanation_lines
+from beliefnest.pictures.words import html_lines
 
 __all__ = ["Explanation"]
 
@@ -26,6 +27,12 @@ class Explanation:
     fact: Fact
     levels: tuple[Level, ...]
     before: "Explanation | None" = None
+
+    def __repr__(self) -> str:
+        return f"<explanation at tick {self.tick}:\n{self}>"
+
+    def _repr_html_(self) -> str:
+        return html_lines(str(self).splitlines())
 
     def __str__(self) -> str:
         lines = explanation_lines(self.element, self.fact, self.levels)

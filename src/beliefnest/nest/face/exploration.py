@@ -42,6 +42,9 @@ class Attempt:
     score: float
     state: State
 
+    def __repr__(self) -> str:
+        return f"<attempt on branch {self.branch!r}, score {self.score:g}: {self.result!r}>"
+
 
 @dataclass(frozen=True, slots=True)
 class Exploration:

@@ -8,15 +8,15 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.view import State
-from beliefnest.errors import InputError
-from beliefnest.nest.explain.comparison import Difference, Pose, false_beliefs
-from beliefnest.nest.explain.parts import Contents
+from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.nest.explain.comparison import Difference, Pose, false_beliefs, value_words
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.figure import Figure, figure_of
 from beliefnest.pictures.scene import Scene, Wrong, best_height, read_scene
+from beliefnest.pictures.words import place_words, state_words
 from beliefnest.world.paths import parse_path, path_text
 
-__all__ = ["Looking", "LookingAtOne", "contents_words"]
+__all__ = ["Looking", "LookingAtOne"]
 
 Path = tuple[str, ...]
 
@@ -96,6 +96,19 @@ class Looking:
         then = self._moment() if tick is None else tick
         return _scenes(self._recording, wanted, then, against, sight=sight, height=height)
 
+    def __repr__(self) -> str:
+        recording, tick = self._recording, self._moment()
+        try:
+            with recording.turn:
+                state = recording.state((), tick)
+                branches = len(recording.journal.timelines())
+                words = state_words(state)
+        except BeliefNestError as error:
+            # Whoever prints a closed nest, or a tick that is not there, wants no further fault.
+            return f"<nest of {recording.setting.name}: {error}>"
+        shown = f"<nest of {recording.setting.name} at tick {state.tick}"
+        return f"{shown}, {branches} timeline{'s' * (branches > 1)}: {words}>"
+
     def _repr_html_(self) -> str:
         return self.figure()._repr_html_()
 
@@ -121,6 +134,25 @@ class LookingAtOne:
         paths, then = [path_text(self._path)], self._moment()
         scenes = _scenes(self._recording, paths, then, against, sight=sight, height=height)
         return figure_of(scenes)
+
+    def __repr__(self) -> str:
+        recording, tick = self._recording, self._moment()
+        path = path_text(self._path)
+        try:
+            with recording.turn:
+                key = recording.selected.get(self._path)
+                state = recording.state(self._path, tick)
+                wrong = [
+                    _named(each, recording)
+                    for each in _wrong(_Node(recording, self._path, tick), ())
+                ]
+                words = state_words(state)
+        except BeliefNestError as error:
+            # As for a nest.
+            return f"<simulator {path}: {error}>"
+        mode = "follow mode" if key is None else f"branch {key.branch}"
+        false = f"; false: {', '.join(wrong)}" if wrong else ""
+        return f"<simulator {path}, {mode}, tick {state.tick}: {words}{false}>"
 
     def _repr_html_(self) -> str:
         return self.figure()._repr_html_()
@@ -177,7 +209,7 @@ def _wrong(node: _Node, against: Path) -> list[Wrong]:
         tick = min(tick, node.recording.info(against).head)
     found = false_beliefs(node.recording, node.names, node.tick, against, tick)
     return [
-        Wrong(each.where, _instead(each))
+        Wrong(each.where, value_words(each.a))
         for each in found
         if each.kind != "inventory" and _far(each)
     ]
@@ -191,24 +223,8 @@ def _far(difference: Difference) -> bool:
     return True
 
 
-def _instead(difference: Difference) -> str:
-    """How the other simulator has it."""
-    match difference.a:
-        case Pose(position=(x, y, z)):
-            return f"at ({x:.1f}, {y:.1f}, {z:.1f})"
-        case Contents() as contents:
-            return contents_words(contents)
-        case None:
-            return "not known"
-        case text:
-            return text
-
-
-def contents_words(contents: Contents) -> str:
-    """Contents for people."""
-    told = ", ".join(
-        f"{count} {name.replace('_', ' ')}" for name, count in sorted(contents.items.items())
-    )
-    if contents.complete:
-        return told or "empty"
-    return f"{told}, more?" if told else "nothing known"
+def _named(wrong: Wrong, recording: Recording) -> str:
+    """What is false, by the name that people have for it."""
+    if isinstance(wrong.where, str):
+        return f"where {wrong.where} is"
+    return recording.setting.labels.get(wrong.where, place_words(wrong.where))

@@ -5,15 +5,20 @@ from contextlib import AbstractContextManager
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent
 from beliefnest.belief.node_view import NodeView
-from beliefnest.belief.view import BlockView
+from beliefnest.belief.view import BlockView, State
 from beliefnest.errors import PositionError
 from beliefnest.nest.past.history import History
+from beliefnest.pictures.figure import figure_of
+from beliefnest.pictures.scene import read_scene
+from beliefnest.pictures.words import state_words
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.frames import BlockGrid
+from beliefnest.world.paths import path_text
 from beliefnest.world.values import Box, DroppedItem, EventKind, Position
 
 __all__ = ["Blocks", "LiveState"]
@@ -107,6 +112,22 @@ class Blocks:
         return box.index(position)
 
 
+class _Alone:
+    """A state to draw, without what its agents see."""
+
+    def __init__(self, state: State) -> None:
+        self.state = state
+
+    @property
+    def path(self) -> str:
+        """The belief path."""
+        return path_text(self.state.path)
+
+    def visible_blocks(self, agent: str) -> npt.NDArray[np.bool_]:
+        """Nothing."""
+        return np.zeros(self.state.box.shape, dtype=np.bool_)
+
+
 class LiveState:
     """A `State` that is read part by part when it is asked for, in the nest's `turn`.
 
@@ -130,6 +151,12 @@ class LiveState:
         return all(getattr(self, part) == getattr(other, part) for part in _PARTS)
 
     __hash__ = None  # type: ignore[assignment]  # compared by value, and values are large
+
+    def __repr__(self) -> str:
+        return f"<state of {path_text(self.path)} at tick {self.tick}: {state_words(self)}>"
+
+    def _repr_html_(self) -> str:
+        return figure_of([read_scene(_Alone(self))])._repr_html_()
 
     @property
     def owner(self) -> str | None:

@@ -1,0 +1,62 @@
+"""Short words for states, for terminals and `repr`, and escaped text for notebooks."""
+
+from collections.abc import Iterable, Sequence
+from html import escape
+
+from beliefnest.belief.view import State
+from beliefnest.pictures.palette import age_text
+from beliefnest.world.values import Items, Point, Position
+
+__all__ = ["html_lines", "html_table", "items_words", "place_words", "point_words", "state_words"]
+
+_MOST = 6
+"""Containers that are told of; more are counted."""
+
+
+def point_words(point: Point | None) -> str:
+    """Where somebody is."""
+    return "place not known" if point is None else f"at {place_words(point)}"
+
+
+def place_words(place: Point | Position) -> str:
+    """A place."""
+    return f"({', '.join(f'{value:.1f}'.removesuffix('.0') for value in place)})"
+
+
+def items_words(items: Items, *, complete: bool) -> str:
+    """Contents, and whether there may be more."""
+    told = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in sorted(items.items()))
+    if complete:
+        return told or "empty"
+    return f"{told}, more?" if told else "nothing known"
+
+
+def html_lines(lines: Iterable[str]) -> str:
+    """Lines of text; spaces at their beginning are kept."""
+    return f'<div style="white-space:pre-wrap">{escape(chr(10).join(lines))}</div>'
+
+
+def html_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table of texts."""
+    head = "".join(f"<th>{escape(each)}</th>" for each in headings)
+    body = "".join(
+        f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows
+    )
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def state_words(state: State) -> str:
+    """Who is where and what is in what, as far as a simulator holds it."""
+    people = []
+    for name, agent in sorted(state.agents.items()):
+        words = f"{name} {point_words(agent.position)}"
+        if agent.position is not None and not agent.current and agent.basis is not None:
+            words += f", {age_text(state.tick - agent.basis.observed_at)}"
+        people.append(words)
+    stores = [
+        f"{place_words(place)} {items_words(held.items, complete=held.complete)}"
+        for place, held in sorted(state.containers.items())[:_MOST]
+    ]
+    more = len(state.containers) - len(stores)
+    stores += [f"{more} more containers"] if more else []
+    return "; ".join([*people, *stores])
