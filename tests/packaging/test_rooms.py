@@ -1,7 +1,9 @@
 """The drawing of the rooms, their table and the folders say the same."""
 
+import ast
 import re
 import tomllib
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 TOP = Path(__file__).parents[2]
@@ -33,3 +35,20 @@ def test_every_room_is_in_the_table_and_in_the_contract():
     assert rooms - {"nest"} <= told
     assert rooms_in(SOURCES) <= layers_of("beliefnest")
     assert rooms_in(SOURCES / "nest") == layers_of("beliefnest.nest")
+
+
+def imports_of(path, modules):
+    """Modules of the package that a file imports, also within functions."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module is not None:
+            names = {f"{node.module}.{alias.name}" for alias in node.names} & modules.keys()
+            yield from names or {node.module} & modules.keys()
+
+
+def test_no_files_import_each_other_in_a_circle():
+    files = [p for p in SOURCES.rglob("*.py") if "node_modules" not in p.parts]
+    modules = {
+        ".".join(p.relative_to(SOURCES.parent).with_suffix("").parts).removesuffix(".__init__"): p
+        for p in files
+    }
+    TopologicalSorter({name: set(imports_of(p, modules)) for name, p in modules.items()}).prepare()

@@ -20,7 +20,7 @@ from beliefnest.perception.rays import (
     neighbour,
 )
 from beliefnest.perception.shadows import Shadows
-from beliefnest.perception.sight import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT
+from beliefnest.world.values import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT
 
 __all__ = ["Eye", "eye_sees_agent", "eye_sees_block", "eye_sees_point", "set_code"]
 

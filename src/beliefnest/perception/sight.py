@@ -31,19 +31,13 @@ from beliefnest.perception.codes import (
 )
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import EYE_HEIGHT, Point, Position
+from beliefnest.world.values import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT, Point, Position
 
 if TYPE_CHECKING:
     from beliefnest.perception.beams import Eye
     from beliefnest.perception.rays import Scene
 
-__all__ = ["AGENT_SAMPLE_HEIGHTS", "BODY_CENTRE_HEIGHT", "Geometry", "Sight", "Tables"]
-
-BODY_CENTRE_HEIGHT = 0.9
-"""Height of an agent's middle above its feet, in blocks."""
-
-AGENT_SAMPLE_HEIGHTS = (EYE_HEIGHT, BODY_CENTRE_HEIGHT, 0.05)
-"""Heights above the feet of the points by which an agent is seen, in blocks."""
+__all__ = ["Geometry", "Sight", "Tables"]
 
 BoolArray = npt.NDArray[np.bool_]
 Points = npt.NDArray[np.float64]

@@ -12,6 +12,8 @@ from enum import StrEnum
 from typing import Any
 
 __all__ = [
+    "AGENT_SAMPLE_HEIGHTS",
+    "BODY_CENTRE_HEIGHT",
     "EQUIPMENT_SLOTS",
     "EYE_HEIGHT",
     "TICKS_PER_SECOND",
@@ -27,6 +29,11 @@ __all__ = [
 
 TICKS_PER_SECOND = 20
 EYE_HEIGHT = 1.62
+BODY_CENTRE_HEIGHT = 0.9
+"""Height of an agent's middle above its feet, in blocks."""
+
+AGENT_SAMPLE_HEIGHTS = (EYE_HEIGHT, BODY_CENTRE_HEIGHT, 0.05)
+"""Heights above the feet of the points by which an agent is seen, in blocks."""
 EQUIPMENT_SLOTS = ("head", "chest", "legs", "feet", "main_hand", "off_hand")
 
 Position = tuple[int, int, int]

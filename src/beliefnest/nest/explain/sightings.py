@@ -9,8 +9,15 @@ import numpy as np
 from beliefnest.belief.entries import AgentBelief
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.parts import Sighting, View
-from beliefnest.perception.sight import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT, Geometry
-from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position
+from beliefnest.perception.sight import Geometry
+from beliefnest.world.values import (
+    AGENT_SAMPLE_HEIGHTS,
+    BODY_CENTRE_HEIGHT,
+    EYE_HEIGHT,
+    Box,
+    Point,
+    Position,
+)
 
 __all__ = ["sighting_of_agent", "sighting_of_block"]
 
