@@ -49,7 +49,9 @@ def write_page(options: PageOptions) -> None:
             stack.enter_context(journal.unchanging())
             nest = RecordedNest.of(journal)
             runs.append((nest.reader, about_run(journal, nest, [options.path])))
-        first = {"at": path_text(parse_path(options.path, nest.agents)), "tick": options.tick}
+        first: dict[str, object] = {"tick": options.tick}
+        if options.path != "/":
+            first["at"] = path_text(parse_path(options.path, nest.agents))
         write_still_page(options.file, runs, options.depth, first)
     stdout().print(f"written to {options.file}", highlight=False, soft_wrap=True)
 

@@ -16,11 +16,11 @@ from beliefnest.nest.face.exploration import Attempt, Exploration, Score
 from beliefnest.nest.face.looking import Looking
 from beliefnest.nest.face.opening import HasSetting, Start, begun, resumed
 from beliefnest.nest.face.past_simulator import Past
-from beliefnest.nest.face.reader import Reader
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.face.simulator import Simulator
 from beliefnest.nest.face.ticks import tick_of
 from beliefnest.nest.face.turns import in_turn
+from beliefnest.nest.face.viewing import Viewing
 from beliefnest.nest.past.setting import Setting
 from beliefnest.perception.options import Perception
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
@@ -30,7 +30,7 @@ from beliefnest.world.scripted import ScriptedWorld
 __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 
 
-class Nest(Looking):
+class Nest(Looking, Viewing):
     """The real world and every belief in it; each node is made on first use.
 
     `Nest(world)` wraps a `ScriptedWorld` and follows what happens in it; `Nest.open` opens a
@@ -174,11 +174,6 @@ class Nest(Looking):
     def agents(self) -> tuple[str, ...]:
         """Names of all agents, sorted."""
         return self._recording.agents
-
-    @property
-    def reader(self) -> Reader:
-        """What viewers read of the nest, on any of its timelines."""
-        return Reader(self._recording)
 
     @property
     def tick(self) -> int:

@@ -6,7 +6,7 @@ from typing import Self
 
 from beliefnest.nest.face.looking import Looking
 from beliefnest.nest.face.past_simulator import Past, PastSimulator
-from beliefnest.nest.face.reader import Reader
+from beliefnest.nest.face.viewing import Viewing
 from beliefnest.nest.past.over_time import Moment, over_time
 from beliefnest.nest.past.recording import Recording, read_recording
 from beliefnest.nest.past.run_log import RunJournal
@@ -19,7 +19,7 @@ from beliefnest.world.paths import parse_path
 __all__ = ["RecordedNest"]
 
 
-class RecordedNest(Looking):
+class RecordedNest(Looking, Viewing):
     """Simulators of a run as they were; nothing in it can act.
 
     Args:
@@ -76,11 +76,6 @@ class RecordedNest(Looking):
     def agents(self) -> tuple[str, ...]:
         """Names of all agents, sorted."""
         return self._recording.agents
-
-    @property
-    def reader(self) -> Reader:
-        """What viewers read of the run, on any of its timelines."""
-        return Reader(self._recording)
 
     def versions(self) -> Sequence[Mapping[str, str]]:
         """Program to version, when the run began and whenever it was resumed with others."""

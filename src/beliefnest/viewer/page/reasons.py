@@ -31,10 +31,10 @@ _DEEDS = frozenset(
     }
 )
 
-_EXPLANATIONS = 60
+_EXPLANATIONS = 36
 """How many explanations a page without a server carries; each takes some 0.1 s to work out."""
 
-_TICKS = 150
+_TICKS = 80
 """At how many ticks of a timeline such a page knows who sees what."""
 
 _NODES = 12

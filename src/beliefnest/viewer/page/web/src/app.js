@@ -99,7 +99,7 @@ export class App {
     refill(this.header,
       element('h1', {}, title),
       this.runs.length > 1 ? this.runChooser() : null,
-      element('p', { class: 'subtitle' }, subtitle || description),
+      element('p', { class: 'subtitle' }, this.runs.length > 1 ? description : subtitle || description),
       element('ul', { class: 'legend', 'aria-label': 'agents and marks' },
         ...agents.map(look => element('li', {}, badge(look, { small: true }), ` ${look.name}`)),
         ...Object.entries(marks).filter(([, mark]) => mark.sign).map(([name, mark]) => element('li', { title: mark.words }, element('span', { class: `mark ${name}` }, mark.sign), ` ${name}`))),

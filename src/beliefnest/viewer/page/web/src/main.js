@@ -16,7 +16,7 @@ async function begin () {
   for (const [number, told] of updates) take(runs, number, told)
   if (served) forgetToken()
   if (runs.length === 0) await waiting(runs, content)
-  const chooser = new Chooser(content.first)
+  const chooser = new Chooser(firstView(runs, content.first))
   const source = served ? new ServedSource(() => app.later()) : new PackedSource()
   const app = new App(root, runs, chooser, source)
   app.draw()
@@ -31,6 +31,12 @@ function take (runs, number, told) {
     runs[number].number = number
   }
   runs[number].put(told)
+}
+
+/** Where nothing was chosen yet, what the scenario asks about is shown, beside reality. */
+function firstView (runs, first) {
+  const [asked] = runs[0].head.asked
+  return { ...(asked === undefined ? {} : { at: asked }), ...first }
 }
 
 /** A cookie knows the token by now; nobody is to read it off the address. */

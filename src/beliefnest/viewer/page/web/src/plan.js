@@ -1,11 +1,14 @@
 /** A simulator from above: blocks on a canvas, and over it what can be pointed at. */
 
 import { ago, element, refill, svg } from './elements.js'
-import { contentsText, markSign } from './things.js'
+import { apart } from './labels.js'
+import { contentsLabel, contentsText, signsText } from './things.js'
 
 const LIGHT = { wall: '#7d7a78', nowhere: '#d9d5cc', unknown: '#eeeae2', hatch: '#b9b4aa', unseen: 'rgba(43,42,51,.30)', blend: '#fcfbf8' }
 const DARK = { wall: '#9a979c', nowhere: '#17161b', unknown: '#2b2930', hatch: '#56525e', unseen: 'rgba(0,0,0,.55)', blend: '#24232a' }
 const LEAST = 6
+const LETTER = 7
+const LINE = 14
 
 /** Draws plans into an element that it fills. */
 export class Plan {
@@ -33,6 +36,7 @@ export class Plan {
       part.style.width = `${w}px`
       part.style.height = `${d}px`
     }
+    this.labelled = []
     refill(this.over,
       ...this.wrongBlocks(scene), ...this.ray(scene), ...this.containers(scene), ...this.items(scene), ...this.agents(scene))
   }
@@ -65,6 +69,14 @@ export class Plan {
     return [(x - this.low[0]) * this.size, (z - this.low[2]) * this.size]
   }
 
+  /** A text near a thing, moved up or down where it would lie over another one. */
+  label (x, y, text, wrong) {
+    const width = LETTER * text.length
+    const free = apart(this.labelled, { left: x - width / 2, top: y - LINE, width, height: LINE })
+    this.labelled.push(free)
+    return svg('text', { class: `label${wrong ? ' false' : ''}`, x, y: free.top + LINE }, text)
+  }
+
   target (thing, words, chosen, ...parts) {
     const pick = event => { event.stopPropagation(); this.choose({ thing, note: null }) }
     return svg('g', {
@@ -82,15 +94,14 @@ export class Plan {
     return things.containers.filter(each => each.place[1] === storey && (each.contents || each.marks.length)).map(each => {
       const [x, y] = this.at(each.place[0], each.place[2])
       const s = this.size
-      const text = each.contents === null ? '?' : contentsText(each.contents)
-      const marks = each.marks.map(mark => markSign(run, mark, each.age)).join(' ')
+      const text = [contentsLabel(each.contents), signsText(run, each.marks, each.age)].filter(Boolean).join(' ')
       const words = `${each.name}: ${contentsText(each.contents)}${each.marks.length ? ` (${each.marks.join(', ')})` : ''}`
       const wrong = each.marks.includes('false')
       return this.target(each.thing, words, chosen,
         svg('rect', { class: `box${each.contents === null ? ' unsure' : ''}`, x: x + 0.08 * s, y: y + 0.12 * s, width: 0.84 * s, height: 0.76 * s, rx: 0.12 * s }),
         svg('line', { class: 'lid', x1: x + 0.08 * s, x2: x + 0.92 * s, y1: y + 0.42 * s, y2: y + 0.42 * s }),
         wrong ? svg('rect', { class: 'wrong', x, y, width: s, height: s, rx: 0.16 * s }) : null,
-        label(x + s / 2, y - 5, [text, marks].filter(Boolean).join(' '), wrong))
+        this.label(x + s / 2, y - 5, text, wrong))
     })
   }
 
@@ -102,7 +113,7 @@ export class Plan {
       const [dx, dy] = [-Math.sin(pose.yaw), -Math.cos(pose.yaw)]
       const far = Math.abs(pose.y - storey) > 1.5
       const wrong = each.marks.includes('false')
-      const sign = each.marks.map(mark => markSign(run, mark, each.age)).join(' ')
+      const sign = signsText(run, each.marks, each.age)
       const when = pose.current ? '' : `, seen ${ago(each.age)}`
       const side = [-dy * 0.55 * r, dx * 0.55 * r]
       const nose = [[x + dx * 1.55 * r, y + dy * 1.55 * r], [x + dx * 0.7 * r + side[0], y + dy * 0.7 * r + side[1]],
@@ -113,7 +124,7 @@ export class Plan {
         svg('circle', { class: `disc${pose.current ? '' : ' stale'}${far ? ' far' : ''}`, cx: x, cy: y, r, style: { fill: look.colour } }),
         wrong ? svg('circle', { class: 'wrong', cx: x, cy: y, r: r + 4 }) : null,
         svg('text', { class: 'letters', x, y, style: { fill: look.ink, 'font-size': `${Math.max(9, 0.9 * r)}px` } }, look.badge),
-        label(x, y + r + 14, [look.name, sign].filter(Boolean).join(' '), wrong))
+        this.label(x, y + r + 14, [look.name, sign].filter(Boolean).join(' '), wrong))
     })
   }
 
@@ -148,10 +159,6 @@ export class Plan {
     }
     return parts
   }
-}
-
-function label (x, y, text, wrong) {
-  return svg('text', { class: `label${wrong ? ' false' : ''}`, x, y }, text)
 }
 
 function fill (paint, [i, k, scale], colour) {

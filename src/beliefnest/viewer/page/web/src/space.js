@@ -7,11 +7,14 @@ import {
 } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { element, refill } from './elements.js'
-import { contentsText, markSign } from './things.js'
+import { apart } from './labels.js'
+import { contentsLabel, signsText } from './things.js'
 
 const WRONG = 0xd55e00
 const EYE = 1.62
 const MOST = 60000
+const TALL = 23
+const LETTER = 6.6
 const CUBE = new BoxGeometry(1, 1, 1)
 const EDGES = new EdgesGeometry(CUBE)
 const BODY = new CapsuleGeometry(0.28, 0.75, 4, 12)
@@ -139,7 +142,7 @@ export class Space {
       const ring = this.add(RING, wrong ? WRONG : '#2b2a33', [pose.x, pose.y + 0.06, pose.z], {})
       ring.rotation.x = Math.PI / 2
     }
-    const sign = each.marks.map(mark => markSign(scene.run, mark, each.age)).join(' ')
+    const sign = signsText(scene.run, each.marks, each.age)
     this.label(thing, [pose.x, pose.y + 2.15, pose.z], [look.name, sign].filter(Boolean).join(' '), wrong, look)
   }
 
@@ -149,8 +152,8 @@ export class Space {
     if (wrong) this.outline(each.place, WRONG)
     else if (scene.chosen === each.thing) this.outline(each.place, 0x2b2a33)
     if (each.contents === null && scene.track.grid(scene.tick)[each.cell] < 0) this.outline(each.place, 0x8a8890)
-    const sign = each.marks.map(mark => markSign(scene.run, mark, each.age)).join(' ')
-    this.label(each.thing, [x + 0.5, y + 1.35, z + 0.5], `${contentsText(each.contents)} ${sign}`.trim(), wrong)
+    const sign = signsText(scene.run, each.marks, each.age)
+    this.label(each.thing, [x + 0.5, y + 1.35, z + 0.5], [contentsLabel(each.contents), sign].filter(Boolean).join(' '), wrong)
   }
 
   outline ([x, y, z], colour) {
@@ -176,15 +179,18 @@ export class Space {
     const made = element('button', { type: 'button', class: `tag${wrong ? ' false' : ''}`, tabindex: '-1', onclick: () => this.choose({ thing, note: null }) }, text)
     if (look !== null) made.style.borderColor = look.colour
     this.labels.append(made)
-    this.marks.push({ made, at: new Vector3(...place) })
+    this.marks.push({ made, at: new Vector3(...place), width: 20 + LETTER * text.length })
   }
 
   placeLabels (width, height) {
-    for (const { made, at } of this.marks) {
-      const point = at.clone().project(this.camera)
-      made.hidden = point.z > 1
+    const taken = []
+    for (const mark of this.marks) {
+      const point = mark.at.clone().project(this.camera)
+      mark.made.hidden = point.z > 1
       const [x, y] = [(point.x + 1) / 2 * width, (1 - point.y) / 2 * height]
-      made.style.transform = `translate(-50%, -100%) translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`
+      const free = apart(taken, { left: x - mark.width / 2, top: y - TALL, width: mark.width, height: TALL })
+      taken.push(free)
+      mark.made.style.transform = `translate(${free.left.toFixed(1)}px, ${free.top.toFixed(1)}px)`
     }
   }
 

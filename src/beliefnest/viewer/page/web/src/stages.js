@@ -69,7 +69,7 @@ export class Stages {
     const [width, , depth] = run.shape
     const { low } = run.head.box
     this.target.set(low[0] + width / 2, low[1] + 1, low[2] + depth / 2)
-    const far = 1.02 * Math.max(width, depth) + 4
+    const far = 0.98 * Math.max(width, depth) + 3
     this.camera.position.set(this.target.x, this.target.y + 0.92 * far, this.target.z + 0.78 * far)
     this.camera.lookAt(this.target)
   }
@@ -107,7 +107,7 @@ class Stage {
     this.view = view
     if (view !== 'plan') this.space ??= new Space(this.stages.camera, this.stages.target, this.stages.choose, () => this.stages.moved())
     this.plan.drawn = null
-    this.holder.className = `holder ${view}`
+    this.holder.className = `holder as-${view}`
     refill(this.holder, ...[view !== 'plan' ? this.space.element : null, view !== 'space' ? this.plan.element : null].filter(Boolean))
   }
 }

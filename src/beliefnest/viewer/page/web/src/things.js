@@ -45,6 +45,17 @@ export function contentsText (contents) {
   return contents.complete ? 'empty' : 'not known'
 }
 
+/** @returns {string} the same as short as fits over a picture */
+export function contentsLabel (contents) {
+  if (contents === null) return '?'
+  return itemsText(contents.items) || (contents.complete ? 'empty' : '?')
+}
+
+/** @returns {string} marks as short as fits beside a label; what is not known is told by the label itself */
+export function signsText (run, marks, age) {
+  return marks.filter(mark => mark !== 'unknown').map(mark => markSign(run, mark, age)).join(' ')
+}
+
 /** @returns {string} a mark in words, with its age */
 export function markWords (run, mark, age) {
   if (mark === 'stale' && age !== null) return `remembered, seen ${ago(age)}`
@@ -52,7 +63,7 @@ export function markWords (run, mark, age) {
 }
 
 /** @returns {string} a mark as short as fits beside a thing */
-export function markSign (run, mark, age) {
+function markSign (run, mark, age) {
   const { sign } = run.head.marks[mark]
   return mark === 'stale' && age !== null ? `${sign}${age}` : sign
 }

@@ -29,10 +29,10 @@ export class Tree {
   }
 
   timeline (run, line, choice, tick) {
-    const { path, branch, selected, description } = line.facts
-    const words = path === '/' ? 'The real world' : `${path}, branch “${branch}”`
+    const { path, branch, description } = line.facts
+    const words = path === '/' ? (line.base === null ? 'The real world' : `The real world, branch “${branch}”`) : `${path}, branch “${branch}”`
     return element('section', { class: 'timeline' },
-      element('h3', { title: description || null }, words, selected ? null : element('small', {}, ' not selected')),
+      element('h3', { title: description || null }, words),
       element('ul', {}, this.node(run, line, path, choice, tick)))
   }
 

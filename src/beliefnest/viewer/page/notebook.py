@@ -1,0 +1,51 @@
+"""The page inside a notebook."""
+
+import html
+from dataclasses import dataclass
+from functools import cached_property
+
+from beliefnest.nest.face.reader import Reader
+from beliefnest.viewer.page.run import About
+from beliefnest.viewer.page.static import still_page
+
+__all__ = ["PageView"]
+
+
+@dataclass(frozen=True)
+class PageView:
+    """A nest as it was when this was first shown, as a page in a frame of its own.
+
+    Attributes:
+        reader: Where to read.
+        depth: How deep all beliefs go.
+        height: Of the frame, pixels.
+    """
+
+    reader: Reader
+    depth: int
+    height: int
+
+    @cached_property
+    def page(self) -> str:
+        """The page's text.
+
+        Raises:
+            InputError: The depth is not from 0 to 4, or the page was not built with the package.
+        """
+        setting = self.reader.setting
+        return still_page([(self.reader, About(self._title, labels=setting.labels))], self.depth)
+
+    @property
+    def _title(self) -> str:
+        return self.reader.setting.name
+
+    def __repr__(self) -> str:
+        return f"<page of {self._title!r}, beliefs to depth {self.depth}; a notebook shows it>"
+
+    def _repr_html_(self) -> str:
+        # The frame has no origin: what is in it can reach nothing of the notebook's.
+        return (
+            f'<iframe sandbox="allow-scripts allow-popups" title="{html.escape(self._title)}" '
+            f'srcdoc="{html.escape(self.page)}" style="width: 100%; height: {self.height}px; '
+            'border: 1px solid #ddd"></iframe>'
+        )
