@@ -26,6 +26,7 @@ __all__ = [
 
 STORE = "run.bn"
 PICTURE = "picture.png"
+PAGE = "report.html"
 _REPORT = "run.json"
 _RESULT = "result.json"
 _SCENARIO = "scenario.yaml"
@@ -46,6 +47,11 @@ class ConditionFolder:
     def picture(self) -> Path:
         """The picture of the decisive moment."""
         return self.path / PICTURE
+
+    @property
+    def picture_svg(self) -> Path:
+        """The same picture, for the report."""
+        return self.path / "picture.svg"
 
     def result(self) -> dict[str, Any] | None:
         """What came of the condition in an earlier part of the run; None: it has not ended."""
@@ -133,6 +139,10 @@ class RunFolder:
     def write_report(self, report: Mapping[str, object]) -> None:
         """Write the whole report anew."""
         _write(self.path / _REPORT, _json(report))
+
+    def write_page(self, text: str) -> None:
+        """Write all that came of the run as one page."""
+        _write(self.path / PAGE, text)
 
     def write_summary(self, text: str) -> None:
         """Write the table as text."""

@@ -92,8 +92,20 @@ def _basis_json(basis: Basis | None) -> dict[str, object]:
     return {"observed_at": basis.observed_at, "source": basis.source.value}
 
 
-def outcome_json(outcome: Outcome, model: str, run_dir: Path) -> dict[str, object]:
-    """What came of one condition."""
+def outcome_json(
+    outcome: Outcome, model: str, run_dir: Path, accounts: Sequence[Mapping[str, object]] = ()
+) -> dict[str, object]:
+    """What came of one condition.
+
+    Args:
+        outcome: What came of it.
+        model: Who answered.
+        run_dir: Its folder.
+        accounts: Further facts of each probe.
+    """
+    probes = [_probe_json(each) for each in outcome.probes]
+    for probe, account in zip(probes, accounts, strict=False):
+        probe.update(account)
     return {
         "condition": outcome.scenario.condition,
         "model": model,
@@ -104,7 +116,7 @@ def outcome_json(outcome: Outcome, model: str, run_dir: Path) -> dict[str, objec
         "reality": state_json(outcome.reality),
         "beliefs": {path: state_json(state) for path, state in outcome.beliefs.items()},
         "expectations": [_expectation_json(each) for each in outcome.expectations],
-        "probes": [_probe_json(each) for each in outcome.probes],
+        "probes": probes,
         "usage": usage_json(outcome.usage),
         "run_dir": str(run_dir),
     }

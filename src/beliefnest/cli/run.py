@@ -13,12 +13,14 @@ from typing import Any, Literal
 from rich.table import Table
 
 from beliefnest.bodies.worlds import Worlds, check_world
+from beliefnest.cli.accounts import accounts
 from beliefnest.cli.console import progress_on, stdout
 from beliefnest.cli.folder import ConditionFolder, RunFolder, kept_scenario_file
 from beliefnest.cli.matrix import score_runs, score_table, scores_json
 from beliefnest.cli.pictures import read_condition
 from beliefnest.cli.plan import Cell, plan_cells
 from beliefnest.cli.report import outcome_json, outcome_table, report_json
+from beliefnest.cli.run_report import report_html
 from beliefnest.errors import InputError, ModelError, ScenarioError
 from beliefnest.llm.budget import Budget, RunLimits
 from beliefnest.llm.cache import CacheMode
@@ -132,6 +134,7 @@ def run_scenarios(options: RunOptions) -> int:
         report = report_json(first.name, settings, status, run.results, run.failures)
         report["scores"] = scores_json(score_runs(run.results, run.failures))
         folder.write_report(report)
+        folder.write_page(_page(report, options, first, cells, folder))
     _print(run, cells, report, as_json=options.as_json)
     if run.failures:
         raise ModelError(_failures_text(run.failures, len(cells), folder))
@@ -181,8 +184,9 @@ class _Run:
             return
         self.outcomes.append(outcome)
         self.pictures.append(picture)
-        self.results.append(outcome_json(outcome, cell.model, place.path))
-        place.write_result(self.results[-1])
+        written = place.result()
+        assert written is not None
+        self.results.append(written)
 
 
 def _scenarios(options: RunOptions) -> tuple[Scenario, ...]:
@@ -228,8 +232,33 @@ def _run(
             place.write_probe(number, probe)
         with SqliteJournal.read(place.store) as journal:
             picture = read_condition(nest, journal, outcome)
-        overview([picture], picture.title).save(place.picture)
+        told = accounts(nest, outcome)
+        figure = overview([picture], picture.title)
+        figure.save(place.picture)
+        place.picture_svg.write_text(figure._repr_html_(), encoding="utf-8")
+    place.write_result(outcome_json(outcome, cell.model, place.path, told))
     return outcome, picture
+
+
+def _page(
+    report: Mapping[str, object],
+    options: RunOptions,
+    scenario: Scenario,
+    cells: Sequence[Cell],
+    folder: RunFolder,
+) -> str:
+    """The page of the run, with the versions that the first of its stores keeps."""
+    stores = [store for cell in cells if (store := folder.cell(cell.folder).store).is_file()]
+    versions: Mapping[str, str] = {}
+    if stores:
+        with SqliteJournal.read(stores[0]) as journal:
+            versions = journal.records.run().versions
+    return report_html(
+        report,
+        about={"name": options.scenario, "description": scenario.description},
+        conditions=scenario.conditions,
+        versions=versions,
+    )
 
 
 def _failures_text(failures: Sequence[Mapping[str, object]], total: int, folder: RunFolder) -> str:

@@ -1,0 +1,104 @@
+"""What became of each probe, in words: what happened, how it counts, and on what grounds."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from beliefnest.cli.pictures import container_name, place_text, titled
+from beliefnest.nest.face.nest import Nest
+from beliefnest.pictures.words import items_words, place_words
+from beliefnest.scenarios.content import Arrives, Holds, Opens, Stands
+from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.world.values import Event
+
+__all__ = ["accounts"]
+
+_MOST = 40
+"""Events that are told of; of more the last ones."""
+
+
+def accounts(nest: Nest, outcome: Outcome) -> list[dict[str, list[str]]]:
+    """For each probe: `happened`, `judged` and `why`, each in lines.
+
+    Args:
+        nest: Still open, after the probes.
+        outcome: What came of it.
+    """
+    return [
+        {
+            "happened": _happened(probe),
+            "judged": [_judged(probe, outcome.scenario)],
+            "why": _why(nest, probe, outcome),
+        }
+        for probe in outcome.probes
+    ]
+
+
+def _happened(probe: ProbeOutcome) -> list[str]:
+    told = [f"tick {tick}: {_event_words(event)}" for tick, event in probe.result.happened]
+    lines = told[-_MOST:]
+    if len(told) > _MOST:
+        lines.insert(0, f"{len(told) - _MOST} earlier events are left out")
+    ended = "ended well" if probe.result.ok else f"failed: {probe.result.error}"
+    return [*lines, f"the program {ended}, after {probe.result.ticks} ticks"]
+
+
+def _event_words(event: Event) -> str:
+    words = [event.actor or "somebody", event.kind.value.replace("_", " ")]
+    detail = event.detail
+    if "items" in detail:
+        words.append(items_words(detail["items"], complete=True))
+    if "position" in detail:
+        words.append(place_words(detail["position"]))
+    words += [str(detail[key]) for key in ("name", "other", "text") if key in detail]
+    return " ".join(words)
+
+
+def _judged(outcome: ProbeOutcome, scenario: Scenario) -> str:
+    """Why the outcome counts as it does."""
+    agent, expect = titled(outcome.probe.agent), outcome.probe.expect
+    verdict = "as expected" if outcome.ok else "not as expected"
+    if isinstance(expect, Opens):
+        wanted = container_name(expect.container, scenario)
+        opened = "none"
+        if outcome.opened:
+            opened = f"the {container_name(outcome.opened[0], scenario)}"
+        return (
+            f"Judged by the container that {agent} opens first, in the world and not in the "
+            f"model's words: it is {opened}, expected was the {wanted}; that is {verdict}."
+        )
+    if isinstance(expect, Arrives):
+        where, far = "nowhere", ""
+        if outcome.arrived is not None:
+            where = place_text(outcome.arrived, scenario)
+            far = f", {math.dist(outcome.arrived, expect.place):.1f} blocks from there"
+        return (
+            f"Judged by where {agent} stands in the end: {where}; expected was "
+            f"{place_text(expect.place, scenario)}, within {expect.within:g} blocks{far}; "
+            f"that is {verdict}."
+        )
+    return "Nothing was expected; it is only recorded."
+
+
+def _why(nest: Nest, outcome: ProbeOutcome, run: Outcome) -> list[str]:
+    """What the belief that was asked rests on, as far as anything is expected of it."""
+    belief = nest.at(run.reality.tick)[outcome.probe.path]
+    lines: list[str] = []
+    about: list[Any] = [
+        each.expectation.content
+        for each in run.expectations
+        if nest[each.expectation.path].path == belief.path
+    ]
+    containers = [each.container for each in about if isinstance(each, Holds)]
+    if isinstance(outcome.probe.expect, Opens):
+        containers.append(outcome.probe.expect.container)
+    for container in dict.fromkeys(containers):
+        lines += str(belief.explain(container=container)).splitlines()
+    for agent in _agents(about):
+        lines += str(belief.explain(agent=agent)).splitlines()
+    return lines
+
+
+def _agents(about: Sequence[Any]) -> list[str]:
+    return list(dict.fromkeys(each.agent for each in about if isinstance(each, Stands)))

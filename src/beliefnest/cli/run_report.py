@@ -1,0 +1,101 @@
+"""`report.html`: all that came of a run, on one page that needs nothing else."""
+
+import json
+import shlex
+from collections.abc import Mapping, Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, StrictUndefined
+from markupsafe import Markup
+
+__all__ = ["command_of", "report_html"]
+
+
+def report_html(
+    report: Mapping[str, Any],
+    *,
+    about: Mapping[str, str],
+    conditions: Mapping[int, str],
+    versions: Mapping[str, str],
+) -> str:
+    """The page of a run.
+
+    Args:
+        report: The run's report, as in `run.json`.
+        about: `description` of the scenario, and its `name` as it was given on the command line.
+        conditions: Number to description.
+        versions: Program to version.
+    """
+    runs = [_run(each, conditions) for each in report["runs"]]
+    # Everything that comes from a scenario or a model is escaped; pictures are made here.
+    environment = Environment(autoescape=True, undefined=StrictUndefined)
+    environment.filters["compact"] = _compact
+    template = environment.from_string(
+        (files("beliefnest.cli") / "run_report.html").read_text(encoding="utf-8")
+    )
+    return (
+        template.render(
+            report=report,
+            runs=runs,
+            description=about["description"],
+            command=command_of(about["name"], report["settings"]),
+            versions=sorted(versions.items()),
+            several_models=len({(run["model"], run["seed"]) for run in runs}) > 1,
+            verdict=_verdict,
+        )
+        + "\n"
+    )
+
+
+def command_of(name: str, settings: Mapping[str, Any]) -> str:
+    """The command that makes the same run again."""
+    words = ["beliefnest", "run", name]
+    for condition in settings["conditions"]:
+        words += ["--condition", str(condition)]
+    words += ["--world", settings["world"], "--models", ",".join(settings["models"])]
+    for key in ("repeat", "seed", "attempts", "temperature"):
+        if settings.get(key) is not None:
+            words += [f"--{key}", str(settings[key])]
+    return shlex.join(words)
+
+
+def _run(run: Mapping[str, Any], conditions: Mapping[int, str]) -> dict[str, Any]:
+    """One condition, with the files that belong to it."""
+    folder, number = Path(run["run_dir"]), run["condition"]
+    picture = folder / "picture.svg"
+    probes = []
+    for index, probe in enumerate(run["probes"], start=1):
+        place = folder / f"probe-{index}"
+        words = {key: probe.get(key, []) for key in ("happened", "judged", "why")}
+        texts = {name: _text(place / f"{name}.txt") for name in ("prompt", "answer")}
+        probes.append({**probe, **words, **texts})
+    return {
+        **run,
+        "title": "run" if number is None else f"condition {number}",
+        "about": conditions.get(number, "") if number is not None else "",
+        "held": sum(bool(each["ok"]) for each in run["expectations"]),
+        "probes": probes,
+        # Written by ourselves, with all text in it escaped.
+        "picture": Markup(_text(picture)) if picture.is_file() else None,
+    }
+
+
+def _text(file: Path) -> str:
+    return file.read_text(encoding="utf-8") if file.is_file() else ""
+
+
+def _verdict(ok: bool | None) -> Markup:
+    if ok is None:
+        return Markup("nothing expected")
+    return Markup("as expected") if ok else Markup('<span class="no">NOT as expected</span>')
+
+
+def _compact(value: object) -> str:
+    """A value of the report in one line."""
+    if isinstance(value, Mapping):
+        return ", ".join(f"{key}: {_compact(each)}" for key, each in value.items())
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return f"({', '.join(map(_compact, value))})"
+    return value if isinstance(value, str) else json.dumps(value)

@@ -1,0 +1,67 @@
+"""Every run folder gets a page with all that came of it, which needs nothing else."""
+
+import html
+import re
+from xml.etree import ElementTree
+
+import pytest
+
+from beliefnest.cli.app import run_command_line
+
+TWICE = """\
+name: twice
+description: "Ann <b>& Bob</b>"
+box: [[0, 0, 0], [8, 3, 8]]
+blocks: [{block: stone, fill: [[0, 0, 0], [8, 0, 8]]}]
+containers: [{at: [4, 1, 2], label: "</svg><script>alert(1)</script>"}]
+agents: {ann: {position: [2.5, 1, 2.5], inventory: {apple: 1}}, bob: {position: [6.5, 1, 6.5]}}
+places: {"<i>": [1, 1, 1]}
+script:
+  - label: Ann says something
+    agent: ann
+    program: "await depositItemIntoChest(bot, new Vec3(4, 1, 2), {apple: 1});"
+probes:
+  - path: /bob
+    acts_in: /
+    agent: bob
+    task: "Get an apple from a chest. <script>alert(2)</script>"
+    expect: {opens: [4, 1, 2]}
+expectations:
+  - {path: /bob, label: "<u>", container: [4, 1, 2], items: {apple: 1}}
+conditions: {1: {description: "<em>one</em>"}, 2: {}}
+"""
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> str:
+    folder = tmp_path_factory.mktemp("report")
+    scenario = folder / "twice.yaml"
+    scenario.write_text(TWICE, encoding="utf-8")
+    run_command_line(["run", str(scenario), "--out", str(folder / "run"), "--seed", "7"])
+    return (folder / "run" / "report.html").read_text(encoding="utf-8")
+
+
+def test_all_text_of_others_is_escaped(page: str) -> None:
+    assert "<script" not in page
+    for tag in ("<b>", "<i>", "<u>", "<em>"):
+        assert tag not in page
+    assert "Ann <b>& Bob</b>" in html.unescape(page)
+
+
+def test_the_page_needs_nothing_else(page: str) -> None:
+    assert not re.findall(r"(?:src|href)=", page)
+    assert set(re.findall(r"https?://[^\"' )]+", page)) <= {"http://www.w3.org/2000/svg"}
+    for drawing in re.findall(r"<svg.*?</svg>", page, re.DOTALL):
+        ElementTree.fromstring(drawing)
+
+
+def test_each_probe_has_its_prompt_answer_program_and_reasons(page: str) -> None:
+    said = html.unescape(page)
+    assert said.count("Task: Get an apple from a chest.") >= 2
+    assert said.count("<h4>Program</h4>") == 2
+    assert said.count("getItemFromChest") >= 2
+    assert "Judged by the container that Bob opens first" in said
+    assert "bob believes that" in said
+    assert "--seed 7" in said
+    assert "mineflayer" in said
+    assert said.count("<svg") == 2
