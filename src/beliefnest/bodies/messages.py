@@ -1,6 +1,7 @@
 """The channel's messages as Python values, and back (design/channel.md)."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import msgspec
@@ -15,9 +16,7 @@ from beliefnest.world.values import (
     Box,
     DroppedItem,
     Event,
-    EventKind,
     Items,
-    Point,
     Position,
 )
 
@@ -32,86 +31,23 @@ __all__ = [
 ]
 
 
-class _Agent(msgspec.Struct, frozen=True):
-    position: Point
-    yaw: float
-    pitch: float
-    on_ground: bool
-    equipment: dict[str, str]
-    inventory: dict[str, int]
-    health: float
-    food: float
-
-    def value(self) -> AgentState:
-        return AgentState(
-            self.position,
-            self.yaw,
-            self.pitch,
-            self.on_ground,
-            self.equipment,
-            self.inventory,
-            self.health,
-            self.food,
-        )
-
-
-class _Item(msgspec.Struct, frozen=True):
-    name: str
-    count: int
-    position: Point
-
-    def value(self) -> DroppedItem:
-        return DroppedItem(self.name, self.count, self.position)
-
-
-class _Event(msgspec.Struct, frozen=True):
-    kind: EventKind
-    actor: str | None
-    detail: dict[str, Any] = {}
-
-    def value(self) -> Event:
-        detail = {
-            key: tuple(value) if isinstance(value, list) else value
-            for key, value in self.detail.items()
-        }
-        if "claims" in detail:
-            detail["claims"] = tuple(claim.plain() for claim in _claims(detail["claims"]))
-        return Event(self.kind, self.actor, detail)
-
-
 class _Frame(msgspec.Struct, frozen=True):
     region: str
     tick: int
-    agents: dict[str, _Agent | None] = {}
+    agents: dict[str, AgentState | None] = {}
     blocks: list[tuple[int, int, int, int]] = []
     containers: list[tuple[int, int, int, dict[str, int] | None]] = []
-    items: dict[int, _Item | None] = {}
-    events: list[_Event] = []
+    items: dict[int, DroppedItem | None] = {}
+    events: list[Event] = []
 
 
 class _Snapshot(msgspec.Struct, frozen=True):
     tick: int
     blocks: bytes
     containers: list[tuple[int, int, int, dict[str, int]]]
-    agents: dict[str, _Agent]
-    items: dict[int, _Item] = {}
+    agents: dict[str, AgentState]
+    items: dict[int, DroppedItem] = {}
     hidden: bytes = b""
-
-
-class _Fault(msgspec.Struct, frozen=True):
-    message: str
-    line: int | None = None
-    column: int | None = None
-    skill: str | None = None
-    kind: str = "program"
-
-    def value(self) -> Fault:
-        return Fault(self.message, self.kind, self.line, self.column, self.skill)
-
-
-class _Unfinished(msgspec.Struct, frozen=True):
-    what: str
-    line: int | None
 
 
 class _Result(msgspec.Struct, frozen=True):
@@ -119,20 +55,8 @@ class _Result(msgspec.Struct, frozen=True):
     ticks: int
     lines: tuple[int, ...]
     log: tuple[str, ...]
-    unfinished: tuple[_Unfinished, ...]
-    error: _Fault | None = None
-
-    def value(self, agent: str, happened: tuple[tuple[int, Event], ...]) -> ProgramResult:
-        return ProgramResult(
-            agent,
-            self.ok,
-            None if self.error is None else self.error.value(),
-            self.ticks,
-            happened,
-            self.lines,
-            self.log,
-            tuple(Unfinished(each.what, each.line) for each in self.unfinished),
-        )
+    unfinished: tuple[Unfinished, ...]
+    error: Fault | None = None
 
 
 def frame_of(message: Mapping[str, Any]) -> tuple[str, Frame]:
@@ -144,11 +68,11 @@ def frame_of(message: Mapping[str, Any]) -> tuple[str, Frame]:
     got = _converted(message, _Frame)
     return got.region, Frame(
         got.tick,
-        {name: None if a is None else a.value() for name, a in sorted(got.agents.items())},
+        dict(sorted(got.agents.items())),
         {(x, y, z): state for x, y, z, state in sorted(got.blocks)},
         dict(sorted(((x, y, z), items) for x, y, z, items in got.containers)),
-        {n: None if i is None else i.value() for n, i in sorted(got.items.items())},
-        tuple(event.value() for event in got.events),
+        dict(sorted(got.items.items())),
+        tuple(map(_frozen, got.events)),
     )
 
 
@@ -166,8 +90,8 @@ def snapshot_of(message: Mapping[str, Any], box: Box) -> Snapshot:
         box,
         np.frombuffer(got.blocks, dtype="<i4").reshape(box.shape).astype(np.int32),
         {(x, y, z): items for x, y, z, items in sorted(got.containers, key=lambda c: c[:3])},
-        {name: agent.value() for name, agent in sorted(got.agents.items())},
-        {number: item.value() for number, item in sorted(got.items.items())},
+        dict(sorted(got.agents.items())),
+        dict(sorted(got.items.items())),
         got.hidden,
     )
 
@@ -187,10 +111,7 @@ def snapshot_message(snapshot: Snapshot) -> dict[str, Any]:
 
 def items_message(items: Mapping[int, DroppedItem]) -> dict[str, Any]:
     """Dropped items by number as a message."""
-    return {
-        str(number): {"name": item.name, "count": item.count, "position": item.position}
-        for number, item in sorted(items.items())
-    }
+    return {str(number): item for number, item in sorted(items.items())}
 
 
 def contents_message(containers: Mapping[Position, Items]) -> list[list[Any]]:
@@ -221,7 +142,21 @@ def results_of(
         BodyError: The message is not of the agreed form.
     """
     got = _converted(message, dict[str, _Result])
-    return {agent: result.value(agent, happened) for agent, result in got.items()}
+    return {
+        agent: ProgramResult(agent, r.ok, r.error, r.ticks, happened, r.lines, r.log, r.unfinished)
+        for agent, r in got.items()
+    }
+
+
+def _frozen(event: Event) -> Event:
+    """The event with tuples in its detail, and claims as they are kept."""
+    detail = {
+        key: tuple(value) if isinstance(value, list) else value
+        for key, value in event.detail.items()
+    }
+    if "claims" in detail:
+        detail["claims"] = tuple(claim.plain() for claim in _claims(detail["claims"]))
+    return replace(event, detail=detail)
 
 
 def _claims(told: Any) -> tuple[Claim, ...]:
