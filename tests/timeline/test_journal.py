@@ -3,7 +3,7 @@
 import pytest
 
 from beliefnest.errors import BranchError, InputError, TickError
-from beliefnest.timeline.journal import ForkPoint, Sift, TimelineInfo, TimelineKey
+from beliefnest.timeline.journal import EntryFilter, ForkPoint, TimelineInfo, TimelineKey
 from beliefnest.timeline.pieces import PIECE_ENTRIES
 from beliefnest.world.frames import Frame
 
@@ -64,8 +64,8 @@ def test_what_is_looked_for_is_found(journal, make_history, step):
     with_events = [n for n, e in enumerate(entries) if isinstance(e, Frame) and e.events]
     changing = [n for n, e in enumerate(entries) if e.blocks or e.containers]
     for start, stop in ((0, 10**6), (0, 0), (1, 2), (100, 130), (127, 128), (300, 10**6)):
-        for what, numbers in ((Sift.EVENTS, with_events), (Sift.CHANGES, changing)):
-            found = list(journal.sifted(MAIN, start, stop, what))
+        for what, numbers in ((EntryFilter.EVENTS, with_events), (EntryFilter.CHANGES, changing)):
+            found = list(journal.filtered(MAIN, start, stop, what))
             assert found == [(n, entries[n]) for n in numbers if start <= n < stop]
 
 
@@ -98,8 +98,10 @@ def test_what_is_undone_is_not_found(journal, make_history):
     kept = TimelineKey((), "kept")
     journal.create(kept, None, 0)
     journal.append(kept, [*entries[:20], *later], later[-1].tick)
-    for what in Sift:
-        assert list(journal.sifted(MAIN, 0, 25, what)) == list(journal.sifted(kept, 0, 25, what))
+    for what in EntryFilter:
+        assert list(journal.filtered(MAIN, 0, 25, what)) == list(
+            journal.filtered(kept, 0, 25, what)
+        )
     for number in range(26):
         assert journal.agents_after(MAIN, number) == journal.agents_after(kept, number)
         assert journal.events_until(MAIN, number) == journal.events_until(kept, number)

@@ -9,7 +9,7 @@ from hypothesis.stateful import Bundle, RuleBasedStateMachine, invariant, rule
 from tests.profiles import at_night
 
 from beliefnest.errors import BranchError, TickError
-from beliefnest.timeline.journal import Edit, ForkPoint, Sift, TimelineInfo, TimelineKey
+from beliefnest.timeline.journal import Edit, EntryFilter, ForkPoint, TimelineInfo, TimelineKey
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
@@ -163,7 +163,7 @@ class StoreMachine(RuleBasedStateMachine):
         if row is not None:
             stop = start + length
             edits = [(n, e) for n, e in enumerate(row["entries"]) if isinstance(e, Edit)]
-            found = list(self.journal.sifted(key, start, stop, Sift.CHANGES))
+            found = list(self.journal.filtered(key, start, stop, EntryFilter.CHANGES))
             assert found == [(n, e) for n, e in edits if start <= n < stop]
             frames = [e for e in row["entries"][:stop] if isinstance(e, Frame)]
             last = frames[-1].agents if frames else {}

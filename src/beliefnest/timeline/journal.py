@@ -20,9 +20,9 @@ __all__ = [
     "FOLLOW",
     "Edit",
     "Entry",
+    "EntryFilter",
     "ForkPoint",
     "Journal",
-    "Sift",
     "TimelineInfo",
     "TimelineKey",
     "branch_carries",
@@ -60,7 +60,7 @@ class Edit:
 Entry = Frame | Edit
 
 
-class Sift(StrEnum):
+class EntryFilter(StrEnum):
     """What makes an entry one of those that are looked for."""
 
     EVENTS = "events"
@@ -108,11 +108,11 @@ class TimelineInfo:
     description: str = ""
 
 
-def is_found(entry: Entry, what: Sift) -> bool:
+def is_found(entry: Entry, what: EntryFilter) -> bool:
     """Whether an entry is one of those that are looked for."""
     if isinstance(entry, Edit):
-        return what is Sift.CHANGES
-    if what is Sift.EVENTS:
+        return what is EntryFilter.CHANGES
+    if what is EntryFilter.EVENTS:
         return bool(entry.events)
     return bool(entry.blocks or entry.containers or entry.items)
 
@@ -239,8 +239,8 @@ class Journal(Protocol):
     def entries_until(self, key: TimelineKey, tick: int) -> int:
         """How many entries lie at `tick` or before; BranchError as above."""
 
-    def sifted(
-        self, key: TimelineKey, start: int, stop: int, what: Sift
+    def filtered(
+        self, key: TimelineKey, start: int, stop: int, what: EntryFilter
     ) -> Iterator[tuple[int, Entry]]:
         """Those of entries start to stop - 1 that are looked for, with their numbers.
 

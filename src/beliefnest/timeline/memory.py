@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from beliefnest.timeline.journal import (
     Entry,
+    EntryFilter,
     ForkPoint,
-    Sift,
     TimelineInfo,
     TimelineKey,
     branch_carries,
@@ -89,8 +89,8 @@ class MemoryJournal:
                 high = middle
         return low
 
-    def sifted(
-        self, key: TimelineKey, start: int, stop: int, what: Sift
+    def filtered(
+        self, key: TimelineKey, start: int, stop: int, what: EntryFilter
     ) -> Iterator[tuple[int, Entry]]:
         """Those of entries start to stop - 1 that are looked for, with their numbers."""
         entries, numbers = self._entries[self.info(key).key], self._found[key].numbers[what]
@@ -100,7 +100,7 @@ class MemoryJournal:
     def events_until(self, key: TimelineKey, entries: int) -> int:
         """How many events the first `entries` entries have."""
         found = self._found[self.info(key).key]
-        before = bisect_left(found.numbers[Sift.EVENTS], entries)
+        before = bisect_left(found.numbers[EntryFilter.EVENTS], entries)
         return found.events[before - 1] if before else 0
 
     def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
@@ -201,14 +201,14 @@ class _Found:
     """
 
     def __init__(self) -> None:
-        self.numbers: dict[Sift, list[int]] = {what: [] for what in Sift}
+        self.numbers: dict[EntryFilter, list[int]] = {what: [] for what in EntryFilter}
         self.events: list[int] = []
         self.agents: dict[str, list[int]] = {}
 
     def extend(self, entries: Sequence[Entry], first: int) -> None:
         """Take in entries, from number `first` on."""
         for number, entry in enumerate(entries, start=first):
-            for what in Sift:
+            for what in EntryFilter:
                 if is_found(entry, what):
                     self.numbers[what].append(number)
             count = count_of_events(entry)
@@ -222,4 +222,4 @@ class _Found:
         """Forget the entries from number `length` on."""
         for numbers in (*self.numbers.values(), *self.agents.values()):
             del numbers[bisect_left(numbers, length) :]
-        del self.events[len(self.numbers[Sift.EVENTS]) :]
+        del self.events[len(self.numbers[EntryFilter.EVENTS]) :]

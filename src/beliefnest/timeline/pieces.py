@@ -16,7 +16,7 @@ import zstandard
 from beliefnest.errors import BranchError, StoreError
 from beliefnest.timeline import codec
 from beliefnest.timeline.database import Database, Row, checked, seal
-from beliefnest.timeline.journal import Entry, Sift, count_of_events, is_found
+from beliefnest.timeline.journal import Entry, EntryFilter, count_of_events, is_found
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
 
@@ -115,8 +115,8 @@ class Pieces:
         first, pieces = self._unpacked(found)
         return first + bisect_right(codec.decode_ticks(pieces), tick)
 
-    def sifted(
-        self, timeline: int, start: int, stop: int, what: Sift
+    def filtered(
+        self, timeline: int, start: int, stop: int, what: EntryFilter
     ) -> Iterator[tuple[int, Entry]]:
         """Those of entries start to stop - 1 that are looked for, with their numbers."""
         while start < stop:
@@ -197,7 +197,7 @@ class Pieces:
             known = self._packer.compress(codec.encode(agents))
         counts = (
             sum(count_of_events(entry) for entry in entries),
-            sum(is_found(entry, Sift.CHANGES) for entry in entries),
+            sum(is_found(entry, EntryFilter.CHANGES) for entry in entries),
         )
         ticks = (entries[0].tick, entries[-1].tick)
         packed = int(agents is not None)

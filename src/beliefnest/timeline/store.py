@@ -17,8 +17,8 @@ from beliefnest.timeline.database import Database, OlderFormat, Row, checked, se
 from beliefnest.timeline.format_2 import FORMAT_2, convert_2
 from beliefnest.timeline.journal import (
     Entry,
+    EntryFilter,
     ForkPoint,
-    Sift,
     TimelineInfo,
     TimelineKey,
     branch_carries,
@@ -221,12 +221,12 @@ class SqliteJournal:
         found = self._pieces.entries_until(row.id, tick)
         return row.entries if found is None else found
 
-    def sifted(
-        self, key: TimelineKey, start: int, stop: int, what: Sift
+    def filtered(
+        self, key: TimelineKey, start: int, stop: int, what: EntryFilter
     ) -> Iterator[tuple[int, Entry]]:
         """Those of entries start to stop - 1 that are looked for, with their numbers."""
         row = self._row(key)
-        return self._pieces.sifted(row.id, start, min(stop, row.entries), what)
+        return self._pieces.filtered(row.id, start, min(stop, row.entries), what)
 
     def events_until(self, key: TimelineKey, entries: int) -> int:
         """How many events the first `entries` entries have."""

@@ -8,7 +8,7 @@ from beliefnest.belief.entries import PerceivedEvent
 from beliefnest.belief.forest import Forest
 from beliefnest.nest.explain.parts import Contents, Element, Value
 from beliefnest.nest.past.history import History
-from beliefnest.timeline.journal import Edit, Journal, Sift, TimelineKey
+from beliefnest.timeline.journal import Edit, EntryFilter, Journal, TimelineKey
 from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box
@@ -119,7 +119,7 @@ def last_change(
     last = None
     entries = journal.entries(place.key, 0, place.entries)
     if element.kind != "agent":
-        found = journal.sifted(place.key, 0, place.entries, Sift.CHANGES)
+        found = journal.filtered(place.key, 0, place.entries, EntryFilter.CHANGES)
         entries = (entry for _, entry in found)
     for entry in entries:
         if isinstance(entry, Edit) and entry.path != path:

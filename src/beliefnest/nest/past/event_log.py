@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 from beliefnest.belief.columns import Columns
 from beliefnest.belief.entries import PerceivedEvent
-from beliefnest.timeline.journal import Journal, Sift, TimelineKey
+from beliefnest.timeline.journal import EntryFilter, Journal, TimelineKey
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import Event
 
@@ -39,7 +39,9 @@ class EventLog:
         """The first `count` events or more, each with its tick."""
         if len(self._events) < count:
             stop = self._journal.info(self._key).entries
-            for _, entry in self._journal.sifted(self._key, self._entries, stop, Sift.EVENTS):
+            for _, entry in self._journal.filtered(
+                self._key, self._entries, stop, EntryFilter.EVENTS
+            ):
                 if isinstance(entry, Frame):
                     self._events.extend((entry.tick, event) for event in entry.events)
             self._entries = stop

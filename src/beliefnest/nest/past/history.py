@@ -19,7 +19,7 @@ from beliefnest.nest.past.checkpoints import Checkpoints, Pace
 from beliefnest.nest.past.event_log import EventLog
 from beliefnest.nest.past.setting import Setting
 from beliefnest.perception.sight import Sight
-from beliefnest.timeline.journal import Edit, Entry, ForkPoint, Journal, Sift, TimelineKey
+from beliefnest.timeline.journal import Edit, Entry, EntryFilter, ForkPoint, Journal, TimelineKey
 from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
@@ -290,7 +290,7 @@ class History:
         while last > first and isinstance(self._entry(key, last - 1), Edit):
             last -= 1
         stretch = self._new_stretch(first, forest.count_of_events)
-        for _, entry in self._journal.sifted(key, first, last, Sift.CHANGES):
+        for _, entry in self._journal.filtered(key, first, last, EntryFilter.CHANGES):
             bare = replace(entry, agents={}, events=()) if isinstance(entry, Frame) else entry
             stretch.add(bare)
         if last > first:
