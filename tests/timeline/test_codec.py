@@ -113,9 +113,9 @@ def test_snapshots_round_trip(snapshot):
 @given(st.lists(frames | edits, max_size=5))
 @settings(max_examples=at_night(2000, 30))
 def test_joined_entries_are_split_again(entries):
-    pieces = codec.split(codec.join(codec.encode_entry(entry) for entry in entries))
-    assert [codec.decode_entry(piece) for piece in pieces] == entries
-    assert codec.decode_ticks(pieces) == [entry.tick for entry in entries]
+    encoded = codec.split(codec.join(codec.encode_entry(entry) for entry in entries))
+    assert [codec.decode_entry(one) for one in encoded] == entries
+    assert codec.decode_ticks(encoded) == [entry.tick for entry in entries]
 
 
 @pytest.mark.parametrize("bits", [1, 0x7FEFFFFFFFFFFFFF, 0x8000000000000000, 0x7FF8DEADBEEF0001])

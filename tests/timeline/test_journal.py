@@ -3,8 +3,8 @@
 import pytest
 
 from beliefnest.errors import BranchError, InputError, TickError
+from beliefnest.timeline.chunks import CHUNK_ENTRIES
 from beliefnest.timeline.journal import EntryFilter, ForkPoint, TimelineInfo, TimelineKey
-from beliefnest.timeline.pieces import PIECE_ENTRIES
 from beliefnest.world.frames import Frame
 
 MAIN = TimelineKey((), "main")
@@ -19,8 +19,8 @@ def begin(journal, entries, step=7):
         journal.append(MAIN, part, part[-1].tick)
 
 
-@pytest.mark.parametrize("step", [1, 7, PIECE_ENTRIES, 1000])
-@pytest.mark.parametrize("ticks", [1, PIECE_ENTRIES, 3 * PIECE_ENTRIES + 5])
+@pytest.mark.parametrize("step", [1, 7, CHUNK_ENTRIES, 1000])
+@pytest.mark.parametrize("ticks", [1, CHUNK_ENTRIES, 3 * CHUNK_ENTRIES + 5])
 def test_entries_come_back_as_they_were(journal, make_history, ticks, step):
     entries = make_history(ticks)
     begin(journal, entries, step)
@@ -59,7 +59,7 @@ def test_reading_goes_on_while_pieces_are_joined(journal, make_history):
 
 @pytest.mark.parametrize("step", [1, 50, 1000])
 def test_what_is_looked_for_is_found(journal, make_history, step):
-    entries = make_history(3 * PIECE_ENTRIES)
+    entries = make_history(3 * CHUNK_ENTRIES)
     begin(journal, entries, step)
     with_events = [n for n, e in enumerate(entries) if isinstance(e, Frame) and e.events]
     changing = [n for n, e in enumerate(entries) if e.blocks or e.containers]
@@ -71,7 +71,7 @@ def test_what_is_looked_for_is_found(journal, make_history, step):
 
 @pytest.mark.parametrize("step", [1, 50, 1000])
 def test_what_a_prefix_comes_to(journal, make_history, step):
-    entries = make_history(3 * PIECE_ENTRIES)
+    entries = make_history(3 * CHUNK_ENTRIES)
     begin(journal, entries, step)
     agents, events = {}, 0
     for number, entry in enumerate(entries):
@@ -116,12 +116,12 @@ def test_entries_until_counts_ticks_included(journal, make_history):
 
 def test_entries_of_one_tick_are_counted_across_pieces(journal):
     journal.create(MAIN, None, 0)
-    for _ in range(PIECE_ENTRIES + 10):
+    for _ in range(CHUNK_ENTRIES + 10):
         journal.append(MAIN, [Frame(4)], 4)
     journal.append(MAIN, [Frame(5)], 5)
     assert journal.entries_until(MAIN, 3) == 0
-    assert journal.entries_until(MAIN, 4) == PIECE_ENTRIES + 10
-    assert journal.entries_until(MAIN, 5) == PIECE_ENTRIES + 11
+    assert journal.entries_until(MAIN, 4) == CHUNK_ENTRIES + 10
+    assert journal.entries_until(MAIN, 5) == CHUNK_ENTRIES + 11
 
 
 def test_quiet_ticks_move_the_head_alone(journal):

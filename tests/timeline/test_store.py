@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from beliefnest.errors import BranchError, InputError, StoreError
+from beliefnest.timeline.chunks import CHUNK_ENTRIES
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
-from beliefnest.timeline.pieces import PIECE_ENTRIES
 from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.timeline.schema import APPLICATION_ID, SCHEMA_VERSION
 from beliefnest.timeline.store import SqliteJournal
@@ -80,7 +80,7 @@ def test_a_second_writer_is_refused_by_file_and_process(run_file):
 def test_a_second_writer_in_another_process_is_refused(run_file):
     code = (
         "import sys; from beliefnest.errors import StoreError\n"
-        "from beliefnest.timeline.pieces import PIECE_ENTRIES\n"
+        "from beliefnest.timeline.chunks import CHUNK_ENTRIES\n"
         "from beliefnest.timeline.store import SqliteJournal\n"
         "try: SqliteJournal.open(sys.argv[1])\n"
         "except StoreError as refusal: print(refusal)"
@@ -182,10 +182,10 @@ def test_an_inner_part_that_fails_leaves_the_rest(run_file):
         assert next(reader.entries(MAIN, reader.info(MAIN).entries - 1, 10**6)) == Frame(301)
 
 
-@pytest.mark.parametrize("step", [1, 5, PIECE_ENTRIES + 1])
+@pytest.mark.parametrize("step", [1, 5, CHUNK_ENTRIES + 1])
 def test_entries_are_packed_however_they_come(tmp_path, step):
     path = tmp_path / "run.bn"
-    frames = [Frame(tick) for tick in range(1, 10 * PIECE_ENTRIES + 4)]
+    frames = [Frame(tick) for tick in range(1, 10 * CHUNK_ENTRIES + 4)]
     with SqliteJournal.create_file(path) as journal:
         journal.create(MAIN, None, 0)
         for at in range(0, len(frames), step):
@@ -195,7 +195,7 @@ def test_entries_are_packed_however_they_come(tmp_path, step):
         packed = other.execute("SELECT count FROM piece WHERE compressed").fetchall()
         loose = other.execute("SELECT sum(count) FROM piece WHERE NOT compressed").fetchone()
     other.close()
-    assert packed == [(PIECE_ENTRIES,)] * 10
+    assert packed == [(CHUNK_ENTRIES,)] * 10
     assert loose == (3,)
 
 
@@ -213,7 +213,7 @@ FILL = """
 import resource, sys
 from beliefnest.errors import StoreError
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.timeline.pieces import PIECE_ENTRIES
+from beliefnest.timeline.chunks import CHUNK_ENTRIES
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.frames import Frame
 key = TimelineKey((), "main")
@@ -266,7 +266,7 @@ def test_a_full_database_is_told_and_nothing_is_kept(run_file):
 UNPRIVILEGED = """
 import os, sys
 from beliefnest.errors import StoreError
-from beliefnest.timeline.pieces import PIECE_ENTRIES
+from beliefnest.timeline.chunks import CHUNK_ENTRIES
 from beliefnest.timeline.store import SqliteJournal
 if os.getuid() == 0:
     os.setuid(65534)

@@ -54,16 +54,16 @@ class _EditTick(msgspec.Struct, tag="edit", array_like=True):
     value: _Tick
 
 
-class _Told(msgspec.Struct):
+class _Agents(msgspec.Struct):
     agents: dict[str, msgspec.Raw] = {}
 
 
-class _FrameTold(msgspec.Struct, tag="frame", array_like=True):
-    value: _Told
+class _FrameAgents(msgspec.Struct, tag="frame", array_like=True):
+    value: _Agents
 
 
-class _EditTold(msgspec.Struct, tag="edit", array_like=True):
-    value: _Told
+class _EditAgents(msgspec.Struct, tag="edit", array_like=True):
+    value: _Agents
 
 
 class _SnapshotBody(msgspec.Struct, forbid_unknown_fields=True):
@@ -85,9 +85,9 @@ def _plain(value: object) -> object:
 _ENCODER = msgspec.msgpack.Encoder(enc_hook=_plain)
 _ENTRY = msgspec.msgpack.Decoder(_FrameEntry | _EditEntry)
 _ENTRY_TICK = msgspec.msgpack.Decoder(_FrameTick | _EditTick)
-_ENTRY_TOLD = msgspec.msgpack.Decoder(_FrameTold | _EditTold)
+_ENTRY_AGENTS = msgspec.msgpack.Decoder(_FrameAgents | _EditAgents)
 _AGENTS = msgspec.msgpack.Decoder(dict[str, AgentState | None])
-_PIECES = msgspec.msgpack.Decoder(list[msgspec.Raw])
+_ENCODED = msgspec.msgpack.Decoder(list[msgspec.Raw])
 
 
 def encode(value: object) -> bytes:
@@ -142,14 +142,14 @@ def decode_agents(data: bytes) -> dict[str, AgentState | None]:
 
 
 def decode_last_agents(entries: Iterable[msgspec.Raw]) -> dict[str, AgentState | None]:
-    """What encoded entries tell last of each agent; StoreError if one is no entry."""
-    told: dict[str, msgspec.Raw] = {}
+    """What encoded entries say last of each agent; StoreError if one is no entry."""
+    last: dict[str, msgspec.Raw] = {}
     try:
         for entry in entries:
-            told.update(_ENTRY_TOLD.decode(entry).value.agents)
+            last.update(_ENTRY_AGENTS.decode(entry).value.agents)
     except msgspec.MsgspecError as fault:
         raise StoreError(f"stored bytes are no entries of a timeline: {fault}") from fault
-    return decode_agents(_ENCODER.encode(told))
+    return decode_agents(_ENCODER.encode(last))
 
 
 def join(entries: Iterable[bytes | msgspec.Raw]) -> bytes:
@@ -160,15 +160,15 @@ def join(entries: Iterable[bytes | msgspec.Raw]) -> bytes:
 def split(data: bytes) -> list[msgspec.Raw]:
     """The encoded entries that were joined; StoreError if the bytes are none."""
     try:
-        return _PIECES.decode(data)
+        return _ENCODED.decode(data)
     except msgspec.MsgspecError as fault:
         raise StoreError(f"stored bytes are no entries of a timeline: {fault}") from fault
 
 
-def decode_ticks(pieces: Sequence[msgspec.Raw]) -> list[int]:
+def decode_ticks(encoded: Sequence[msgspec.Raw]) -> list[int]:
     """Ticks of encoded entries, without decoding the rest; StoreError if one is none."""
     try:
-        return [_ENTRY_TICK.decode(piece).value.tick for piece in pieces]
+        return [_ENTRY_TICK.decode(entry).value.tick for entry in encoded]
     except msgspec.MsgspecError as fault:
         raise StoreError(f"stored bytes are no entries of a timeline: {fault}") from fault
 

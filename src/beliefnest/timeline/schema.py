@@ -37,7 +37,7 @@ BODY_STATE = """CREATE TABLE body_state (
     )"""
 
 STATEMENTS = (
-    # A path is a JSON array of agent names. `packed` of the entries lie in compressed pieces.
+    # A path is a JSON array of agent names. `packed` of the entries lie in compressed chunks.
     """CREATE TABLE timeline (
         id INTEGER PRIMARY KEY AUTOINCREMENT,
         path TEXT NOT NULL,
@@ -54,9 +54,9 @@ STATEMENTS = (
         UNIQUE (path, branch)
     )""",
     "CREATE INDEX timeline_by_base ON timeline (base)",
-    # Entries `first` to `first + count - 1` of a timeline; see codec.join. How many events they
-    # have, how many of them change more than agents, and, where they are compressed, what is
-    # known of every agent after them.
+    # A chunk: entries `first` to `first + count - 1` of a timeline; see codec.join. How many events
+    # they have, how many of them change more than agents, and, where they are compressed, what is
+    # known of every agent after them. Files of every version have the names piece and seal.
     """CREATE TABLE piece (
         id INTEGER PRIMARY KEY,
         timeline INTEGER NOT NULL,

@@ -1,7 +1,7 @@
 """A journal in one SQLite file per run.
 
-Entries lie in pieces (`timeline/pieces.py`), so that every call is durable when it returns and
-a past entry is reached by unpacking one piece.
+Entries lie in chunks (`timeline/chunks.py`), so that every call is durable when it returns and
+a past entry is reached by unpacking one chunk.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,6 +13,7 @@ import zstandard
 
 from beliefnest.errors import BranchError, StoreError
 from beliefnest.timeline import codec
+from beliefnest.timeline.chunks import Chunks, decompressed
 from beliefnest.timeline.database import Database, OlderFormat, Row, checked, seal
 from beliefnest.timeline.format_2 import FORMAT_2, convert_2
 from beliefnest.timeline.journal import (
@@ -28,7 +29,6 @@ from beliefnest.timeline.journal import (
     check_base,
     check_place,
 )
-from beliefnest.timeline.pieces import Pieces, decompressed
 from beliefnest.timeline.records import Records, path_from, path_to
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.paths import path_text
@@ -95,7 +95,7 @@ class SqliteJournal:
         self._database = database
         self._packer = zstandard.ZstdCompressor(level=_COMPRESSION)
         self._unpacker = zstandard.ZstdDecompressor()
-        self._pieces = Pieces(database, self._packer, self._unpacker)
+        self._chunks = Chunks(database, self._packer, self._unpacker)
         self.records = Records(database)
 
     @classmethod
@@ -208,7 +208,7 @@ class SqliteJournal:
             check_append(_info(row, None), entries, head)
             packed = row.packed
             if encoded:
-                packed = self._pieces.add(row.id, row.entries, row.packed, encoded, entries)
+                packed = self._chunks.add(row.id, row.entries, row.packed, encoded, entries)
             self._write(replace(row, head=head, entries=row.entries + len(encoded), packed=packed))
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
@@ -218,7 +218,7 @@ class SqliteJournal:
     def entries_until(self, key: TimelineKey, tick: int) -> int:
         """How many entries lie at `tick` or before."""
         row = self._row(key)
-        found = self._pieces.entries_until(row.id, tick)
+        found = self._chunks.entries_until(row.id, tick)
         return row.entries if found is None else found
 
     def filtered(
@@ -226,17 +226,17 @@ class SqliteJournal:
     ) -> Iterator[tuple[int, Entry]]:
         """Those of entries start to stop - 1 that are looked for, with their numbers."""
         row = self._row(key)
-        return self._pieces.filtered(row.id, start, min(stop, row.entries), what)
+        return self._chunks.filtered(row.id, start, min(stop, row.entries), what)
 
     def events_until(self, key: TimelineKey, entries: int) -> int:
         """How many events the first `entries` entries have."""
         with self._database.unchanging():
-            return self._pieces.events_until(self._row(key).id, entries)
+            return self._chunks.events_until(self._row(key).id, entries)
 
     def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
         """What the first `entries` entries told last of each agent that they tell of."""
         with self._database.unchanging():
-            return self._pieces.agents_after(self._row(key).id, entries)
+            return self._chunks.agents_after(self._row(key).id, entries)
 
     def rename(self, key: TimelineKey, name: str) -> None:
         """Give a timeline's branch another name; what names it follows."""
@@ -362,10 +362,10 @@ class SqliteJournal:
         self._database.close()
 
     def _entries_of(self, row: _TimelineRow, start: int, stop: int) -> Iterator[Entry]:
-        for piece in self._pieces.raw(
+        for entry in self._chunks.raw(
             row.id, start, min(stop, row.entries), lambda: self._gone(row)
         ):
-            yield codec.decode_entry(piece)
+            yield codec.decode_entry(entry)
 
     def _timeline_rows(self, where: str, *values: object) -> Iterator[_TimelineRow]:
         rows = self._database.rows(f"SELECT {_COLUMNS}, seal FROM timeline {where}", values)

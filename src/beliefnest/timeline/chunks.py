@@ -1,8 +1,8 @@
-"""Entries of timelines in a run file, in pieces.
+"""Entries of timelines in a run file, in chunks.
 
-One uncompressed piece for each call that adds, joined into compressed pieces of
-`PIECE_ENTRIES` as soon as there are enough: every call is durable when it returns, and a past
-entry is reached by unpacking one piece. Each piece says what its entries hold, so that those
+One uncompressed chunk for each call that adds, joined into compressed chunks of
+`CHUNK_ENTRIES` as soon as there are enough: every call is durable when it returns, and a past
+entry is reached by unpacking one chunk. Each chunk says what its entries hold, so that those
 that are looked for are found without reading the others.
 """
 
@@ -20,10 +20,10 @@ from beliefnest.timeline.journal import Entry, EntryFilter, count_of_events, is_
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
 
-__all__ = ["PIECE_ENTRIES", "Pieces", "decompressed"]
+__all__ = ["CHUNK_ENTRIES", "Chunks", "decompressed"]
 
-PIECE_ENTRIES = 128
-"""Entries of one compressed piece: larger ones hardly pack better and are slower to read from."""
+CHUNK_ENTRIES = 128
+"""Entries of one compressed chunk: larger ones hardly pack better and are slower to read from."""
 
 _COLUMNS = (
     "timeline, first, count, first_tick, last_tick, events, changes, agents, compressed, body"
@@ -38,8 +38,8 @@ def decompressed(unpacker: zstandard.ZstdDecompressor, body: bytes, path: Path) 
         raise StoreError(f"{path} is damaged; restore it from a copy ({fault})") from fault
 
 
-class Pieces:
-    """The pieces of all timelines of a file, which are named by their rows' ids."""
+class Chunks:
+    """The chunks of all timelines of a file, which are named by their rows' ids."""
 
     def __init__(
         self,
@@ -63,26 +63,26 @@ class Pieces:
 
         Returns how many are compressed then; the caller opens the transaction.
         """
-        if count - packed + len(encoded) < PIECE_ENTRIES:
+        if count - packed + len(encoded) < CHUNK_ENTRIES:
             self._write(timeline, count, encoded, entries, None)
             return packed
         tail = list(self.raw(timeline, packed, count))
-        pieces = [*tail, *encoded]
-        there = [*(codec.decode_entry(piece) for piece in tail), *entries]
+        loose = [*tail, *encoded]
+        decoded = [*(codec.decode_entry(entry) for entry in tail), *entries]
         agents = self._agents_before(timeline, packed)
         self._database.execute(
             "DELETE FROM piece WHERE timeline = ? AND first >= ?", (timeline, packed)
         )
-        for at in range(0, len(pieces), PIECE_ENTRIES):
-            part = slice(at, at + PIECE_ENTRIES)
-            full = len(pieces) - at >= PIECE_ENTRIES
+        for at in range(0, len(loose), CHUNK_ENTRIES):
+            part = slice(at, at + CHUNK_ENTRIES)
+            full = len(loose) - at >= CHUNK_ENTRIES
             if full:
-                for entry in there[part]:
+                for entry in decoded[part]:
                     if isinstance(entry, Frame):
                         agents.update(entry.agents)
             known = agents if full else None
-            self._write(timeline, packed + at, pieces[part], there[part], known)
-        return packed + len(pieces) - len(pieces) % PIECE_ENTRIES
+            self._write(timeline, packed + at, loose[part], decoded[part], known)
+        return packed + len(loose) - len(loose) % CHUNK_ENTRIES
 
     def raw(
         self,
@@ -92,13 +92,13 @@ class Pieces:
         gone: Callable[[], BranchError] | None = None,
     ) -> Iterator[msgspec.Raw]:
         """Encoded entries start to stop - 1; `gone` makes the error for a deleted timeline."""
-        # One query for each piece: a writer may join pieces while a reader is between two.
+        # One query for each chunk: a writer may join chunks while a reader is between two.
         while start < stop:
-            found = self._piece(timeline, "first <= ? ORDER BY first DESC", start)
+            found = self._chunk(timeline, "first <= ? ORDER BY first DESC", start)
             if found is None and gone is not None and not self._has(timeline):
                 raise gone()
-            first, pieces = (0, []) if found is None else self._unpacked(found)
-            part = pieces[start - first : stop - first]
+            first, encoded = (0, []) if found is None else self._unpacked(found)
+            part = encoded[start - first : stop - first]
             if not part:
                 raise StoreError(
                     f"{self._database.path} is damaged; restore it from a copy "
@@ -109,31 +109,31 @@ class Pieces:
 
     def entries_until(self, timeline: int, tick: int) -> int | None:
         """How many entries lie at a tick or before; None: all."""
-        found = self._piece(timeline, "last_tick > ? ORDER BY last_tick, first", tick)
+        found = self._chunk(timeline, "last_tick > ? ORDER BY last_tick, first", tick)
         if found is None:
             return None
-        first, pieces = self._unpacked(found)
-        return first + bisect_right(codec.decode_ticks(pieces), tick)
+        first, encoded = self._unpacked(found)
+        return first + bisect_right(codec.decode_ticks(encoded), tick)
 
     def filtered(
         self, timeline: int, start: int, stop: int, what: EntryFilter
     ) -> Iterator[tuple[int, Entry]]:
         """Those of entries start to stop - 1 that are looked for, with their numbers."""
         while start < stop:
-            # No piece has more entries than that, so that the index leads to the first one.
-            found = self._piece(
+            # No chunk has more entries than that, so that the index leads to the first one.
+            found = self._chunk(
                 timeline,
                 f"first > ? AND first + count > ? AND first < ? AND {what} > 0 ORDER BY first",
-                start - PIECE_ENTRIES,
+                start - CHUNK_ENTRIES,
                 start,
                 stop,
             )
             if found is None:
                 return
-            first, pieces = self._unpacked(found)
-            last = min(stop, first + len(pieces))
+            first, encoded = self._unpacked(found)
+            last = min(stop, first + len(encoded))
             for number in range(max(start, first), last):
-                entry = codec.decode_entry(pieces[number - first])
+                entry = codec.decode_entry(encoded[number - first])
                 if is_found(entry, what):
                     yield number, entry
             start = last
@@ -146,16 +146,16 @@ class Pieces:
             (timeline, entries, entries),
         )
         count = 0 if whole is None else int(whole[0])
-        last = self._piece(timeline, "first < ? ORDER BY first DESC", entries)
-        first, pieces = (0, []) if last is None else self._unpacked(last)
-        if first + len(pieces) > entries:
-            part = (codec.decode_entry(piece) for piece in pieces[: entries - first])
+        last = self._chunk(timeline, "first < ? ORDER BY first DESC", entries)
+        first, encoded = (0, []) if last is None else self._unpacked(last)
+        if first + len(encoded) > entries:
+            part = (codec.decode_entry(entry) for entry in encoded[: entries - first])
             count += sum(map(count_of_events, part))
         return count
 
     def agents_after(self, timeline: int, entries: int) -> Mapping[str, AgentState | None]:
         """What entries told last of each agent that they tell of; the caller sees one state."""
-        last = self._piece(timeline, "first <= ? AND compressed ORDER BY first DESC", entries - 1)
+        last = self._chunk(timeline, "first <= ? AND compressed ORDER BY first DESC", entries - 1)
         first = 0
         agents: dict[str, AgentState | None] = {}
         if last is not None:
@@ -166,8 +166,8 @@ class Pieces:
         return agents | codec.decode_last_agents(self.raw(timeline, first, entries))
 
     def _agents_before(self, timeline: int, first: int) -> dict[str, AgentState | None]:
-        """What the compressed piece before an entry, if there is one, knows of agents."""
-        found = self._piece(timeline, "first < ? ORDER BY first DESC", first)
+        """What the compressed chunk before an entry, if there is one, knows of agents."""
+        found = self._chunk(timeline, "first < ? ORDER BY first DESC", first)
         if found is None:
             return {}
         known = checked(found, self._database.path, "entries")[7]
@@ -176,7 +176,7 @@ class Pieces:
     def _has(self, timeline: int) -> bool:
         return bool(self._database.rows("SELECT id FROM timeline WHERE id = ?", (timeline,)))
 
-    def _piece(self, timeline: int, where: str, *values: int) -> Row | None:
+    def _chunk(self, timeline: int, where: str, *values: int) -> Row | None:
         return self._database.row(
             f"SELECT {_COLUMNS}, seal FROM piece WHERE timeline = ? AND {where} LIMIT 1",
             (timeline, *values),
@@ -190,7 +190,7 @@ class Pieces:
         entries: Sequence[Entry],
         agents: Mapping[str, AgentState | None] | None,
     ) -> None:
-        """Write a piece; compressed, with what is known of agents after it, unless that is None."""
+        """Write a chunk; compressed, with what is known of agents after it, unless that is None."""
         body, known = codec.join(encoded), b""
         if agents is not None:
             body = self._packer.compress(body)
@@ -208,13 +208,13 @@ class Pieces:
         )
 
     def _unpacked(self, row: Row) -> tuple[int, list[msgspec.Raw]]:
-        """Number of a piece's first entry, and its encoded entries."""
+        """Number of a chunk's first entry, and its encoded entries."""
         path = self._database.path
         _, first, count, *_, compressed, body = checked(row, path, "entries")
-        pieces = codec.split(self._decompressed(body) if compressed else body)
-        if len(pieces) != count:
-            raise StoreError(f"{path} is damaged; {len(pieces)} of {count} entries are there")
-        return first, pieces
+        encoded = codec.split(self._decompressed(body) if compressed else body)
+        if len(encoded) != count:
+            raise StoreError(f"{path} is damaged; only {len(encoded)} of {count} entries are in it")
+        return first, encoded
 
     def _decompressed(self, body: bytes) -> bytes:
         return decompressed(self._unpacker, body, self._database.path)
