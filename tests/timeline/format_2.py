@@ -6,7 +6,7 @@ from pathlib import Path
 
 import msgspec
 
-from beliefnest.timeline.database import seal
+from beliefnest.timeline.database import checksum
 
 
 def make_format_2(path: Path) -> None:
@@ -18,7 +18,7 @@ def make_format_2(path: Path) -> None:
             values = (timeline, f"hidden {tick}", entries, state)
             file.execute(
                 "INSERT INTO keyframe (timeline, name, entries, body, seal) VALUES (?, ?, ?, ?, ?)",
-                (*values, seal(*values)),
+                (*values, checksum(*values)),
             )
         file.execute("DROP TABLE body_state")
         for number, place, branch, body in file.execute(
@@ -27,7 +27,7 @@ def make_format_2(path: Path) -> None:
             old = msgspec.msgpack.encode(_with_texts(msgspec.msgpack.decode(body)))
             file.execute(
                 "UPDATE program SET body = ?, seal = ? WHERE id = ?",
-                (old, seal(place, branch, old), number),
+                (old, checksum(place, branch, old), number),
             )
         file.execute("PRAGMA user_version = 2")
 

@@ -15,7 +15,7 @@ import zstandard
 
 from beliefnest.errors import BranchError, StoreError
 from beliefnest.timeline import codec
-from beliefnest.timeline.database import Database, Row, checked, seal
+from beliefnest.timeline.database import Database, Row, checked, checksum
 from beliefnest.timeline.journal import Entry, EntryFilter, count_of_events, is_found
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
@@ -204,7 +204,7 @@ class Chunks:
         values = (timeline, first, len(encoded), *ticks, *counts, known, packed, body)
         self._database.execute(
             f"INSERT INTO piece ({_COLUMNS}, seal) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-            (*values, seal(*values)),
+            (*values, checksum(*values)),
         )
 
     def _unpacked(self, row: Row) -> tuple[int, list[msgspec.Raw]]:

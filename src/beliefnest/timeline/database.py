@@ -27,7 +27,7 @@ from beliefnest.timeline.schema import (
     expected_schema,
 )
 
-__all__ = ["Database", "OlderFormat", "Row", "checked", "seal"]
+__all__ = ["Database", "OlderFormat", "Row", "checked", "checksum"]
 
 Row = tuple[Any, ...]
 
@@ -65,7 +65,7 @@ _PRIMARY_CODE = 0xFF
 """The part of an SQLite error code that names the kind of fault."""
 
 
-def seal(*values: object) -> int:
+def checksum(*values: object) -> int:
     """Checksum of a row's values; the last one may be long bytes.
 
     Raises:
@@ -82,7 +82,7 @@ def seal(*values: object) -> int:
 def checked(row: Row, path: Path, what: str) -> Row:
     """The row without its seal, which is its last value; StoreError if they do not agree."""
     *values, found = row
-    if seal(*values) != found:
+    if checksum(*values) != found:
         raise StoreError(f"{path} {_DAMAGED} (checksum of {what} does not agree)")
     return tuple(values)
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
-from beliefnest.timeline.database import checked, seal
+from beliefnest.timeline.database import checked, checksum
 from beliefnest.timeline.records import ProgramRecord
 from beliefnest.timeline.schema import BODY_STATE, STATEMENTS
 
@@ -41,7 +41,7 @@ def convert_2(connection: sqlite3.Connection, path: Path) -> None:
         values = (timeline, entries, _number(name.removeprefix("hidden "), path), state)
         connection.execute(
             "INSERT INTO body_state (timeline, entries, tick, state, seal) VALUES (?, ?, ?, ?, ?)",
-            (*values, seal(*values)),
+            (*values, checksum(*values)),
         )
     connection.execute(f"DELETE {hidden}")
     programs = connection.execute("SELECT id, path, branch, body, seal FROM program").fetchall()
@@ -50,7 +50,7 @@ def convert_2(connection: sqlite3.Connection, path: Path) -> None:
         body = codec.encode(_typed(body, path))
         connection.execute(
             "UPDATE program SET body = ?, seal = ? WHERE id = ?",
-            (body, seal(*place, body), number),
+            (body, checksum(*place, body), number),
         )
 
 

@@ -8,7 +8,7 @@ import msgspec
 
 from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
-from beliefnest.timeline.database import Database, Row, checked, seal
+from beliefnest.timeline.database import Database, Row, checked, checksum
 from beliefnest.timeline.journal import FOLLOW, TimelineKey
 
 __all__ = ["ProgramRecord", "PromptRecord", "Records", "RunRecord", "path_from", "path_to"]
@@ -182,7 +182,7 @@ class Records:
         with self._database.transaction():
             self._database.execute(
                 "INSERT OR REPLACE INTO meta (name, value, seal) VALUES (?, ?, ?)",
-                (name, value, seal(name, value)),
+                (name, value, checksum(name, value)),
             )
 
     def state(self, name: str) -> bytes | None:
@@ -199,7 +199,7 @@ class Records:
         with self._database.transaction():
             self._database.execute(
                 "INSERT OR REPLACE INTO selected (path, branch, seal) VALUES (?, ?, ?)",
-                (text, branch, seal(text, branch)),
+                (text, branch, checksum(text, branch)),
             )
 
     def selected(self) -> dict[tuple[str, ...], str]:
@@ -247,7 +247,7 @@ class Records:
             for number, row in self._rows(table, "WHERE path = ? AND branch = ?", (text, branch)):
                 self._database.execute(
                     f"UPDATE {table} SET branch = ?, seal = ? WHERE id = ?",
-                    (name, seal(text, name, row[2]), number),
+                    (name, checksum(text, name, row[2]), number),
                 )
 
     def forget_branch(self, path: tuple[str, ...], branch: str) -> None:
@@ -263,7 +263,7 @@ class Records:
             self._database.execute(
                 f"INSERT INTO {_TABLES[type(record)]} (path, branch, body, seal) "
                 "VALUES (?, ?, ?, ?)",
-                (*values, seal(*values)),
+                (*values, checksum(*values)),
             )
 
     def _all(self, kind: type[Record]) -> tuple[Record, ...]:

@@ -14,7 +14,7 @@ import zstandard
 from beliefnest.errors import BranchError, StoreError
 from beliefnest.timeline import codec
 from beliefnest.timeline.chunks import Chunks, decompressed
-from beliefnest.timeline.database import Database, OlderFormat, Row, checked, seal
+from beliefnest.timeline.database import Database, OlderFormat, Row, checked, checksum
 from beliefnest.timeline.format_2 import FORMAT_2, convert_2
 from beliefnest.timeline.journal import (
     Entry,
@@ -278,7 +278,7 @@ class SqliteJournal:
             self._database.execute(
                 "INSERT OR REPLACE INTO keyframe (timeline, name, entries, body, seal) "
                 "VALUES (?, ?, ?, ?, ?)",
-                (*values, seal(*values)),
+                (*values, checksum(*values)),
             )
 
     def nearest_checkpoint(
@@ -304,7 +304,7 @@ class SqliteJournal:
             self._database.execute(
                 "INSERT OR REPLACE INTO body_state (timeline, entries, tick, state, seal) "
                 "VALUES (?, ?, ?, ?, ?)",
-                (*values, seal(*values)),
+                (*values, checksum(*values)),
             )
 
     def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
@@ -398,7 +398,7 @@ class SqliteJournal:
             "ON CONFLICT (id) DO UPDATE SET branch = excluded.branch, head = excluded.head, "
             "entries = excluded.entries, packed = excluded.packed, "
             "description = excluded.description, seal = excluded.seal",
-            (*values, seal(*values)),
+            (*values, checksum(*values)),
         )
 
     def _decompressed(self, body: bytes) -> bytes:
