@@ -80,7 +80,7 @@ def checksum(*values: object) -> int:
 
 
 def checked(row: Row, path: Path, what: str) -> Row:
-    """The row without its seal, which is its last value; StoreError if they do not agree."""
+    """The row without its checksum, which is its last value; StoreError if they do not agree."""
     *values, found = row
     if checksum(*values) != found:
         raise StoreError(f"{path} {_DAMAGED} (checksum of {what} does not agree)")
