@@ -35,7 +35,7 @@ class EmbeddedBody:
         self._region = region
         self._box: Box = snapshot.box
         self._tick = snapshot.tick
-        self._hidden = snapshot.hidden
+        self._internal_state = snapshot.internal_state
         self._agents = frozenset(snapshot.agents)
         self._sink = sink
         self._happened: list[tuple[int, Event]] = []
@@ -53,9 +53,9 @@ class EmbeddedBody:
         return self._tick
 
     @property
-    def hidden(self) -> bytes:
+    def internal_state(self) -> bytes:
         """What goes on in it besides its snapshot's facts, as of the end of the last call."""
-        return self._hidden
+        return self._internal_state
 
     def snapshot(self) -> Snapshot:
         """All there is in it now."""
@@ -79,13 +79,13 @@ class EmbeddedBody:
             programs=dict(programs),
             timeout_ticks=timeout_ticks,
         )
-        self._tick, self._hidden = answer["tick"], answer["hidden"]
+        self._tick, self._internal_state = answer["tick"], answer["hidden"]
         return messages.results_of(answer["results"], tuple(self._happened))
 
     def step(self, ticks: int) -> None:
         """Let ticks pass without programs."""
         answer = self._channel.request("step", self._take, region=self._region, ticks=ticks)
-        self._tick, self._hidden = answer["tick"], answer["hidden"]
+        self._tick, self._internal_state = answer["tick"], answer["hidden"]
 
     def become(self, snapshot: Snapshot) -> None:
         """Be as the snapshot says, by changing only what differs; no frames are sent."""
@@ -93,7 +93,7 @@ class EmbeddedBody:
         self._channel.request(
             "apply", region=self._region, tick=snapshot.tick, **_difference(before, snapshot)
         )
-        self._tick, self._hidden = snapshot.tick, snapshot.hidden
+        self._tick, self._internal_state = snapshot.tick, snapshot.internal_state
         self._agents = frozenset(snapshot.agents)
 
     def close(self) -> None:
@@ -245,5 +245,5 @@ def _difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
         ],
         "agents": agents,
         "items": messages.items_message(after.items),
-        "hidden": after.hidden,
+        "hidden": after.internal_state,
     }

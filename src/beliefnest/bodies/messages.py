@@ -105,7 +105,7 @@ def snapshot_message(snapshot: Snapshot) -> dict[str, Any]:
         "containers": contents_message(snapshot.containers),
         "agents": {name: agent_message(agent) for name, agent in snapshot.agents.items()},
         "items": items_message(snapshot.items),
-        "hidden": snapshot.hidden,
+        "hidden": snapshot.internal_state,
     }
 
 

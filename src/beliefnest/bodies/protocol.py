@@ -136,7 +136,7 @@ class Body(Protocol):
         """The body's latest tick."""
 
     @property
-    def hidden(self) -> bytes:
+    def internal_state(self) -> bytes:
         """What goes on in it besides its snapshot's facts, as of the end of the last call."""
 
     def snapshot(self) -> Snapshot:

@@ -34,7 +34,7 @@ class ScriptedBody:
         return self.world.now
 
     @property
-    def hidden(self) -> bytes:
+    def internal_state(self) -> bytes:
         """Nothing: all there is can be seen."""
         return b""
 

@@ -58,8 +58,9 @@ class Frame:
 class Snapshot:
     """All of one simulator at one tick; the grid is not to be written to.
 
-    `hidden` is what goes on there besides and nobody can perceive, as the speed of who falls or the
-    heat of a furnace: bytes that only the simulator's world reads. Empty: nothing is under way.
+    `internal_state` is what goes on in it besides and nobody can perceive, as the speed of who
+    falls or the heat of a furnace: bytes that only the simulator's world reads. Empty: nothing is
+    under way.
     """
 
     tick: int
@@ -68,4 +69,4 @@ class Snapshot:
     containers: Mapping[Position, Items]
     agents: Mapping[str, AgentState]
     items: Mapping[int, DroppedItem] = field(default_factory=dict)
-    hidden: bytes = b""
+    internal_state: bytes = b""

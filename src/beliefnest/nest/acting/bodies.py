@@ -12,7 +12,7 @@ from beliefnest.errors import BodyError, BranchError, WorldError
 from beliefnest.nest.acting.frame_recorder import FrameRecorder
 from beliefnest.nest.acting.lives import Lives
 from beliefnest.nest.acting.speculation import SpeculatedBody, Speculation
-from beliefnest.nest.past.body_state import note_hidden, present, snapshot_at
+from beliefnest.nest.past.body_state import note_internal_state, present, snapshot_at
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.frames import Snapshot
@@ -135,7 +135,7 @@ class Bodies:
             with self.changing(path, unless=WorldError):
                 yield body
                 recorder.flush(body.tick)
-                note_hidden(journal, present(journal, recorder.key), body.hidden)
+                note_internal_state(journal, present(journal, recorder.key), body.internal_state)
         finally:
             recorder.batched = False
         recorder.keep_up()

@@ -14,7 +14,12 @@ from beliefnest.bodies.protocol import KILLED, Body, Fault, ProgramResult, World
 from beliefnest.errors import BodyLostError, BranchError, TickError
 from beliefnest.nest.acting.bodies import Bodies
 from beliefnest.nest.acting.speculation import Speculation, SpeculationStart, speculate
-from beliefnest.nest.past.body_state import hidden_at, note_hidden, present, snapshot_at
+from beliefnest.nest.past.body_state import (
+    internal_state_at,
+    note_internal_state,
+    present,
+    snapshot_at,
+)
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import FOLLOW, Edit, ForkPoint, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import ProgramRecord
@@ -233,9 +238,9 @@ class Engine:
         journal, info = self.recording.journal, self.recording.info(path)
         with self.bodies.changing(path):
             # What goes on in the body goes on after an edit.
-            hidden = hidden_at(journal, present(journal, info.key))
+            state = internal_state_at(journal, present(journal, info.key))
             journal.append(info.key, [Edit(info.head, path, blocks, containers)], info.head)
-            note_hidden(journal, present(journal, info.key), hidden)
+            note_internal_state(journal, present(journal, info.key), state)
             if path in self.bodies:
                 self.bodies.of(path).become(self.bodies.recorded(info.key))
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from beliefnest.bodies.protocol import Body, World
-from beliefnest.nest.past.body_state import hidden_at, snapshot_at
+from beliefnest.nest.past.body_state import internal_state_at, snapshot_at
 from beliefnest.nest.past.history import History
 from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.compare import Difference, first_difference
@@ -67,7 +67,7 @@ class _Recorded:
 
     def _is_stop(self, tick: int) -> bool:
         entries = self.journal.entries_until(self.info.key, tick)
-        return hidden_at(self.journal, ForkPoint(self.info.key, entries, tick)) != b""
+        return internal_state_at(self.journal, ForkPoint(self.info.key, entries, tick)) != b""
 
 
 def replay(

@@ -39,14 +39,14 @@ class Speculation:
 
     Attributes:
         tick: The body's tick in the end.
-        hidden: What went on in it in the end.
+        internal_state: What went on in it in the end.
         frames: Its frames, in order.
         results: Results by agent; empty if the call raised.
         error: What it raised.
     """
 
     tick: int
-    hidden: bytes = b""
+    internal_state: bytes = b""
     frames: list[Frame] = field(default_factory=list)
     results: Mapping[str, ProgramResult] = field(default_factory=dict)
     error: BeliefNestError | None = None
@@ -71,9 +71,9 @@ class SpeculatedBody:
         return self._speculation.tick
 
     @property
-    def hidden(self) -> bytes:
+    def internal_state(self) -> bytes:
         """What goes on in it and nobody can perceive."""
-        return self._speculation.hidden
+        return self._speculation.internal_state
 
     def snapshot(self) -> Snapshot:
         """Raise BodyError: the body is gone."""
@@ -161,7 +161,7 @@ def _run(
         speculation.results = body.run(programs, timeout_ticks)
     except BeliefNestError as error:
         speculation.error = error
-    speculation.tick, speculation.hidden = body.tick, body.hidden
+    speculation.tick, speculation.internal_state = body.tick, body.internal_state
     body.close()
     return speculation
 

@@ -10,7 +10,7 @@ from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import ForkPoint, Journal, TimelineKey
 from beliefnest.world.frames import Snapshot
 
-__all__ = ["hidden_at", "note_hidden", "present", "snapshot_at"]
+__all__ = ["internal_state_at", "note_internal_state", "present", "snapshot_at"]
 
 Path = tuple[str, ...]
 
@@ -28,17 +28,17 @@ def snapshot_at(journal: Journal, history: History, path: Path, moment: ForkPoin
     return replace(
         reading.snapshot(),
         tick=moment.tick,
-        hidden=hidden_at(journal, moment) if own else b"",
+        internal_state=internal_state_at(journal, moment) if own else b"",
     )
 
 
-def note_hidden(journal: Journal, moment: ForkPoint, hidden: bytes) -> None:
+def note_internal_state(journal: Journal, moment: ForkPoint, state: bytes) -> None:
     """Keep what goes on in the timeline's body at a moment."""
-    if hidden:
-        journal.put_body_state(moment.timeline, moment.entries, moment.tick, hidden)
+    if state:
+        journal.put_body_state(moment.timeline, moment.entries, moment.tick, state)
 
 
-def hidden_at(journal: Journal, moment: ForkPoint) -> bytes:
+def internal_state_at(journal: Journal, moment: ForkPoint) -> bytes:
     """What was noted to go on in the timeline's body at a moment; empty if nothing was."""
     found = journal.body_state(moment.timeline, moment.entries, moment.tick)
     if found is not None:
@@ -47,4 +47,4 @@ def hidden_at(journal: Journal, moment: ForkPoint) -> bytes:
     begins = base is not None and moment.entries == 0 and moment.tick == base.tick
     if base is None or not begins or base.timeline.path != moment.timeline.path:
         return b""
-    return hidden_at(journal, base)
+    return internal_state_at(journal, base)
