@@ -158,7 +158,7 @@ def test_a_body_becomes_what_it_is_told_without_a_frame(body, frames):
     do(body, "deposit")
     frames.clear()
     wanted = replace(start(), tick=3)
-    body.become(wanted)
+    body.set_state(wanted)
     there = body.snapshot()
     assert frames == []
     assert (body.tick, there.tick) == (3, 3)

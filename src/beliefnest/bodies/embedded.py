@@ -87,7 +87,7 @@ class EmbeddedBody:
         answer = self._channel.request("step", self._take, region=self._region, ticks=ticks)
         self._tick, self._internal_state = answer["tick"], answer["hidden"]
 
-    def become(self, snapshot: Snapshot) -> None:
+    def set_state(self, snapshot: Snapshot) -> None:
         """Be as the snapshot says, by changing only what differs; no frames are sent."""
         before = self.snapshot()
         self._channel.request(

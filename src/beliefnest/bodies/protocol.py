@@ -154,7 +154,7 @@ class Body(Protocol):
     def step(self, ticks: int) -> None:
         """Let ticks pass without programs."""
 
-    def become(self, snapshot: Snapshot) -> None:
+    def set_state(self, snapshot: Snapshot) -> None:
         """Be as the snapshot says, by changing only what differs; no frames are sent."""
 
     def close(self) -> None:

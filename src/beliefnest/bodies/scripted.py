@@ -53,9 +53,9 @@ class ScriptedBody:
         """Let ticks pass."""
         self.world.step(ticks)
 
-    def become(self, snapshot: Snapshot) -> None:
+    def set_state(self, snapshot: Snapshot) -> None:
         """Be as the snapshot says; no frames are sent."""
-        self.world.become(snapshot)
+        self.world.set_state(snapshot)
 
     def close(self) -> None:
         """Stop recording; a second call does nothing."""

@@ -123,7 +123,7 @@ class ScriptedWorld:
     def from_snapshot(cls, snapshot: Snapshot) -> "ScriptedWorld":
         """A world that is as a snapshot says."""
         world = cls((snapshot.box.low, snapshot.box.high), tick=snapshot.tick)
-        world.become(snapshot)
+        world.set_state(snapshot)
         return world
 
     @property
@@ -156,7 +156,7 @@ class ScriptedWorld:
             dict(facts.items),
         )
 
-    def become(self, snapshot: Snapshot) -> None:
+    def set_state(self, snapshot: Snapshot) -> None:
         """Be as the snapshot says; no frame is sent."""
         if snapshot.box != self._box:
             raise WorldError(f"a snapshot of {snapshot.box} does not fit into {self._box}")

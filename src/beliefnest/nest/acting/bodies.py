@@ -114,7 +114,7 @@ class Bodies:
         embodied = self._embodied.get(key.path)
         try:
             if embodied is not None:
-                embodied.body.become(snapshot)
+                embodied.body.set_state(snapshot)
             elif key.path not in self._bodiless:
                 self.open(key, snapshot)
             yield
@@ -173,7 +173,7 @@ class Bodies:
             self.give_up(path)
             return
         try:
-            embodied.body.become(self.recorded(key))
+            embodied.body.set_state(self.recorded(key))
         except BodyError:
             # Not even that; another one is made when it is needed.
             self.give_up(path)

@@ -242,7 +242,7 @@ class Engine:
             journal.append(info.key, [Edit(info.head, path, blocks, containers)], info.head)
             note_internal_state(journal, present(journal, info.key), state)
             if path in self.bodies:
-                self.bodies.of(path).become(self.bodies.recorded(info.key))
+                self.bodies.of(path).set_state(self.bodies.recorded(info.key))
 
     def close(self) -> None:
         """Give up all bodies, the world and the journal."""

@@ -135,7 +135,7 @@ def _run_again(
                 body.run(act.programs, act.timeout_ticks)
                 continue
             if act.path == info.key.path:
-                body.become(recorded.after(number + 1, act.tick))
+                body.set_state(recorded.after(number + 1, act.tick))
             found.append(act)
         recorded.wait_until(body, info.head)
     finally:

@@ -92,7 +92,7 @@ class SpeculatedBody:
         """Raise BodyError: the body is gone."""
         raise _gone()
 
-    def become(self, snapshot: Snapshot) -> None:
+    def set_state(self, snapshot: Snapshot) -> None:
         """Raise BodyError: the body is gone."""
         raise _gone()
 

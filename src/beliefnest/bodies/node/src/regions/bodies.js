@@ -133,7 +133,7 @@ class Bodies {
     if (clean) return
     const hidden = this.serv.hidden(region)
     await this.replace(region, {})
-    this.serv.takeUp(region, hidden)
+    this.serv.restoreState(region, hidden)
     await this.clock.advance(0)
   }
 

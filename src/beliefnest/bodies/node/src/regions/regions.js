@@ -67,7 +67,7 @@ class Regions {
         applyContainers(this.serv, region, containers)
         await this.bodies.add(region, agents)
         applyItems(this.serv, region, items)
-        await this.takeUp(region, hidden)
+        await this.restoreState(region, hidden)
       })
     } catch (error) {
       await this.destroy(name)
@@ -85,14 +85,14 @@ class Regions {
       await this.bodies.apply(region, agents)
       region.tick = tick
       applyItems(this.serv, region, items)
-      await this.takeUp(region, hidden)
+      await this.restoreState(region, hidden)
     })
     return this.snapshot(region)
   }
 
   /** Makes a region that is as its SNAPSHOT says go on as `hidden` says; null: with nothing under way. */
-  async takeUp (region, hidden) {
-    this.serv.takeUp(region, hidden?.byteLength > 0 ? decode(hidden) : {})
+  async restoreState (region, hidden) {
+    this.serv.restoreState(region, hidden?.byteLength > 0 ? decode(hidden) : {})
     await this.clock.advance(0)
     region.context.setDate(region.tick * TICK_MS)
     region.recorder.settle()
