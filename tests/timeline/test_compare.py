@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from beliefnest.timeline.compare import Difference, first_difference
+from beliefnest.timeline.compare import EntryDifference, first_difference
 from beliefnest.timeline.journal import Edit
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState, Event, EventKind
@@ -40,7 +40,7 @@ def test_the_first_field_is_named(changed, field, recorded, found):
     other = replace(FRAME, **changed)
     after = Frame(9, {"anne": SALLY})
     assert first_difference([*BEFORE, FRAME, after], [*BEFORE, other]) == (
-        Difference(5, 2, field, recorded, found)
+        EntryDifference(5, 2, field, recorded, found)
     )
 
 
@@ -57,4 +57,4 @@ def test_the_first_field_is_named(changed, field, recorded, found):
 def test_an_entry_of_one_history_alone(one, other, recorded, found):
     difference = first_difference([*BEFORE, *one], [*BEFORE, *other])
     tick = min(entry.tick for entry in (*one, *other))
-    assert difference == Difference(tick, 2, "", recorded, found)
+    assert difference == EntryDifference(tick, 2, "", recorded, found)

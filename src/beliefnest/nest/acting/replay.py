@@ -8,7 +8,7 @@ from beliefnest.bodies.protocol import Body, World
 from beliefnest.nest.past.body_state import internal_state_at, snapshot_at
 from beliefnest.nest.past.history import History
 from beliefnest.nest.past.setting import Setting
-from beliefnest.timeline.compare import Difference, first_difference
+from beliefnest.timeline.compare import EntryDifference, first_difference
 from beliefnest.timeline.journal import Edit, Entry, ForkPoint, Journal, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import ProgramRecord
 from beliefnest.world.frames import Frame, Snapshot
@@ -29,7 +29,7 @@ class Replayed:
 
     key: TimelineKey
     programs: int
-    difference: Difference | None
+    difference: EntryDifference | None
 
 
 @dataclass(frozen=True, slots=True)
