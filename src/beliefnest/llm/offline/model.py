@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from beliefnest.llm.messages import Answer, Message, Sampling
 from beliefnest.llm.offline.javascript import fenced
 from beliefnest.llm.offline.planning import plan
-from beliefnest.llm.offline.reading import read_prompt
+from beliefnest.llm.offline.prompt_reading import read_prompt
 
 __all__ = ["OfflineModel"]
 

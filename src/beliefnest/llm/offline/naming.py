@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable, Mapping, Sequence
 
-from beliefnest.llm.offline.reading import Point, points_in, words
+from beliefnest.llm.offline.prompt_reading import Point, points_in, words
 
 __all__ = ["match_item", "match_name", "place_named_last", "singular"]
 

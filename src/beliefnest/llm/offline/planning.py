@@ -25,7 +25,7 @@ from dataclasses import dataclass
 
 from beliefnest.llm.offline import javascript
 from beliefnest.llm.offline.naming import match_item, match_name, place_named_last, singular
-from beliefnest.llm.offline.reading import Point, Reading, points_in, words
+from beliefnest.llm.offline.prompt_reading import Point, Reading, points_in, words
 
 __all__ = ["plan"]
 
