@@ -264,7 +264,9 @@ class View:
         self._grid = np.full(self._box.shape, UNKNOWN, dtype=np.int32)
         for position, block in around.blocks.items():
             self._grid[self._box.index(position)] = block.state
-        self._visible = self._sight.visible_blocks(self._grid, self._box.low, *self._looking)
+        self._visible = self._sight.geometry(self._grid, self._box.low).visible_blocks(
+            *self._looking
+        )
         self.agents = {me} | {
             name
             for name, other in around.agents.items()
@@ -277,7 +279,9 @@ class View:
 
     def would_see(self, feet: Point) -> bool:
         """Whether an agent that stood there would be seen."""
-        return bool(self._sight.sees_agents(self._grid, self._box.low, *self._looking, [feet])[0])
+        return bool(
+            self._sight.geometry(self._grid, self._box.low).sees_agents(*self._looking, [feet])[0]
+        )
 
 
 def changed(items: Items, change: Items, sign: int) -> dict[str, int]:

@@ -25,7 +25,7 @@ def grid(shape, blocks=None):
 
 def sees(blocks, eye, position, yaw=0.0, pitch=0.0, **options):
     sight = Sight(REGISTRY, **options)
-    return bool(sight.sees_blocks(blocks, ORIGIN, eye, yaw, pitch, [position])[0])
+    return bool(sight.geometry(blocks, ORIGIN).sees_blocks(eye, yaw, pitch, [position])[0])
 
 
 def wall(text, x=3, size=7):
@@ -54,7 +54,7 @@ def test_a_wall_of_opaque_blocks_hides(text):
 )
 def test_a_wall_of_transparent_blocks_hides_nothing(text):
     blocks = grid((7, 7, 7), wall(text))
-    assert Sight(REGISTRY).visible_blocks(blocks, ORIGIN, (0.5, 3.6, 3.5), 0, 0).all()
+    assert Sight(REGISTRY).geometry(blocks, ORIGIN).visible_blocks((0.5, 3.6, 3.5), 0, 0).all()
 
 
 def test_blocks_the_user_lists_are_transparent():
@@ -72,8 +72,10 @@ def test_nothing_outside_the_grid_hides_but_a_shape_that_reaches_out_does():
     assert sees(grid((1, 1, 1)), eye, (9, 1, 0))
     fences = {(3, 0, z): "oak_fence[north=true,south=true]" for z in range(3)}
     points = [(4.5, 1.25, 1.5), (4.5, 1.75, 1.5)]
-    seen = Sight(REGISTRY).sees_points(
-        grid((5, 1, 3), fences), ORIGIN, (0.5, 1.25, 1.5), 0, 0, points
+    seen = (
+        Sight(REGISTRY)
+        .geometry(grid((5, 1, 3), fences), ORIGIN)
+        .sees_points((0.5, 1.25, 1.5), 0, 0, points)
     )
     assert seen.tolist() == [False, True]
 
@@ -103,7 +105,7 @@ def test_a_fence_hides_half_a_block_above_itself():
     assert not sees(blocks, (0.5, 1.2, 2.5), (4, 0, 2))
     assert sees(blocks, (0.5, 1.6, 2.5), (5, 1, 2))
     sight = Sight(REGISTRY)
-    assert sight.blocker(blocks, ORIGIN, (0.5, 1.2, 2.5), (6.5, 1.4, 2.5)) == (3, 0, 2)
+    assert sight.geometry(blocks, ORIGIN).blocker((0.5, 1.2, 2.5), (6.5, 1.4, 2.5)) == (3, 0, 2)
 
 
 def test_a_target_does_not_hide_itself_even_where_it_reaches_out():
@@ -122,7 +124,7 @@ def test_a_fully_enclosed_block_is_hidden_and_an_uncovered_one_seen():
 
 def test_an_eye_inside_a_block_sees_that_block_and_nothing_else():
     blocks = grid((5, 5, 5), {(2, 2, 2): "stone"})
-    seen = Sight(REGISTRY).visible_blocks(blocks, ORIGIN, (2.4, 2.6, 2.3), 0, 0)
+    seen = Sight(REGISTRY).geometry(blocks, ORIGIN).visible_blocks((2.4, 2.6, 2.3), 0, 0)
     assert np.argwhere(seen).tolist() == [[2, 2, 2]]
 
 
@@ -131,8 +133,8 @@ def test_a_crack_between_two_blocks_is_closed_and_one_block_is_grazed():
     eye, point = (0.5, 0.5, 1.0), (4.5, 0.5, 1.0)
     two = grid((5, 1, 2), {(2, 0, 0): "stone", (2, 0, 1): "stone"})
     one = grid((5, 1, 2), {(2, 0, 0): "stone"})
-    assert not sight.sees_points(two, ORIGIN, eye, 0, 0, [point])[0]
-    assert sight.sees_points(one, ORIGIN, eye, 0, 0, [point])[0]
+    assert not sight.geometry(two, ORIGIN).sees_points(eye, 0, 0, [point])[0]
+    assert sight.geometry(one, ORIGIN).sees_points(eye, 0, 0, [point])[0]
 
 
 def test_a_crack_between_shapes_inside_a_cell_is_closed():
@@ -141,25 +143,27 @@ def test_a_crack_between_shapes_inside_a_cell_is_closed():
     stairs = grid((5, 1, 1), {(2, 0, 0): "oak_stairs[facing=east]"})
     top = grid((5, 1, 1), {(2, 0, 0): "oak_slab[type=top]"})
     both = grid((5, 1, 1), {(2, 0, 0): "oak_slab[type=top]", (3, 0, 0): "oak_slab[type=bottom]"})
-    assert not sight.sees_points(stairs, ORIGIN, eye, 0, 0, [point])[0]
-    assert sight.sees_points(top, ORIGIN, eye, 0, 0, [point])[0]
-    assert not sight.sees_points(both, ORIGIN, eye, 0, 0, [point])[0]
+    assert not sight.geometry(stairs, ORIGIN).sees_points(eye, 0, 0, [point])[0]
+    assert sight.geometry(top, ORIGIN).sees_points(eye, 0, 0, [point])[0]
+    assert not sight.geometry(both, ORIGIN).sees_points(eye, 0, 0, [point])[0]
 
 
 def test_four_blocks_around_a_ray_close_it_and_three_do_not():
     sight = Sight(REGISTRY)
     eye, point = (0.5, 1.0, 1.0), (4.5, 1.0, 1.0)
     blocks = grid((5, 2, 2), {(2, y, z): "stone" for y in (0, 1) for z in (0, 1)})
-    assert not sight.sees_points(blocks, ORIGIN, eye, 0, 0, [point])[0]
+    assert not sight.geometry(blocks, ORIGIN).sees_points(eye, 0, 0, [point])[0]
     blocks[2, 1, 0] = 0
-    assert sight.sees_points(blocks, ORIGIN, eye, 0, 0, [point])[0]
+    assert sight.geometry(blocks, ORIGIN).sees_points(eye, 0, 0, [point])[0]
 
 
 def test_a_ray_passes_the_edge_where_two_blocks_touch():
     blocks = grid((4, 1, 4), {(1, 0, 2): "stone", (2, 0, 1): "stone"})
     sight = Sight(REGISTRY)
-    assert sight.sees_points(blocks, ORIGIN, (0.5, 0.5, 0.5), 0, 0, [(3.5, 0.5, 3.5)])[0]
-    assert not sight.sees_points(blocks, ORIGIN, (0.5, 0.5, 0.5), 0, 0, [(3.5, 0.5, 3.4)])[0]
+    assert sight.geometry(blocks, ORIGIN).sees_points((0.5, 0.5, 0.5), 0, 0, [(3.5, 0.5, 3.5)])[0]
+    assert not sight.geometry(blocks, ORIGIN).sees_points((0.5, 0.5, 0.5), 0, 0, [(3.5, 0.5, 3.4)])[
+        0
+    ]
 
 
 def test_the_distance_limit_is_measured_to_the_block_s_centre_and_inclusive():
@@ -176,7 +180,9 @@ def test_more_distance_never_hides_anything():
     before = np.zeros(blocks.shape, dtype=bool)
     for distance in (1, 3, 5, 6):
         sight = Sight(REGISTRY, max_visible_distance=distance)
-        seen = sight.visible_blocks(blocks.astype(np.int32), ORIGIN, (5.3, 3.62, 5.4), 0, 0)
+        seen = sight.geometry(blocks.astype(np.int32), ORIGIN).visible_blocks(
+            (5.3, 3.62, 5.4), 0, 0
+        )
         assert (seen >= before).all() and seen.sum() > before.sum()
         before = seen
 
@@ -203,7 +209,10 @@ def test_the_rim_of_the_field_of_view_belongs_to_it():
     blocks, eye = grid((11, 1, 11)), (5.5, 0.5, 5.5)
     sight = Sight(REGISTRY, field_of_view=90)
     rim, beyond = (8.5, 0.5, 2.5), (8.5, 0.5, 2.6)
-    assert sight.sees_points(blocks, ORIGIN, eye, 0, 0, [rim, beyond]).tolist() == [True, False]
+    assert sight.geometry(blocks, ORIGIN).sees_points(eye, 0, 0, [rim, beyond]).tolist() == [
+        True,
+        False,
+    ]
 
 
 def test_agents_are_seen_by_eye_body_or_feet():
@@ -212,7 +221,7 @@ def test_agents_are_seen_by_eye_body_or_feet():
 
     def sees_agent(*rows):
         blocks = grid((7, 4, 5), {(3, y, z): "stone" for y in rows for z in range(5)})
-        return bool(sight.sees_agents(blocks, ORIGIN, eye, 0, 0, [feet])[0])
+        return bool(sight.geometry(blocks, ORIGIN).sees_agents(eye, 0, 0, [feet])[0])
 
     assert sees_agent()
     assert sees_agent(0)
@@ -224,29 +233,34 @@ def test_agents_are_bounded_by_the_distance_to_the_body_centre():
     sight = Sight(REGISTRY, max_visible_distance=4)
     eye = (0.5, 0.9, 0.5)
     feet = [(4.5, 0.0, 0.5), (4.6, 0.0, 0.5)]
-    assert sight.sees_agents(grid((1, 1, 1)), ORIGIN, eye, 0, 0, feet).tolist() == [True, False]
+    assert sight.geometry(grid((1, 1, 1)), ORIGIN).sees_agents(eye, 0, 0, feet).tolist() == [
+        True,
+        False,
+    ]
 
 
 def test_the_blocker_is_the_first_block_on_the_ray():
     blocks = grid((6, 1, 1), {(2, 0, 0): "oak_slab", (4, 0, 0): "stone"})
     sight = Sight(REGISTRY)
-    assert sight.blocker(blocks, (10, 20, 30), (10.5, 20.3, 30.5), (15.5, 20.3, 30.5)) == (
+    assert sight.geometry(blocks, (10, 20, 30)).blocker((10.5, 20.3, 30.5), (15.5, 20.3, 30.5)) == (
         12,
         20,
         30,
     )
-    assert sight.blocker(blocks, (10, 20, 30), (10.5, 20.7, 30.5), (15.5, 20.7, 30.5)) == (
+    assert sight.geometry(blocks, (10, 20, 30)).blocker((10.5, 20.7, 30.5), (15.5, 20.7, 30.5)) == (
         14,
         20,
         30,
     )
-    assert sight.blocker(blocks, (10, 20, 30), (10.5, 20.7, 30.5), (13.5, 20.7, 30.5)) is None
+    assert (
+        sight.geometry(blocks, (10, 20, 30)).blocker((10.5, 20.7, 30.5), (13.5, 20.7, 30.5)) is None
+    )
 
 
 def test_questions_about_nothing_have_no_answers():
     blocks, sight = grid((2, 2, 2)), Sight(REGISTRY)
-    assert sight.sees_blocks(blocks, ORIGIN, (0.5, 1.6, 0.5), 0, 0, []).shape == (0,)
-    assert sight.sees_agents(blocks, ORIGIN, (0.5, 1.6, 0.5), 0, 0, []).shape == (0,)
+    assert sight.geometry(blocks, ORIGIN).sees_blocks((0.5, 1.6, 0.5), 0, 0, []).shape == (0,)
+    assert sight.geometry(blocks, ORIGIN).sees_agents((0.5, 1.6, 0.5), 0, 0, []).shape == (0,)
 
 
 def test_wrong_input_is_refused():

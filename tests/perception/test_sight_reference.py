@@ -150,7 +150,7 @@ def test_blocks_agree_with_the_reference(world, eye, yaw, pitch, max_distance, f
     eye = tuple(e + o for e, o in zip(eye, origin, strict=True))
     sight = Sight(REGISTRY, max_distance, field_of_view)
     reference = Reference(blocks, origin, max_distance, field_of_view)
-    seen = sight.visible_blocks(blocks, origin, eye, yaw, pitch)
+    seen = sight.geometry(blocks, origin).visible_blocks(eye, yaw, pitch)
     positions = [
         tuple(o + i for o, i in zip(origin, index, strict=True))
         for index in np.ndindex(blocks.shape)
@@ -162,7 +162,7 @@ def test_blocks_agree_with_the_reference(world, eye, yaw, pitch, max_distance, f
     outside = [tuple(np.add(origin, move)) for move in [(-1, 0, 0), (0, 9, 1), (3, 2, -4)]]
     asked = [tuple(int(c) for c in p) for p in positions + outside]
     expected += [reference.sees_block(eye, yaw, pitch, p) for p in asked[len(positions) :]]
-    assert sight.sees_blocks(blocks, origin, eye, yaw, pitch, asked).tolist() == expected
+    assert sight.geometry(blocks, origin).sees_blocks(eye, yaw, pitch, asked).tolist() == expected
 
 
 @settings(max_examples=at_night(2000, 150))
@@ -178,9 +178,9 @@ def test_points_agree_with_the_reference(world, eye, points):
     reference = Reference(blocks, origin, None, 360)
     expected = [reference.is_free(eye, point, None) for point in points]
     sight = Sight(REGISTRY, None, 360)
-    assert sight.sees_points(blocks, origin, eye, 0, 0, points).tolist() == expected
+    assert sight.geometry(blocks, origin).sees_points(eye, 0, 0, points).tolist() == expected
     for point, free in zip(points, expected, strict=True):
-        assert (sight.blocker(blocks, origin, eye, point) is None) == free
+        assert (sight.geometry(blocks, origin).blocker(eye, point) is None) == free
 
 
 @settings(max_examples=at_night(2000, 100))
@@ -256,17 +256,13 @@ def test_mirrored_and_turned_worlds_are_seen_alike(name, world, eye, yaw, field_
         dtype=np.int32,
     ).reshape(blocks.shape)
     sight = Sight(REGISTRY, 4.5, field_of_view)
-    seen = sight.visible_blocks(blocks, (0, 0, 0), eye, yaw, 0.1)
+    seen = sight.geometry(blocks, (0, 0, 0)).visible_blocks(eye, yaw, 0.1)
     twice_middles = 2 * np.argwhere(np.ones(blocks.shape)) + 1
     cells = (twice_middles @ matrix.T - 1) // 2
     origin = cells.min(axis=0)
     image = np.zeros(cells.max(axis=0) - origin + 1, dtype=np.int32)
     image[tuple((cells - origin).T)] = [mapping.get(s, s) for s in blocks.ravel().tolist()]
-    image_seen = sight.visible_blocks(
-        image,
-        tuple(origin.tolist()),
-        tuple((matrix @ np.array(eye)).tolist()),
-        _mapped_yaw(yaw, matrix),
-        0.1,
+    image_seen = sight.geometry(image, tuple(origin.tolist())).visible_blocks(
+        tuple((matrix @ np.array(eye)).tolist()), _mapped_yaw(yaw, matrix), 0.1
     )
     assert np.array_equal(image_seen[tuple((cells - origin).T)], seen.ravel())

@@ -107,54 +107,6 @@ class Sight:
         starts, boxes = self.registry.shape_start, self.registry.shape_boxes
         return Tables(starts, boxes, self._reaches, self._state_codes)
 
-    def visible_blocks(
-        self, blocks: BlockGrid, origin: Position, eye: Point, yaw: float, pitch: float
-    ) -> BoolArray:
-        """`Geometry.visible_blocks` of a grid looked at once."""
-        return self.geometry(blocks, origin).visible_blocks(eye, yaw, pitch)
-
-    def sees_blocks(
-        self,
-        blocks: BlockGrid,
-        origin: Position,
-        eye: Point,
-        yaw: float,
-        pitch: float,
-        positions: npt.ArrayLike,
-    ) -> BoolArray:
-        """`Geometry.sees_blocks` of a grid looked at once."""
-        return self.geometry(blocks, origin).sees_blocks(eye, yaw, pitch, positions)
-
-    def sees_points(
-        self,
-        blocks: BlockGrid,
-        origin: Position,
-        eye: Point,
-        yaw: float,
-        pitch: float,
-        points: npt.ArrayLike,
-    ) -> BoolArray:
-        """`Geometry.sees_points` of a grid looked at once."""
-        return self.geometry(blocks, origin).sees_points(eye, yaw, pitch, points)
-
-    def sees_agents(
-        self,
-        blocks: BlockGrid,
-        origin: Position,
-        eye: Point,
-        yaw: float,
-        pitch: float,
-        feet: npt.ArrayLike,
-    ) -> BoolArray:
-        """`Geometry.sees_agents` of a grid looked at once."""
-        return self.geometry(blocks, origin).sees_agents(eye, yaw, pitch, feet)
-
-    def blocker(
-        self, blocks: BlockGrid, origin: Position, eye: Point, point: Point
-    ) -> Position | None:
-        """`Geometry.blocker` of a grid looked at once."""
-        return self.geometry(blocks, origin).blocker(eye, point)
-
     @functools.cached_property
     def _transparent(self) -> BoolArray:
         transparent = self.registry.default_transparent.copy()

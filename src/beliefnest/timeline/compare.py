@@ -7,13 +7,13 @@ from typing import Any
 
 from beliefnest.timeline.journal import Entry
 
-__all__ = ["Difference", "first_difference"]
+__all__ = ["EntryDifference", "first_difference"]
 
 _ABSENT = object()
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class EntryDifference:
     """The first thing two histories do not agree on.
 
     Attributes:
@@ -32,7 +32,7 @@ class Difference:
     found: Any
 
 
-def first_difference(recorded: Iterable[Entry], found: Iterable[Entry]) -> Difference | None:
+def first_difference(recorded: Iterable[Entry], found: Iterable[Entry]) -> EntryDifference | None:
     """The first difference between two histories; None if they are the same."""
     for number, (old, new) in enumerate(zip_longest(recorded, found)):
         if old == new:
@@ -41,9 +41,9 @@ def first_difference(recorded: Iterable[Entry], found: Iterable[Entry]) -> Diffe
         # An entry that only one history has at that tick is missing from the other.
         if old is None or new is None or type(old) is not type(new) or old.tick != new.tick:
             there = [None if e is None or e.tick > tick else e for e in (old, new)]
-            return Difference(tick, number, "", *there)
+            return EntryDifference(tick, number, "", *there)
         place, a, b = next(_differences("", old, new))
-        return Difference(tick, number, place, a, b)
+        return EntryDifference(tick, number, place, a, b)
     return None
 
 
