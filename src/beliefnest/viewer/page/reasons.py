@@ -3,6 +3,9 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from beliefnest.belief.columns import place_of
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError, PathError
@@ -34,8 +37,8 @@ _DEEDS = frozenset(
 _EXPLANATIONS = 36
 """How many explanations a page without a server carries; each takes some 0.1 s to work out."""
 
-_TICKS = 80
-"""At how many ticks of a timeline such a page knows who sees what."""
+_LOOKS = 6000
+"""How many looks of agents at each other in a timeline such a page knows, at most."""
 
 _NODES = 12
 """In how many nodes of a timeline it knows that."""
@@ -95,7 +98,7 @@ def look_of(
 
 def sight_of(reader: Reader, key: TimelineKey, path: Path, tick: int, viewer: str) -> list[int]:
     """What an agent sees in a node: lengths of runs of cells, unseen first, then seen, ..."""
-    return _runs(reader.visible_blocks(key, path, tick, viewer).ravel().tolist())
+    return _runs(reader.visible_blocks(key, path, tick, viewer).ravel())
 
 
 def ahead(data: RunData) -> dict[str, Any]:
@@ -130,7 +133,8 @@ class _Views:
         """Look at some ticks of a timeline."""
         reader = self._reader
         forest = reader.walk(info.key, paths)
-        for tick in _some(range(info.start, info.head + 1), _TICKS):
+        room = _LOOKS // (len(paths) * max(1, len(reader.agents)) ** 2)
+        for tick in _some(range(info.start, info.head + 1), max(4, room)):
             reader.advance(info.key, forest, reader.entries_until(info.key, tick))
             for path in paths:
                 self._look_around(info, tick, NodeView(forest, path))
@@ -158,7 +162,7 @@ class _Views:
         if mark[1] is None:
             return []
         if mark not in self._known:
-            self._known[mark] = _runs(reading.visible_from(viewer).ravel().tolist())
+            self._known[mark] = _runs(reading.visible_from(viewer).ravel())
         return self._known[mark]
 
     def _look(self, reading: NodeView, viewer: str, target: str | Position, mark: Any) -> Any:
@@ -226,15 +230,11 @@ def _some(ticks: range, count: int) -> list[int]:
     return [*ticks[:-1:step], ticks[-1]]
 
 
-def _runs(flags: Iterable[bool]) -> list[int]:
+def _runs(flags: npt.NDArray[np.bool_]) -> list[int]:
     """Lengths of runs of equal flags, the first of them false."""
-    runs, last = [0], False
-    for flag in flags:
-        if flag is not last:
-            runs.append(0)
-            last = flag
-        runs[-1] += 1
-    return runs
+    edges = np.flatnonzero(np.diff(flags, prepend=False, append=not flags[-1]))
+    lengths: list[int] = np.diff(edges, prepend=0).tolist()
+    return lengths
 
 
 def name_of(key: TimelineKey, path: Path) -> str:

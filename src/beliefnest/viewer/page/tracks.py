@@ -174,14 +174,15 @@ class TrackRecorder:
             self._book.add(agent, tick, pose)
 
     def _note_blocks(self, tick: int) -> None:
-        blocks = self._forest.table.nodes().blocks[self._numbers]
-        changed = np.argwhere(blocks != self._last.blocks)
-        rows: dict[int, Row] = {}
-        for at, cell in changed.tolist():
-            rows.setdefault(at, [tick]).extend((cell, int(blocks[at, cell])))
-        for at, row in rows.items():
+        blocks, last = self._forest.table.nodes().blocks, self._last.blocks
+        for at, number in enumerate(self._numbers):
+            if np.array_equal(blocks[number], last[at]):
+                continue
+            row: Row = [tick]
+            for cell in np.flatnonzero(blocks[number] != last[at]).tolist():
+                row.extend((cell, int(blocks[number, cell])))
             self.tracks[at].blocks.append(row)
-        self._last.blocks = blocks
+            last[at] = blocks[number]
 
     def _note_agents(self, tick: int) -> None:
         nodes, last = self._forest.table.nodes(), self._last

@@ -50,13 +50,15 @@ class WrongThings:
 
     def _judge_blocks(self) -> None:
         blocks = self._forest.table.nodes().blocks
-        if self._blocks is not None and np.array_equal(blocks, self._blocks):
-            return
-        self._blocks = blocks.copy()
+        if self._blocks is None:
+            self._blocks = np.full_like(blocks, -2)
+        changed = (blocks != self._blocks).any(axis=1)
         for at, number in enumerate(self._numbers):
-            held = blocks[number]
-            cells = np.flatnonzero((held >= 0) & (held != blocks[0]))
-            self._block_things[at] = tuple(f"b{cell}" for cell in cells.tolist())
+            if changed[number] or changed[0]:
+                held = blocks[number]
+                cells = np.flatnonzero((held >= 0) & (held != blocks[0]))
+                self._block_things[at] = tuple(f"b{cell}" for cell in cells.tolist())
+        self._blocks[changed] = blocks[changed]
 
     def _judge_contents(self) -> None:
         forest = self._forest

@@ -25,7 +25,7 @@ export class Clock {
         button('«', 'event before (shift + left)', () => this.stepEvent(-1)), button('‹', 'tick before (left)', () => this.seek(this.tick - 1)),
         this.playing, button('›', 'tick after (right)', () => this.seek(this.tick + 1)), button('»', 'event after (shift + right)', () => this.stepEvent(1)),
         element('label', {}, 'tick ', this.number), this.time, this.speed, this.slider),
-      element('div', { class: 'below' }, element('div', { class: 'left' }, this.branch, this.lanes), this.events))
+      element('div', { class: 'below' }, element('div', { class: 'left', tabindex: '0', role: 'region', 'aria-label': 'branches, and who perceived what' }, this.branch, this.lanes), this.events))
     this.shown = {}
   }
 
