@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from beliefnest.bodies.protocol import Fault, ProgramResult, Unfinished
+from beliefnest.bodies.protocol import Aim, Fault, ProgramResult, Unfinished
 from beliefnest.errors import BeliefNestError, BodyError
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.frames import Frame, Snapshot
@@ -56,6 +56,7 @@ class _Result(msgspec.Struct, frozen=True):
     lines: tuple[int, ...]
     log: tuple[str, ...]
     unfinished: tuple[Unfinished, ...]
+    aims: tuple[Aim, ...] = ()
     error: Fault | None = None
 
 
@@ -143,7 +144,9 @@ def results_of(
     """
     got = _converted(message, dict[str, _Result])
     return {
-        agent: ProgramResult(agent, r.ok, r.error, r.ticks, happened, r.lines, r.log, r.unfinished)
+        agent: ProgramResult(
+            agent, r.ok, r.error, r.ticks, happened, r.lines, r.log, r.unfinished, r.aims
+        )
         for agent, r in got.items()
     }
 

@@ -5,9 +5,19 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from beliefnest.world.frames import Frame, Snapshot
-from beliefnest.world.values import Event, EventKind
+from beliefnest.world.values import Event, EventKind, Point
 
-__all__ = ["KILLED", "Body", "Fault", "ProgramResult", "Sink", "Unfinished", "World"]
+__all__ = [
+    "KILLED",
+    "NO_WAY",
+    "Aim",
+    "Body",
+    "Fault",
+    "ProgramResult",
+    "Sink",
+    "Unfinished",
+    "World",
+]
 
 Sink = Callable[[Frame], None]
 """Takes the frames of a body as they come, in order of tick."""
@@ -15,6 +25,9 @@ Sink = Callable[[Frame], None]
 
 KILLED = "killed"
 """Kind of failure of a program under which the process behind the world ended."""
+
+NO_WAY = "no_way"
+"""Reason of a failure: what the program made for cannot be reached on foot."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +42,7 @@ class Fault:
         line: Line in the program's own text, from 1; None where there is none.
         column: Column in that line, from 1.
         skill: The skill that failed, if one did.
+        reason: What sort of failure of a skill it is, as `NO_WAY`; None: none that is told apart.
     """
 
     message: str
@@ -36,6 +50,7 @@ class Fault:
     line: int | None = None
     column: int | None = None
     skill: str | None = None
+    reason: str | None = None
 
     def __str__(self) -> str:
         place = "" if self.line is None else f"line {self.line}: "
@@ -43,6 +58,25 @@ class Fault:
 
 
 _NO_DEEDS = (EventKind.CHAT, EventKind.THINK, EventKind.BLOCK_UPDATE)
+
+
+@dataclass(frozen=True, slots=True)
+class Aim:
+    """What a program asked its bot to make for, whatever came of it.
+
+    Attributes:
+        tick: When it asked.
+        call: The skill or call of the bot that it asked with.
+        place: Where, in blocks; None where it named none, as for a goal of another kind.
+        agent: Whom, if it asked for an agent; None: none.
+        uses: Whether it asked to use what is there (open, dig, press); False: to walk there.
+    """
+
+    tick: int
+    call: str
+    place: Point | None
+    agent: str | None
+    uses: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +108,7 @@ class ProgramResult:
         lines: Lines of its text that ran, from 1, rising.
         log: What it wrote to its console, bounded.
         unfinished: What was stopped because it was still going on at the program's end.
+        aims: What it asked its bot to make for, in order, bounded.
     """
 
     agent: str
@@ -84,6 +119,7 @@ class ProgramResult:
     lines: tuple[int, ...] = ()
     log: tuple[str, ...] = ()
     unfinished: tuple[Unfinished, ...] = ()
+    aims: tuple[Aim, ...] = ()
 
     def __repr__(self) -> str:
         ended = "ended well" if self.ok else f"failed: {self.error}"

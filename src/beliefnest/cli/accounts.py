@@ -7,7 +7,8 @@ from typing import Any
 from beliefnest.cli.pictures import container_name, place_text, titled
 from beliefnest.nest.face.nest import Nest
 from beliefnest.pictures.words import items_words, place_words
-from beliefnest.scenarios.content import Arrives, Holds, Opens, Stands
+from beliefnest.scenarios.expected import Arrives, Holds, Opens, Stands
+from beliefnest.scenarios.judging import Verdict
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.values import Event
@@ -28,7 +29,8 @@ def accounts(nest: Nest, outcome: Outcome) -> list[dict[str, list[str]]]:
     return [
         {
             "happened": _happened(probe),
-            "judged": [_judged(probe, outcome.scenario)],
+            "judged": [_judged(probe, each, outcome.scenario) for each in probe.verdicts]
+            or ["Nothing was expected; it is only recorded."],
             "why": _why(nest, probe, outcome),
         }
         for probe in outcome.probes
@@ -36,12 +38,19 @@ def accounts(nest: Nest, outcome: Outcome) -> list[dict[str, list[str]]]:
 
 
 def _happened(probe: ProbeOutcome) -> list[str]:
+    answered = [
+        f"to {reply.question!r} the model answered {reply.answer!r}"
+        + (f", since: {reply.reason}" if reply.reason else "")
+        for reply in probe.replies
+    ]
+    if probe.trial is None:
+        return [*answered, *([probe.fault] if probe.fault else [])]
     told = [f"tick {tick}: {_event_words(event)}" for tick, event in probe.result.happened]
     lines = told[-_MOST:]
     if len(told) > _MOST:
         lines.insert(0, f"{len(told) - _MOST} earlier events are left out")
     ended = "ended well" if probe.result.ok else f"failed: {probe.result.error}"
-    return [*lines, f"the program {ended}, after {probe.result.ticks} ticks"]
+    return [*lines, f"the program {ended}, after {probe.result.ticks} ticks", *answered]
 
 
 def _event_words(event: Event) -> str:
@@ -55,10 +64,10 @@ def _event_words(event: Event) -> str:
     return " ".join(words)
 
 
-def _judged(outcome: ProbeOutcome, scenario: Scenario) -> str:
+def _judged(outcome: ProbeOutcome, judged: Verdict, scenario: Scenario) -> str:
     """Why the outcome counts as it does."""
-    agent, expect = titled(outcome.probe.agent), outcome.probe.expect
-    verdict = "as expected" if outcome.ok else "not as expected"
+    agent, expect = titled(outcome.probe.agent), judged.expected
+    verdict = "as expected" if judged.ok else "not as expected"
     if isinstance(expect, Opens):
         wanted = container_name(expect.container, scenario)
         opened = "none"
@@ -78,7 +87,8 @@ def _judged(outcome: ProbeOutcome, scenario: Scenario) -> str:
             f"{place_text(expect.place, scenario)}, within {expect.within:g} blocks{far}; "
             f"that is {verdict}."
         )
-    return "Nothing was expected; it is only recorded."
+    told = "" if judged.ok else f": {judged.why_not}"
+    return f"Judged by {type(expect).__name__.lower()}; that is {verdict}{told}."
 
 
 def _why(nest: Nest, outcome: ProbeOutcome, run: Outcome) -> list[str]:
@@ -91,8 +101,7 @@ def _why(nest: Nest, outcome: ProbeOutcome, run: Outcome) -> list[str]:
         if nest[each.expectation.path].path == belief.path
     ]
     containers = [each.container for each in about if isinstance(each, Holds)]
-    if isinstance(outcome.probe.expect, Opens):
-        containers.append(outcome.probe.expect.container)
+    containers += [each.container for each in outcome.probe.expect if isinstance(each, Opens)]
     for container in dict.fromkeys(containers):
         lines += str(belief.explain(container=container)).splitlines()
     for agent in _agents(about):

@@ -72,9 +72,13 @@ class ConditionFolder:
         """Write what a model was asked, what it answered, and the program in it."""
         folder = self.path / f"probe-{number}"
         folder.mkdir(exist_ok=True)
-        _write(folder / "prompt.txt", outcome.prompt)
-        _write(folder / "answer.txt", outcome.answer)
-        _write(folder / "program.js", outcome.program)
+        if outcome.probe.asks_for_program:
+            _write(folder / "prompt.txt", outcome.prompt)
+            _write(folder / "answer.txt", outcome.answer)
+            _write(folder / "program.js", outcome.program)
+        for count, reply in enumerate(outcome.replies, start=1):
+            _write(folder / f"question-{count}.txt", reply.prompt)
+            _write(folder / f"reply-{count}.txt", reply.text)
 
 
 @dataclass(frozen=True, slots=True)

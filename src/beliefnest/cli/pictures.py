@@ -9,7 +9,7 @@ from beliefnest.nest.face.nest import Nest
 from beliefnest.pictures.overview import Card, Condition
 from beliefnest.pictures.palette import Mark, age_text
 from beliefnest.pictures.scene import Scene, best_height, read_stores
-from beliefnest.scenarios.content import Arrives, Hears, Stands
+from beliefnest.scenarios.expected import Arrives, Hears, Stands
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import Journal
@@ -172,8 +172,11 @@ def _held(state: State, outcome: Outcome) -> bool | None:
 def _prediction_card(outcome: ProbeOutcome, scenario: Scenario) -> Card:
     """What a probe foretold: which probe, of which belief, what came, whether as expected."""
     probe = outcome.probe
-    agent = titled(probe.agent)
-    if isinstance(probe.expect, Arrives):
+    agent = titled(probe.agent or "reality")
+    if outcome.trial is None:
+        answers = [repr(reply.answer) for reply in outcome.replies if reply.answer]
+        deed = f"{agent} answers {' and '.join(answers) or 'nothing'}"
+    elif any(isinstance(each, Arrives) for each in probe.expect):
         where = "nowhere" if outcome.arrived is None else place_text(outcome.arrived, scenario)
         deed = f"{agent} ends {where}"
     elif outcome.opened:
@@ -183,10 +186,12 @@ def _prediction_card(outcome: ProbeOutcome, scenario: Scenario) -> Card:
     reported = f"{scenario.reported_by} reports" if scenario.reported_by else "expected"
     judged = {True: f", as {reported}", False: f", not as {reported}", None: ""}[outcome.ok]
     label = f"Probe: {probe.label}" if probe.label else "Probe"
-    task = " ".join(probe.task.split())
+    asked = probe.task or " ".join(each.question for each in probe.questions)
+    task = " ".join(asked.split())
     return Card(
         title=label,
-        path=f"asked of {probe.path}, acted out in {probe.acts_in}",
+        path=f"asked of {probe.path}"
+        + (f", acted out in {probe.acts_in}" if probe.asks_for_program else ""),
         ok=outcome.ok,
         notes=(f"\u201c{task}\u201d", f"{deed}{judged}"),
         prediction=True,

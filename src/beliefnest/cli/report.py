@@ -1,7 +1,10 @@
 """What a run reports: the object that `--json` prints, and the table."""
 
+import math
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from rich import box
 from rich.markup import escape
@@ -11,10 +14,22 @@ from beliefnest.belief.entries import Basis
 from beliefnest.belief.view import State
 from beliefnest.cli.pictures import container_name, point_text
 from beliefnest.cli.text import printable
-from beliefnest.llm.messages import Usage
-from beliefnest.scenarios.content import Arrives, Hears, Holds, Opens
-from beliefnest.scenarios.judging import places_of
+from beliefnest.scenarios.expected import (
+    Arrives,
+    Believes,
+    Expected,
+    Hears,
+    Holds,
+    Intends,
+    Judge,
+    Opens,
+    Says,
+    Takes,
+)
+from beliefnest.scenarios.judging import OUTCOMES, places_of
+from beliefnest.scenarios.naming import items_text
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome, ProbeOutcome
+from beliefnest.scenarios.records import expectation_json, probe_json, usage_json
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.values import Point, Position
 
@@ -103,7 +118,7 @@ def outcome_json(
         run_dir: Its folder.
         accounts: Further facts of each probe.
     """
-    probes = [_probe_json(each) for each in outcome.probes]
+    probes = [probe_json(each, run_dir) for each in outcome.probes]
     for probe, account in zip(probes, accounts, strict=False):
         probe.update(account)
     return {
@@ -115,20 +130,11 @@ def outcome_json(
         "seconds": round(outcome.seconds, 3),
         "reality": state_json(outcome.reality),
         "beliefs": {path: state_json(state) for path, state in outcome.beliefs.items()},
-        "expectations": [_expectation_json(each) for each in outcome.expectations],
+        "expectations": [expectation_json(each) for each in outcome.expectations],
         "probes": probes,
+        "failures": list(outcome.failures),
         "usage": usage_json(outcome.usage),
         "run_dir": str(run_dir),
-    }
-
-
-def usage_json(usage: Usage) -> dict[str, object]:
-    """What answers took."""
-    return {
-        "requests": usage.requests,
-        "input_tokens": usage.input_tokens,
-        "output_tokens": usage.output_tokens,
-        "cost": usage.cost,
     }
 
 
@@ -136,8 +142,8 @@ def report_json(
     scenario: str,
     settings: Mapping[str, object],
     status: str,
-    runs: Iterable[Mapping[str, object]],
-    failures: Iterable[Mapping[str, object]],
+    runs: Sequence[Mapping[str, Any]],
+    failures: Sequence[Mapping[str, Any]],
 ) -> dict[str, object]:
     """The whole report.
 
@@ -158,7 +164,17 @@ def report_json(
         "settings": settings,
         "runs": list(runs),
         "failures": list(failures),
+        "outcomes": _counted(runs, failures),
     }
+
+
+def _counted(
+    runs: Sequence[Mapping[str, Any]], failures: Sequence[Mapping[str, Any]]
+) -> dict[str, int]:
+    """How many probes came to what; a run without a result counts once."""
+    found = Counter(probe.get("outcome") for run in runs for probe in run["probes"])
+    found.update(failure.get("outcome") for failure in failures)
+    return {outcome: found[outcome] for outcome in OUTCOMES}
 
 
 def outcome_table(outcomes: Sequence[Outcome]) -> Table:
@@ -184,7 +200,7 @@ def outcome_table(outcomes: Sequence[Outcome]) -> Table:
         row = [str(outcome.scenario.condition)] if scenario.conditions else []
         cells = _cells(outcome)
         row += [cells.get(heading, "") for heading in _headings(outcomes)]
-        verdict = "[green]yes[/green]" if outcome.ok else "[bold red]NO[/bold red]"
+        verdict = _verdict(outcome)
         spent = [f"{outcome.usage.tokens:,}", cost_text(outcome.usage.cost)] if asked else []
         table.add_row(*row, verdict, *spent, str(outcome.ticks), f"{outcome.seconds:.2f}")
     return table
@@ -200,7 +216,7 @@ def _tall_table(outcomes: Sequence[Outcome]) -> Table:
     cells = [_cells(outcome) for outcome in outcomes]
     for heading in _headings(outcomes):
         table.add_row(heading, *(each.get(heading, "") for each in cells))
-    verdicts = ["[green]yes[/green]" if each.ok else "[bold red]NO[/bold red]" for each in outcomes]
+    verdicts = [_verdict(each) for each in outcomes]
     table.add_row(f"as {scenario.reported_by or 'expected'}{_verb(scenario)}", *verdicts)
     if any(outcome.usage.requests for outcome in outcomes):
         table.add_row("tokens", *(f"{each.usage.tokens:,}" for each in outcomes))
@@ -217,6 +233,13 @@ def cost_text(cost: float | None) -> str:
 
 def _verb(scenario: Scenario) -> str:
     return " reports" if scenario.reported_by else ""
+
+
+def _verdict(outcome: Outcome) -> str:
+    """Whether all was as expected, and if not, what was not."""
+    if outcome.ok:
+        return "[green]yes[/green]"
+    return "\n".join(["[bold red]NO[/bold red]", *map(escape, outcome.failures)])
 
 
 def _headings(outcomes: Iterable[Outcome]) -> list[str]:
@@ -262,14 +285,57 @@ def _found(outcome: ExpectationOutcome, state: State, scenario: Scenario) -> tup
 
 def _acted(outcome: ProbeOutcome, scenario: Scenario) -> tuple[str, str]:
     probe = outcome.probe
-    if isinstance(probe.expect, Arrives):
+    text = "; ".join(_deeds(outcome, scenario))
+    if outcome.outcome not in ("ok", "wrong"):
+        text += f" ({outcome.outcome.replace('_', ' ')})"
+    kinds = {type(each) for each in probe.expect}
+    verb = "opens" if kinds <= {Opens} else "arrives at" if kinds == {Arrives} else "does"
+    heading = f"predicted {probe.agent} {verb}"
+    if not probe.asks_for_program:
+        heading = f"answers from {probe.path}"
+    return heading, _marked(escape(text), outcome.ok)
+
+
+def _deeds(outcome: ProbeOutcome, scenario: Scenario) -> list[str]:
+    """What a probe came to, for each kind of thing that was expected of it."""
+    kinds = {type(each) for each in outcome.probe.expect} or {Opens}
+    told = []
+    if Opens in kinds:
+        opened = container_name(outcome.opened[0], scenario) if outcome.opened else "nothing"
+        told.append(opened if kinds == {Opens} else f"opens {opened}")
+    if Arrives in kinds:
         where = "nowhere" if outcome.arrived is None else point_text(outcome.arrived)
-        return f"predicted {probe.agent} arrives at", _marked(where, outcome.ok)
-    opened = escape(container_name(outcome.opened[0], scenario)) if outcome.opened else "nothing"
-    heading = f"predicted {probe.agent} opens"
-    if isinstance(probe.expect, Opens):
-        return heading, _marked(opened, outcome.ok)
-    return heading, opened
+        told.append(where if kinds == {Arrives} else f"arrives at {where}")
+    if Intends in kinds:
+        told.append(f"makes for {_made_for(outcome, scenario)}")
+    told += [f"answers {reply.answer or 'nothing'}" for reply in outcome.replies]
+    others = [each for each in outcome.verdicts if isinstance(each.expected, _TOLD_BY_VERDICT)]
+    return told + [_name(each.expected) if each.ok else each.why_not for each in others]
+
+
+def _made_for(outcome: ProbeOutcome, scenario: Scenario) -> str:
+    if outcome.intended is None:
+        return "nothing"
+    x, y, z = map(math.floor, outcome.intended)
+    labelled = (x, y, z) in scenario.labels
+    return container_name((x, y, z), scenario) if labelled else point_text(outcome.intended)
+
+
+_TOLD_BY_VERDICT = (Takes, Says, Believes, Judge)
+
+
+def _name(expected: Expected) -> str:
+    match expected:
+        case Takes(items):
+            return f"takes {items_text(items)}"
+        case Says(text):
+            return f"says {text!r}"
+        case Believes(expectation):
+            return expectation.label or f"{expectation.path} as expected"
+        case Judge(_, name):
+            return name
+        case _:
+            return type(expected).__name__.lower()
 
 
 def _marked(text: str, ok: bool | None) -> str:
@@ -278,50 +344,3 @@ def _marked(text: str, ok: bool | None) -> str:
 
 def _list(point: Point | None) -> list[float] | None:
     return None if point is None else list(point)
-
-
-def _expectation_json(outcome: ExpectationOutcome) -> dict[str, object]:
-    expectation = outcome.expectation
-    content = expectation.content
-    expected: dict[str, object]
-    if isinstance(content, Holds):
-        expected = {"container": list(content.container), "items": dict(content.items)}
-    elif isinstance(content, Hears):
-        expected = {"heard" if content.ever else "not_heard": content.text}
-    else:
-        expected = {"agent": content.agent, "position": _list(content.place)}
-    return {
-        "path": expectation.path,
-        "label": expectation.label,
-        "expected": expected,
-        "ok": outcome.ok,
-    }
-
-
-def _probe_json(outcome: ProbeOutcome) -> dict[str, object]:
-    probe = outcome.probe
-    expected: dict[str, object] | None = None
-    if isinstance(probe.expect, Opens):
-        expected = {"opens": list(probe.expect.container)}
-    elif isinstance(probe.expect, Arrives):
-        expected = {"arrives": list(probe.expect.place), "within": probe.expect.within}
-    return {
-        "label": probe.label,
-        "path": probe.path,
-        "acts_in": probe.acts_in,
-        "agent": probe.agent,
-        "task": probe.task,
-        "program": outcome.program,
-        "attempts": outcome.attempts,
-        "usage": usage_json(outcome.usage),
-        "error": None if outcome.result.error is None else str(outcome.result.error),
-        "said": [list(line) for line in outcome.result.said],
-        "lines": list(outcome.result.lines),
-        "log": list(outcome.result.log),
-        "unfinished": [str(each) for each in outcome.result.unfinished],
-        "branch": outcome.branch,
-        "opened": [list(place) for place in outcome.opened],
-        "arrived": _list(outcome.arrived),
-        "expected": expected,
-        "ok": outcome.ok,
-    }

@@ -22,6 +22,7 @@ from beliefnest.cli.plan import Cell, plan_cells
 from beliefnest.cli.report import outcome_json, outcome_table, report_json
 from beliefnest.cli.run_report import report_html
 from beliefnest.errors import InputError, ModelError, ScenarioError
+from beliefnest.llm.asking import NoUsableProgramError
 from beliefnest.llm.budget import Budget, RunLimits
 from beliefnest.llm.cache import CacheMode
 from beliefnest.llm.messages import Model, Sampling, Usage
@@ -179,6 +180,9 @@ class _Run:
                     "model": cell.model,
                     "seed": cell.seed,
                     "error": str(error),
+                    "outcome": (
+                        "no_answer" if isinstance(error, NoUsableProgramError) else "error"
+                    ),
                 }
             )
             return

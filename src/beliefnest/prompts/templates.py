@@ -10,9 +10,10 @@ from beliefnest.prompts.text import nearest
 
 __all__ = ["BUILT_IN_TEMPLATES", "Template", "built_in_template", "load_template"]
 
-BUILT_IN_TEMPLATES = ("default", "instructions", "paper")
+BUILT_IN_TEMPLATES = ("answering", "default", "instructions", "paper", "question")
 """`default`: our own, complete; `instructions`: its part on how to answer, which serves as
-a system message beside other templates; `paper`: the one of the paper's appendix."""
+a system message beside other templates; `paper`: the one of the paper's appendix; `question`: a
+question and what is known, with `answering`, on how to answer one, as its system message."""
 
 
 @dataclass(frozen=True, slots=True)

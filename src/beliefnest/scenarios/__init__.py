@@ -1,6 +1,37 @@
 """Scenario files, what they mean, and how they are run and judged."""
 
-from beliefnest.scenarios.content import Arrives, Expectation, Hears, Holds, Opens, Probe, Stands
+from beliefnest.scenarios.content import Probe
+from beliefnest.scenarios.expected import (
+    Answers,
+    Arrives,
+    Believes,
+    Expectation,
+    Expected,
+    Hears,
+    Holds,
+    Intends,
+    Judge,
+    Opens,
+    Says,
+    Stands,
+    Takes,
+)
 from beliefnest.scenarios.scenario import Scenario
 
-__all__ = ["Arrives", "Expectation", "Hears", "Holds", "Opens", "Probe", "Scenario", "Stands"]
+__all__ = [
+    "Answers",
+    "Arrives",
+    "Believes",
+    "Expectation",
+    "Expected",
+    "Hears",
+    "Holds",
+    "Intends",
+    "Judge",
+    "Opens",
+    "Probe",
+    "Says",
+    "Scenario",
+    "Stands",
+    "Takes",
+]

@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -11,19 +11,26 @@ from beliefnest.belief.entries import InitialBelief
 from beliefnest.files import read_regular_text
 from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.perception.options import Perception
-from beliefnest.scenarios.content import (
+from beliefnest.scenarios.content import Probe, ScenarioContent
+from beliefnest.scenarios.document import Document, KeyPath
+from beliefnest.scenarios.expected import (
+    Answers,
     Arrives,
+    Believes,
     Expectation,
+    Expected,
     Hears,
     Holds,
+    Intends,
     Opens,
-    Probe,
-    ScenarioContent,
+    Says,
     Stands,
+    Takes,
 )
-from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.format import (
+    AnswersEntry,
     ExpectationEntry,
+    ExpectEntry,
     InitialBeliefEntry,
     PerceptionEntry,
     ProbeEntry,
@@ -31,6 +38,7 @@ from beliefnest.scenarios.format import (
     ScenarioFile,
     StepEntry,
 )
+from beliefnest.scenarios.functions import judge_of
 from beliefnest.scenarios.people import build_agents
 from beliefnest.scenarios.space import (
     UNKNOWN,
@@ -41,12 +49,17 @@ from beliefnest.scenarios.space import (
     entry_mask,
 )
 from beliefnest.world.frames import Snapshot
-from beliefnest.world.limits import container_slots
+from beliefnest.world.limits import AGENT_SLOTS, container_slots
 from beliefnest.world.paths import parse_path
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Position
 
 __all__ = ["build_scenario"]
+
+T = TypeVar("T")
+
+_MOST_OPTIONS = 26
+"""One for each letter."""
 
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}", re.ASCII)
 
@@ -130,31 +143,76 @@ class _Builder:
     def probe(self, number: int, entry: ProbeEntry) -> Probe:
         """One probe, its template read."""
         path = ("probes", number)
-        self._check_belief_path((*path, "path"), entry.path)
-        self._check_belief_path((*path, "acts_in"), entry.acts_in)
-        self._check_agent((*path, "agent"), entry.agent)
-        expect: Opens | Arrives | None = None
-        if entry.expect is not None:
-            opens, arrives = entry.expect.opens, entry.expect.arrives
-            if (opens is None) == (arrives is None):
-                raise self._document.fault(
-                    (*path, "expect"), "give exactly one of 'opens' and 'arrives'"
-                )
-            if opens is not None:
-                self._check_container((*path, "expect", "opens"), opens)
-                expect = Opens(opens)
-            elif arrives is not None:
-                expect = Arrives(arrives, entry.expect.within)
+        believers = self._check_belief_path((*path, "path"), entry.path)
+        if entry.acts_in is not None:
+            self._check_belief_path((*path, "acts_in"), entry.acts_in)
+        if entry.agent is not None:
+            self._check_agent((*path, "agent"), entry.agent)
+        expect = () if entry.expect is None else self._expect((*path, "expect"), entry.expect)
+        if not expect or any(not isinstance(each, Answers) for each in expect):
+            for key in ("acts_in", "agent", "task"):
+                if getattr(entry, key) is None:
+                    raise self._document.fault(path, f"the key {key!r} is missing")
         return Probe(
             path=entry.path,
-            acts_in=entry.acts_in,
-            agent=entry.agent,
-            task=entry.task,
+            acts_in=entry.path if entry.acts_in is None else entry.acts_in,
+            agent=(believers[-1] if believers else "") if entry.agent is None else entry.agent,
+            task=entry.task or "",
             expect=expect,
             template=self._template((*path, "template"), entry.template),
             label=entry.label,
             timeout_ticks=entry.timeout_ticks,
         )
+
+    def _expect(self, path: KeyPath, entry: ExpectEntry) -> tuple[Expected, ...]:
+        """All that is expected of a probe."""
+        expected: list[Expected] = []
+        if entry.opens is not None:
+            self._check_container((*path, "opens"), entry.opens)
+            expected.append(Opens(entry.opens))
+        if entry.arrives is not None:
+            expected.append(Arrives(entry.arrives, entry.within))
+        if entry.intends is not None:
+            is_container = entry.intends in self._snapshot.containers
+            expected.append(Intends(entry.intends, entry.within, is_container))
+        if entry.takes is not None:
+            slots = AGENT_SLOTS
+            items = dict(entry.takes)
+            place = (*path, "takes")
+            check_items(self._document, place, items, self._registry, slots, "an inventory")
+            expected.append(Takes(items))
+        if entry.says is not None:
+            expected.append(Says(entry.says))
+        for number, answers in enumerate(_listed(entry.answers)):
+            expected.append(self._answers((*path, "answers", number), answers))
+        for number, believed in enumerate(_listed(entry.believes)):
+            place = (*path, "believes", number)
+            self._check_belief_path((*place, "path"), believed.path)
+            content = self._expected(place, believed)
+            expected.append(Believes(Expectation(believed.path, content, believed.label)))
+        if entry.function is not None:
+            with self._document.naming((*path, "function")):
+                expected.append(judge_of(entry.function))
+        if not expected:
+            keys = ", ".join(field for field in entry.__struct_fields__ if field != "within")
+            raise self._document.fault(path, f"expects nothing; give at least one of {keys}")
+        return tuple(expected)
+
+    def _answers(self, path: KeyPath, entry: AnswersEntry) -> Answers:
+        right = (entry.right,) if isinstance(entry.right, str) else tuple(entry.right)
+        if not entry.question.strip() or not all(each.strip() for each in right) or not right:
+            raise self._document.fault(path, "give a question and at least one right answer")
+        missing = [each for each in right if each not in entry.options]
+        if entry.options and missing:
+            raise self._document.fault((*path, "right"), f"{missing[0]!r} is none of the options")
+        if len(entry.options) > _MOST_OPTIONS:
+            raise self._document.fault((*path, "options"), f"are more than {_MOST_OPTIONS}")
+        if len({each.casefold() for each in entry.options}) < len(entry.options):
+            raise self._document.fault((*path, "options"), "has an option twice")
+        if entry.options and entry.wrong:
+            raise self._document.fault((*path, "wrong"), "is for answers in words, without options")
+        options, wrong = tuple(entry.options), tuple(entry.wrong)
+        return Answers(entry.question, right, options, wrong, entry.reason)
 
     def expectation(self, number: int, entry: ExpectationEntry) -> Expectation:
         """One expectation."""
@@ -291,3 +349,10 @@ class _Builder:
     def _check_block_name(self, path: KeyPath, name: str) -> None:
         with self._document.naming(path):
             self._registry.state_ids(name)
+
+
+def _listed(entry: T | list[T] | None) -> list[T]:
+    """What may be written alone or as a list."""
+    if entry is None:
+        return []
+    return entry if isinstance(entry, list) else [entry]

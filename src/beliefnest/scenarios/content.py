@@ -4,50 +4,24 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from beliefnest.nest.past.setting import Setting
-from beliefnest.world.values import Items, Point, Position
+from beliefnest.scenarios.expected import Answers, Expectation, Expected
+from beliefnest.world.values import Position
 
-__all__ = [
-    "Arrives",
-    "Expectation",
-    "Hears",
-    "Holds",
-    "Opens",
-    "Probe",
-    "ScenarioContent",
-    "Stands",
-]
-
-
-@dataclass(frozen=True, slots=True)
-class Opens:
-    """A program is to open this container before any other."""
-
-    container: Position
-
-
-@dataclass(frozen=True, slots=True)
-class Arrives:
-    """A program is to bring its agent to a place.
-
-    Attributes:
-        place: Middle of the feet, in blocks.
-        within: Greatest distance from there, in blocks.
-    """
-
-    place: Point
-    within: float = 2.0
+__all__ = ["Probe", "ScenarioContent"]
 
 
 @dataclass(frozen=True, slots=True)
 class Probe:
     """A model is asked from one belief; its program runs in a simulator and is judged there.
 
+    If answers alone are expected, it is asked for no program.
+
     Attributes:
         path: The belief that the prompt is rendered from.
         acts_in: The simulator that the program runs in.
         agent: The agent that runs it.
         task: What the model is asked to make the agent do.
-        expect: How the outcome is judged; None: it is only recorded.
+        expect: What is expected, all of it together; empty: the outcome is only recorded.
         template: Text of the prompt template; None: the paper's.
         label: A name for tables.
         timeout_ticks: Ticks of 50 ms after which the program has failed.
@@ -57,61 +31,20 @@ class Probe:
     acts_in: str
     agent: str
     task: str
-    expect: Opens | Arrives | None = None
+    expect: tuple[Expected, ...] = ()
     template: str | None = None
     label: str = ""
     timeout_ticks: int = 1200
 
+    @property
+    def questions(self) -> tuple[Answers, ...]:
+        """The questions that are asked."""
+        return tuple(each for each in self.expect if isinstance(each, Answers))
 
-@dataclass(frozen=True, slots=True)
-class Holds:
-    """A container is to hold exactly these known items."""
-
-    container: Position
-    items: Items
-
-
-@dataclass(frozen=True, slots=True)
-class Stands:
-    """An agent is to stand at a place.
-
-    Attributes:
-        agent: Its name.
-        place: Middle of the feet, in blocks; None: its place is to be unknown.
-        within: Greatest distance from there, in blocks.
-    """
-
-    agent: str
-    place: Point | None
-    within: float = 2.0
-
-
-@dataclass(frozen=True, slots=True)
-class Hears:
-    """Something is to have been said as far as a simulator knows, or not.
-
-    Attributes:
-        text: Part of an utterance.
-        ever: Whether an utterance with this part is to be known; False: none is.
-    """
-
-    text: str
-    ever: bool = True
-
-
-@dataclass(frozen=True, slots=True)
-class Expectation:
-    """What a simulator is to hold after the script.
-
-    Attributes:
-        path: The simulator.
-        content: What it is to hold.
-        label: A name for tables.
-    """
-
-    path: str
-    content: Holds | Stands | Hears
-    label: str = ""
+    @property
+    def asks_for_program(self) -> bool:
+        """Whether the model is asked for a program."""
+        return not self.expect or len(self.questions) < len(self.expect)
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from beliefnest.world.limits import FARTHEST
 __all__ = [
     "LABELLED",
     "AgentEntry",
+    "AnswersEntry",
     "BlockEntry",
     "ContainerEntry",
     "EquipmentEntry",
@@ -176,37 +177,19 @@ class StepEntry(_Entry, frozen=True):
     ] = 1200
 
 
-class ExpectEntry(_Entry, frozen=True):
-    """What a probe's program should do; exactly one of `opens` and `arrives`."""
+class AnswersEntry(_Entry, frozen=True):
+    """A question to the model, and its right answers."""
 
-    opens: Annotated[Position | None, _note("The container that is opened first.")] = None
-    arrives: Annotated[Point | None, _note("Where the agent stands in the end.")] = None
-    within: Annotated[
-        float,
-        msgspec.Meta(gt=0, le=FARTHEST, description="Greatest distance from there, in blocks."),
-    ] = 2.0
-
-
-class ProbeEntry(_Entry, frozen=True):
-    """A model is asked from one belief; its program runs in a simulator and is judged there."""
-
-    path: Annotated[str, _note("The belief that the prompt is rendered from.")]
-    acts_in: Annotated[str, _note("The simulator that the program runs in.")]
-    agent: Annotated[str, _note("The agent that runs it.")]
-    task: Annotated[str, _note("What the model is asked to make the agent do.")]
-    label: Annotated[str, _note("A name for tables and overrides.")] = ""
-    template: Annotated[
-        str | None, _note("A prompt template file beside the scenario; null: the paper's.")
-    ] = None
-    expect: Annotated[ExpectEntry | None, _note("How the outcome is judged.")] = None
-    timeout_ticks: Annotated[
-        int,
-        msgspec.Meta(
-            gt=0,
-            le=_LONGEST_TIMEOUT,
-            description="Ticks of 50 ms after which the program has failed.",
-        ),
-    ] = 1200
+    question: Annotated[str, _note("What is asked.")]
+    right: Annotated[
+        str | list[str],
+        _note("The right answer, or several; of words, what a right answer has in it."),
+    ]
+    options: Annotated[
+        list[str], _note("What it chooses from, shuffled by the seed; else it answers in words.")
+    ] = []
+    wrong: Annotated[list[str], _note("What an answer in words may not have in it.")] = []
+    reason: Annotated[bool, _note("Whether it is asked why; what it says is kept.")] = False
 
 
 class ExpectationEntry(_Entry, frozen=True):
@@ -226,6 +209,64 @@ class ExpectationEntry(_Entry, frozen=True):
             gt=0, le=FARTHEST, description="Greatest distance from `position`, in blocks."
         ),
     ] = 2.0
+
+
+class ExpectEntry(_Entry, frozen=True):
+    """What should come of a probe: at least one of these, all of them together."""
+
+    opens: Annotated[Position | None, _note("The container that is opened first.")] = None
+    arrives: Annotated[Point | None, _note("Where the agent stands in the end.")] = None
+    intends: Annotated[
+        Point | None,
+        _note("The container or place that the program makes for, also if it never gets there."),
+    ] = None
+    within: Annotated[
+        float,
+        msgspec.Meta(gt=0, le=FARTHEST, description="Greatest distance from there, in blocks."),
+    ] = 2.0
+    takes: Annotated[
+        dict[str, int] | None, _note("Items that are taken out of containers, and how many.")
+    ] = None
+    says: Annotated[str | None, _note("Part of what the agent says.")] = None
+    answers: Annotated[
+        AnswersEntry | list[AnswersEntry] | None, _note("What the model answers to questions.")
+    ] = None
+    believes: Annotated[
+        ExpectationEntry | list[ExpectationEntry] | None,
+        _note("What a belief holds once the program has ended."),
+    ] = None
+    function: Annotated[
+        Any,
+        _note(
+            "module:function, given the trial; it is imported and run, so trust who wrote it. "
+            "In code, the function itself."
+        ),
+    ] = None
+
+
+class ProbeEntry(_Entry, frozen=True):
+    """A model is asked from one belief; its program runs in a simulator and is judged there.
+
+    `acts_in`, `agent` and `task` may be missing where nothing but `answers` is expected.
+    """
+
+    path: Annotated[str, _note("The belief that the prompt is rendered from.")]
+    acts_in: Annotated[str | None, _note("The simulator that the program runs in.")] = None
+    agent: Annotated[str | None, _note("The agent that runs it.")] = None
+    task: Annotated[str | None, _note("What the model is asked to make the agent do.")] = None
+    label: Annotated[str, _note("A name for tables and overrides.")] = ""
+    template: Annotated[
+        str | None, _note("A prompt template file beside the scenario; null: the paper's.")
+    ] = None
+    expect: Annotated[ExpectEntry | None, _note("How the outcome is judged.")] = None
+    timeout_ticks: Annotated[
+        int,
+        msgspec.Meta(
+            gt=0,
+            le=_LONGEST_TIMEOUT,
+            description="Ticks of 50 ms after which the program has failed.",
+        ),
+    ] = 1200
 
 
 class ScenarioFile(_Entry, frozen=True):

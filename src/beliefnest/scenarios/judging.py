@@ -1,13 +1,68 @@
-"""Judging from the world: what was opened, who arrived where, what is believed to be where."""
+"""Judging from the world: what was asked for, opened, said; who arrived where; what is believed."""
 
 import math
-from collections.abc import Iterable
+import re
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 from beliefnest.belief.view import State
-from beliefnest.scenarios.content import Arrives, Hears, Holds, Opens, Stands
+from beliefnest.bodies.protocol import NO_WAY, ProgramResult
+from beliefnest.scenarios.expected import (
+    Answers,
+    Arrives,
+    Believes,
+    Expected,
+    Hears,
+    Holds,
+    Intends,
+    Judge,
+    Opens,
+    Says,
+    Stands,
+    Takes,
+    Tells,
+)
+from beliefnest.scenarios.naming import items_text, place_text
+from beliefnest.scenarios.trial import Trial
 from beliefnest.world.values import Event, EventKind, Items, Point, Position
 
-__all__ = ["arrives", "is_held", "opened_by", "opens", "places_of"]
+__all__ = [
+    "OUTCOMES",
+    "Verdict",
+    "answer_verdict",
+    "found_instead",
+    "opened_by",
+    "outcome_of",
+    "places_of",
+    "verdict_of",
+]
+
+OUTCOMES = ("ok", "wrong", "no_way", "program_failed", "no_answer", "error")
+"""What a probe can come to.
+
+`wrong`: something else was done, said or answered than was expected. `no_way`: nothing was, since
+what the program made for cannot be reached on foot. `program_failed`: nothing was, since the
+program broke off for another reason. `no_answer`: the model gave no program, or no answer. `error`:
+the world or the judging function failed; nothing is known.
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Whether one thing that was expected of a probe came out.
+
+    Attributes:
+        expected: What was expected.
+        ok: Whether it came out.
+        why_not: What came out instead, for people; empty if it is ok.
+        outcome: One of `OUTCOMES`; None: not ok, and the program's end says which.
+    """
+
+    expected: Expected
+    ok: bool
+    why_not: str = ""
+    outcome: str | None = None
 
 
 def opened_by(agent: str, events: Iterable[Event]) -> tuple[Position, ...]:
@@ -19,28 +74,96 @@ def opened_by(agent: str, events: Iterable[Event]) -> tuple[Position, ...]:
     )
 
 
-def opens(expect: Opens, opened: tuple[Position, ...]) -> bool:
-    """Whether the expected container was opened before any other."""
-    return opened[:1] == (expect.container,)
+def verdict_of(expected: Tells, trial: Trial) -> Verdict:
+    """Whether a program did what was expected."""
+    by_deed = False
+    match expected:
+        case Opens(container):
+            first = trial.opened[:1]
+            ok, by_deed = first == (container,), bool(first)
+            found = f"opened {place_text(first[0])} first" if first else "opened nothing"
+        case Arrives(place, within):
+            arrived = trial.arrived
+            ok = arrived is not None and math.dist(place, arrived) <= within
+            found = "is nowhere" if arrived is None else f"ended at {place_text(arrived)}"
+        case Intends():
+            intended = trial.intended
+            ok, by_deed = _intends(expected, trial), intended is not None
+            found = f"made for {'nothing' if intended is None else place_text(intended)}"
+        case Takes(items):
+            taken = _taken(trial)
+            ok = all(taken.get(name, 0) >= count for name, count in items.items())
+            by_deed = bool(taken)
+            found = f"took {items_text(taken)}"
+        case Says(text):
+            said = [line for _, line in trial.result.said]
+            ok = any(text.casefold() in line.casefold() for line in said)
+            found = f"said {said[-1]!r}" if said else "said nothing"
+        case Believes(expectation):
+            instead = found_instead(expectation.content, trial.belief(expectation.path))
+            ok = instead is None
+            found = f"{'reality' if expectation.path == '/' else expectation.path}: {instead}"
+        case Judge():
+            return _judged(expected, trial)
+    return _verdict(expected, ok, found, by_deed=by_deed)
 
 
-def arrives(expect: Arrives, arrived: Point | None) -> bool:
-    """Whether an agent stands where it was expected to."""
-    return arrived is not None and math.dist(expect.place, arrived) <= expect.within
+def outcome_of(verdicts: Sequence[Verdict], result: ProgramResult | None) -> str:
+    """What a probe came to, all in all; one of `OUTCOMES`.
+
+    Args:
+        verdicts: Of all that was expected of it.
+        result: What became of its program; None: there is none.
+    """
+    failed = [each for each in verdicts if not each.ok]
+    told = [each.outcome for each in failed]
+    if result is not None and result.killed:
+        return "error"
+    for outcome in ("error", "no_answer", "wrong"):
+        if outcome in told:
+            return outcome
+    if result is not None and result.error is not None and (failed or not verdicts):
+        return "no_way" if result.error.reason == NO_WAY else "program_failed"
+    return "wrong" if failed else "ok"
 
 
-def is_held(content: Holds | Stands | Hears, state: State) -> bool:
-    """Whether a simulator holds what was expected of it."""
-    if isinstance(content, Holds):
-        # A container that was never perceived is known to hold nothing in particular.
-        container = state.containers.get(content.container)
-        return (dict(container.items) if container else {}) == dict(content.items)
-    if isinstance(content, Hears):
-        return content.ever is any(content.text in text for _, _, text in state.chat)
-    position = state.agents[content.agent].position
-    if content.place is None or position is None:
-        return content.place is None and position is None
-    return math.dist(content.place, position) <= content.within
+def answer_verdict(expected: Answers, answer: str | None) -> Verdict:
+    """Whether a question was answered rightly; None: it was not answered."""
+    if answer is None:
+        return Verdict(expected, ok=False, why_not="gave no answer", outcome="no_answer")
+    if expected.options:
+        ok = answer in expected.right
+    else:
+        named = [
+            any(_has(answer, each) for each in texts) for texts in (expected.right, expected.wrong)
+        ]
+        ok = named == [True, False]
+    return _verdict(expected, ok, f"answered {answer!r}", by_deed=True)
+
+
+def found_instead(content: Holds | Stands | Hears, state: State) -> str | None:
+    """What a simulator holds in place of what was expected of it; None: just that."""
+    match content:
+        case Holds(place, items):
+            # A container that was never perceived is known to hold nothing in particular.
+            container = state.containers.get(place)
+            held = dict(container.items) if container else {}
+            if held == dict(items):
+                return None
+            return f"{place_text(place)} holds {items_text(held)}, not {items_text(items)}"
+        case Hears(text, ever):
+            if ever is any(text in line for _, _, line in state.chat):
+                return None
+            return f"{text!r} was {'not ' if ever else ''}heard"
+        case Stands(agent, wanted, within):
+            position = state.agents[agent].position
+            if wanted is None or position is None:
+                ok = wanted is None and position is None
+            else:
+                ok = math.dist(wanted, position) <= within
+            there = "nowhere" if position is None else f"at {place_text(position)}"
+            meant = "nowhere" if wanted is None else f"at {place_text(wanted)}"
+            return None if ok else f"{agent} is {there}, not {meant}"
 
 
 def places_of(items: Items, state: State) -> tuple[Position, ...]:
@@ -50,6 +173,53 @@ def places_of(items: Items, state: State) -> tuple[Position, ...]:
         for place, container in sorted(state.containers.items())
         if items and all(container.items.get(name, 0) >= n for name, n in items.items())
     )
+
+
+def _verdict(expected: Expected, ok: bool, found: str, *, by_deed: bool = False) -> Verdict:
+    if ok:
+        return Verdict(expected, ok=True, outcome="ok")
+    return Verdict(expected, ok=False, why_not=found, outcome="wrong" if by_deed else None)
+
+
+def _judged(expected: Judge, trial: Trial) -> Verdict:
+    try:
+        answer: object = expected.function(trial)
+    except Exception as error:  # noqa: BLE001  # a user's function may raise anything; it is told
+        answer = None
+        said = f"{expected.name} raised {type(error).__name__}: {error}"
+    else:
+        said = f"{expected.name} returned {answer!r}; it returns True, False or a text"
+    if not isinstance(answer, bool | str):
+        return Verdict(expected, ok=False, why_not=said, outcome="error")
+    said = answer if isinstance(answer, str) else f"{expected.name} says no"
+    return _verdict(expected, answer is True, said)
+
+
+def _intends(expected: Intends, trial: Trial) -> bool:
+    used, walked = trial.used, trial.walked
+    if used and _block(used[0]) == _block(expected.place):
+        return True
+    if expected.is_container and used:
+        return False
+    return bool(walked) and math.dist(_block(walked[-1]), _block(expected.place)) <= expected.within
+
+
+def _taken(trial: Trial) -> dict[str, int]:
+    taken: Counter[str] = Counter()
+    for event in trial.result.events:
+        if event.kind is EventKind.GET_ITEM_FROM_CHEST and event.actor == trial.agent:
+            taken.update(event.detail["items"])
+    return dict(sorted(taken.items()))
+
+
+def _has(answer: str, text: str) -> bool:
+    """Whether an answer has a text in it, as whole words."""
+    return re.search(rf"(?<!\w){re.escape(text.casefold())}(?!\w)", answer.casefold()) is not None
+
+
+def _block(point: Point) -> Position:
+    x, y, z = point
+    return (math.floor(x), math.floor(y), math.floor(z))
 
 
 def _position(value: Iterable[int]) -> Position:

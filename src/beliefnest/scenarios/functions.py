@@ -1,0 +1,62 @@
+"""Python functions that judge probes: given in code, or named in a file."""
+
+import importlib
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from beliefnest.errors import InputError
+from beliefnest.scenarios.expected import Judge
+from beliefnest.scenarios.trial import Trial
+
+__all__ = ["NamedFunction", "judge_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class NamedFunction:
+    """A function of a module, which is imported when it is first needed.
+
+    Attributes:
+        module: Name of a module that Python finds.
+        function: Name of a function in it.
+    """
+
+    module: str
+    function: str
+
+    def __call__(self, trial: Trial) -> bool | str:
+        """What the function says of a trial."""
+        return self.loaded()(trial)
+
+    def loaded(self) -> Callable[[Trial], bool | str]:
+        """The function.
+
+        Raises:
+            InputError: There is none of that name.
+        """
+        try:
+            found: Callable[[Trial], bool | str] | None = getattr(
+                importlib.import_module(self.module), self.function, None
+            )
+        except ImportError as error:
+            raise InputError(
+                f"the module {self.module!r} of a judging function cannot be imported: {error}; "
+                "put its folder into PYTHONPATH"
+            ) from error
+        if found is None or not callable(found):
+            raise InputError(f"the module {self.module!r} has no function {self.function!r}")
+        return found
+
+
+def judge_of(written: object) -> Judge:
+    """The judge that a scenario names.
+
+    Raises:
+        InputError: It is no function and no `module:function`.
+    """
+    if callable(written):
+        return Judge(written, getattr(written, "__name__", "the judging function"))
+    if isinstance(written, str):
+        module, _, function = written.partition(":")
+        if function.isidentifier() and all(part.isidentifier() for part in module.split(".")):
+            return Judge(NamedFunction(module, function), function)
+    raise InputError(f"{written!r} is no function; name one as module:function")

@@ -1,0 +1,15 @@
+"""Places and items as texts for people."""
+
+from beliefnest.world.values import Items, Point
+
+__all__ = ["items_text", "place_text"]
+
+
+def place_text(point: Point) -> str:
+    """A place as `(2, -51, -4)`, tenths where it is no whole number."""
+    return f"({', '.join(f'{round(value, 1):g}' for value in point)})"
+
+
+def items_text(items: Items) -> str:
+    """Items as `1 diamond, 2 apple`; `nothing` if there are none."""
+    return ", ".join(f"{count} {name}" for name, count in sorted(items.items())) or "nothing"

@@ -1,0 +1,204 @@
+"""Asking a model one probe: for a program, which is run and judged, and for answers."""
+
+from dataclasses import dataclass, field
+
+from beliefnest.belief.view import State
+from beliefnest.llm.asking import Attempt, NoUsableProgramError, Prompt, ask_for_program
+from beliefnest.llm.messages import Model, Sampling, Usage
+from beliefnest.nest.face.nest import Nest
+from beliefnest.nest.face.simulator import Simulator
+from beliefnest.programs import skills
+from beliefnest.prompts import Template, built_in_template
+from beliefnest.prompts.rendering import LAST_ERROR
+from beliefnest.scenarios.content import Probe
+from beliefnest.scenarios.expected import Answers
+from beliefnest.scenarios.judging import (
+    Verdict,
+    answer_verdict,
+    opened_by,
+    outcome_of,
+    verdict_of,
+)
+from beliefnest.scenarios.outcome import ProbeOutcome, Reply
+from beliefnest.scenarios.questioning import ask_question
+from beliefnest.scenarios.trial import Trial
+
+__all__ = ["Asking", "run_probe"]
+
+
+@dataclass(frozen=True, slots=True)
+class Asking:
+    """How a model is asked.
+
+    Attributes:
+        attempts: How often at most, for one probe: a program that does not work is sent back.
+        sampling: How answers are drawn.
+        keeps_unanswered: Whether a probe for which a model gives no program in all its attempts
+            comes to `no_answer`; False: it ends the scenario with an error.
+    """
+
+    attempts: int = 3
+    sampling: Sampling = field(default_factory=Sampling)
+    keeps_unanswered: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class _Programs:
+    """What came of asking for a program."""
+
+    attempts: tuple[Attempt, ...]
+    trial: Trial | None
+    verdicts: tuple[Verdict, ...]
+    fault: str = ""
+
+
+def run_probe(
+    nest: Nest, number: int, probe: Probe, model: Model, seed: int, asking: Asking
+) -> ProbeOutcome:
+    """Ask a model, run and judge what it answers.
+
+    Args:
+        nest: The script played.
+        number: Of the probe, from 1; its branches are named by it.
+        probe: What is asked.
+        model: Who is asked.
+        seed: Drives the order of options.
+        asking: How it is asked.
+
+    Raises:
+        ModelError: The model failed, or gave no program that works (`Asking.keeps_unanswered`).
+        BodyError: The Minecraft side died.
+    """
+    noting = nest[probe.path].noting(model, probe=f"probe {number}", task=probe.task)
+    programs = _Programs((), None, ())
+    if probe.asks_for_program:
+        programs = _ask_for_program(nest, number, probe, noting, asking)
+    replies: dict[Answers, Reply] = {}
+    usage = sum((each.answer.usage for each in programs.attempts), Usage())
+    for question in probe.questions:
+        replies[question], used = ask_question(nest, probe, question, noting, seed, asking.sampling)
+        usage += used
+    judged = {each.expected: each for each in programs.verdicts}
+    verdicts = tuple(
+        answer_verdict(each, replies[each].answer) if isinstance(each, Answers) else judged[each]
+        for each in probe.expect
+    )
+    trial = programs.trial
+    outcome = outcome_of(verdicts, None if trial is None else trial.result)
+    if probe.asks_for_program and trial is None:
+        outcome = "no_answer"
+    given = [each for each in programs.attempts if each.program is not None]
+    last = (given or programs.attempts)[-1] if programs.attempts else None
+    return ProbeOutcome(
+        probe=probe,
+        verdicts=verdicts,
+        outcome=outcome,
+        usage=usage,
+        prompt="" if last is None else last.messages[-1].text,
+        answer="" if last is None else last.answer.text,
+        program="" if trial is None else trial.program,
+        attempts=len(programs.attempts),
+        trial=trial,
+        replies=tuple(replies.values()),
+        fault=programs.fault,
+    )
+
+
+def _ask_for_program(
+    nest: Nest, number: int, probe: Probe, model: Model, asking: Asking
+) -> _Programs:
+    trials = _Trials(nest, probe, f"probe {number}")
+    prompts = _Prompts(nest[probe.path], probe)
+    try:
+        attempts = ask_for_program(
+            model,
+            prompts.prompt,
+            trials.complaint,
+            asking.attempts,
+            system=prompts.system,
+            sampling=asking.sampling,
+        ).attempts
+    except NoUsableProgramError as error:
+        # If it did give programs, what the last of them did is the result.
+        attempts = error.attempts
+        if not trials.done:
+            if not asking.keeps_unanswered:
+                raise
+            told = tuple(
+                Verdict(each, ok=False, why_not="there is no program", outcome="no_answer")
+                for each in probe.expect
+                if not isinstance(each, Answers)
+            )
+            return _Programs(attempts, None, told, str(error))
+    return _Programs(attempts, *trials.done[-1])
+
+
+class _Prompts:
+    """What a model is told: how to answer, and what the belief holds."""
+
+    def __init__(self, believer: Simulator, probe: Probe) -> None:
+        self._believer = believer
+        self._task = probe.task
+        if probe.template is None:
+            self._template = built_in_template("paper")
+        else:
+            self._template = Template("template of the probe", probe.template)
+        self.system = believer.render(built_in_template("instructions"), skills=skills())
+
+    @property
+    def prompt(self) -> Prompt:
+        """Rendered anew in each round if the template shows the last error, else one text."""
+        return self._render if LAST_ERROR in self._template.text else self._render(None, None)
+
+    def _render(self, code: str | None, error: str | None) -> str:
+        return self._believer.render(
+            self._template, task=self._task, last_code=code, last_error=error
+        )
+
+
+class _Trials:
+    """Runs programs of a probe, each from the same moment, on a branch of its own."""
+
+    def __init__(self, nest: Nest, probe: Probe, name: str) -> None:
+        self._nest = nest
+        self._simulator = nest[probe.acts_in]
+        self._probe = probe
+        self._name = name
+        self.done: list[tuple[Trial, tuple[Verdict, ...]]] = []
+
+    def complaint(self, program: str) -> str | None:
+        """Run a program; why it does not work, for the model to read.
+
+        A program that has acted is never sent back, however it ended: what it did is the
+        answer, and its error tells of a world that the believer may not know.
+        """
+        probe, simulator = self._probe, self._simulator
+        branch = self._name if not self.done else f"{self._name} attempt {len(self.done) + 1}"
+        before = simulator.branch
+        simulator.switch(branch)
+        try:
+            result = simulator.run(probe.agent, program, probe.timeout_ticks)
+            if result.killed:
+                # Nothing of it was kept; once more, as it need not have been the program's fault.
+                result = simulator.run(probe.agent, program, probe.timeout_ticks)
+            trial = Trial(
+                agent=probe.agent,
+                program=program,
+                branch=branch,
+                result=result,
+                state=simulator.state,
+                belief=self._belief,
+                opened=opened_by(probe.agent, result.events),
+            )
+            verdicts = tuple(
+                verdict_of(each, trial) for each in probe.expect if not isinstance(each, Answers)
+            )
+        finally:
+            simulator.switch(before)
+        self.done.append((trial, verdicts))
+        error = result.error
+        acted = any(event.actor == probe.agent for event in result.events)
+        return None if error is None or error.skill is not None or acted else str(error)
+
+    def _belief(self, path: str) -> State:
+        return self._nest[path].state

@@ -1,0 +1,163 @@
+"""What came of a scenario as plain values: the objects of `--json`, the rows of studies."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from beliefnest.bodies.protocol import Aim
+from beliefnest.llm.messages import Usage
+from beliefnest.scenarios.expected import (
+    Answers,
+    Arrives,
+    Believes,
+    Expectation,
+    Expected,
+    Hears,
+    Holds,
+    Intends,
+    Judge,
+    Opens,
+    Says,
+    Takes,
+)
+from beliefnest.scenarios.outcome import ExpectationOutcome, ProbeOutcome, Reply
+from beliefnest.world.values import Point
+
+__all__ = ["expectation_json", "expected_json", "probe_json", "usage_json"]
+
+
+def usage_json(usage: Usage) -> dict[str, object]:
+    """What answers took."""
+    return {
+        "requests": usage.requests,
+        "input_tokens": usage.input_tokens,
+        "output_tokens": usage.output_tokens,
+        "cost": usage.cost,
+    }
+
+
+def expectation_json(outcome: ExpectationOutcome) -> dict[str, object]:
+    """Whether a simulator holds what was expected of it."""
+    return {
+        **_expected_of(outcome.expectation),
+        "ok": outcome.ok,
+        "why_not": outcome.why_not or "",
+    }
+
+
+def expected_json(expected: tuple[Expected, ...]) -> dict[str, object] | None:
+    """All that is expected of a probe, with the keys of a scenario file; None: nothing."""
+    found: dict[str, Any] = {}
+    for each in expected:
+        for key, value in _one(each).items():
+            several = isinstance(value, list) and key in ("answers", "believes")
+            found[key] = [*found.get(key, []), *value] if several else value
+    return found or None
+
+
+def probe_json(outcome: ProbeOutcome, run_dir: Path | str) -> dict[str, object]:
+    """What came of a probe.
+
+    Args:
+        outcome: Of the probe.
+        run_dir: Folder of the recorded run.
+    """
+    probe, trial = outcome.probe, outcome.trial
+    result = None if trial is None else trial.result
+    return {
+        "label": probe.label,
+        "path": probe.path,
+        "acts_in": probe.acts_in,
+        "agent": probe.agent,
+        "task": probe.task,
+        "program": outcome.program,
+        "attempts": outcome.attempts,
+        "usage": usage_json(outcome.usage),
+        "error": None if outcome.error is None else str(outcome.error),
+        "said": [] if result is None else [list(line) for line in result.said],
+        "lines": [] if result is None else list(result.lines),
+        "log": [] if result is None else list(result.log),
+        "unfinished": [] if result is None else [str(each) for each in result.unfinished],
+        "aims": [] if result is None else [_aim_json(each) for each in result.aims],
+        "branch": outcome.branch,
+        "intended": _list(outcome.intended),
+        "opened": [list(place) for place in outcome.opened],
+        "arrived": _list(outcome.arrived),
+        "replies": [_reply_json(each) for each in outcome.replies],
+        "expected": expected_json(probe.expect),
+        "checks": [
+            {"expected": _one(each.expected), "ok": each.ok, "why_not": each.why_not}
+            for each in outcome.verdicts
+        ],
+        "ok": outcome.ok,
+        "outcome": outcome.outcome,
+        "why_not": outcome.why_not,
+        "ticks": outcome.ticks,
+        "tokens": outcome.usage.tokens,
+        "cost": outcome.usage.cost,
+        "run_dir": str(run_dir),
+    }
+
+
+def _one(expected: Expected) -> dict[str, Any]:
+    found: dict[str, Any]
+    match expected:
+        case Opens(container):
+            found = {"opens": list(container)}
+        case Arrives(place, within):
+            found = {"arrives": list(place), "within": within}
+        case Intends(place, within, _):
+            found = {"intends": list(place), "within": within}
+        case Takes(items):
+            found = {"takes": dict(items)}
+        case Says(text):
+            found = {"says": text}
+        case Answers(question, right, options, wrong, reason):
+            asked = {
+                "question": question,
+                "right": list(right),
+                "options": list(options),
+                "wrong": list(wrong),
+                "reason": reason,
+            }
+            found = {"answers": [asked]}
+        case Believes(expectation):
+            found = {"believes": [_expected_of(expectation)]}
+        case Judge(_, name):
+            found = {"function": name}
+    return found
+
+
+def _expected_of(expectation: Expectation) -> dict[str, object]:
+    content = expectation.content
+    expected: Mapping[str, object]
+    if isinstance(content, Holds):
+        expected = {"container": list(content.container), "items": dict(content.items)}
+    elif isinstance(content, Hears):
+        expected = {"heard" if content.ever else "not_heard": content.text}
+    else:
+        expected = {"agent": content.agent, "position": _list(content.place)}
+    return {"path": expectation.path, "label": expectation.label, "expected": expected}
+
+
+def _reply_json(reply: Reply) -> dict[str, object]:
+    return {
+        "question": reply.question,
+        "options": list(reply.options),
+        "answer": reply.answer,
+        "reason": reply.reason,
+    }
+
+
+def _aim_json(aim: Aim) -> dict[str, object]:
+    return {
+        "tick": aim.tick,
+        "call": aim.call,
+        "place": _list(aim.place),
+        "agent": aim.agent,
+        "uses": aim.uses,
+    }
+
+
+def _list(point: Point | None) -> list[float] | None:
+    return None if point is None else list(point)
