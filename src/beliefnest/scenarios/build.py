@@ -11,6 +11,7 @@ from beliefnest.belief.entries import InitialBelief
 from beliefnest.files import read_regular_text
 from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.perception.options import Perception
+from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, built_in_template
 from beliefnest.scenarios.content import Probe, ScenarioContent
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.expected import (
@@ -316,6 +317,8 @@ class _Builder:
             return None
         if name in self._document.templates:
             return self._document.templates[name]
+        if name in BUILT_IN_TEMPLATES:
+            return built_in_template(name).text
         file = self._document.folder / name
         try:
             return read_regular_text(file)

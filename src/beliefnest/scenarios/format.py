@@ -256,7 +256,8 @@ class ProbeEntry(_Entry, frozen=True):
     task: Annotated[str | None, _note("What the model is asked to make the agent do.")] = None
     label: Annotated[str, _note("A name for tables and overrides.")] = ""
     template: Annotated[
-        str | None, _note("A prompt template file beside the scenario; null: the paper's.")
+        str | None,
+        _note("`default`, `paper`, or a prompt template file beside the scenario; null: `paper`."),
     ] = None
     expect: Annotated[ExpectEntry | None, _note("How the outcome is judged.")] = None
     timeout_ticks: Annotated[
