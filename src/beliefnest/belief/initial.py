@@ -150,7 +150,9 @@ def forked_forest(
         table.copy_node(source.table, old, is_root=is_root, recorded=False)
         holdings.add(_forked_holdings(source.holdings, old, agents, is_root=is_root))
     table.link()
-    return Forest(events, table, holdings, tick)
+    forest = Forest(events, table, holdings, tick)
+    forest.since &= source.since
+    return forest
 
 
 def _forked_holdings(

@@ -1,5 +1,6 @@
 """What a simulator shows of itself, and simulators as they were; nothing here acts."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -37,6 +38,11 @@ class ShownSimulator(LookingAtOne):
     def owner(self) -> str | None:
         """The agent whose belief this is; None in the real world."""
         return self._path[-1] if self._path else None
+
+    @property
+    def labels(self) -> Mapping[Position, str]:
+        """What containers are called and look as if they held, where prompts may say so."""
+        return self._recording.setting.prompt_labels
 
     @property
     def tick(self) -> int:

@@ -49,6 +49,7 @@ class Setting:
         absent: Agents who are not in the world at its first tick and may come later.
         labels: What people call containers.
         places: What people call other places.
+        prompt_labels: What containers are called and look as if they held, for prompts.
     """
 
     name: str
@@ -60,6 +61,7 @@ class Setting:
     absent: frozenset[str] = frozenset()
     labels: Mapping[Position, str] = field(default_factory=dict)
     places: Mapping[str, Position] = field(default_factory=dict)
+    prompt_labels: Mapping[Position, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         agents = self.snapshot.agents.keys() | self.absent

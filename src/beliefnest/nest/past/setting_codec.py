@@ -44,6 +44,7 @@ class _Start(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
     absent: tuple[str, ...]
     labels: tuple[tuple[Position, str], ...] = ()
     places: tuple[tuple[str, Position], ...] = ()
+    prompt_labels: tuple[tuple[Position, str], ...] = ()
 
 
 def encode_start(setting: Setting, world: str) -> bytes:
@@ -65,6 +66,7 @@ def encode_start(setting: Setting, world: str) -> bytes:
             absent=tuple(sorted(setting.absent)),
             labels=tuple(sorted(setting.labels.items())),
             places=tuple(sorted(setting.places.items())),
+            prompt_labels=tuple(sorted(setting.prompt_labels.items())),
         )
     )
 
@@ -92,6 +94,7 @@ def decode_start(data: bytes) -> tuple[Setting, str]:
         absent=frozenset(start.absent),
         labels=dict(start.labels),
         places=dict(start.places),
+        prompt_labels=dict(start.prompt_labels),
     )
     return setting, start.world
 
