@@ -9,7 +9,7 @@ import numpy as np
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import BeliefContext
-from beliefnest.timeline.journal import Journal, Sift, TimelineKey
+from beliefnest.timeline.journal import EntryFilter, Journal, TimelineKey
 from beliefnest.world.claims import ClaimKind, claims_of
 from beliefnest.world.frames import Frame, Snapshot
 
@@ -46,7 +46,7 @@ class ClaimedBlocks:
         self._read[key] = count
         found = {
             cell_of(self._context.box, claim.cell)
-            for _, entry in self._journal.sifted(key, first, count, Sift.EVENTS)
+            for _, entry in self._journal.filtered(key, first, count, EntryFilter.EVENTS)
             if isinstance(entry, Frame)
             for event in entry.events
             for claim in claims_of(event)
