@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from rich import box
+from rich.console import Console
 from rich.markup import escape
+from rich.measure import Measurement
 from rich.table import Table
 
 from beliefnest.belief.entries import Basis
@@ -177,13 +179,21 @@ def _counted(
     return {outcome: found[outcome] for outcome in OUTCOMES}
 
 
-def outcome_table(outcomes: Sequence[Outcome]) -> Table:
+def outcome_table(outcomes: Sequence[Outcome], console: Console) -> Table:
     """What is where, what was predicted, whether it is as expected, in each condition.
 
-    One row for each condition, or one column where there is too much to tell for a row.
+    One row for each condition, or one column where there is too much to tell for a row of the
+    console.
     """
-    if len(_headings(outcomes)) > _WIDEST:
+    wide = _wide_table(outcomes)
+    # Rich's measure is no wider than the room it is told of.
+    least = Measurement.get(console, console.options.update(max_width=10_000), wide).minimum
+    if len(_headings(outcomes)) > _WIDEST or least > console.width:
         return _tall_table(outcomes)
+    return wide
+
+
+def _wide_table(outcomes: Sequence[Outcome]) -> Table:
     scenario = outcomes[0].scenario
     table = Table(title=scenario.name, title_justify="left", box=box.SIMPLE_HEAVY)
     if scenario.conditions:

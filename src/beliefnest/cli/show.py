@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from beliefnest.belief.view import State
-from beliefnest.cli.console import stdout
+from beliefnest.cli.console import folded, stdout
 from beliefnest.cli.folder import store_in, stores_in
 from beliefnest.cli.pictures import container_name, place_text, titled
 from beliefnest.cli.report import state_json
@@ -218,7 +218,7 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
         where = "unknown" if agent.position is None else place_text(agent.position, scenario)
         holds = (agent.equipment or {}).get("main_hand", "-")
         agents.add_row(titled(name), _foreign(where), "yes" if agent.current else "no", holds)
-    console.print(containers, agents)
+    console.print(folded(containers), folded(agents))
     for (tick, speaker, text), to in zip(state.chat, state.addressees, strict=True):
         said = speaker if to is None else f"{speaker} whispers to {to}"
         console.print(_foreign(f"{tick} {said}: {text}"), highlight=False)
@@ -262,7 +262,7 @@ def _print_prompts(prompts: Sequence[PromptRecord]) -> None:
             given.strip(),
         )
         table.add_row(*map(_foreign, cells))
-    stdout().print(table)
+    stdout().print(folded(table))
 
 
 def _foreign(text: str) -> Text:

@@ -103,7 +103,8 @@ class Looking:
     ) -> Figure:
         """What simulators held of a container over time: a row for each, a band for each value.
 
-        Bands are marked where they are false. Above stand the deeds of the real world that mattered.
+        Bands are marked where they are false; above stand the deeds of the real world that
+        mattered.
 
         Args:
             container: Where it is.
