@@ -41,6 +41,7 @@ __all__ = [
     "outcome_json",
     "outcome_table",
     "place_key",
+    "placed_lines",
     "report_json",
     "state_json",
     "usage_json",
@@ -241,6 +242,14 @@ def cost_text(cost: float | None) -> str:
     return "not known" if cost is None else f"${cost:.4f}"
 
 
+def placed_lines(placed: Mapping[str, tuple[Point, Point]]) -> list[str]:
+    """Whom a body had to move, for people, a line each."""
+    return [
+        f"{name} begins at {point_text(end)}, could not be at {point_text(start)}"
+        for name, (start, end) in placed.items()
+    ]
+
+
 def _verb(scenario: Scenario) -> str:
     return " reports" if scenario.reported_by else ""
 
@@ -265,6 +274,8 @@ def _cells(outcome: Outcome) -> dict[str, str]:
         cells.setdefault(heading, []).append(text)
     for probe in outcome.probes:
         heading, text = _acted(probe, outcome.scenario)
+        placed = {} if probe.trial is None else probe.trial.result.placed
+        text += "".join(f"\n({escape(line)})" for line in placed_lines(placed))
         if len(outcome.probes) > 1 and probe.probe.label:
             text = f"{escape(printable(probe.probe.label))}: {text}"
         cells.setdefault(heading, []).append(text)

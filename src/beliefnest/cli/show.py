@@ -16,7 +16,7 @@ from beliefnest.belief.view import State
 from beliefnest.cli.console import folded, stdout
 from beliefnest.cli.folder import store_in, stores_in
 from beliefnest.cli.pictures import container_name, place_text, titled
-from beliefnest.cli.report import state_json
+from beliefnest.cli.report import placed_lines, state_json
 from beliefnest.cli.text import printable
 from beliefnest.errors import InputError
 from beliefnest.nest.face.past_simulator import PastSimulator
@@ -25,6 +25,7 @@ from beliefnest.pictures.animation import check_animated, save_animation
 from beliefnest.pictures.figure import figure_of
 from beliefnest.pictures.scene import Scene
 from beliefnest.prompts.templates import Template, built_in_template, load_template
+from beliefnest.scenarios.records import placed_json
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import FOLLOW
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
@@ -102,12 +103,15 @@ def _show(options: ShowOptions, store: Path) -> None:
             content = {
                 **place,
                 **state_json(state),
+                "placed": placed_json(simulator.placed),
                 "programs": [_program_json(each) for each in programs],
                 "prompts": [prompt_row(each)[1] for each in asked],
             }
             sys.stdout.write(json.dumps(content, indent=2) + "\n")
         else:
             _print_state(state, simulator.path, scenario)
+            for line in placed_lines(simulator.placed):
+                stdout().print(_foreign(line), highlight=False)
             _print_programs(programs)
             _print_prompts(asked)
 

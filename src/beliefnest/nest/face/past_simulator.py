@@ -14,10 +14,11 @@ from beliefnest.nest.explain.comparison import Difference, compare, false_belief
 from beliefnest.nest.explain.explanation import Explanation
 from beliefnest.nest.face.looking import Looking, LookingAtOne
 from beliefnest.nest.face.turns import in_turn
+from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
 from beliefnest.prompts import Template, render
 from beliefnest.world.paths import normalised, parse_path, path_text
-from beliefnest.world.values import Position
+from beliefnest.world.values import Point, Position
 
 __all__ = ["Past", "PastSimulator", "ShownSimulator"]
 
@@ -95,6 +96,17 @@ class ShownSimulator(LookingAtOne):
 
     def _explained_tick(self) -> int | None:
         raise NotImplementedError
+
+    @property
+    @in_turn
+    def placed(self) -> Mapping[str, tuple[Point, Point]]:
+        """Whom its body had to move when it began: agent to (from where, to where), feet in blocks.
+
+        A belief may be impossible: somebody in a doorway that is now believed shut, two in one
+        place. Its body begins with them at the nearest place where they can stand; the belief is
+        left as it is. Empty in follow mode and where nobody had to be moved.
+        """
+        return placed_in(self._recording, self._path, self._explained_tick())
 
     def child(self, agent: str) -> "ShownSimulator":
         """The simulator of what `agent` believes in this one."""
