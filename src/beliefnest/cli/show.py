@@ -19,6 +19,7 @@ from beliefnest.cli.pictures import container_name, place_text, titled
 from beliefnest.cli.report import placed_lines, state_json
 from beliefnest.cli.text import printable
 from beliefnest.errors import InputError
+from beliefnest.nest.explain.told import ToldClaim
 from beliefnest.nest.face.past_simulator import PastSimulator
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.pictures.animation import check_animated, save_animation
@@ -110,10 +111,27 @@ def _show(options: ShowOptions, store: Path) -> None:
             sys.stdout.write(json.dumps(content, indent=2) + "\n")
         else:
             _print_state(state, simulator.path, scenario)
+            _print_claims(nest.at(state.tick).claims(options.path), simulator.path)
             for line in placed_lines(simulator.placed):
                 stdout().print(_foreign(line), highlight=False)
             _print_programs(programs)
             _print_prompts(asked)
+
+
+def _print_claims(claims: Sequence[ToldClaim], path: str) -> None:
+    """Every claim of the run, and what the simulator made of it."""
+    if not claims:
+        return
+    table = Table("tick", "speaker", "claim", "", "heard by", box=box.SIMPLE, title_justify="left")
+    is_belief = path != "/"
+    if is_belief:
+        table.add_column(f"in {path}")
+    for told in claims:
+        kind = "a lie" if told.lie else "false" if told.false else ""
+        row = [str(told.tick), told.speaker, str(told.claim), kind, ", ".join(told.hearers)]
+        table.add_row(*map(printable, row), *([told.why(path)] if is_belief else []))
+    stdout().print("Claims")
+    stdout().print(table)
 
 
 def _simulator(options: ShowOptions, nest: RecordedNest) -> PastSimulator:

@@ -18,6 +18,7 @@ from beliefnest.nest.face.opening import HasSetting, Start, begun, resumed
 from beliefnest.nest.face.past_simulator import Past
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.face.simulator import Simulator
+from beliefnest.nest.face.telling import Telling
 from beliefnest.nest.face.ticks import tick_of
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.face.viewing import Viewing
@@ -30,7 +31,7 @@ from beliefnest.world.scripted import ScriptedWorld
 __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 
 
-class Nest(Looking, Viewing):
+class Nest(Looking, Viewing, Telling):
     """The real world and every belief in it; each node is made on first use.
 
     `Nest(world)` wraps a `ScriptedWorld` and follows what happens in it; `Nest.open` opens a

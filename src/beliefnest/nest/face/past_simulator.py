@@ -13,6 +13,7 @@ from beliefnest.nest.explain.chain import element_of, explain
 from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs
 from beliefnest.nest.explain.explanation import Explanation
 from beliefnest.nest.face.looking import Looking, LookingAtOne
+from beliefnest.nest.face.telling import Telling
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
@@ -164,7 +165,7 @@ class PastSimulator(ShownSimulator):
         return self._tick
 
 
-class Past(Looking):
+class Past(Looking, Telling):
     """All simulators at one past tick."""
 
     def __init__(self, recording: Recording, tick: int) -> None:
