@@ -186,7 +186,9 @@ class Stories:
         contents = st.tuples(st.just({"emerald": 1}), st.booleans())
         return st.builds(
             bn.InitialBelief,
-            path=paths.map(tuple),
+            path=st.one_of(
+                paths.map(tuple), paths.map(lambda names: (*names[:2], "**")), st.just(("**",))
+            ),
             containers=st.dictionaries(st.sampled_from(CONTAINERS), contents, max_size=1),
             blocks=st.dictionaries(self._cell(range(2)), states, max_size=3),
             agents=st.dictionaries(st.sampled_from(NAMES), self._feet, max_size=1),

@@ -27,6 +27,7 @@ from beliefnest.perception.options import Perception
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
 from beliefnest.world.paths import parse_path
 from beliefnest.world.scripted import ScriptedWorld
+from beliefnest.world.values import Position
 
 __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 
@@ -40,7 +41,7 @@ class Nest(Looking, Viewing, Telling):
     Args:
         world: The scripted world that is the real one.
         perception: What agents can perceive.
-        static_blocks: Names of blocks that everybody knows from the start.
+        static_blocks: Names and positions of blocks that everybody knows from the start.
         initial_beliefs: Further priors, at any depth.
         store: File to record in; None: memory.
     """
@@ -49,7 +50,7 @@ class Nest(Looking, Viewing, Telling):
         self,
         world: ScriptedWorld,
         perception: Perception | None = None,
-        static_blocks: Iterable[str] = (),
+        static_blocks: Iterable[str | Position] = (),
         initial_beliefs: Iterable[InitialBelief] = (),
         store: str | Path | None = None,
     ) -> None:
