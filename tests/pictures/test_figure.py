@@ -1,5 +1,8 @@
 """Figures show what simulators hold, are written in three forms, and nothing in them collides."""
 
+import base64
+import re
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -103,6 +106,28 @@ def test_the_same_figure_gives_the_same_bytes(nest: bn.Nest, tmp_path: Path, end
     assert one.read_bytes() == two.read_bytes()
     beginnings = {"svg": b"<svg", "pdf": b"%PDF", "png": b"\x89PNG"}
     assert one.read_bytes().startswith(beginnings[ending])
+
+
+def test_letters_of_a_pdf_are_outlined_only_where_they_have_a_halo(
+    nest: bn.Nest, tmp_path: Path
+) -> None:
+    nest.figure("/").save(tmp_path / "f.pdf")
+    (page,) = [
+        zlib.decompress(base64.a85decode(stream.strip(), adobe=False))
+        for stream in re.findall(
+            rb"ASCII85Decode.*?stream\s(.*?)~>endstream",
+            (tmp_path / "f.pdf").read_bytes(),
+            re.DOTALL,
+        )
+        if b" Tf " in zlib.decompress(base64.a85decode(stream.strip(), adobe=False))
+    ]
+    depth, outlined_at = 0, []
+    for word in page.split():
+        depth += {b"q": 1, b"Q": -1}.get(word, 0)
+        if word == b"Tr":
+            outlined_at.append(depth)
+    assert outlined_at
+    assert min(outlined_at) >= 1
 
 
 def test_a_png_has_the_asked_size(nest: bn.Nest, tmp_path: Path) -> None:

@@ -82,6 +82,8 @@ def _text(canvas: Any, height: float, mark: Text) -> None:
     for colour, mode in ((mark.halo, 2), (mark.colour, 0)):
         if colour is None:
             continue
+        # How letters are drawn stays as it is set, from text to text.
+        canvas.saveState()
         text = canvas.beginText(mark.left, height - mark.y)
         text.setFont(_NAMES[mark.bold], mark.size)
         text.setFillColor(HexColor(colour))
@@ -92,3 +94,4 @@ def _text(canvas: Any, height: float, mark: Text) -> None:
         canvas.setDash([])
         text.textOut(mark.text)
         canvas.drawText(text)
+        canvas.restoreState()
