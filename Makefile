@@ -1,5 +1,5 @@
 # Shortcuts for working on BeliefNest, inside an environment with `pip install -e ".[dev]"`.
-.PHONY: help test nightly check format schema notices picture pages docs bench ci
+.PHONY: help test nightly check format schema notices picture docs bench ci
 
 help: ## What can be made
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /: /' | column -t -s: -o '  '
@@ -30,11 +30,10 @@ schema: ## docs/scenario.schema.json from the types
 notices: ## THIRD_PARTY_NOTICES.md from what is bundled
 	python tools/third_party_notices.py
 
-pages: ## The pictures of docs/page.md, taken in a real browser
-	python tools/page_pictures.py
-
-picture: ## The pictures of README and docs, by the program itself
-	python tools/pictures.py
+picture: ## The picture of the README, made by the program itself
+	rm -rf build/picture
+	beliefnest run sally-anne --out build/picture
+	cp build/picture/picture.png docs/img/sally-anne.png
 
 docs: ## The documentation site, in build/site; a broken link is an error
 	NO_MKDOCS_2_WARNING=1 mkdocs build --quiet --strict

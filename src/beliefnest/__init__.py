@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from beliefnest.nest.face.simulator import Simulator
     from beliefnest.perception.options import Perception, Radius
     from beliefnest.scenarios import Scenario
+    from beliefnest.studies.result import StudyResult
+    from beliefnest.studies.study import Study
     from beliefnest.world.claims import Claim, ClaimKind
     from beliefnest.world.scripted import ScriptedWorld
 
@@ -69,6 +71,8 @@ __all__ = [
     "ScriptedWorld",
     "Simulator",
     "StoreError",
+    "Study",
+    "StudyResult",
     "TemplateError",
     "TickError",
     "UnknownNameError",
@@ -93,6 +97,8 @@ _HOMES = {
     "Scenario": "beliefnest.scenarios",
     "ScriptedWorld": "beliefnest.world.scripted",
     "Simulator": "beliefnest.nest.face.simulator",
+    "Study": "beliefnest.studies.study",
+    "StudyResult": "beliefnest.studies.result",
 }
 
 

@@ -283,6 +283,33 @@ def suite(
 
 
 @app.command()
+def study(
+    study: Annotated[Path, typer.Argument(help="YAML file that says what is combined.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Its folder; an interrupted or larger study goes on in it.")
+    ] = None,
+    jobs: Annotated[int, typer.Option(help="Cells that are played at the same time.")] = 2,
+    backend: Annotated[
+        str, typer.Option(help="loky: processes here; dask or ray: a cluster.")
+    ] = "loky",
+    shard: Annotated[
+        str | None, typer.Option(help="Only this part of it, as 1/4; others run elsewhere.")
+    ] = None,
+    merge: Annotated[
+        list[Path] | None,
+        typer.Option(help="Folder of a shard to take over first; can be repeated."),
+    ] = None,
+    record: Annotated[bool, typer.Option(help="Record the runs, into OUT/runs.")] = False,
+    json: Json = False,
+) -> int:
+    """Play many variations of scenarios with several models; print accuracies with intervals."""
+    from beliefnest.cli.study import StudyOptions, run_study
+
+    options = StudyOptions(study, out, jobs, backend, shard, tuple(merge or ()), record, json)
+    return run_study(options)
+
+
+@app.command()
 def doctor(json: Json = False) -> int:
     """Check Node, the bundle, a world and a model; say what to do about what fails."""
     from beliefnest.cli.doctor import examine

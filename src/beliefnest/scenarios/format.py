@@ -22,6 +22,7 @@ __all__ = [
     "ExpectEntry",
     "ExpectationEntry",
     "InitialBeliefEntry",
+    "ParameterEntry",
     "PerceptionEntry",
     "ProbeEntry",
     "RadiusEntry",
@@ -75,9 +76,6 @@ class ContainerEntry(_Entry, frozen=True):
     block: Annotated[str, _note("A block state of a container.")] = "chest"
     items: _ItemsField = {}
     label: Annotated[str, _note("What people call it, in tables and pictures.")] = ""
-    looks: Annotated[str, _note("What it looks as if it held, in words; see the key `labels`.")] = (
-        ""
-    )
 
 
 class EquipmentEntry(_Entry, frozen=True):
@@ -157,10 +155,7 @@ class _BelievedContainerEntry(_Entry, frozen=True):
 class InitialBeliefEntry(_Entry, frozen=True):
     """What a belief holds before anything happens."""
 
-    path: Annotated[
-        str,
-        _note("A belief path such as /observer/sally; /** at its end: that and all below it."),
-    ]
+    path: Annotated[str, _note("A belief path such as /observer/sally.")]
     containers: list[_BelievedContainerEntry] = []
     blocks: Annotated[list[BlockEntry], _note("Believed blocks; block null: unknown.")] = []
     agents: Annotated[dict[str, Point], _note("Believed positions of the feet.")] = {}
@@ -262,8 +257,7 @@ class ProbeEntry(_Entry, frozen=True):
     task: Annotated[str | None, _note("What the model is asked to make the agent do.")] = None
     label: Annotated[str, _note("A name for tables and overrides.")] = ""
     template: Annotated[
-        str | None,
-        _note("`default`, `paper`, or a prompt template file beside the scenario; null: `paper`."),
+        str | None, _note("A prompt template file beside the scenario; null: the paper's.")
     ] = None
     expect: Annotated[ExpectEntry | None, _note("How the outcome is judged.")] = None
     timeout_ticks: Annotated[
@@ -274,6 +268,21 @@ class ProbeEntry(_Entry, frozen=True):
             description="Ticks of 50 ms after which the program has failed.",
         ),
     ] = 1200
+
+
+class ParameterEntry(_Entry, frozen=True):
+    """A parameter: `${name}` in any value stands for its value."""
+
+    default: Annotated[Any, _note("Its value where none is given.")]
+    values: Annotated[list[Any], _note("What it may be; empty: `range`, or only the default.")] = []
+    range: Annotated[
+        tuple[int | float, int | float] | None, _note("Its lowest and highest value.")
+    ] = None
+    step: Annotated[
+        int | float | None,
+        _note("Between values in `range`; 0: any number. 1 for whole bounds, else 0."),
+    ] = None
+    description: Annotated[str, _note("What it is.")] = ""
 
 
 class ScenarioFile(_Entry, frozen=True):
@@ -288,18 +297,17 @@ class ScenarioFile(_Entry, frozen=True):
     reported_by: Annotated[
         str, _note("Who reported what is expected, as in 'as the paper reports'.")
     ] = ""
+    parameters: Annotated[
+        dict[str, ParameterEntry], _note("What `${name}` in other values stands for.")
+    ] = {}
+    constraints: Annotated[
+        list[str], _note("Expressions over parameters that hold, such as `gap < 4`.")
+    ] = []
     blocks: Annotated[list[BlockEntry], _note("The rest of the box is air.")] = []
     containers: list[ContainerEntry] = []
     places: Annotated[dict[str, Position], _note("What people call places: name to block.")] = {}
     perception: PerceptionEntry = PerceptionEntry()
-    static_blocks: Annotated[
-        list[str | Position],
-        _note("Blocks that everybody knows from the start: names, or positions."),
-    ] = []
-    labels: Annotated[
-        bool,
-        _note("Whether prompts say what containers are called and look as if they held."),
-    ] = False
+    static_blocks: Annotated[list[str], _note("Blocks that everybody knows from the start.")] = []
     initial_beliefs: list[InitialBeliefEntry] = []
     script: Annotated[list[StepEntry], _note("What happens in the real world, in order.")] = []
     probes: list[ProbeEntry] = []

@@ -1,6 +1,6 @@
 """From a document to a scenario: finding it, choosing the condition, checking what it says."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
@@ -9,11 +9,25 @@ from typing import Any
 from beliefnest.errors import UnknownNameError
 from beliefnest.scenarios.build import build_scenario
 from beliefnest.scenarios.content import ScenarioContent
-from beliefnest.scenarios.document import Document, merged, wrapped
+from beliefnest.scenarios.document import Document, Node, merged, wrapped
 from beliefnest.scenarios.form import check_form
+from beliefnest.scenarios.parameters import text_of, with_parameters
 from beliefnest.scenarios.reading import parse_yaml, read_yaml
 
-__all__ = ["builtin_names", "kept_scenario", "load_conditions", "load_scenario", "scenario_from"]
+__all__ = [
+    "Change",
+    "builtin_names",
+    "condition_numbers",
+    "kept_scenario",
+    "load_conditions",
+    "load_scenario",
+    "read_document",
+    "scenario_from",
+    "scenario_in",
+]
+
+Change = Callable[[Document], Document]
+"""Makes another document of one."""
 
 _SUFFIXES = (".yaml", ".yml")
 
@@ -25,35 +39,51 @@ def builtin_names() -> list[str]:
     return sorted(name.removesuffix(".yaml") for name in names if name.endswith(".yaml"))
 
 
-def load_scenario(name_or_path: str, condition: int | None = None) -> ScenarioContent:
+def load_scenario(
+    name_or_path: str,
+    condition: int | None = None,
+    parameters: Mapping[str, object] | None = None,
+) -> ScenarioContent:
     """See `Scenario.load`."""
-    return _scenario(_document(name_or_path), condition)
+    return scenario_in(read_document(name_or_path), condition, parameters)
 
 
 def load_conditions(name_or_path: str) -> tuple[ScenarioContent, ...]:
     """See `Scenario.load_all`."""
-    document = _document(name_or_path)
-    numbers = sorted(check_form(document).conditions)
-    if not numbers:
-        return (_scenario(document, None),)
-    return tuple(_scenario(document, number) for number in numbers)
+    document = read_document(name_or_path)
+    return tuple(scenario_in(document, number) for number in condition_numbers(document))
+
+
+def condition_numbers(document: Document) -> tuple[int | None, ...]:
+    """Numbers of a document's conditions, in order; only None if it has none.
+
+    Raises:
+        ScenarioError: The document is not of the right form.
+    """
+    return tuple(sorted(check_form(with_parameters(document, {})).conditions)) or (None,)
 
 
 def scenario_from(
     content: Mapping[str, Any], condition: int | None, source: str
 ) -> ScenarioContent:
     """See `Scenario.from_mapping`."""
-    return _scenario(Document(source, wrapped(content), Path()), condition)
+    return scenario_in(Document(source, wrapped(content), Path()), condition)
 
 
 def kept_scenario(
     text: str, templates: Mapping[str, str], condition: int | None, source: str
 ) -> ScenarioContent:
     """See `Scenario.kept`."""
-    return _scenario(replace(parse_yaml(text, source), templates=templates), condition)
+    return scenario_in(replace(parse_yaml(text, source), templates=templates), condition)
 
 
-def _document(name_or_path: str) -> Document:
+def read_document(name_or_path: str) -> Document:
+    """The document of a built-in scenario, or of one in a file.
+
+    Raises:
+        UnknownNameError: There is no built-in scenario of that name, and no such file.
+        ScenarioError: The file cannot be read, or is not one YAML mapping.
+    """
     names = builtin_names()
     if name_or_path in names:
         folder = Path(str(files("beliefnest.scenarios") / "builtin"))
@@ -69,9 +99,36 @@ def _document(name_or_path: str) -> Document:
     return read_yaml(path)
 
 
-def _scenario(document: Document, condition: int | None) -> ScenarioContent:
-    written = check_form(document)
-    if condition is None:
-        return build_scenario(document, written, None, written.conditions)
-    chosen = merged(document, condition)
+def scenario_in(
+    document: Document,
+    condition: int | None,
+    parameters: Mapping[str, object] | None = None,
+    change: Change | None = None,
+) -> ScenarioContent:
+    """What a document says with values for its parameters, under a condition, and changed.
+
+    Args:
+        document: As written.
+        condition: Number of a condition; None: as written, no overrides.
+        parameters: Name to value; the others have their defaults.
+        change: Given the document with its condition merged in, another one that says the same
+            of another scene; None: no change.
+
+    Raises:
+        ScenarioError: Something is wrong with it, or it has no such condition or parameter.
+    """
+    filled = with_parameters(document, parameters or {})
+    written = check_form(filled)
+    chosen = filled if condition is None else merged(filled, condition)
+    if change is None:
+        if parameters:
+            chosen = replace(chosen, text=text_of(filled.root))
+    else:
+        about = {
+            number: {"description": str(other.get("description", ""))}
+            for number, other in written.conditions.items()
+        }
+        chosen = change(chosen)
+        told = Node({**chosen.root.value, "conditions": wrapped(about)})
+        chosen = replace(chosen, text=text_of(told))
     return build_scenario(chosen, check_form(chosen), condition, written.conditions)

@@ -5,11 +5,14 @@ from dataclasses import dataclass, fields
 from typing import Any, Self
 
 from beliefnest.scenarios.content import ScenarioContent
+from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import (
+    Change,
     kept_scenario,
     load_conditions,
     load_scenario,
     scenario_from,
+    scenario_in,
 )
 
 __all__ = ["Scenario"]
@@ -20,18 +23,24 @@ class Scenario(ScenarioContent):
     """One scenario, under one of its conditions if it has any; loaded, or built in code."""
 
     @classmethod
-    def load(cls, name_or_path: str, condition: int | None = None) -> Self:
+    def load(
+        cls,
+        name_or_path: str,
+        condition: int | None = None,
+        parameters: Mapping[str, object] | None = None,
+    ) -> Self:
         """A built-in scenario, or one in a file.
 
         Args:
             name_or_path: Name of a built-in scenario, or path of a YAML file.
             condition: Number of a condition; None: the scenario as written, no overrides.
+            parameters: Values of parameters that it declares; the others have their defaults.
 
         Raises:
             UnknownNameError: There is no built-in scenario of that name, and no such file.
             ScenarioError: The file is wrong, or has no such condition.
         """
-        return cls._of(load_scenario(name_or_path, condition))
+        return cls._of(load_scenario(name_or_path, condition, parameters))
 
     @classmethod
     def load_all(cls, name_or_path: str) -> tuple[Self, ...]:
@@ -53,6 +62,27 @@ class Scenario(ScenarioContent):
             ScenarioError: The content is wrong.
         """
         return cls._of(scenario_from(content, condition, source))
+
+    @classmethod
+    def varied(
+        cls,
+        document: Document,
+        condition: int | None,
+        parameters: Mapping[str, object] | None = None,
+        change: Change | None = None,
+    ) -> Self:
+        """The scenario of a document that was read once and is varied many times.
+
+        Args:
+            document: As `read_document` gives it.
+            condition: Number of a condition; None: as written, no overrides.
+            parameters: Values of parameters that it declares; the others have their defaults.
+            change: Makes another scene of it; None: none.
+
+        Raises:
+            ScenarioError: Something is wrong with what comes of it.
+        """
+        return cls._of(scenario_in(document, condition, parameters, change))
 
     @classmethod
     def kept(

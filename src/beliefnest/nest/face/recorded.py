@@ -6,7 +6,6 @@ from typing import Self
 
 from beliefnest.nest.face.looking import Looking
 from beliefnest.nest.face.past_simulator import Past, PastSimulator
-from beliefnest.nest.face.telling import Telling
 from beliefnest.nest.face.viewing import Viewing
 from beliefnest.nest.past.over_time import Moment, over_time
 from beliefnest.nest.past.recording import Recording, read_recording
@@ -20,7 +19,7 @@ from beliefnest.world.paths import parse_path
 __all__ = ["RecordedNest"]
 
 
-class RecordedNest(Looking, Viewing, Telling):
+class RecordedNest(Looking, Viewing):
     """Simulators of a run as they were; nothing in it can act.
 
     Args:

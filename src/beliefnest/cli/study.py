@@ -1,0 +1,179 @@
+"""`beliefnest study`: all cells of a study, its tables, its figure and its page."""
+
+import json
+import re
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from rich import box
+from rich.table import Table
+
+from beliefnest.cli.console import progress_on, stdout
+from beliefnest.cli.report import cost_text
+from beliefnest.cli.text import printable
+from beliefnest.errors import InputError, ModelError, UnknownNameError
+from beliefnest.studies.counting import count_rows
+from beliefnest.studies.result import StudyResult
+from beliefnest.studies.running import StudyProgress
+from beliefnest.studies.study import Study
+
+__all__ = ["StudyOptions", "run_study"]
+
+_BY = ("scenario", "condition", "model")
+_MOST_TOLD = 10
+
+
+@dataclass(frozen=True, slots=True)
+class StudyOptions:
+    """What was asked for on the command line.
+
+    Attributes:
+        file: What describes the study.
+        out: Its folder; None: a new one in `studies`.
+        jobs: Cells at the same time.
+        backend: Where they run.
+        shard: `I/N`; None: all of it.
+        merge: Folders of shards whose cells are taken over first.
+        record: Whether runs are recorded.
+        as_json: Whether to print the report as JSON instead of a table.
+    """
+
+    file: Path
+    out: Path | None
+    jobs: int
+    backend: str
+    shard: str | None
+    merge: tuple[Path, ...]
+    record: bool
+    as_json: bool
+
+
+def run_study(options: StudyOptions) -> int:
+    """Run, keep, and print; the status is 0 if all rows are as expected, 1 if one is not.
+
+    Raises:
+        BeliefNestError: The input is wrong, or cells have no result.
+    """
+    study = Study.load(options.file)
+    shard = _shard(options.shard)
+    now = datetime.now()
+    folder = options.out or Path("studies", f"{options.file.stem}-{now:%Y%m%d-%H%M%S}")
+    if options.merge:
+        study.take_over(folder, options.merge)
+    with progress_on(options.file.stem) as on_progress:
+        on_progress("checking all variations", 0, 0)
+
+        def told(progress: StudyProgress) -> None:
+            on_progress(_progress_text(progress), progress.done, progress.total)
+
+        try:
+            result = study.run(
+                folder,
+                options.jobs,
+                options.backend,
+                shard=shard,
+                record=options.record,
+                on_progress=told,
+            )
+        except KeyboardInterrupt:
+            sys.stderr.write(f"what has ended is kept in {folder}; the same command goes on\n")
+            raise
+    _write_files(result)
+    if options.as_json:
+        sys.stdout.write(json.dumps(_report(result), indent=2) + "\n")
+    else:
+        _print(result)
+    return _status(result)
+
+
+def _shard(text: str | None) -> tuple[int, int] | None:
+    if text is None:
+        return None
+    found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
+    if found is None:
+        raise InputError(f"--shard is {text!r}; write it as 1/4")
+    return int(found[1]), int(found[2])
+
+
+def _progress_text(progress: StudyProgress) -> str:
+    parts = [f"{progress.left} cells left"]
+    if progress.failed:
+        parts.append(f"{progress.failed} failed")
+    if progress.spent.requests:
+        parts.append(f"{progress.spent.tokens:,} tokens, {cost_text(progress.spent.cost)}")
+    return ", ".join(parts)
+
+
+def _write_files(result: StudyResult) -> None:
+    """The tables, and the page, in the study's folder; without pandas only the page."""
+    try:
+        result.write_tables()
+    except UnknownNameError as error:
+        sys.stderr.write(f"no rows.csv and rows.parquet: {error}\n")
+    result.write_page(result.folder.path / "study.html")
+
+
+def _report(result: StudyResult) -> dict[str, Any]:
+    return {
+        "study_dir": str(result.folder.path),
+        "cells": len(result.plan["cells"]),
+        "summary": count_rows(result.rows, _BY),
+        "rows": result.rows,
+        "invalid": result.invalid,
+    }
+
+
+def _print(result: StudyResult) -> None:
+    console = stdout()
+    console.print(_table(count_rows(result.rows, _BY)))
+    failed = {row["cell"]: row["why_not"] for row in result.rows if row["outcome"] == "error"}
+    told = [f"no result: {why}" for why in dict.fromkeys(failed.values())]
+    told += [f"no scenario: {_invalid_text(each)}" for each in result.invalid]
+    for line in told[:_MOST_TOLD]:
+        console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
+    if len(told) > _MOST_TOLD:
+        console.print(f"and {len(told) - _MOST_TOLD} more", highlight=False)
+    page = result.folder.path / "study.html"
+    console.print(f"all rows, intervals and differences: {page}", highlight=False, soft_wrap=True)
+
+
+def _invalid_text(invalid: Mapping[str, Any]) -> str:
+    condition = "" if invalid["condition"] is None else f", condition {invalid['condition']}"
+    varied = json.dumps(invalid["variation"])
+    return f"{invalid['scenario']}{condition}, {varied}: {invalid['why']}"
+
+
+def _table(groups: Sequence[Mapping[str, Any]]) -> Table:
+    table = Table(box=box.SIMPLE_HEAVY)
+    for heading in _BY:
+        table.add_column(heading)
+    for heading in ("right", "accuracy", "95 % interval", "not ok", "tokens", "cost"):
+        table.add_column(heading, justify="right")
+    for group in groups:
+        names = ("wrong", "no_way", "program_failed", "no_answer", "error")
+        faults = [f"{group[name]} {name.replace('_', ' ')}" for name in names if group[name]]
+        judged = group["judged"]
+        table.add_row(
+            *(printable("-" if group[name] is None else str(group[name])) for name in _BY),
+            f"{group['right']} of {judged}",
+            f"{group['accuracy']:.0%}" if judged else "-",
+            f"{group['low']:.0%} to {group['high']:.0%}" if judged else "-",
+            ", ".join(faults),
+            f"{group['tokens']:,}",
+            cost_text(group["cost"]),
+        )
+    return table
+
+
+def _status(result: StudyResult) -> int:
+    failed = {row["cell"]: row["why_not"] for row in result.rows if row["outcome"] == "error"}
+    if failed:
+        raise ModelError(
+            f"{len(failed)} of {len(result.plan['cells'])} cells have no result, run the same "
+            f"command to try them again; the first: {next(iter(failed.values()))}"
+        )
+    return 0 if all(row["ok"] is not False for row in result.rows) else 1

@@ -1,0 +1,204 @@
+"""Parameters of a scenario: what is declared, and `${name}` replaced by values.
+
+`${name}`, or `${an expression of names}`, may stand in any value or key of a scenario file. Where
+it is all of a value, the value takes its place, of whatever kind; inside a text it is written out,
+lists with commas, so that `new Vec3(${spot})` is a position.
+"""
+
+import json
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import msgspec
+
+from beliefnest.errors import InputError
+from beliefnest.scenarios.document import Document, KeyPath, Node, plain, wrapped
+from beliefnest.scenarios.expressions import evaluate, names_in
+from beliefnest.scenarios.format import ParameterEntry
+
+__all__ = ["broken_constraint", "choices", "declared_in", "text_of", "with_parameters"]
+
+_HOLE = re.compile(r"\$\{([^{}]*)\}")
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,63}", re.ASCII)
+_PROGRAMS = ("program", "programs")
+"""Keys below which `${...}` may be JavaScript's own."""
+
+
+def choices(declared: ParameterEntry) -> list[Any] | None:
+    """All values of a parameter, in order; None: it is any number in its range."""
+    if declared.values:
+        return list(declared.values)
+    if declared.range is None:
+        return [declared.default]
+    low, high = declared.range
+    whole = isinstance(low, int) and isinstance(high, int)
+    step = declared.step if declared.step is not None else int(whole)
+    if not step:
+        return None
+    return [low + number * step for number in range(int((high - low) / step + 1e-9) + 1)]
+
+
+def declared_in(document: Document) -> dict[str, ParameterEntry]:
+    """The parameters that a document declares.
+
+    Raises:
+        ScenarioError: A declaration is not of the right form.
+    """
+    node = document.root.value.get("parameters")
+    if node is None:
+        return {}
+    if not isinstance(node.value, dict):
+        raise document.fault(("parameters",), "must be a mapping from name to declaration")
+    return {name: _declared(document, name, entry) for name, entry in node.value.items()}
+
+
+def _declared(document: Document, name: object, entry: Node) -> ParameterEntry:
+    path = ("parameters", str(name))
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise document.fault(path, "is no name; use letters, digits and _")
+    try:
+        found = msgspec.convert(plain(entry), ParameterEntry)
+    except msgspec.ValidationError as error:
+        raise document.fault(
+            path,
+            f"{error}; write {{default: ..., values: [...]}} or {{default: ..., range: [...]}}",
+        ) from None
+    if found.values and found.range is not None:
+        raise document.fault(path, "give 'values' or 'range', not both")
+    if found.range is not None and found.range[0] > found.range[1]:
+        raise document.fault((*path, "range"), "ends below its beginning")
+    if found.step is not None and (found.range is None or found.step < 0):
+        raise document.fault((*path, "step"), "needs a range, and is no less than 0")
+    return found
+
+
+def broken_constraint(document: Document, values: Mapping[str, object]) -> str | None:
+    """The first of a document's constraints that values do not keep; None: they keep all.
+
+    Raises:
+        ScenarioError: A constraint is no expression, or cannot be computed.
+    """
+    node = document.root.value.get("constraints")
+    for number, entry in enumerate(node.value if node is not None else ()):
+        if not isinstance(entry.value, str):
+            raise document.fault(("constraints", number), "is no text; write an expression")
+        with document.naming(("constraints", number)):
+            if not evaluate(entry.value, values):
+                return str(entry.value)
+    return None
+
+
+def with_parameters(document: Document, given: Mapping[str, object]) -> Document:
+    """A document with its parameters' values in place; declarations and constraints are left out.
+
+    Args:
+        document: As written.
+        given: Name to value; parameters that are not given have their defaults.
+
+    Raises:
+        ScenarioError: A parameter is not declared, a constraint is broken, or `${...}` is not
+            understood.
+    """
+    declared = declared_in(document)
+    unknown = [name for name in given if name not in declared]
+    if unknown:
+        known = ", ".join(declared) or "none"
+        raise document.fault((), f"there is no parameter {unknown[0]!r}; declared are {known}")
+    if not declared:
+        return document
+    values = {name: given.get(name, entry.default) for name, entry in declared.items()}
+    broken = broken_constraint(document, values)
+    if broken is not None:
+        chosen = ", ".join(f"{name} {json.dumps(value)}" for name, value in values.items())
+        raise document.fault(("constraints",), f"{broken!r} does not hold for {chosen}")
+    kept = {
+        key: node
+        for key, node in document.root.value.items()
+        if key not in ("parameters", "constraints")
+    }
+    filling = _Filling(document, values)
+    root = filling.node(Node(kept, document.root.line), ())
+    return replace(document, root=root)
+
+
+class _Filling:
+    """Puts values in place of `${...}`."""
+
+    def __init__(self, document: Document, values: Mapping[str, object]) -> None:
+        self._document = document
+        self._values = values
+
+    def node(self, node: Node, path: KeyPath) -> Node:
+        if isinstance(node.value, dict):
+            filled = {}
+            for key, child in node.value.items():
+                name = self._text(key, path) if isinstance(key, str) else key
+                filled[name] = self.node(child, (*path, key))
+            return Node(filled, node.line)
+        if isinstance(node.value, list):
+            parts = [self.node(child, (*path, n)) for n, child in enumerate(node.value)]
+            return Node(parts, node.line)
+        if not isinstance(node.value, str) or "${" not in node.value:
+            return node
+        whole = _HOLE.fullmatch(node.value)
+        if whole is None:
+            return Node(self._text(node.value, path), node.line)
+        found = self._found(whole, path)
+        return node if found is None else _on_line(wrapped(found[0]), node.line)
+
+    def _text(self, text: str, path: KeyPath) -> str:
+        if "${" not in text:
+            return text
+
+        def written(hole: re.Match[str]) -> str:
+            found = self._found(hole, path)
+            return hole[0] if found is None else _written(found[0])
+
+        return _HOLE.sub(written, text)
+
+    def _found(self, hole: re.Match[str], path: KeyPath) -> tuple[object] | None:
+        """The value of a hole; None: it is JavaScript's own."""
+        own = any(key in _PROGRAMS for key in path)
+        try:
+            names = names_in(hole[1])
+        except InputError:
+            names = frozenset()
+        if own and not names & self._values.keys():
+            return None
+        with self._document.naming(path):
+            return (evaluate(hole[1], self._values),)
+        raise AssertionError("unreachable")
+
+
+def _on_line(node: Node, line: int) -> Node:
+    if isinstance(node.value, dict):
+        return Node({key: _on_line(child, line) for key, child in node.value.items()}, line)
+    if isinstance(node.value, list):
+        return Node([_on_line(child, line) for child in node.value], line)
+    return Node(node.value, line)
+
+
+def _written(value: object) -> str:
+    """A value inside a text."""
+    if isinstance(value, list | tuple):
+        return ", ".join(_written(part) for part in value)
+    return value if isinstance(value, str) else json.dumps(value)
+
+
+def text_of(root: Node) -> str:
+    """A document's content as YAML, one line for each entry at its top."""
+    value = plain(root)
+    assert isinstance(value, Mapping)  # the root of a document is one
+    return "".join(f"{_flow(key)}: {_flow(inner)}\n" for key, inner in value.items())
+
+
+def _flow(value: object) -> str:
+    scalar: Callable[[object], str] = json.dumps
+    if isinstance(value, Mapping):
+        inner = ", ".join(f"{_flow(key)}: {_flow(part)}" for key, part in value.items())
+        return f"{{{inner}}}"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(_flow(part) for part in value)}]"
+    return scalar(value)

@@ -1,0 +1,161 @@
+"""What becomes of the values of a scenario in a mirrored or turned scene, or under other names."""
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from beliefnest.errors import InputError
+from beliefnest.studies.javascript import Rewriting, rewritten
+from beliefnest.studies.scene import Kind
+from beliefnest.studies.symmetry import Placing
+from beliefnest.world.registry import Registry
+
+__all__ = ["Moved", "Renamed"]
+
+_NUMBER = r"-?\d+(?:\.\d+)?"
+_TRIPLE = re.compile(rf"\(\s*({_NUMBER}),\s*({_NUMBER}),\s*({_NUMBER})\s*\)")
+_DIRECTIONAL = re.compile(r"\b(north|south|east|west|left|right)\b", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """Everything where a symmetry puts it.
+
+    Attributes:
+        placing: The symmetry and the box.
+        registry: Knows which block states there are.
+    """
+
+    placing: Placing
+    registry: Registry
+
+    def value(self, kind: Kind, value: Any) -> Any:
+        """The new value; InputError if a text names a direction, or a program computes with one."""
+        change = self._changes().get(kind)
+        return value if change is None else change(value)
+
+    def _changes(self) -> Mapping[Kind, Callable[[Any], Any]]:
+        placing, symmetry = self.placing, self.placing.symmetry
+        return {
+            "block": lambda value: placing.block(_triple(value)),
+            "point": lambda value: placing.point(_triple(value)),
+            "place": lambda value: self._place(_triple(value)),
+            "yaw": symmetry.yaw,
+            "facing": self._facing,
+            "state": lambda value: symmetry.block_state(value, self.registry),
+            "program": lambda value: rewritten(
+                value, Rewriting(self._vector, self._text, lambda key: key)
+            ),
+            "text": self._told,
+        }
+
+    def _facing(self, value: Any) -> Any:
+        if isinstance(value, str):
+            return self.placing.symmetry.direction(value)
+        return self.placing.point(_triple(value))
+
+    def _vector(
+        self, vector: tuple[float, float, float], is_direction: bool
+    ) -> tuple[float, float, float]:
+        if is_direction:
+            x, z = self.placing.symmetry.vector(vector[0], vector[2])
+            return x, vector[1], z
+        return self._place(vector)
+
+    def _place(self, place: tuple[Any, Any, Any]) -> tuple[float, float, float]:
+        """Whole coordinates are a block's, others a point's, as in scenario files."""
+        if all(isinstance(part, int) for part in place):
+            return self.placing.block(place)
+        return self.placing.point(place)
+
+    def _told(self, text: str) -> str:
+        if found := _DIRECTIONAL.search(text):
+            raise InputError(
+                f"says {found[0]!r}, which is elsewhere in a scene that is {self._name}; "
+                "name places by parameters"
+            )
+        return self._text(text)
+
+    def _text(self, text: str) -> str:
+        def moved(match: re.Match[str]) -> str:
+            x, y, z = (float(part) if "." in part else int(part) for part in match.groups())
+            return f"({', '.join(f'{part:g}' for part in self._place((x, y, z)))})"
+
+        return _TRIPLE.sub(moved, text)
+
+    @property
+    def _name(self) -> str:
+        return self.placing.symmetry.name
+
+
+def _triple(value: Any) -> tuple[Any, Any, Any]:
+    x, y, z = value
+    return x, y, z
+
+
+@dataclass(frozen=True, slots=True)
+class Renamed:
+    """Agents and items under other names, everywhere, in the texts of tasks as well.
+
+    Attributes:
+        agents: Old name to new one.
+        items: Old name to new one.
+    """
+
+    agents: Mapping[str, str]
+    items: Mapping[str, str]
+
+    def value(self, kind: Kind, value: Any) -> Any:
+        """The new value."""
+        match kind:
+            case "agent":
+                return self.agents.get(value, value)
+            case "item":
+                return self.items.get(value, value)
+            case "path":
+                return "/".join(self.agents.get(name, name) for name in value.split("/"))
+            case "text" | "label":
+                return self._told(value)
+            case "program":
+                return rewritten(value, Rewriting(None, self._written, self._key))
+        return value
+
+    def _key(self, key: str) -> str:
+        return self.agents.get(key, self.items.get(key, key))
+
+    def _written(self, text: str) -> str:
+        """A text in a program: a name alone, or something that is said."""
+        return self._key(text) if text in {*self.agents, *self.items} else self._told(text)
+
+    def _told(self, text: str) -> str:
+        words = {**_spellings(self.items, " "), **_spellings(self.agents, "_")}
+        if not words:
+            return text
+        longest_first = sorted(words, key=len, reverse=True)
+        pattern = re.compile(rf"(\b[Aa]n? )?\b({'|'.join(map(re.escape, longest_first))})\b")
+
+        def new(match: re.Match[str]) -> str:
+            return _with_article(match[1] or "", words[match[2]])
+
+        return pattern.sub(new, text)
+
+
+def _spellings(names: Mapping[str, str], space: str) -> dict[str, str]:
+    """How names stand in sentences: as they are, with a capital letter, items with spaces."""
+    found: dict[str, str] = {}
+    for old, new in names.items():
+        told = new.replace("_", space)
+        found[old] = new if "_" in old else told
+        for spelt in {old.replace("_", space), old}:
+            found.setdefault(spelt, told)
+            found[spelt[:1].upper() + spelt[1:]] = told[:1].upper() + told[1:]
+    return found
+
+
+def _with_article(article: str, word: str) -> str:
+    """`a diamond` becomes `an apple`."""
+    if not article:
+        return word
+    right = "an " if word[:1].lower() in "aeiou" else "a "
+    return (right.capitalize() if article[0] == "A" else right) + word

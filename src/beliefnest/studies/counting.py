@@ -1,0 +1,149 @@
+"""Accuracies with intervals, and differences of pairs, from the rows of a study."""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from beliefnest.errors import InputError
+from beliefnest.scenarios.judging import OUTCOMES
+from beliefnest.scenarios.scoring import wilson_interval
+
+__all__ = ["Pairs", "Row", "count_rows", "paired_rows"]
+
+Row = Mapping[str, Any]
+_Z95 = 1.959963984540054
+_NO_IDENTITY = frozenset(
+    (
+        *("outcome", "ok", "why_not", "expected", "intended", "opened", "arrived", "answered"),
+        *("program", "beliefs_ok", "script_ticks", "ticks", "seconds", "attempts", "tokens"),
+        *("cost", "run", "cell", "seed"),
+    )
+)
+"""Columns that say what came of a probe, and not which one it was."""
+
+
+def count_rows(rows: Sequence[Row], by: Sequence[str]) -> list[dict[str, Any]]:
+    """For each group of rows how many came out as expected, and how sure that is.
+
+    Rows in which nothing was expected, or which have no result, are counted and not judged.
+
+    Args:
+        rows: Of a study.
+        by: Columns that tell the groups apart.
+
+    Returns:
+        One mapping for each group, in the order in which they come: the columns of `by`; `rows`;
+        `judged`; `right`; `accuracy`, `low` and `high` (the 95 % interval of Wilson), None where
+        none is judged; each outcome with its count; `tokens`, `cost` (None if not known).
+    """
+    groups: dict[tuple[Any, ...], list[Row]] = {}
+    for row in rows:
+        groups.setdefault(tuple(row.get(name) for name in by), []).append(row)
+    return [
+        {**dict(zip(by, values, strict=True)), **_counted(group)}
+        for values, group in groups.items()
+    ]
+
+
+def _counted(group: Sequence[Row]) -> dict[str, Any]:
+    judged = [row["ok"] for row in group if row.get("ok") is not None]
+    right = sum(judged)
+    low, high = wilson_interval(right, len(judged)) if judged else (None, None)
+    costs = [row.get("cost") for row in group if row["outcome"] != "error"]
+    return {
+        "rows": len(group),
+        "judged": len(judged),
+        "right": right,
+        "accuracy": right / len(judged) if judged else None,
+        "low": low,
+        "high": high,
+        **{name: sum(row["outcome"] == name for row in group) for name in OUTCOMES},
+        "tokens": sum(row.get("tokens") or 0 for row in group),
+        "cost": None if None in costs else sum(cost or 0.0 for cost in costs),
+    }
+
+
+@dataclass(frozen=True, slots=True)
+class Pairs:
+    """Two levels of one column, compared on what is the same otherwise.
+
+    Attributes:
+        one: A value of the column.
+        other: Another one.
+        pairs: Rows that both have a judged result for.
+        both: Pairs that are right with both.
+        only_one: Pairs that are right with `one` only.
+        only_other: Pairs that are right with `other` only.
+    """
+
+    one: Any
+    other: Any
+    pairs: int
+    both: int
+    only_one: int
+    only_other: int
+
+    @property
+    def difference(self) -> float:
+        """Accuracy of `one` less that of `other`."""
+        return (self.only_one - self.only_other) / self.pairs
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """The 95 % interval of the difference.
+
+        Source: Bonett and Price (2012), Wald's interval with one added to either kind of
+        discordant pairs, which holds for few pairs too.
+        """
+        first = (self.only_one + 1) / (self.pairs + 2)
+        second = (self.only_other + 1) / (self.pairs + 2)
+        middle = first - second
+        half = _Z95 * math.sqrt((first + second - middle**2) / (self.pairs + 2))
+        return max(-1.0, middle - half), min(1.0, middle + half)
+
+    @property
+    def p(self) -> float:
+        """How likely a difference as great is by chance: McNemar's exact test, two-sided."""
+        discordant = self.only_one + self.only_other
+        fewer = min(self.only_one, self.only_other)
+        tail = sum(math.comb(discordant, k) for k in range(fewer + 1))
+        return float(min(1.0, 2 * tail / 2**discordant))
+
+
+def paired_rows(rows: Iterable[Row], column: str) -> list[Pairs]:
+    """All pairs of levels of a column, on rows that are the same in all but it.
+
+    Raises:
+        InputError: There is no such column, or it does not tell rows apart that are alike.
+    """
+    table: dict[tuple[Any, ...], dict[Any, bool]] = {}
+    levels: dict[Any, None] = {}
+    for row in rows:
+        if column not in row or column in _NO_IDENTITY:
+            known = ", ".join(name for name in row if name not in _NO_IDENTITY)
+            raise InputError(f"rows cannot be compared by {column!r}; columns are {known}")
+        levels[row[column]] = None
+        if row.get("ok") is None:
+            continue
+        rest = ((name, v) for name, v in row.items() if name not in _NO_IDENTITY | {column})
+        table.setdefault(tuple(rest), {})[row[column]] = row["ok"]
+    names = list(levels)
+    return [
+        _pairs(table.values(), one, other)
+        for number, one in enumerate(names)
+        for other in names[number + 1 :]
+        if any(one in found and other in found for found in table.values())
+    ]
+
+
+def _pairs(table: Iterable[Mapping[Any, bool]], one: Any, other: Any) -> Pairs:
+    found = [(each[one], each[other]) for each in table if one in each and other in each]
+    return Pairs(
+        one,
+        other,
+        len(found),
+        sum(a and b for a, b in found),
+        sum(a and not b for a, b in found),
+        sum(b and not a for a, b in found),
+    )

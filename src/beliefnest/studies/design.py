@@ -1,0 +1,195 @@
+"""What a study combines, checked; and the file that says so."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from beliefnest.bodies.worlds import check_world
+from beliefnest.errors import BeliefNestError, InputError, ScenarioError
+from beliefnest.llm.budget import RunLimits
+from beliefnest.prompts.templates import (
+    BUILT_IN_TEMPLATES,
+    Template,
+    built_in_template,
+    load_template,
+)
+from beliefnest.scenarios.document import Document, plain
+from beliefnest.scenarios.expressions import evaluate
+from beliefnest.scenarios.loading import builtin_names
+from beliefnest.scenarios.parameters import declared_in
+from beliefnest.scenarios.reading import read_yaml
+from beliefnest.studies.variation import CHANGES, Variation
+
+__all__ = ["Constraint", "Design", "Template", "read_design"]
+
+Constraint = str | Callable[[Mapping[str, Any]], bool]
+"""An expression over a variation's values, or a function of them, that has to hold."""
+
+
+@dataclass(frozen=True)
+class Design:
+    """What a study combines.
+
+    Attributes:
+        scenarios: Names of built-in scenarios, or paths of files.
+        models: Names of models.
+        templates: Prompt templates in place of those that scenarios name; empty: theirs.
+        repeats: How often each cell is played, each time with another seed.
+        seed: Decides which variations are drawn, and with the cell about its seed.
+        variations: Lists of values, of which all combinations are cells; or how many are drawn.
+        conditions: Numbers of conditions; None: all.
+        constraints: What has to hold of a variation's values.
+        world: Name of the world.
+        attempts: How often a model is asked for one probe at most.
+        temperature: How answers are drawn; None leaves it to the provider.
+        limits: What the whole study may spend.
+    """
+
+    scenarios: tuple[str, ...]
+    models: tuple[str, ...] = ("offline",)
+    templates: tuple[Template, ...] = ()
+    repeats: int = 1
+    seed: int = 0
+    variations: Mapping[str, Sequence[Any]] | int = field(default_factory=dict)
+    conditions: tuple[int, ...] | None = None
+    constraints: tuple[Constraint, ...] = ()
+    world: str = "embedded"
+    attempts: int = 3
+    temperature: float | None = 0.0
+    limits: RunLimits = field(default_factory=RunLimits)
+
+    def __post_init__(self) -> None:
+        for name, values in (("scenarios", self.scenarios), ("models", self.models)):
+            if not values:
+                raise InputError(f"a study without {name} has no cells; name at least one")
+            twice = [value for value in values if values.count(value) > 1]
+            if twice:
+                raise InputError(f"{name}: {twice[0]!r} is named twice; use repeats to do it again")
+        for name, number in (("repeats", self.repeats), ("attempts", self.attempts)):
+            if not _is_count(number):
+                raise InputError(f"{name} is {number!r}; it must be a whole number, at least 1")
+        if not isinstance(self.seed, int) or isinstance(self.seed, bool):
+            raise InputError(f"seed is {self.seed!r}; it must be a whole number")
+        check_world(self.world)
+        self._check_variations()
+
+    def _check_variations(self) -> None:
+        variations = self.variations
+        if isinstance(variations, int):
+            if not _is_count(variations):
+                raise InputError(
+                    f"variations is {variations!r}; give at least 1, or lists of values"
+                )
+            return
+        if not isinstance(variations, Mapping):
+            raise InputError(f"variations is {variations!r}; give a number, or lists of values")
+        for name, values in variations.items():
+            if isinstance(values, str) or not isinstance(values, Sequence) or not values:
+                raise InputError(
+                    f"variations of {name!r} are {values!r}; give a list of at least one value"
+                )
+
+    @property
+    def setting(self) -> dict[str, Any]:
+        """What decides about the result of every cell."""
+        return {
+            "seed": self.seed,
+            "world": self.world,
+            "attempts": self.attempts,
+            "temperature": self.temperature,
+        }
+
+    def broken_constraint(self, document: Document, variation: Variation) -> BeliefNestError | None:
+        """What says that a variation does not keep a constraint of the study; None: it does.
+
+        Raises:
+            InputError: A constraint cannot be computed.
+        """
+        declared = declared_in(document)
+        defaults = {name: entry.default for name, entry in declared.items()}
+        values = {**dict.fromkeys(CHANGES), **defaults, **variation.values}
+        for constraint in self.constraints:
+            held = constraint(values) if callable(constraint) else evaluate(constraint, values)
+            if not held:
+                told = constraint if isinstance(constraint, str) else constraint.__name__
+                return ScenarioError(f"the constraint {told!r} does not hold")
+        return None
+
+
+def _is_count(number: object) -> bool:
+    return isinstance(number, int) and not isinstance(number, bool) and number >= 1
+
+
+class _StudyFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The form of a study's file; what each key means is told at `Design`."""
+
+    scenarios: list[str]
+    models: list[str] = msgspec.field(default_factory=lambda: ["offline"])
+    templates: list[str] = []
+    repeats: int = 1
+    seed: int = 0
+    variations: dict[str, list[Any]] | int = {}
+    conditions: list[int] | None = None
+    constraints: list[str] = []
+    world: str = "embedded"
+    attempts: int = 3
+    temperature: float | None = 0.0
+    max_tokens: int | None = 1_000_000
+    max_cost: float | None = 5.0
+
+
+def read_design(path: Path) -> Design:
+    """The design that a YAML file describes; files that it names are looked for beside it.
+
+    Raises:
+        ScenarioError: The file is wrong; the message names file, line and key.
+    """
+    document = read_yaml(path)
+    try:
+        found = msgspec.convert(plain(document.root), _StudyFile)
+    except msgspec.ValidationError as error:
+        raise _fault(document, str(error)) from None
+    try:
+        return Design(
+            scenarios=tuple(_beside(name, path) for name in found.scenarios),
+            models=tuple(found.models),
+            templates=tuple(template_named(name, path.parent) for name in found.templates),
+            repeats=found.repeats,
+            seed=found.seed,
+            variations=found.variations,
+            conditions=None if found.conditions is None else tuple(found.conditions),
+            constraints=tuple(found.constraints),
+            world=found.world,
+            attempts=found.attempts,
+            temperature=found.temperature,
+            limits=RunLimits(found.max_tokens, found.max_cost),
+        )
+    except BeliefNestError as error:
+        key = next((key for key in _StudyFile.__struct_fields__ if key in str(error)), None)
+        raise document.fault((key,) if key else (), str(error)) from None
+
+
+def template_named(name: str, folder: Path = Path()) -> Template:
+    """A built-in template, or one in a file.
+
+    Raises:
+        TemplateError: There is no such file.
+    """
+    return built_in_template(name) if name in BUILT_IN_TEMPLATES else load_template(folder / name)
+
+
+def _beside(name: str, path: Path) -> str:
+    return name if name in builtin_names() else str(path.parent / name)
+
+
+def _fault(document: Document, error: str) -> ScenarioError:
+    what, _, place = error.partition(" - at `$.")
+    key = place.rstrip("`").partition("[")[0].partition(".")[0]
+    if what.startswith("Object contains unknown field"):
+        key = what.split("`")[1]
+        what = f"unknown key; keys are {', '.join(_StudyFile.__struct_fields__)}"
+    what = what[:1].lower() + what[1:].replace("`", "'")
+    return document.fault((key,) if key else (), what)

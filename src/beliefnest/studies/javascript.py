@@ -1,0 +1,155 @@
+"""Agent programs in another scene: positions and texts in them, found by a parser of JavaScript.
+
+What is rewritten is what can be told for certain: `new Vec3(...)` of plain numbers, and texts.
+Where a program computes with directions, or holds positions in another form, it is refused.
+"""
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from beliefnest.errors import InputError, UnknownNameError
+
+__all__ = ["Rewriting", "rewritten"]
+
+_COMPUTED = frozenset(
+    ("x", "z", "yaw", "offset", "plus", "minus", "translate", "setControlState", "look", "face")
+)
+"""Properties that stand for a direction or for a part of a position."""
+_HELPERS = frozenset(("Move", "goals"))
+_DIRECTIONAL = re.compile(r"\b(north|south|east|west)\b|facing=", re.IGNORECASE)
+_Node = Any
+"""A node of tree-sitter's, which is imported where it is used."""
+_DIRECTED = frozenset(("exploreUntil",))
+"""Skills whose vector is a direction."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rewriting:
+    """What becomes of the parts of a program.
+
+    Attributes:
+        vector: New coordinates of `new Vec3(x, y, z)`; whether it is a direction. None: positions
+            stay as they are, and nothing is refused on their account.
+        text: New content of a text.
+        key: New name of a key or a property such as `diamond` in `{diamond: 1}`.
+    """
+
+    vector: Callable[[tuple[float, float, float], bool], tuple[float, float, float]] | None
+    text: Callable[[str], str]
+    key: Callable[[str], str]
+
+
+def rewritten(program: str, by: Rewriting) -> str:
+    """A program with its positions and texts replaced.
+
+    Args:
+        program: JavaScript, the body of an async function or a whole one.
+        by: What becomes of its parts.
+
+    Raises:
+        InputError: It holds what cannot be rewritten for certain; the message names the line.
+    """
+    source = program.encode()
+    edits: list[tuple[int, int, str]] = []
+    for node in _nodes(_tree(source)):
+        edits += _edits(node, by)
+    for start, end, text in sorted(edits, reverse=True):
+        source = source[:start] + text.encode() + source[end:]
+    return source.decode()
+
+
+def _tree(source: bytes) -> _Node:
+    try:
+        import tree_sitter_javascript
+        from tree_sitter import Language, Parser
+    except ModuleNotFoundError:
+        raise UnknownNameError(
+            "mirrored, turned and renamed copies need a parser of JavaScript: "
+            'pip install "beliefnest[study]"'
+        ) from None
+    root = Parser(Language(tree_sitter_javascript.language())).parse(source).root_node
+    for node in _nodes(root):
+        if node.is_missing or node.type == "ERROR":
+            raise _refused(node, "is not JavaScript that can be read")
+    return root
+
+
+def _nodes(root: _Node) -> Iterator[_Node]:
+    waiting = [root]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        waiting.extend(reversed(node.children))
+
+
+def _edits(node: _Node, by: Rewriting) -> list[tuple[int, int, str]]:
+    """What is replaced at a node itself: first byte, the one after the last, new text."""
+    kind, text = node.type, node.text.decode()
+    if kind == "string_fragment":
+        if by.vector is not None and _DIRECTIONAL.search(text):
+            raise _refused(node, f"names a direction in the text {text!r}")
+        new = by.text(text)
+        return [(node.start_byte, node.end_byte, new)] if new != text else []
+    if kind in ("property_identifier", "shorthand_property_identifier"):
+        if by.vector is not None and text in _COMPUTED:
+            raise _refused(node, f"computes with {text!r}")
+        new = by.key(text)
+        if new != text and kind == "shorthand_property_identifier":
+            raise _refused(node, f"has {text!r} both as a name and as a key")
+        return [(node.start_byte, node.end_byte, new)] if new != text else []
+    if by.vector is None:
+        return []
+    if kind == "new_expression":
+        return _vector(node, by.vector)
+    if kind == "identifier" and text in _HELPERS:
+        raise _refused(node, f"holds positions by {text!r}")
+    if kind == "array" and _is_numbers(node):
+        raise _refused(node, f"holds the numbers {text}, which may be a position")
+    return []
+
+
+def _vector(
+    node: _Node, change: Callable[[tuple[float, float, float], bool], tuple[float, float, float]]
+) -> list[tuple[int, int, str]]:
+    if node.child_by_field_name("constructor").text != b"Vec3":
+        return []
+    arguments = node.child_by_field_name("arguments")
+    parts = [] if arguments is None else arguments.named_children
+    numbers = [_number(part) for part in parts]
+    if len(numbers) != 3 or None in numbers:
+        raise _refused(
+            node, f"computes a position, {node.text.decode()}; write its numbers, or a parameter"
+        )
+    x, y, z = (number or 0 for number in numbers)
+    new = change((x, y, z), _is_direction(node))
+    written = f"new Vec3({', '.join(map(_written, new))})"
+    return [(node.start_byte, node.end_byte, written)]
+
+
+def _is_direction(node: _Node) -> bool:
+    call = node.parent.parent if node.parent is not None else None
+    if call is None or call.type != "call_expression":
+        return False
+    return call.child_by_field_name("function").text.decode() in _DIRECTED
+
+
+def _number(node: _Node) -> float | int | None:
+    text = node.text.decode().replace(" ", "")
+    if not re.fullmatch(r"[+-]?\d+(\.\d*)?", text):
+        return None
+    return float(text) if "." in text else int(text)
+
+
+def _written(value: float) -> str:
+    return str(int(value)) if value == int(value) else repr(value)
+
+
+def _is_numbers(node: _Node) -> bool:
+    parts = node.named_children
+    return len(parts) in (2, 3) and all(_number(part) is not None for part in parts)
+
+
+def _refused(node: _Node, why: str) -> InputError:
+    return InputError(f"line {node.start_point[0] + 1} of the program {why}")

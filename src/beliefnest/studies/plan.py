@@ -1,0 +1,211 @@
+"""What a study consists of: one cell for each combination, with a name of its own and a seed."""
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from beliefnest.errors import BeliefNestError
+from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.loading import condition_numbers
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.studies.design import Design, Template
+from beliefnest.studies.variation import Variation, drawn_variations, listed_variations
+
+__all__ = ["Cell", "CellKey", "Invalid", "Plan", "plan_cells"]
+
+_SEEDS = 2**32
+
+
+@dataclass(frozen=True, slots=True)
+class CellKey:
+    """What tells a cell from all others.
+
+    Attributes:
+        scenario: Name of the scenario.
+        content: A hash of the scenario's file and of the template.
+        condition: Number of the condition; None: there are none.
+        variation: Values of parameters and of further changes.
+        model: Name of the model.
+        template: Name of the prompt template; empty: what the scenario says.
+        repeat: Number of the repeat, from 1.
+        setting: What else decides about results: seed, world, attempts, temperature.
+    """
+
+    scenario: str
+    content: str
+    condition: int | None
+    variation: Mapping[str, Any]
+    model: str
+    template: str
+    repeat: int
+    setting: Mapping[str, Any]
+
+    @property
+    def name(self) -> str:
+        """Sixteen letters and digits, the same for the same cell on every machine."""
+        return _digest(self.content_json())[:16]
+
+    def content_json(self) -> dict[str, Any]:
+        """All of it as plain values."""
+        return {
+            "scenario": self.scenario,
+            "content": self.content,
+            "condition": self.condition,
+            "variation": dict(self.variation),
+            "model": self.model,
+            "template": self.template,
+            "repeat": self.repeat,
+            "setting": dict(self.setting),
+        }
+
+    @property
+    def seed(self) -> int:
+        """Drives every random number of the cell.
+
+        Of one repeat of one variation all conditions, models and templates have the same, so
+        that nothing else differs where they are compared.
+        """
+        whole = [self.scenario, dict(self.variation), self.repeat, self.setting["seed"]]
+        return int(_digest(whole), 16) % _SEEDS
+
+    @property
+    def title(self) -> str:
+        """What it is, for progress and messages."""
+        parts = [self.scenario]
+        if self.condition is not None:
+            parts.append(f"condition {self.condition}")
+        return ", ".join([*parts, Variation(self.variation).text, self.model])
+
+
+def _digest(value: object) -> str:
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A scenario under one condition, varied, to be played with one model once."""
+
+    key: CellKey
+    scenario: Scenario
+
+
+@dataclass(frozen=True, slots=True)
+class Invalid:
+    """A combination that makes no scenario.
+
+    Attributes:
+        scenario: Name, or path, of the scenario.
+        condition: Number of the condition; None: there are none.
+        variation: Values of parameters and of further changes.
+        why: What is wrong.
+    """
+
+    scenario: str
+    condition: int | None
+    variation: Mapping[str, Any]
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """All cells of a study, in the order of its table, and what is no cell."""
+
+    cells: tuple[Cell, ...]
+    invalid: tuple[Invalid, ...]
+
+    def shard(self, number: int, count: int) -> "Plan":
+        """One of several parts that together are the plan; a cell is always in the same one.
+
+        Args:
+            number: From 1.
+            count: How many parts there are.
+        """
+        own = [cell for cell in self.cells if int(cell.key.name, 16) % count == number - 1]
+        return replace(self, cells=tuple(own))
+
+
+def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan:
+    """The plan of a study.
+
+    Args:
+        design: What is combined.
+        documents: Name or path of every scenario in it, to what is written there.
+
+    Raises:
+        ScenarioError: A scenario is wrong as it is written, before it is varied.
+    """
+    cells: list[Cell] = []
+    invalid: list[Invalid] = []
+    for name in design.scenarios:
+        document = documents[name]
+        conditions = _conditions(design, document)
+        for variation in _variations(design, document):
+            for condition in conditions:
+                try:
+                    scenario = _scenario(design, document, condition, variation)
+                except BeliefNestError as error:
+                    invalid.append(Invalid(name, condition, variation.values, str(error)))
+                    continue
+                cells += _cells(design, document, scenario, variation)
+    order = {model: number for number, model in enumerate(design.models)}
+    # Whole rounds: what is done first is a smaller study of the same form.
+    cells.sort(key=lambda cell: (cell.key.repeat, order[cell.key.model]))
+    return Plan(tuple(cells), tuple(invalid))
+
+
+def _variations(design: Design, document: Document) -> Sequence[Variation]:
+    # As written it has to be right: a fault of the file is no matter of a variation.
+    for condition in _conditions(design, document):
+        Scenario.varied(document, condition)
+    if isinstance(design.variations, int):
+        return drawn_variations(document, design.variations, f"{design.seed} {document.source}")
+    return listed_variations(design.variations)
+
+
+def _conditions(design: Design, document: Document) -> Sequence[int | None]:
+    numbers = condition_numbers(document)
+    if design.conditions is None or numbers == (None,):
+        return numbers
+    return [number for number in numbers if number in design.conditions]
+
+
+def _scenario(
+    design: Design, document: Document, condition: int | None, variation: Variation
+) -> Scenario:
+    broken = design.broken_constraint(document, variation)
+    if broken is not None:
+        raise broken
+    return Scenario.varied(
+        document,
+        condition,
+        variation.parameters,
+        variation.scene if variation.changes_scene else None,
+    )
+
+
+def _cells(
+    design: Design, document: Document, scenario: Scenario, variation: Variation
+) -> Iterator[Cell]:
+    for template in design.templates or (None,):
+        told = scenario if template is None else _with_template(scenario, template)
+        content = _digest([document.text, dict(scenario.templates), template and template.text])
+        for model in design.models:
+            for repeat in range(1, design.repeats + 1):
+                key = CellKey(
+                    scenario=scenario.name,
+                    content=content[:16],
+                    condition=scenario.condition,
+                    variation=variation.values,
+                    model=model,
+                    template="" if template is None else template.name,
+                    repeat=repeat,
+                    setting=design.setting,
+                )
+                yield Cell(key, told)
+
+
+def _with_template(scenario: Scenario, template: Template) -> Scenario:
+    probes = tuple(replace(probe, template=template.text) for probe in scenario.probes)
+    return replace(scenario, probes=probes)

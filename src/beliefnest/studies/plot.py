@@ -1,0 +1,75 @@
+"""The figure of a study: accuracies with their intervals."""
+
+import io
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from beliefnest.errors import UnknownNameError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["plot_accuracy", "svg_of"]
+
+_COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#000000")
+"""Of Okabe and Ito, told apart by everybody."""
+
+
+def plot_accuracy(groups: Sequence[Mapping[str, Any]], by: Sequence[str]) -> "Figure":
+    """Bars from 0 to 1 with 95 % intervals.
+
+    Args:
+        groups: As `count_rows` gives them.
+        by: The columns they are told apart by: the first along the axis, the others by colour.
+
+    Raises:
+        UnknownNameError: matplotlib is not installed.
+    """
+    try:
+        from matplotlib.figure import Figure
+    except ModuleNotFoundError:
+        raise UnknownNameError(
+            'figures of studies need matplotlib: pip install "beliefnest[plot]"'
+        ) from None
+    judged = [group for group in groups if group["accuracy"] is not None]
+    along = list(dict.fromkeys(_told(group[by[0]]) for group in judged))
+    colours = list(dict.fromkeys(_legend(group, by) for group in judged))
+    figure = Figure(figsize=(max(3.2, 0.6 + 0.5 * len(along) * max(1, len(colours))), 2.8))
+    axes = figure.add_subplot()
+    width = 0.8 / max(1, len(colours))
+    for number, name in enumerate(colours):
+        own = [group for group in judged if _legend(group, by) == name]
+        middles = [along.index(_told(g[by[0]])) + (number + 0.5) * width - 0.4 for g in own]
+        heights = [group["accuracy"] for group in own]
+        below = [max(0.0, group["accuracy"] - group["low"]) for group in own]
+        above = [max(0.0, group["high"] - group["accuracy"]) for group in own]
+        colour = _COLOURS[number % len(_COLOURS)]
+        axes.bar(middles, heights, width * 0.9, color=colour, label=name or None)
+        axes.errorbar(middles, heights, [below, above], fmt="none", ecolor="#333333", capsize=3)
+    axes.set_xticks(range(len(along)), along)
+    axes.set_xlabel(by[0])
+    axes.set_ylabel("accuracy, 95 % interval")
+    axes.set_ylim(0, 1.02)
+    axes.spines[["top", "right"]].set_visible(False)
+    if len(colours) > 1:
+        axes.legend(title=", ".join(by[1:]), frameon=False, bbox_to_anchor=(1.0, 1.0))
+    figure.set_layout_engine("tight")
+    return figure
+
+
+def _legend(group: Mapping[str, Any], by: Sequence[str]) -> str:
+    return ", ".join(_told(group[name]) for name in by[1:])
+
+
+def _told(value: Any) -> str:
+    return "-" if value is None else str(value)
+
+
+def svg_of(figure: "Figure") -> str:
+    """A figure as SVG, the same text for the same figure."""
+    import matplotlib as mpl
+
+    drawn = io.StringIO()
+    with mpl.rc_context({"svg.hashsalt": "beliefnest", "svg.fonttype": "none"}):
+        figure.savefig(drawn, format="svg", metadata={"Date": None, "Creator": None})
+    return drawn.getvalue()

@@ -1,0 +1,213 @@
+"""What a study has come to: tables, intervals, a figure, a page."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.studies.counting import count_rows, paired_rows
+from beliefnest.studies.rows import COLUMNS, study_rows, variation_columns
+from beliefnest.studies.store import StudyFolder
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.figure import Figure
+
+__all__ = ["StudyResult"]
+
+_BY = ("scenario", "condition", "model")
+
+
+@dataclass(frozen=True)
+class StudyResult:
+    """What the folder of a study holds.
+
+    Attributes:
+        folder: The folder.
+    """
+
+    folder: StudyFolder
+
+    @classmethod
+    def read(cls, path: str | Path) -> "StudyResult":
+        """The result in a folder, of a study that has ended or not; InputError if there is none."""
+        result = cls(StudyFolder.existing(path))
+        # What is no study is told of here, not at its first use.
+        result.folder.plan()
+        return result
+
+    def __repr__(self) -> str:
+        tried = sum(self.folder.cell(cell["name"]) is not None for cell in self._plan["cells"])
+        return f"<study in {self.folder.path}: {tried} of {len(self._plan['cells'])} cells>"
+
+    @cached_property
+    def _plan(self) -> dict[str, Any]:
+        return self.folder.plan()
+
+    @cached_property
+    def rows(self) -> list[dict[str, Any]]:
+        """The rows of `frame` as plain values."""
+        return list(study_rows(self.folder, self._plan))
+
+    @property
+    def invalid(self) -> list[dict[str, Any]]:
+        """Combinations that make no scenario, and why."""
+        return list(self._plan["invalid"])
+
+    @property
+    def plan(self) -> dict[str, Any]:
+        """What was planned last, as plain values."""
+        return dict(self._plan)
+
+    def frame(self) -> "pandas.DataFrame":
+        """One row for each probe of each cell, in the order of the plan.
+
+        The same study gives the same rows, however many jobs it ran with. Wall times, which are
+        not the same twice, are in `seconds`.
+
+        Raises:
+            UnknownNameError: pandas is not installed.
+        """
+        return _frame(self.rows, ["scenario", "condition", *variation_columns(self._plan)])
+
+    def summary(self, by: Sequence[str] | str = _BY) -> "pandas.DataFrame":
+        """For each group its accuracy with the 95 % interval of Wilson, and all outcomes' counts.
+
+        `accuracy` is of what was judged: rows with the outcome `error` are counted, not judged.
+
+        Args:
+            by: Columns of `frame` that tell the groups apart.
+
+        Raises:
+            InputError: There is no such column.
+            UnknownNameError: pandas is not installed.
+        """
+        names = self._columns(by)
+        return _pandas().DataFrame.from_records(count_rows(self.rows, names))
+
+    def differences(self, between: str) -> "pandas.DataFrame":
+        """Paired differences of accuracy between the values of a column.
+
+        Pairs are rows that are the same in scenario, condition, variation, model, template, repeat
+        and probe, but for that column.
+
+        Args:
+            between: Such as `model` or `condition`.
+
+        Returns:
+            For each two values: `pairs`, how many are right with `both` or one of them, the
+            `difference`, `low` and `high` (95 %, Bonett and Price), `p` (McNemar, exact).
+
+        Raises:
+            InputError: There is no such column.
+            UnknownNameError: pandas is not installed.
+        """
+        self._columns(between)
+        found = [
+            {
+                "one": pairs.one,
+                "other": pairs.other,
+                "pairs": pairs.pairs,
+                "both": pairs.both,
+                "only_one": pairs.only_one,
+                "only_other": pairs.only_other,
+                "difference": pairs.difference,
+                "low": pairs.interval[0],
+                "high": pairs.interval[1],
+                "p": pairs.p,
+            }
+            for pairs in paired_rows(self.rows, between)
+        ]
+        return _pandas().DataFrame.from_records(found)
+
+    def seconds(self) -> "pandas.DataFrame":
+        """Wall time of each cell, as far as it is known: `cell`, `seconds`."""
+        noted = self.folder.seconds()
+        records = [
+            {"cell": cell["name"], "wall_seconds": noted[cell["name"]]}
+            for cell in self._plan["cells"]
+            if cell["name"] in noted
+        ]
+        return _pandas().DataFrame.from_records(records, columns=["cell", "wall_seconds"])
+
+    def plot(self, by: Sequence[str] | str = ("condition", "model")) -> "Figure":
+        """Accuracies with their intervals: the first column along the axis, the second by colour.
+
+        Raises:
+            InputError: There is no such column.
+            UnknownNameError: matplotlib is not installed.
+        """
+        from beliefnest.studies.plot import plot_accuracy
+
+        names = self._columns(by)
+        return plot_accuracy(count_rows(self.rows, names), names)
+
+    def write_page(self, file: str | Path, by: Sequence[str] | str = _BY) -> Path:
+        """Write all of it as one HTML page that needs no network.
+
+        Raises:
+            InputError: There is no such column, or the file cannot be written.
+        """
+        from beliefnest.studies.page import page_text
+
+        path = Path(file)
+        text = page_text(self._plan, self.rows, self._columns(by))
+        try:
+            path.write_text(text, encoding="utf-8")
+        except OSError as error:
+            raise InputError(f"{path} cannot be written: {error.strerror}") from None
+        return path
+
+    def write_tables(self) -> tuple[Path, Path]:
+        """Write `rows.csv` and `rows.parquet` into the folder."""
+        frame = self.frame()
+        csv, parquet = self.folder.path / "rows.csv", self.folder.path / "rows.parquet"
+        frame.to_csv(csv, index=False, lineterminator="\n")
+        frame.to_parquet(parquet, index=False)
+        return csv, parquet
+
+    def _columns(self, names: Sequence[str] | str) -> list[str]:
+        known = ["scenario", "condition", *variation_columns(self._plan), *COLUMNS]
+        chosen = [names] if isinstance(names, str) else list(names)
+        for name in chosen:
+            if name not in known:
+                raise InputError(f"there is no column {name!r}; there are {', '.join(known)}")
+        return chosen
+
+
+def _frame(rows: Sequence[dict[str, Any]], first: Sequence[str]) -> "pandas.DataFrame":
+    pandas = _pandas()
+    import pyarrow
+
+    arrow = {"string": pyarrow.string(), "bool": pyarrow.bool_()}
+    arrow |= {"int64": pyarrow.int64(), "float64": pyarrow.float64()}
+    columns: dict[str, Any] = {}
+    for name in (*first, *COLUMNS):
+        values = [row.get(name) for row in rows]
+        kind = COLUMNS.get(name)
+        if name == "condition":
+            kind = "int64"
+        told = pyarrow.array(values if kind else _alike(values), arrow[kind] if kind else None)
+        columns[name] = pandas.array(told, dtype=pandas.ArrowDtype(told.type))
+    return pandas.DataFrame(columns)
+
+
+def _alike(values: Sequence[Any]) -> list[Any]:
+    """Values of one type: what a list of a study mixes becomes text."""
+    kinds = {type(value) for value in values if value is not None}
+    if len(kinds) <= 1 or kinds == {int, float}:
+        return [float(v) if kinds == {int, float} and v is not None else v for v in values]
+    return [None if value is None else str(value) for value in values]
+
+
+def _pandas() -> Any:
+    try:
+        import pandas
+        import pyarrow  # noqa: F401  # what the columns are kept in
+    except ModuleNotFoundError as error:
+        raise UnknownNameError(
+            f'tables of studies need {error.name}: pip install "beliefnest[study]"'
+        ) from None
+    return pandas

@@ -1,0 +1,147 @@
+"""The table of a study: one row for each probe of each cell, from what its folder holds."""
+
+import json
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from beliefnest.scenarios.judging import OUTCOMES
+from beliefnest.studies.store import StudyFolder
+
+__all__ = ["COLUMNS", "FAILED", "study_rows", "variation_columns"]
+
+FAILED = "error"
+"""The outcome of the probes of a cell that has no result."""
+assert FAILED in OUTCOMES
+
+COLUMNS = {
+    "model": "string",
+    "template": "string",
+    "repeat": "int64",
+    "seed": "int64",
+    "probe": "string",
+    "path": "string",
+    "acts_in": "string",
+    "agent": "string",
+    "task": "string",
+    "expected": "string",
+    "intended": "string",
+    "opened": "string",
+    "arrived": "string",
+    "answered": "string",
+    "ok": "bool",
+    "outcome": "string",
+    "why_not": "string",
+    "beliefs_ok": "bool",
+    "script_ticks": "int64",
+    "ticks": "int64",
+    "seconds": "float64",
+    "attempts": "int64",
+    "tokens": "int64",
+    "cost": "float64",
+    "program": "string",
+    "run": "string",
+    "cell": "string",
+}
+"""Columns after `scenario`, `condition` and those of variations, and their types. Places are texts
+such as `-2,-51,-4`; `seconds` are the Minecraft ones that the probe's program ran."""
+
+
+def variation_columns(plan: Mapping[str, Any]) -> list[str]:
+    """Names of the columns that say what was varied, in the order of the plan."""
+    names = (name for cell in plan["cells"] for name in cell["key"]["variation"])
+    return list(dict.fromkeys(names))
+
+
+def study_rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """The rows of all planned cells that have been tried, in the order of the plan.
+
+    A cell that failed has a row for each of its probes, all with the outcome `error` and its
+    reason; one without probes has a single row, which tells of its expectations.
+    """
+    columns = variation_columns(plan)
+    for cell in plan["cells"]:
+        found = folder.cell(cell["name"])
+        if found is None:
+            continue
+        key = cell["key"]
+        about = {
+            "scenario": key["scenario"],
+            "condition": key["condition"],
+            **{name: _plain(key["variation"].get(name)) for name in columns},
+            "model": key["model"],
+            "template": key["template"],
+            "repeat": key["repeat"],
+            "seed": cell["seed"],
+        }
+        ends = {"cell": cell["name"], "run": found.get("run", "")}
+        if found["error"] is not None:
+            for probe in cell["probes"] or [{}]:
+                yield {**about, **_failed(probe, found["error"]), **ends}
+            continue
+        held = [each["ok"] for each in found["expectations"]]
+        common = {
+            "beliefs_ok": all(held) if held else None,
+            "script_ticks": found["ticks"],
+        }
+        for probe in found["probes"]:
+            yield {**about, **_probe(probe), **common, **ends}
+        if not found["probes"]:
+            yield {**about, **_beliefs(found["expectations"]), **common, **ends}
+
+
+def _probe(probe: Mapping[str, Any]) -> dict[str, Any]:
+    usage = probe["usage"]
+    return {
+        "probe": probe["label"],
+        "path": probe["path"],
+        "acts_in": probe["acts_in"],
+        "agent": probe["agent"],
+        "task": probe["task"],
+        "expected": _plain(probe["expected"]),
+        "intended": _place(probe["intended"]),
+        "opened": " ".join(_place(place) or "" for place in probe["opened"]),
+        "arrived": _place(probe["arrived"]),
+        "answered": "; ".join(str(reply["answer"]) for reply in probe["replies"]),
+        "ok": probe["ok"],
+        "outcome": probe["outcome"],
+        "why_not": probe["why_not"],
+        "ticks": probe["ticks"],
+        "seconds": probe["seconds"],
+        "attempts": probe["attempts"],
+        "tokens": usage["input_tokens"] + usage["output_tokens"],
+        "cost": usage["cost"],
+        "program": probe["program"],
+    }
+
+
+def _failed(probe: Mapping[str, Any], why: str) -> dict[str, Any]:
+    return {
+        **{name: probe.get(name) for name in ("path", "acts_in", "agent", "task")},
+        "probe": probe.get("label", ""),
+        "expected": _plain(probe.get("expected")),
+        "outcome": FAILED,
+        "why_not": why,
+    }
+
+
+def _beliefs(expectations: list[Mapping[str, Any]]) -> dict[str, Any]:
+    wrong = [f"{each['label'] or each['path']}: {each['why_not']}" for each in expectations]
+    wrong = [told for told, each in zip(wrong, expectations, strict=True) if not each["ok"]]
+    ok = not wrong if expectations else None
+    return {
+        "probe": "",
+        "ok": ok,
+        "outcome": "wrong" if wrong else "ok",
+        "why_not": "; ".join(wrong),
+    }
+
+
+def _plain(value: Any) -> Any:
+    """A value as one cell of a table: places as `x,y,z`, other structures as JSON."""
+    if isinstance(value, list) and value and all(isinstance(n, int | float) for n in value):
+        return _place(value)
+    return json.dumps(value, sort_keys=True) if isinstance(value, list | dict) else value
+
+
+def _place(place: list[float] | None) -> str | None:
+    return None if place is None else ",".join(f"{part:g}" for part in place)

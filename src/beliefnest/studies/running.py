@@ -1,0 +1,187 @@
+"""Playing the cells of a plan that have not been played, one by one or by joblib."""
+
+import contextlib
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+
+from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.llm.messages import Usage
+from beliefnest.studies.plan import Cell
+from beliefnest.studies.spending import spent_in
+from beliefnest.studies.store import StudyFolder
+from beliefnest.studies.worker import CellResult, Terms, Worker, play_in_process
+
+__all__ = ["BACKENDS", "OnStudyProgress", "StudyProgress", "run_cells"]
+
+BACKENDS = ("loky", "dask", "ray")
+"""Where cells may run: processes of this machine, or a cluster of Dask's or Ray's."""
+
+
+_Results = Generator[CellResult, None, None]
+_ROUND = 8
+"""Cells for each job of Ray's between which results are kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class StudyProgress:
+    """How far a study is.
+
+    Attributes:
+        total: Cells that it has.
+        done: Cells with a result, those of earlier runs counted in.
+        failed: Cells without, that have been tried.
+        spent: What answers have taken, in all runs.
+    """
+
+    total: int
+    done: int
+    failed: int
+    spent: Usage
+
+    @property
+    def left(self) -> int:
+        """Cells that have not been tried."""
+        return self.total - self.done - self.failed
+
+
+OnStudyProgress = Callable[[StudyProgress], None]
+
+
+def run_cells(
+    cells: Sequence[Cell],
+    folder: StudyFolder,
+    terms: Terms,
+    jobs: int,
+    backend: str,
+    on_progress: OnStudyProgress,
+) -> None:
+    """Play what is not there yet; keep each cell's result as soon as it is known.
+
+    Cells that failed before are tried again.
+
+    Raises:
+        InputError: `jobs` is no count.
+        UnknownNameError: There is no such backend, or it is not installed.
+    """
+    if not isinstance(jobs, int) or jobs < 1:
+        raise InputError(f"jobs is {jobs!r}; it must be at least 1")
+    if backend not in BACKENDS:
+        raise UnknownNameError(f"there is no backend {backend!r}; there are {', '.join(BACKENDS)}")
+    left = [cell for cell in cells if _is_open(folder, cell)]
+    progress = _Counting(folder, len(cells), len(cells) - len(left), on_progress)
+    keys = {cell.key.name: cell.key for cell in left}
+    with contextlib.closing(_results(left, terms, jobs, backend)) as results:
+        for result in results:
+            key = keys[result.name]
+            folder.note_seconds(result.name, result.seconds)
+            folder.write_cell(
+                result.name, {"key": key.content_json(), "seed": key.seed, **result.content}
+            )
+            progress.count(result)
+
+
+def _is_open(folder: StudyFolder, cell: Cell) -> bool:
+    known = folder.cell(cell.key.name)
+    return known is None or known["error"] is not None
+
+
+class _Counting:
+    """Tells how far it is."""
+
+    def __init__(
+        self, folder: StudyFolder, total: int, done: int, on_progress: OnStudyProgress
+    ) -> None:
+        self._folder = folder
+        self._total = total
+        self._done = done
+        self._failed = 0
+        self._tell = on_progress
+        self._say()
+
+    def count(self, result: CellResult) -> None:
+        """One more."""
+        if result.content["error"] is None:
+            self._done += 1
+        else:
+            self._failed += 1
+        self._say()
+
+    def _say(self) -> None:
+        spent = spent_in(self._folder.ledger)
+        self._tell(StudyProgress(self._total, self._done, self._failed, spent))
+
+
+def _results(cells: Sequence[Cell], terms: Terms, jobs: int, backend: str) -> _Results:
+    if not cells:
+        return
+    if jobs == 1 and backend == "loky":
+        with ExitStack() as stack:
+            worker = Worker(stack)
+            for cell in cells:
+                yield worker.play(cell, terms)
+        return
+    yield from _parallel(cells, terms, jobs, backend)
+
+
+def _parallel(cells: Sequence[Cell], terms: Terms, jobs: int, backend: str) -> _Results:
+    try:
+        from joblib import Parallel, delayed, parallel_config
+    except ModuleNotFoundError:
+        raise UnknownNameError(
+            'several jobs need joblib: pip install "beliefnest[study]", or use one job'
+        ) from None
+    # Cells take long enough to be given out one by one.
+    form = "list" if backend == "ray" else "generator_unordered"
+    with _engine(backend, jobs), parallel_config(backend=backend, n_jobs=jobs):
+        pool = Parallel(return_as=form, batch_size=1, pre_dispatch="2*n_jobs")
+        # Ray's backend gives back nothing before it has done all that it was given.
+        some = _ROUND * jobs if backend == "ray" else len(cells)
+        for first in range(0, len(cells), some):
+            chosen = cells[first : first + some]
+            yield from pool(delayed(play_in_process)(cell, terms) for cell in chosen)
+
+
+@contextlib.contextmanager
+def _engine(backend: str, jobs: int) -> Iterator[None]:
+    """What runs the cells; what was started for them is ended."""
+    try:
+        with ExitStack() as stack:
+            if backend == "loky":
+                stack.callback(_end_processes)
+            elif backend == "dask":
+                _enter_dask(stack, jobs)
+            else:
+                from ray.util.joblib import register_ray
+
+                register_ray()
+            yield
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in ("dask", "distributed", "ray"):
+            raise
+        raise UnknownNameError(
+            f'the backend {backend!r} is not installed: pip install "beliefnest[{backend}]"'
+        ) from None
+
+
+def _enter_dask(stack: ExitStack, jobs: int) -> None:
+    """Use the client that there is, or one of the cluster that Dask is told of, or a local one."""
+    import dask
+    from distributed import Client, default_client
+
+    try:
+        default_client()
+    except ValueError:
+        if dask.config.get("scheduler-address", None):
+            stack.enter_context(Client(set_as_default=True))
+        else:
+            # A process has one world, and plays one cell at a time in it.
+            client = Client(n_workers=jobs, threads_per_worker=1, dashboard_address=None)
+            stack.enter_context(client)
+
+
+def _end_processes() -> None:
+    """End the processes of this machine, and with them the worlds that they keep open."""
+    from joblib.externals.loky import get_reusable_executor
+
+    get_reusable_executor().shutdown(wait=True, kill_workers=True)

@@ -1,0 +1,200 @@
+"""Another scene of a scenario's document: every place in the form says what stands there.
+
+What a change makes of a kind of value is its own matter; which kind stands where is told here,
+once. A key that is not told of is refused, so that no position stays where it was.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.scenarios.document import Document, KeyPath, Node, plain, wrapped
+
+__all__ = ["Kind", "SceneChange", "changed_scene"]
+
+Kind = str
+"""`keep`, `block`, `point`, `place` (a block or a point), `yaw`, `facing`, `state`, `program`,
+`text` (read by models), `label` (read by people alone), `agent`, `item`, `path`."""
+
+
+class SceneChange(Protocol):
+    """What becomes of values, by their kind."""
+
+    def value(self, kind: Kind, value: Any) -> Any:
+        """The new value.
+
+        Raises:
+            BeliefNestError: It cannot be changed for certain.
+        """
+
+
+@dataclass(frozen=True, slots=True)
+class _Each:
+    """A list of values of one shape, or one such value alone."""
+
+    shape: Any
+
+
+@dataclass(frozen=True, slots=True)
+class _Map:
+    """A mapping with keys of a kind and values of a shape."""
+
+    key: Kind
+    shape: Any
+
+
+_ITEMS = _Map("item", "keep")
+_CORNERS = _Each("block")
+_BLOCKS = _Each({"block": "state", "at": "block", "fill": _CORNERS, "walls": _CORNERS})
+_EQUIPMENT = dict.fromkeys(("head", "chest", "legs", "feet", "main_hand", "off_hand"), "item")
+_EXPECTATION = {
+    "label": "keep",
+    "path": "path",
+    "container": "block",
+    "items": _ITEMS,
+    "agent": "agent",
+    "position": "point",
+    "within": "keep",
+    "heard": "text",
+    "not_heard": "text",
+}
+_EXPECT = {
+    "opens": "block",
+    "arrives": "point",
+    "intends": "place",
+    "within": "keep",
+    "takes": _ITEMS,
+    "says": "text",
+    "answers": _Each(
+        {
+            "question": "text",
+            "right": _Each("text"),
+            "options": _Each("text"),
+            "wrong": _Each("text"),
+            "reason": "keep",
+        }
+    ),
+    "believes": _Each(_EXPECTATION),
+}
+_SHAPE: Mapping[str, Any] = {
+    "name": "keep",
+    "description": "label",
+    "reported_by": "keep",
+    "box": _CORNERS,
+    "blocks": _BLOCKS,
+    "containers": _Each({"at": "block", "block": "state", "items": _ITEMS, "label": "label"}),
+    "places": _Map("keep", "block"),
+    "agents": _Map(
+        "agent",
+        {
+            "position": "point",
+            "facing": "facing",
+            "yaw": "yaw",
+            "pitch": "keep",
+            "inventory": _ITEMS,
+            "equipment": _EQUIPMENT,
+            "health": "keep",
+            "food": "keep",
+            "type": "keep",
+            "senses": "keep",
+        },
+    ),
+    "perception": "keep",
+    "senses": "keep",
+    "static_blocks": "keep",
+    "initial_beliefs": _Each(
+        {
+            "path": "path",
+            "containers": _Each({"at": "block", "items": _ITEMS, "complete": "keep"}),
+            "blocks": _BLOCKS,
+            "agents": _Map("agent", "point"),
+        }
+    ),
+    "script": _Each(
+        {
+            "label": "label",
+            "agent": "agent",
+            "program": "program",
+            "programs": _Map("agent", "program"),
+            "timeout_ticks": "keep",
+            "senses": "keep",
+        }
+    ),
+    "probes": _Each(
+        {
+            "label": "keep",
+            "path": "path",
+            "acts_in": "path",
+            "agent": "agent",
+            "task": "text",
+            "template": "keep",
+            "expect": _EXPECT,
+            "timeout_ticks": "keep",
+            "senses": "keep",
+        }
+    ),
+    "expectations": _Each(_EXPECTATION),
+}
+
+
+def changed_scene(document: Document, change: SceneChange) -> Document:
+    """A document that says the same of another scene.
+
+    Args:
+        document: Its condition merged in and its parameters filled in.
+        change: What becomes of values.
+
+    Raises:
+        ScenarioError: A value cannot be changed for certain; the message names file, line, key.
+    """
+    root = _changed(document, document.root, _SHAPE, (), change)
+    return replace(document, root=root)
+
+
+def _changed(
+    document: Document, node: Node, shape: Any, path: KeyPath, change: SceneChange
+) -> Node:
+    if node.value is None or shape == "keep" or (path == ("conditions",)):
+        return node
+    if isinstance(shape, str):
+        return Node(_leaf(document, node, shape, path, change).value, node.line)
+    if isinstance(shape, _Each) and isinstance(node.value, list):
+        parts = [
+            _changed(document, child, shape.shape, (*path, number), change)
+            for number, child in enumerate(node.value)
+        ]
+        return Node(parts, node.line)
+    if isinstance(shape, _Each):
+        return _changed(document, node, shape.shape, path, change)
+    if not isinstance(node.value, dict):
+        # Of the wrong form; the check of the form, which comes later, says so.
+        return node
+    inner = {}
+    for key, child in node.value.items():
+        if key == "conditions" and not path:
+            continue
+        if isinstance(shape, _Map):
+            name, part = _key(document, str(key), shape.key, (*path, key), change), shape.shape
+        elif key in shape:
+            name, part = key, shape[key]
+        else:
+            raise document.fault((*path, key), "is not known to be the same in another scene")
+        inner[name] = _changed(document, child, part, (*path, key), change)
+    return Node(inner, node.line)
+
+
+def _key(document: Document, key: str, kind: Kind, path: KeyPath, change: SceneChange) -> str:
+    return str(_leaf(document, Node(key), kind, path, change).value)
+
+
+def _leaf(document: Document, node: Node, kind: Kind, path: KeyPath, change: SceneChange) -> Node:
+    try:
+        return wrapped(change.value(kind, plain(node)))
+    except InputError as error:
+        raise document.fault(path, str(error)) from error
+    except (TypeError, ValueError):
+        # Of the wrong form, as above.
+        return node
+    except BeliefNestError as error:
+        raise document.fault(path, str(error)) from error

@@ -1,0 +1,60 @@
+"""What a study may spend and has spent, over all its workers."""
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from filelock import FileLock
+
+from beliefnest.llm.budget import Budget, RunLimits
+from beliefnest.llm.messages import Usage
+
+__all__ = ["SharedBudget", "spent_in"]
+
+
+@dataclass
+class SharedBudget(Budget):
+    """A budget that workers share by a file: each answer is a line in it.
+
+    Requests under way at the same moment are all let through, as none of them has been counted
+    yet: a limit is passed by no more than what the workers were asking then.
+
+    Attributes:
+        file: Where answers are counted.
+    """
+
+    file: Path = field(default=Path("spent.jsonl"))
+
+    def check(self) -> None:
+        """Refuse a further request when nothing is left; ModelError says so."""
+        self.spent = spent_in(self.file)
+        super().check()
+
+    def add(self, usage: Usage) -> None:
+        """Count what an answer took."""
+        line = {
+            "requests": usage.requests,
+            "input_tokens": usage.input_tokens,
+            "output_tokens": usage.output_tokens,
+            "cost": usage.cost,
+        }
+        with FileLock(f"{self.file}.lock"), self.file.open("a", encoding="utf-8") as file:
+            file.write(json.dumps(line) + "\n")
+
+    @classmethod
+    def of(cls, limits: RunLimits, file: Path) -> "SharedBudget":
+        """The budget of a study whose answers are counted in a file."""
+        return cls(limits=limits, file=file)
+
+
+def spent_in(file: Path) -> Usage:
+    """What is counted in a file; the cost of known prices only."""
+    if not file.is_file():
+        return Usage()
+    total = Usage()
+    for line in file.read_text(encoding="utf-8").splitlines():
+        # A process that was ended while it wrote leaves a part of a line.
+        if line.endswith("}"):
+            noted = json.loads(line)
+            total += Usage(**{**noted, "cost": noted["cost"] or 0.0})
+    return total

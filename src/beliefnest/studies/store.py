@@ -1,0 +1,171 @@
+"""The folder of a study: one whole file for each cell that has ended, whatever ends the study."""
+
+import json
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from filelock import FileLock
+
+from beliefnest.errors import InputError
+from beliefnest.files import read_regular_text
+
+__all__ = ["StudyFolder"]
+
+_PLAN = "study.json"
+_FORM = "beliefnest study 1"
+
+
+@dataclass(frozen=True, slots=True)
+class StudyFolder:
+    """The folder of a study.
+
+    What is in it: `study.json`, what was planned last; `cells/`, what came of each cell that has
+    ended; `seconds.jsonl`, how long each took, which is not the same twice; `answers/`, kept
+    answers of models; `spent.jsonl`, what answers took; `runs/`, recorded runs.
+    """
+
+    path: Path
+
+    @staticmethod
+    def open(path: str | Path) -> "StudyFolder":
+        """Make the folder, or go on in it.
+
+        Raises:
+            InputError: It cannot be made, or holds something else.
+        """
+        folder = StudyFolder(Path(path))
+        try:
+            folder.path.mkdir(parents=True, exist_ok=True)
+            strange = any(folder.path.iterdir()) and not (folder.path / _PLAN).is_file()
+            if strange and not (folder.path / "cells").is_dir():
+                raise InputError(f"{path} is not empty and holds no study; name another folder")
+            folder.cells.mkdir(exist_ok=True)
+        except OSError as error:
+            raise InputError(f"the folder {path} cannot be written: {error.strerror}") from None
+        return folder
+
+    @staticmethod
+    def existing(path: str | Path) -> "StudyFolder":
+        """The folder of a study that is there; InputError if there is none."""
+        folder = StudyFolder(Path(path))
+        if not folder.cells.is_dir():
+            raise InputError(f"there is no study at {path}")
+        return folder
+
+    def lock(self) -> FileLock:
+        """Held by the one process that runs the study."""
+        return FileLock(self.path / "study.lock", timeout=0)
+
+    @property
+    def cells(self) -> Path:
+        """One file for each cell that has ended."""
+        return self.path / "cells"
+
+    @property
+    def answers(self) -> Path:
+        """Kept answers of models."""
+        return self.path / "answers"
+
+    @property
+    def ledger(self) -> Path:
+        """What answers took, one line each."""
+        return self.path / "spent.jsonl"
+
+    def run(self, cell: str) -> Path:
+        """The recorded run of a cell."""
+        return self.path / "runs" / f"{cell}.bn"
+
+    def names(self) -> set[str]:
+        """Names of the cells that have ended."""
+        return {file.stem for file in self.cells.glob("*.json")}
+
+    def cell(self, name: str) -> dict[str, Any] | None:
+        """What came of a cell; None: it has not ended.
+
+        Raises:
+            InputError: Its file is damaged.
+        """
+        file = self.cells / f"{name}.json"
+        return _read(file) if file.is_file() else None
+
+    def write_cell(self, name: str, content: Mapping[str, Any]) -> None:
+        """Keep what came of a cell, whole or not at all."""
+        _write(self.cells / f"{name}.json", _json(content))
+
+    def note_seconds(self, name: str, seconds: float) -> None:
+        """Note how long a cell took."""
+        with (self.path / "seconds.jsonl").open("a", encoding="utf-8") as file:
+            file.write(json.dumps({"cell": name, "seconds": round(seconds, 3)}) + "\n")
+
+    def seconds(self) -> dict[str, float]:
+        """How long cells took, as far as it is known."""
+        file = self.path / "seconds.jsonl"
+        lines = file.read_text(encoding="utf-8").splitlines() if file.is_file() else []
+        found = {}
+        for line in lines:
+            # The last line may have been cut off by the end of the process.
+            if line.endswith("}"):
+                noted = json.loads(line)
+                found[noted["cell"]] = noted["seconds"]
+        return found
+
+    def write_plan(self, plan: Mapping[str, Any]) -> None:
+        """Keep what was planned last."""
+        _write(self.path / _PLAN, _json({"form": _FORM, **plan}))
+
+    def plan(self) -> dict[str, Any]:
+        """What was planned last; InputError if there is nothing, or it is damaged."""
+        found = _read(self.path / _PLAN)
+        if found.get("form") != _FORM:
+            raise InputError(f"{self.path / _PLAN} is not that of a study of this version")
+        return found
+
+    def take_over(self, others: Iterable[Path]) -> int:
+        """Take the cells of other folders of the same study, which other machines ran.
+
+        Returns:
+            How many were new here.
+
+        Raises:
+            InputError: A folder is none of a study, or two have different results of one cell;
+                nothing was taken.
+        """
+        new: dict[str, dict[str, Any]] = {}
+        for other in map(StudyFolder.existing, others):
+            for name in sorted(other.names()):
+                theirs = other.cell(name) or {}
+                ours = new.get(name) or self.cell(name)
+                if ours is None or ours.get("error") is not None:
+                    new[name] = theirs
+                elif theirs.get("error") is None and theirs != ours:
+                    raise InputError(
+                        f"{other.path} and {self.path} have different results of the cell {name}; "
+                        "one of them ran with another version or model"
+                    )
+        for name, content in new.items():
+            self.write_cell(name, content)
+        return len(new)
+
+
+def _json(content: Mapping[str, Any]) -> str:
+    return json.dumps(content, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
+
+
+def _read(file: Path) -> dict[str, Any]:
+    try:
+        content = json.loads(read_regular_text(file))
+    except (OSError, ValueError, RecursionError) as error:
+        raise InputError(f"{file} cannot be read: {error}; delete it to run it again") from None
+    if not isinstance(content, dict):
+        raise InputError(f"{file} is not part of a study; delete it to run it again")
+    return content
+
+
+def _write(path: Path, text: str) -> None:
+    """Replace a file as a whole, so that whoever reads it never finds half of it."""
+    draft = path.with_name(f"{path.name}.{os.getpid()}.part")
+    draft.write_text(text, encoding="utf-8")
+    draft.replace(path)

@@ -1,0 +1,254 @@
+"""A study as a person asks for it: from what is combined to a folder of results."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Self
+
+from filelock import Timeout
+
+from beliefnest.errors import InputError
+from beliefnest.llm.budget import RunLimits
+from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.loading import read_document
+from beliefnest.scenarios.records import expected_json
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.studies.design import Constraint, Design, Template, read_design, template_named
+from beliefnest.studies.plan import Cell, Plan, plan_cells
+from beliefnest.studies.result import StudyResult
+from beliefnest.studies.running import OnStudyProgress, StudyProgress, run_cells
+from beliefnest.studies.store import StudyFolder
+from beliefnest.studies.worker import Terms
+
+__all__ = ["Study"]
+
+
+class Study:
+    """Scenarios, conditions, variations, models, templates and repeats, all combined.
+
+    Args:
+        scenarios: Names of built-in scenarios, or paths of files.
+        models: Names of models, as `beliefnest run --model` takes them.
+        templates: Built-in prompt templates or paths of files, in place of the scenarios' own.
+        repeats: How often each cell is played, each time with another seed.
+        seed: Decides which variations are drawn, and with a cell about its seed.
+        variations: Lists of values, by name of a parameter that the scenarios declare or of
+            `symmetry`, `agents`, `items`; all combinations are played. Or how many variations
+            are drawn for each scenario, of its parameters and all symmetries.
+        conditions: Numbers of conditions; None: all.
+        constraints: What has to hold of a variation's values: expressions, or functions of them.
+        world: Name of the world.
+        attempts: How often a model is asked for one probe at most.
+        temperature: How answers are drawn; None leaves it to the provider.
+        max_tokens: What the whole study may use; None: no limit.
+        max_cost: US dollars that it may cost; None: no limit.
+
+    Raises:
+        InputError: An argument is not of the form that it should have.
+        UnknownNameError: There is no such scenario or world.
+        ScenarioError: A scenario's file cannot be read.
+        TemplateError: A template's file cannot be read.
+    """
+
+    def __init__(
+        self,
+        scenarios: Sequence[str] | str,
+        models: Sequence[str] | str = ("offline",),
+        templates: Sequence[str] | None = None,
+        repeats: int = 1,
+        seed: int = 0,
+        variations: Mapping[str, Sequence[Any]] | int | None = None,
+        conditions: Sequence[int] | None = None,
+        *,
+        constraints: Sequence[Constraint] = (),
+        world: str = "embedded",
+        attempts: int = 3,
+        temperature: float | None = 0.0,
+        max_tokens: int | None = 1_000_000,
+        max_cost: float | None = 5.0,
+    ) -> None:
+        self._hold(
+            Design(
+                scenarios=_several(scenarios),
+                models=_several(models),
+                templates=_templates(templates),
+                repeats=repeats,
+                seed=seed,
+                variations={} if variations is None else variations,
+                conditions=None if conditions is None else tuple(conditions),
+                constraints=_constraints(constraints),
+                world=world,
+                attempts=attempts,
+                temperature=temperature,
+                limits=RunLimits(max_tokens, max_cost),
+            )
+        )
+
+    @classmethod
+    def load(cls, file: str | Path) -> Self:
+        """The study that a YAML file describes.
+
+        Raises:
+            ScenarioError: The file is wrong; the message names file, line and key.
+        """
+        study = cls.__new__(cls)
+        study._hold(read_design(Path(file)))
+        return study
+
+    def _hold(self, design: Design) -> None:
+        self._design = design
+        self._documents: dict[str, Document] = {
+            name: read_document(name) for name in design.scenarios
+        }
+        self._plan: Plan | None = None
+
+    @property
+    def design(self) -> Design:
+        """What is combined."""
+        return self._design
+
+    def plan(self) -> Plan:
+        """All cells, each checked, and the combinations that make no scenario.
+
+        Raises:
+            ScenarioError: A scenario is wrong as it is written.
+        """
+        if self._plan is None:
+            self._plan = plan_cells(self._design, self._documents)
+        return self._plan
+
+    def run(
+        self,
+        folder: str | Path,
+        jobs: int = 2,
+        backend: str = "loky",
+        *,
+        shard: tuple[int, int] | None = None,
+        record: bool = False,
+        on_progress: OnStudyProgress | None = None,
+    ) -> StudyResult:
+        """Play all cells that the folder holds no result of, and keep each as soon as it ends.
+
+        A study that was interrupted or that has become larger goes on where it was. A cell that
+        failed is tried again.
+
+        Args:
+            folder: Made if it is not there.
+            jobs: How many cells are played at the same time.
+            backend: `loky` for processes of this machine, or `dask`, `ray` for a cluster, whose
+                machines need to see the folder under the same name.
+            shard: Number, from 1, and count of parts: only that part is played.
+            record: Whether runs are recorded, into `runs/` of the folder.
+            on_progress: Takes how far it is.
+
+        Raises:
+            InputError: The folder holds something else or another process runs the study, or an
+                argument is wrong.
+            ScenarioError: A scenario is wrong as it is written.
+            UnknownNameError: A model, a backend, or what it needs, is not there.
+        """
+        place = StudyFolder.open(folder)
+        plan = self.plan()
+        part = plan if shard is None else plan.shard(*_checked_shard(shard))
+        if not plan.cells and plan.invalid:
+            raise InputError(f"no combination makes a scenario; the first: {plan.invalid[0].why}")
+        terms = Terms(
+            answers=place.answers.absolute(),
+            ledger=place.ledger.absolute(),
+            runs=(place.path / "runs").absolute() if record else None,
+            limits=self._design.limits,
+        )
+        try:
+            with place.lock():
+                place.write_plan(self._plan_json(part))
+                run_cells(part.cells, place, terms, jobs, backend, on_progress or _say_nothing)
+        except Timeout:
+            raise InputError(f"another process runs the study in {folder}") from None
+        return StudyResult(place)
+
+    def take_over(self, folder: str | Path, others: Sequence[str | Path]) -> int:
+        """Take the cells of folders in which other machines ran shards of the study.
+
+        Returns:
+            How many were new.
+
+        Raises:
+            InputError: A folder is none of a study, or two hold different results of one cell.
+        """
+        place = StudyFolder.open(folder)
+        with place.lock():
+            return place.take_over([Path(other) for other in others])
+
+    def _plan_json(self, plan: Plan) -> dict[str, Any]:
+        design = self._design
+        return {
+            "scenarios": list(design.scenarios),
+            "models": list(design.models),
+            "templates": [template.name for template in design.templates],
+            "repeats": design.repeats,
+            "variations": design.variations
+            if isinstance(design.variations, int)
+            else {name: list(values) for name, values in design.variations.items()},
+            "conditions": None if design.conditions is None else list(design.conditions),
+            **design.setting,
+            "cells": [_cell_json(cell) for cell in plan.cells],
+            "invalid": [
+                {
+                    "scenario": each.scenario,
+                    "condition": each.condition,
+                    "variation": dict(each.variation),
+                    "why": each.why,
+                }
+                for each in plan.invalid
+            ],
+        }
+
+
+def _several(names: Sequence[str] | str) -> tuple[str, ...]:
+    """A name alone is a list of one."""
+    return (names,) if isinstance(names, str) else tuple(str(name) for name in names)
+
+
+def _templates(names: Sequence[str] | None) -> tuple[Template, ...]:
+    return () if names is None else tuple(template_named(name) for name in _several(names))
+
+
+def _constraints(constraints: Sequence[Constraint]) -> tuple[Constraint, ...]:
+    if isinstance(constraints, str) or callable(constraints):
+        return (constraints,)
+    return tuple(constraints)
+
+
+def _checked_shard(shard: tuple[int, int]) -> tuple[int, int]:
+    number, count = shard
+    if not 1 <= number <= count:
+        raise InputError(
+            f"there is no shard {number} of {count}; give 1/{count} to {count}/{count}"
+        )
+    return number, count
+
+
+def _cell_json(cell: Cell) -> dict[str, Any]:
+    return {
+        "name": cell.key.name,
+        "key": cell.key.content_json(),
+        "seed": cell.key.seed,
+        "probes": _probes_json(cell.scenario),
+    }
+
+
+def _probes_json(scenario: Scenario) -> list[dict[str, Any]]:
+    return [
+        {
+            "label": probe.label,
+            "path": probe.path,
+            "acts_in": probe.acts_in,
+            "agent": probe.agent,
+            "task": probe.task,
+            "expected": expected_json(probe.expect),
+        }
+        for probe in scenario.probes
+    ]
+
+
+def _say_nothing(progress: StudyProgress) -> None:
+    """Nobody wants to know."""

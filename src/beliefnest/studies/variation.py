@@ -1,0 +1,177 @@
+"""One variation of a scenario: values of its parameters, a symmetry, names; how it is drawn."""
+
+import functools
+import itertools
+import json
+import random
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from beliefnest.errors import InputError
+from beliefnest.scenarios.document import Document, plain
+from beliefnest.scenarios.parameters import broken_constraint, choices, declared_in
+from beliefnest.studies.changes import Moved, Renamed
+from beliefnest.studies.scene import changed_scene
+from beliefnest.studies.symmetry import SYMMETRIES, Placing, symmetry_named
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Box
+
+__all__ = ["CHANGES", "Variation", "drawn_variations", "listed_variations"]
+
+CHANGES = ("symmetry", "agents", "items")
+"""Names in `variations` that are no parameters: a symmetry's name, new names of agents, items."""
+_LISTED = 20_000
+"""Variations that are listed and shuffled; of more, single ones are drawn."""
+_DRAWS = 200
+"""Draws for one variation that keeps all constraints, before giving up."""
+
+
+@dataclass(frozen=True)
+class Variation:
+    """One variation.
+
+    Attributes:
+        values: Parameter, or one of `CHANGES`, to value; what is not given is as written.
+    """
+
+    values: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """Values of the scenario's own parameters."""
+        return {name: value for name, value in self.values.items() if name not in CHANGES}
+
+    @property
+    def changes_scene(self) -> bool:
+        """Whether it is more than values of parameters."""
+        return any(name in CHANGES for name in self.values)
+
+    @property
+    def key(self) -> str:
+        """A text that is the same for the same variation only."""
+        return json.dumps(self.values, sort_keys=True)
+
+    @property
+    def text(self) -> str:
+        """What it is, for people."""
+        parts = (f"{name} {_short(value)}" for name, value in self.values.items())
+        return ", ".join(parts) or "as written"
+
+    def scene(self, document: Document) -> Document:
+        """The document in its symmetry and under its names.
+
+        Raises:
+            ScenarioError: It cannot be changed for certain.
+            InputError: A name of a symmetry, an agent or an item is none.
+        """
+        symmetry = symmetry_named(self.values.get("symmetry", "as-written"))
+        agents, items = self._names("agents"), self._names("items")
+        if agents or items:
+            _check_names(document, agents)
+            document = changed_scene(document, Renamed(agents, items))
+        if symmetry != SYMMETRIES[0]:
+            placing = Placing(symmetry, _box(document))
+            document = changed_scene(document, Moved(placing, Registry.load()))
+        return document
+
+    def _names(self, kind: str) -> Mapping[str, str]:
+        names = self.values.get(kind, {})
+        if not isinstance(names, dict) or not all(isinstance(n, str) for n in names.values()):
+            raise InputError(f"{kind} is {names!r}; write a mapping from old to new names")
+        return names
+
+
+def _short(value: object) -> str:
+    return value if isinstance(value, str) else json.dumps(value)
+
+
+def _box(document: Document) -> Box:
+    corners: Any = plain(document.root.value["box"])
+    first, second = corners
+    low = tuple(min(pair) for pair in zip(first, second, strict=True))
+    high = tuple(max(pair) for pair in zip(first, second, strict=True))
+    return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+
+
+def _check_names(document: Document, agents: Mapping[str, str]) -> None:
+    known = set(document.root.value["agents"].value)
+    unknown = [name for name in agents if name not in known]
+    if unknown:
+        there = ", ".join(sorted(known))
+        raise InputError(f"there is no agent {unknown[0]!r} to rename; agents are {there}")
+    new = [agents.get(name, name) for name in known]
+    twice = [name for name in new if new.count(name) > 1]
+    if twice:
+        raise InputError(f"two agents would be called {twice[0]!r}")
+
+
+def listed_variations(lists: Mapping[str, Sequence[Any]]) -> list[Variation]:
+    """Every combination of listed values, the last list changing fastest."""
+    names = list(lists)
+    return [
+        Variation(dict(zip(names, combination, strict=True)))
+        for combination in itertools.product(*lists.values())
+    ]
+
+
+def drawn_variations(document: Document, count: int, seed: str) -> list[Variation]:
+    """So many different variations of a scenario's parameters and symmetries.
+
+    Which come first does not depend on how many are drawn, so that a study can be extended.
+
+    Args:
+        document: The scenario.
+        count: How many; fewer if there are not as many.
+        seed: Decides which.
+
+    Raises:
+        ScenarioError: A declaration or constraint is wrong.
+        InputError: The constraints leave next to nothing.
+    """
+    declared = declared_in(document)
+    symmetries = [symmetry.name for symmetry in SYMMETRIES]
+    lists = {name: choices(entry) for name, entry in declared.items()}
+    if all(values is not None for values in lists.values()):
+        number = functools.reduce(lambda n, values: n * len(values or ()), lists.values(), 8)
+        if number <= _LISTED:
+            return _shuffled(document, lists, symmetries, seed)[:count]
+    return list(itertools.islice(_draws(document, lists, symmetries, seed), count))
+
+
+def _shuffled(
+    document: Document, lists: Mapping[str, list[Any] | None], symmetries: list[str], seed: str
+) -> list[Variation]:
+    """All that there are, in an order that the seed decides."""
+    whole = {**{name: values or [] for name, values in lists.items()}, "symmetry": symmetries}
+    keeping = [
+        each
+        for each in listed_variations(whole)
+        if broken_constraint(document, each.parameters) is None
+    ]
+    random.Random(seed).shuffle(keeping)
+    return keeping
+
+
+def _draws(
+    document: Document, lists: Mapping[str, list[Any] | None], symmetries: list[str], seed: str
+) -> Iterator[Variation]:
+    declared, chance, seen = declared_in(document), random.Random(seed), set()
+    misses = 0
+    while misses < _DRAWS:
+        values = {
+            name: chance.choice(values)
+            if values is not None
+            else round(chance.uniform(*(declared[name].range or (0, 0))), 3)
+            for name, values in lists.items()
+        }
+        found = Variation({**values, "symmetry": chance.choice(symmetries)})
+        misses += 1
+        if found.key not in seen and broken_constraint(document, found.parameters) is None:
+            seen.add(found.key)
+            misses = 0
+            yield found
+    if not seen:
+        raise InputError(
+            f"{document.source}: none of {_DRAWS} draws keeps the constraints; widen a range"
+        )

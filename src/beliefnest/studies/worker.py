@@ -1,0 +1,129 @@
+"""Playing one cell, in whatever process it falls to."""
+
+import os
+import threading
+import time
+from collections.abc import Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from beliefnest.bodies.worlds import Worlds
+from beliefnest.errors import BeliefNestError
+from beliefnest.llm.budget import RunLimits
+from beliefnest.llm.messages import Sampling
+from beliefnest.llm.remote import RemoteModel
+from beliefnest.llm.resolve import Connection, open_model, resolve_model
+from beliefnest.nest.face.nest import Nest
+from beliefnest.scenarios.records import expectation_json, probe_json
+from beliefnest.scenarios.running import Asking, run_scenario
+from beliefnest.studies.plan import Cell
+from beliefnest.studies.spending import SharedBudget
+
+__all__ = ["CellResult", "Terms", "Worker", "play_in_process"]
+
+
+@dataclass(frozen=True, slots=True)
+class Terms:
+    """What every cell of a study is played with.
+
+    Attributes:
+        answers: Folder of kept answers.
+        ledger: File in which spending is counted.
+        runs: Folder of recorded runs; None: nothing is recorded.
+        limits: What the whole study may spend.
+        environment: Where models are and their keys; None: the worker's own environment.
+    """
+
+    answers: Path
+    ledger: Path
+    runs: Path | None
+    limits: RunLimits
+    environment: Mapping[str, str] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class CellResult:
+    """What came of a cell.
+
+    Attributes:
+        name: Name of the cell.
+        content: Plain values; the same each time but for what a model of a provider answers.
+        seconds: Wall time.
+    """
+
+    name: str
+    content: Mapping[str, Any]
+    seconds: float
+
+
+class Worker:
+    """Plays cells one after the other in worlds that stay open between them.
+
+    Args:
+        stack: Ends the worlds.
+    """
+
+    def __init__(self, stack: ExitStack) -> None:
+        self._worlds = stack.enter_context(Worlds(0))
+
+    def play(self, cell: Cell, terms: Terms) -> CellResult:
+        """Play a cell; what goes wrong is its result."""
+        started = time.perf_counter()
+        try:
+            content = self._played(cell, terms)
+        except BeliefNestError as error:
+            content = {"error": str(error), "kind": type(error).__name__}
+        return CellResult(cell.key.name, content, time.perf_counter() - started)
+
+    def _played(self, cell: Cell, terms: Terms) -> dict[str, Any]:
+        key, scenario = cell.key, cell.scenario
+        environment = os.environ if terms.environment is None else terms.environment
+        budget = SharedBudget.of(terms.limits, terms.ledger)
+        if isinstance(resolve_model(key.model, environment), RemoteModel):
+            # Before the script: it would be played for nothing.
+            budget.check()
+        connection = Connection(budget=budget, cache=terms.answers)
+        model = open_model(key.model, environment, connection)
+        sampling = Sampling(key.setting["temperature"], key.seed)
+        asking = Asking(key.setting["attempts"], sampling, keeps_unanswered=True)
+        store = None
+        if terms.runs is not None:
+            store = terms.runs / f"{key.name}.bn"
+            store.parent.mkdir(parents=True, exist_ok=True)
+            for left in store.parent.glob(f"{key.name}.bn*"):
+                left.unlink()
+        with Nest.open(scenario, key.setting["world"], store, key.seed, self._worlds) as nest:
+            outcome = run_scenario(nest, scenario, model, key.seed, 0.0, _say_nothing, asking)
+        return {
+            "error": None,
+            "ticks": outcome.ticks,
+            "run": "" if store is None else f"runs/{store.name}",
+            "expectations": [expectation_json(each) for each in outcome.expectations],
+            "probes": [
+                {**probe_json(each, ""), "answer": each.answer, "seconds": each.ticks / 20}
+                for each in outcome.probes
+            ],
+        }
+
+
+def _say_nothing(what: str, done: int, total: int) -> None:
+    """Progress is told by cells."""
+
+
+class _Kept(threading.local):
+    """The worker of a thread. A pool of processes gives no other place to keep a world open."""
+
+    worker: Worker | None = None
+
+
+_kept = _Kept()
+
+
+def play_in_process(cell: Cell, terms: Terms) -> CellResult:
+    """Play a cell with the worker that this thread keeps until its process ends."""
+    if _kept.worker is None:
+        # The process behind a world ends with the one that started it.
+        _kept.worker = Worker(ExitStack())
+    return _kept.worker.play(cell, terms)
