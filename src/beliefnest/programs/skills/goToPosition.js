@@ -1,20 +1,23 @@
 'use strict'
-const { position: checkPosition, distance } = require('./lib/arguments')
+const { position: checkPosition, distance, flags } = require('./lib/arguments')
 const { walkNear } = require('./lib/walking')
+
+const DOORS = { openDoors: true, closeDoors: false }
 
 module.exports = {
   name: 'goToPosition',
   signature: 'goToPosition(bot, position, dist=2)',
-  description: 'Walk until the position is at most dist blocks away. Fails, saying how near it came, if there is no way on foot.',
+  description: 'Walk until the position is at most dist blocks away. Goes through open doors of any kind and opens others on its way, but for iron ones; a fourth argument {openDoors: false, closeDoors: true} keeps it from opening any, and lets it shut those it goes through. Fails, saying how near it came, if there is no way on foot.',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'where to go' },
     { name: 'dist', type: 'number', description: 'how near is near enough, in blocks; 0 is the very block' }
   ],
   example: 'await goToPosition(bot, new Vec3(0, -51, -8))',
-  async run (context, position, dist = 2) {
+  async run (context, position, dist = 2, doors = {}) {
     const target = checkPosition(context, 'position', position)
-    await walkNear(context, target, distance(context, 'dist', dist))
+    const near = distance(context, 'dist', dist)
+    await walkNear(context, target, near, 'the position', flags(context, 'doors', doors, DOORS))
     context.emit({ kind: 'move_to', detail: { destination: [target.x, target.y, target.z] } })
   }
 }

@@ -7,6 +7,7 @@
 const { numbers } = require('./lib/answers')
 const { show, shortened } = require('./lib/arguments')
 const { SkillError } = require('./lib/errors')
+const { turns } = require('./lib/waiting')
 
 const LONGEST_MESSAGE = 2000
 
@@ -21,6 +22,8 @@ const SKILLS = [
   require('./turnOnLever'),
   require('./turnOffLever'),
   require('./pressButton'),
+  require('./openDoor'),
+  require('./closeDoor'),
   require('./giveItemToOther'),
   require('./receiveItemFromOther'),
   require('./givePlacedItemBack'),
@@ -53,7 +56,7 @@ const SKILLS = [
  * @returns {Object<string, Function>} by name; each rejects with an Error that has `skill`
  */
 function bindSkills ({ bot, emit, Vec3, goals, signal }) {
-  const body = { bot, emit, Vec3, goals, nextNumber: numbers() }
+  const body = { bot, emit, Vec3, goals, nextNumber: numbers(), inTurn: turns() }
   return Object.fromEntries(SKILLS.map(skill => [skill.name, bind(skill, body, signal)]))
 }
 

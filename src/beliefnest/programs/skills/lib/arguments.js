@@ -47,6 +47,18 @@ function distance ({ fail }, name, value) {
   return value
 }
 
+/** @returns {object} settings that are true or false, those left out as in `defaults` */
+function flags ({ fail }, name, value, defaults) {
+  const names = Object.keys(defaults)
+  const given = value !== null && typeof value === 'object' && !Array.isArray(value) ? Object.entries(value) : null
+  if (given === null || !given.every(([key, flag]) => names.includes(key) && typeof flag === 'boolean')) {
+    const wrong = given?.find(([key, flag]) => !names.includes(key) || typeof flag !== 'boolean')
+    const found = wrong ? `${show(wrong[0])}: ${show(wrong[1])}` : show(value)
+    fail(`${name} may have ${names.join(' and ')}, each true or false, like {${names[0]}: ${!defaults[names[0]]}}; it is ${found}`)
+  }
+  return { ...defaults, ...Object.fromEntries(given) }
+}
+
 function text ({ fail }, name, value) {
   if (typeof value !== 'string' || value.trim() === '') fail(`${name} must be a text that is not empty; it is ${show(value)}`)
   return value
@@ -99,4 +111,4 @@ function otherAgent ({ bot, fail }, name, value) {
   return value
 }
 
-module.exports = { show, shortened, position, blockPosition, count, distance, text, item, block, items, otherAgent }
+module.exports = { show, shortened, position, blockPosition, count, distance, flags, text, item, block, items, otherAgent }

@@ -8,6 +8,7 @@ const { until } = require('./waiting')
 const PRESSED_TICKS = 40
 
 const LEVER = { called: 'lever', is: name => name === 'lever' }
+const DOOR = { called: 'door', is: name => /(_door|_trapdoor|_fence_gate)$/.test(name) }
 const BUTTON = { called: 'button', is: name => name.endsWith('_button') }
 
 /** Goes to a lever and brings it into a state; does nothing if it is in it already. */
@@ -38,6 +39,22 @@ async function pressButton (context, buttonPosition) {
   if (!moved) fail(`the button at ${show(position)} did not move. Go nearer and try again.`)
 }
 
+/** Goes to a door, a trapdoor or a gate and opens or shuts it; does nothing if it is so already. */
+async function useDoor (context, doorPosition, open) {
+  const { bot, fail } = context
+  const position = blockPosition(context, 'position', doorPosition)
+  const name = bot.blockAt(position)?.name ?? ''
+  if (name.startsWith('iron_') && DOOR.is(name)) {
+    if (bot.blockAt(position).getProperties().open === open) return
+    fail(`the ${name} at ${show(position)} is not moved by hand. Use the lever or button that powers it.`)
+  }
+  const { block } = await goTo(context, position, DOOR)
+  if (block().getProperties().open === open) return
+  await bot.activateBlock(block())
+  await answered(context)
+  if (block().getProperties().open !== open) fail(`the ${name} at ${show(position)} did not move. Go nearer and try again.`)
+}
+
 /** Walks to a switch; `block` looks it up, and fails if it is no such switch any more. */
 async function goTo (context, place, { called, is }) {
   const { bot, fail } = context
@@ -54,4 +71,4 @@ async function goTo (context, place, { called, is }) {
   return { position, block }
 }
 
-module.exports = { pressButton, switchLever }
+module.exports = { pressButton, switchLever, useDoor }

@@ -16,4 +16,27 @@ async function until (condition, limit) {
   return true
 }
 
-module.exports = { ticks, until, TICK_MS }
+/**
+ * @returns {(action: () => any) => Promise<any>} runs actions one after the other, each that had to wait in a tick of its
+ *   own; who waits for nobody is not held up
+ */
+function turns () {
+  let last = null
+  return async action => {
+    const before = last
+    const mine = Promise.withResolvers()
+    last = mine.promise
+    try {
+      if (before !== null) {
+        await before
+        await ticks(1)
+      }
+      return await action()
+    } finally {
+      if (last === mine.promise) last = null
+      mine.resolve()
+    }
+  }
+}
+
+module.exports = { ticks, turns, until, TICK_MS }

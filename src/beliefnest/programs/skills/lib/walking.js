@@ -12,6 +12,8 @@ const SETTLE_TICKS = 10
 const MIDDLE = 0.15
 const STEP_TICKS = 40
 
+const ANY_DOOR = { openDoors: true, closeDoors: false }
+
 const REASONS = {
   NoPath: 'there is no way to it on foot',
   Timeout: 'no way to it was found in time',
@@ -48,8 +50,9 @@ async function attempt (bot, goal) {
  * @param {() => boolean} arrived judged by where the bot really stands
  * @param {Vec3} target for the message
  * @param {string} what for the message, e.g. "the chest"
+ * @param {{openDoors: boolean, closeDoors: boolean}} doors what may be done with those on the way
  */
-async function walk (context, goal, arrived, target, what) {
+async function walk (context, goal, arrived, target, what, doors = ANY_DOOR) {
   const { bot, fail } = context
   const tried = new Set()
   let fault = null
@@ -57,7 +60,7 @@ async function walk (context, goal, arrived, target, what) {
     fault = await attempt(bot, goal)
     if (arrived()) return
     const walled = fault === null || fault.name === 'NoPath'
-    if (!walled || !await passOneDoor(context, target, tried)) break
+    if (!walled || !await passOneDoor(context, target, tried, doors)) break
   }
   if (arrived()) return
   const near = bot.entity.position.distanceTo(target)
@@ -66,11 +69,11 @@ async function walk (context, goal, arrived, target, what) {
 }
 
 /** Walks to within `dist` blocks of a position. */
-async function walkNear (context, target, dist, what = 'the position') {
+async function walkNear (context, target, dist, what = 'the position', doors = ANY_DOOR) {
   const { bot, goals } = context
   const block = target.floored()
   const arrived = () => bot.entity.position.floored().distanceTo(block) <= dist
-  await walk(context, new goals.GoalNear(block.x, block.y, block.z, dist), arrived, target, what)
+  await walk(context, new goals.GoalNear(block.x, block.y, block.z, dist), arrived, target, what, doors)
 }
 
 const SAMPLES = [[0, 0, 0], [0.45, 0, 0], [-0.45, 0, 0], [0, 0.45, 0], [0, -0.45, 0], [0, 0, 0.45], [0, 0, -0.45]]

@@ -43,6 +43,8 @@ test('both halves of a door open, an iron door does not', async () => {
     await world.during(use(world, [2, FLOOR + 1, 0]))
     await world.ticks(1)
     assert.deepEqual(open(2), [false, false])
+    assert.deepEqual(world.events(), [true, false].map(open => (
+      { kind: 'use_door', actor: 'sally', detail: { position: [2, FLOOR, 0], open } })))
   })
 })
 
@@ -60,6 +62,8 @@ test('trapdoors and gates open; a gate opens away from who opens it', async () =
     assert.equal(world.block(...PLACE).properties.open, true)
     assert.equal(world.block(-2, FLOOR, 0).properties.open, false)
     assert.deepEqual([world.block(0, FLOOR, -2).properties.open, world.block(0, FLOOR, -2).properties.facing], [true, 'north'])
+    assert.deepEqual(world.events().map(({ kind, detail }) => [kind, detail]), [PLACE, [0, FLOOR, -2]].map(position => [
+      'use_door', { position, open: true }]))
   })
 })
 
@@ -74,6 +78,7 @@ test('a lever opens an iron door beside its wall and lights a lamp, and shuts th
     await world.during(use(world, [2, FLOOR, 1]))
     await world.ticks(1)
     assert.deepEqual(state(), [true, true, true, false])
+    assert.deepEqual(world.events().map(({ kind }) => kind), ['use_lever'])
     await world.during(use(world, [2, FLOOR, 1]))
     await world.ticks(1)
     assert.deepEqual(state(), [false, false, false, false])

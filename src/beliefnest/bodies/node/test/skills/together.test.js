@@ -105,9 +105,71 @@ for (const [name, opening] of [['a shut door', door(false)], ['an open door', do
   })
 }
 
+const iron = open => door(open).map(([x, y, z, , properties]) => [x, y, z, 'iron_door', properties])
+
+test('an open iron door is gone through, and stays open', async () => {
+  await withSkills(both({}, wallWith(iron(true))), async world => {
+    const { bots: { sally }, skills } = world
+    await world.during(skills.sally.goToPosition(sally, new Vec3(4, FLOOR, -7), 0, { openDoors: false, closeDoors: true }))
+    assert.equal((await world.block(4, FLOOR, -3)).properties.open, true)
+    assert.deepEqual(await world.events('use_door'), [])
+  })
+})
+
+test('a door on the way is shut behind oneself on request, and not opened if that is not wanted', async () => {
+  await withSkills(both({}, wallWith(door(false))), async world => {
+    const { bots: { sally }, skills } = world
+    const go = (z, doors) => skills.sally.goToPosition(sally, new Vec3(4, FLOOR, z), 0, doors)
+    assert.match((await failure(world, go(-7, { openDoors: false }))).message, /no way to it on foot/)
+    await world.during(go(-7, { closeDoors: true }))
+    await world.during(go(0, { closeDoors: true }))
+    assert.deepEqual((await world.events('use_door')).map(({ actor, detail }) => [actor, detail]), [true, false, true, false].map(open => [
+      'sally', { position: [4, FLOOR, -3], open }]))
+    assert.match((await failure(world, go(-7, { openDoor: true }))).message, /openDoors and closeDoors, each true or false.*it is "openDoor": true/)
+    assert.match((await failure(world, go(-7, false))).message, /it is false/)
+  })
+})
+
+test('doors, trapdoors and gates are opened and shut once, iron ones not by hand', async () => {
+  const trapdoor = [-4, FLOOR, 3, 'oak_trapdoor', { half: 'bottom', open: false }]
+  const gate = [-6, FLOOR, 3, 'oak_fence_gate', { open: false, facing: 'north' }]
+  await withSkills(both({}, [...door(false), ...iron(false).map(([x, ...rest]) => [x + 4, ...rest]), trapdoor, gate]), async world => {
+    const { bots: { sally }, skills: { sally: own } } = world
+    for (const [place, named] of [[[4, FLOOR + 1, -3], [4, FLOOR, -3]], [trapdoor], [gate]].map(([at, lower]) => [at, lower ?? at.slice(0, 3)])) {
+      const position = new Vec3(...place)
+      for (const skill of ['openDoor', 'openDoor', 'closeDoor', 'closeDoor']) await world.during(own[skill](sally, position))
+      assert.deepEqual((await world.events('use_door')).slice(-2).map(({ detail }) => detail), [true, false].map(open => ({ position: named, open })))
+    }
+    assert.equal((await world.events('use_door')).length, 6)
+    const far = new Vec3(8, FLOOR, -3)
+    assert.match((await failure(world, own.openDoor(sally, far))).message, /the iron_door at \(8, -51, -3\) is not moved by hand. Use the lever/)
+    await world.during(own.closeDoor(sally, far))
+    assert.match((await failure(world, own.openDoor(sally, new Vec3(0, FLOOR - 1, 3)))).message, /no door at \(0, -52, 3\), but stone/)
+  })
+})
+
+test('walks of one agent that look for ways through doors at the same time take turns', async () => {
+  const behind = door(false).map(([x, y, z, ...rest]) => [x, y, z - 2, ...rest])
+  const boxed = [[3, -5], [5, -5], [4, -4], [4, -6]].flatMap(([x, z]) => [0, 1, 2].map(up => [x, FLOOR + up, z, 'stone']))
+  await withSkills(both({}, [...wallWith([]), [4, FLOOR, -3, 'stone'], [4, FLOOR + 1, -3, 'stone'], ...boxed, ...behind]), async world => {
+    const { bots: { sally }, skills } = world
+    let [searches, most] = [0, 0]
+    const { getPathTo } = sally.pathfinder
+    sally.pathfinder.getPathTo = (...args) => {
+      searches += 1
+      return getPathTo(...args)
+    }
+    sally.on('physicsTick', () => { [searches, most] = [0, Math.max(most, searches)] })
+    const walks = Array.from({ length: 6 }, () => skills.sally.goToPosition(sally, new Vec3(4, FLOOR, -9), 0).catch(error => error.message))
+    const told = await world.during(Promise.all(walks))
+    assert.ok(told.some(message => /no way to it on foot/.test(message)), String(told))
+    // The first to look need not wait: both sides of one door.
+    assert.ok(most > 0 && most <= 3, String(most))
+  })
+})
+
 test('an iron door is not opened by hand', async () => {
-  const iron = door(false).map(([x, y, z, , properties]) => [x, y, z, 'iron_door', properties])
-  await withSkills(both({}, wallWith(iron)), async world => {
+  await withSkills(both({}, wallWith(iron(false))), async world => {
     const { bots: { sally }, skills } = world
     assert.match((await failure(world, skills.sally.goToPosition(sally, new Vec3(4, FLOOR, -7), 0))).message, /no way to it on foot/)
   })

@@ -1,14 +1,20 @@
 'use strict'
 
 const { facingOfYaw, opposite } = require('./lib/directions')
+const { listOf } = require('./lib/positions')
 const { toDegrees } = require('../angles')
 
 const BY_HAND = /^(?!iron_).*(_door|_trapdoor|_fence_gate)$/
 
-/** Doors, trapdoors and fence gates open and shut by hand; iron ones do not. */
+/** Doors, trapdoors and fence gates open and shut by hand; iron ones do not. Where a door is, is its lower half. */
 module.exports.server = (serv) => {
   function otherHalf (position, block) {
     return position.offset(0, block.properties.half === 'lower' ? 1 : -1, 0)
+  }
+
+  function used (player, position, open) {
+    player.emitEvent({ kind: 'use_door', detail: { position: listOf(position), open } })
+    return true
   }
 
   function toggleDoor ({ player, position, block }) {
@@ -17,13 +23,13 @@ module.exports.server = (serv) => {
     const other = otherHalf(position, block)
     const half = serv.blocks.at(other)
     if (half.name === block.name) serv.blocks.set(other, serv.blocks.stateWith(half, { open }), player)
-    return true
+    return used(player, block.properties.half === 'lower' ? position : other, open)
   }
 
   function toggleTrapdoor ({ player, position, block }) {
     const open = !block.properties.open
     serv.blocks.set(position, serv.blocks.stateWith(block, { open }), player)
-    return true
+    return used(player, position, open)
   }
 
   /** A gate opens away from who opens it. */
@@ -33,7 +39,7 @@ module.exports.server = (serv) => {
     const away = facingOfYaw(toDegrees(player.pose).yaw)
     const turned = open && away === opposite(facing) ? away : facing
     serv.blocks.set(position, serv.blocks.stateWith(block, { open, facing: turned }), player)
-    return true
+    return used(player, position, open)
   }
 
   for (const { name } of serv.registry.blocksArray) {

@@ -1,0 +1,14 @@
+'use strict'
+const { useDoor } = require('./lib/switches')
+
+module.exports = {
+  name: 'closeDoor',
+  signature: 'closeDoor(bot, position)',
+  description: 'Go to the door, trapdoor or fence gate and shut it; does nothing if it is shut already. Iron ones move by levers and buttons alone.',
+  parameters: [
+    { name: 'bot', type: 'Bot', description: 'your own bot' },
+    { name: 'position', type: 'Vec3', description: 'position of the door, of either half' }
+  ],
+  example: 'await closeDoor(bot, new Vec3(4, -51, -3))',
+  run: (context, position) => useDoor(context, position, false)
+}

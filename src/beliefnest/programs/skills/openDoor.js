@@ -1,0 +1,14 @@
+'use strict'
+const { useDoor } = require('./lib/switches')
+
+module.exports = {
+  name: 'openDoor',
+  signature: 'openDoor(bot, position)',
+  description: 'Go to the door, trapdoor or fence gate and open it; does nothing if it is open already. Iron ones move by levers and buttons alone.',
+  parameters: [
+    { name: 'bot', type: 'Bot', description: 'your own bot' },
+    { name: 'position', type: 'Vec3', description: 'position of the door, of either half' }
+  ],
+  example: 'await openDoor(bot, new Vec3(4, -51, -3))',
+  run: (context, position) => useDoor(context, position, true)
+}
