@@ -22,6 +22,7 @@ ACTION_NAMES: Mapping[EventKind, str] = {
     EventKind.OPEN_CONTAINER: "openContainer",
     EventKind.USE_LEVER: "useLever",
     EventKind.PRESS_BUTTON: "pressButton",
+    EventKind.USE_DOOR: "useDoor",
     EventKind.GIVE_ITEM_TO_OTHER: "giveItemToOther",
     EventKind.RECEIVE_ITEM_FROM_OTHER: "receiveItemFromOther",
     EventKind.EMOTE: "emote",
@@ -35,6 +36,7 @@ _POSITION_LABELS: Mapping[EventKind, str] = {
     EventKind.OPEN_CONTAINER: "chest",
     EventKind.USE_LEVER: "lever",
     EventKind.PRESS_BUTTON: "button",
+    EventKind.USE_DOOR: "door",
     EventKind.CRAFT_ITEM: "crafting_table",
     EventKind.SMELT_ITEM: "furnace",
 }
@@ -58,6 +60,8 @@ def action_name(event: PerceivedEvent) -> str:
     """The published name of the skill an event is the effect of."""
     if event.kind is EventKind.USE_LEVER and "powered" in event.detail:
         return "turnOnLever" if event.detail["powered"] else "turnOffLever"
+    if event.kind is EventKind.USE_DOOR and "open" in event.detail:
+        return "openDoor" if event.detail["open"] else "closeDoor"
     return ACTION_NAMES[event.kind]
 
 

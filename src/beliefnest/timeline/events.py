@@ -26,6 +26,7 @@ REQUIRED: Mapping[EventKind, tuple[str, ...]] = MappingProxyType(
         EventKind.OPEN_CONTAINER: ("position",),
         EventKind.USE_LEVER: ("position",),
         EventKind.PRESS_BUTTON: ("position",),
+        EventKind.USE_DOOR: ("position", "open"),
         EventKind.GIVE_ITEM_TO_OTHER: ("other", "items"),
         EventKind.RECEIVE_ITEM_FROM_OTHER: ("other", "items"),
         EventKind.EMOTE: ("name",),
@@ -42,6 +43,7 @@ class _Detail(msgspec.Struct, forbid_unknown_fields=True):
     items: dict[str, int] | msgspec.UnsetType = msgspec.UNSET
     other: str | msgspec.UnsetType = msgspec.UNSET
     powered: bool | msgspec.UnsetType = msgspec.UNSET
+    open: bool | msgspec.UnsetType = msgspec.UNSET
     name: str | msgspec.UnsetType = msgspec.UNSET
     destination: Point | msgspec.UnsetType = msgspec.UNSET
     to: str | msgspec.UnsetType = msgspec.UNSET

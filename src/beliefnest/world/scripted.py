@@ -15,6 +15,7 @@ import numpy as np
 
 from beliefnest.errors import BeliefNestError, InputError, WorldError
 from beliefnest.world.claims import Claim, with_claims
+from beliefnest.world.doors import used_door
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.limits import (
     AGENT_SLOTS,
@@ -25,7 +26,7 @@ from beliefnest.world.limits import (
     items_fault,
     snapshot_fault,
 )
-from beliefnest.world.registry import Registry
+from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.texts import fault_of
 from beliefnest.world.values import (
     EQUIPMENT_SLOTS,
@@ -209,21 +210,20 @@ class ScriptedWorld:
             place = self._inside(position)
             if actor is not None:
                 self._agent(actor)
-            index = self._box.index(place)
-            before = int(self._facts.blocks[index])
-            state = self._state(block)
-            if state == before:
-                return
-            if not pending.old_blocks:
-                self._facts.blocks = self._facts.blocks.copy()
-            pending.old_blocks.setdefault(place, before)
-            held = self._facts.containers.get(place)
-            self._put(place, block)
-            if self._facts.containers.get(place) is not held:
-                pending.containers.add(place)
-            pending.blocks[place] = state
-            detail = {"position": place, "block": self._registry.text(state)}
-            pending.events.append(Event(EventKind.BLOCK_UPDATE, actor, detail))
+            before, state = self._state_at(place), self._state(block)
+            if state != before:
+                self._change(pending, place, state, actor)
+
+    def use_door(self, name: str, position: Position, *, open: bool) -> None:
+        """An agent opens or shuts a wooden door (both halves), trapdoor or fence gate."""
+        with self._act() as pending:
+            self._agent(name)
+            place = self._inside(position)
+            moved = used_door(self._registry, self._state_at, place, opens=open)
+            for part, state in moved.items():
+                self._change(pending, part, state, None)
+            detail = {"position": min(moved), "open": open}
+            pending.events.append(Event(EventKind.USE_DOOR, name, detail))
 
     def deposit(self, name: str, position: Position, items: Items) -> None:
         """An agent puts items of its inventory into a container."""
@@ -286,7 +286,7 @@ class ScriptedWorld:
             held, inside = agent.inventory, self._facts.containers[place]
             if kind is EventKind.DEPOSIT_ITEM_INTO_CHEST:
                 held = _less(held, moved, f"{name} cannot put {moved} into {place}: it")
-                state = int(self._facts.blocks[self._box.index(place)])
+                state = self._state_at(place)
                 there = self._registry.name(state)
                 inside = self._fitting(
                     f"the {there} at {place}", inside, moved, container_slots(there)
@@ -312,6 +312,23 @@ class ScriptedWorld:
             return with_claims(detail, claims, self._box, self._facts.agents)
         except InputError as fault:
             raise WorldError(str(fault)) from None
+
+    def _change(self, pending: _Pending, place: Position, state: int, actor: str | None) -> None:
+        """Replace a block by another one, in the tick that is being made."""
+        if not pending.old_blocks:
+            self._facts.blocks = self._facts.blocks.copy()
+        pending.old_blocks.setdefault(place, self._state_at(place))
+        held = self._facts.containers.get(place)
+        self._put(place, self._registry.text(state))
+        if self._facts.containers.get(place) is not held:
+            pending.containers.add(place)
+        pending.blocks[place] = state
+        detail = {"position": place, "block": self._registry.text(state)}
+        pending.events.append(Event(EventKind.BLOCK_UPDATE, actor, detail))
+
+    def _state_at(self, place: Position) -> int:
+        """Block state at a position; air outside the box."""
+        return int(self._facts.blocks[self._box.index(place)]) if place in self._box else AIR
 
     @contextmanager
     def _act(self) -> Iterator[_Pending]:
@@ -356,7 +373,7 @@ class ScriptedWorld:
 
     def _put(self, place: Position, block: str) -> None:
         state = self._state(block)
-        before = self._registry.name(int(self._facts.blocks[self._box.index(place)]))
+        before = self._registry.name(self._state_at(place))
         name = self._registry.name(state)
         self._facts.blocks[self._box.index(place)] = state
         if self._registry.is_container(name):
@@ -387,7 +404,7 @@ class ScriptedWorld:
     def _container(self, position: Position) -> Position:
         place = self._inside(position)
         if place not in self._facts.containers:
-            there = self._registry.text(int(self._facts.blocks[self._box.index(place)]))
+            there = self._registry.text(self._state_at(place))
             raise WorldError(f"there is no container at {place}, but {there}")
         return place
 

@@ -96,6 +96,7 @@ class EventKind(StrEnum):
     OPEN_CONTAINER = "open_container"
     USE_LEVER = "use_lever"
     PRESS_BUTTON = "press_button"
+    USE_DOOR = "use_door"
     GIVE_ITEM_TO_OTHER = "give_item_to_other"
     RECEIVE_ITEM_FROM_OTHER = "receive_item_from_other"
     EMOTE = "emote"
@@ -112,8 +113,10 @@ class Event:
         detail: The part a witness sees. By kind: `text` (chat, think), `to` (chat that is
             whispered to one agent; absent where it is said aloud), `claims` (chat that makes
             some: plain data, see `world.claims`), `position` of a block
-            (mine_block, place_block, use_lever, press_button, containers, block_update), `block` (a
-            block state text), `items` (name -> count), `other` (an agent), `powered` (use_lever),
+            (mine_block, place_block, use_lever, press_button, use_door, containers,
+            block_update), `block` (a block state text), `items` (name -> count),
+            `other` (an agent), `powered` (use_lever),
+            `open` (use_door: doors, trapdoors and gates; a door is where its lower half is),
             `name` (emote), `destination` (move_to, a point).
     """
 

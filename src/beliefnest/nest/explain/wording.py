@@ -187,6 +187,8 @@ def _act_text(act: PerceivedEvent) -> str:
             return f"{actor} took {items} out"
         case EventKind.OPEN_CONTAINER:
             return f"{actor} looked in"
+        case EventKind.USE_DOOR:
+            return f"{actor} {'opened' if act.detail.get('open') else 'shut'} it"
         case EventKind.BLOCK_UPDATE | EventKind.PLACE_BLOCK if "block" in act.detail:
             return f"{actor} made it {act.detail['block']}"
         case _:

@@ -29,6 +29,7 @@ _DEEDS = frozenset(
         EventKind.OPEN_CONTAINER,
         EventKind.CHAT,
         EventKind.USE_LEVER,
+        EventKind.USE_DOOR,
         EventKind.PLACE_BLOCK,
         EventKind.MINE_BLOCK,
     }

@@ -19,6 +19,7 @@ _DEEDS = {
     EventKind.OPEN_CONTAINER: "opens {place}",
     EventKind.USE_LEVER: "turns the lever at {place} {power}",
     EventKind.PRESS_BUTTON: "presses the button at {place}",
+    EventKind.USE_DOOR: "{opens} the door at {place}",
     EventKind.GIVE_ITEM_TO_OTHER: "gives {items} to {other}",
     EventKind.RECEIVE_ITEM_FROM_OTHER: "gets {items} from {other}",
     EventKind.EMOTE: "shows {name}",
@@ -49,6 +50,7 @@ def event_text(event: Event, labels: Mapping[Position, str]) -> str:
         items=_items(detail.get("items", {})),
         other=detail.get("other", "somebody"),
         power="on" if detail.get("powered") else "off",
+        opens="opens" if detail.get("open") else "shuts",
         name=detail.get("name", ""),
     )
     return f"{actor} {words}".strip()

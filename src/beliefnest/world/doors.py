@@ -1,0 +1,57 @@
+"""Doors, trapdoors and fence gates: what becomes of their blocks when somebody uses them."""
+
+from collections.abc import Callable
+
+from beliefnest.errors import WorldError
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Position
+
+__all__ = ["is_door", "used_door"]
+
+_KINDS = ("_door", "_trapdoor", "_fence_gate")
+_BY_POWER = "iron_"
+
+
+def is_door(name: str) -> bool:
+    """Whether the block of that name opens and shuts: a door, a trapdoor or a fence gate."""
+    return name.endswith(_KINDS)
+
+
+def used_door(
+    registry: Registry, state_at: Callable[[Position], int], place: Position, *, opens: bool
+) -> dict[Position, int]:
+    """The new states of a door that is used by hand; it is where the first of them is.
+
+    Args:
+        registry: Names and properties of states.
+        state_at: Block state at a position; air outside the world.
+        place: Where the door is, either of its halves.
+        opens: Whether it is opened or shut.
+
+    Raises:
+        WorldError: There is no door, it is so already, or it moves by power alone.
+    """
+    text = registry.text(state_at(place))
+    name = registry.name(state_at(place))
+    if not is_door(name):
+        raise WorldError(f"there is no door, trapdoor or gate at {place}, but {text}")
+    if name.startswith(_BY_POWER):
+        raise WorldError(f"the {name} at {place} is not moved by hand; set_block() changes it")
+    properties = registry.properties(state_at(place))
+    if properties["open"] == str(opens).lower():
+        raise WorldError(f"the {name} at {place} is {'open' if opens else 'shut'} already")
+    parts = [place]
+    if name.endswith("_door"):
+        x, y, z = place
+        parts = [place, (x, y + 1, z)] if properties["half"] == "lower" else [(x, y - 1, z), place]
+    return {
+        part: _moved(registry, state_at(part), opens)
+        for part in parts
+        if registry.name(state_at(part)) == name
+    }
+
+
+def _moved(registry: Registry, state: int, opens: bool) -> int:
+    properties = {**registry.properties(state), "open": str(opens).lower()}
+    inner = ",".join(f"{name}={value}" for name, value in properties.items())
+    return registry.state_id(f"{registry.name(state)}[{inner}]")
