@@ -1,5 +1,5 @@
 # Shortcuts for working on BeliefNest, inside an environment with `pip install -e ".[dev]"`.
-.PHONY: help test nightly check format schema notices picture docs bench ci
+.PHONY: help test nightly check format schema notices picture pages docs bench ci
 
 help: ## What can be made
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /: /' | column -t -s: -o '  '
@@ -29,6 +29,9 @@ schema: ## docs/scenario.schema.json from the types
 
 notices: ## THIRD_PARTY_NOTICES.md from what is bundled
 	python tools/third_party_notices.py
+
+pages: ## The pictures of docs/page.md, taken in a real browser
+	python tools/page_pictures.py
 
 picture: ## The picture of the README, made by the program itself
 	rm -rf build/picture

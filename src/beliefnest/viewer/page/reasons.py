@@ -36,7 +36,10 @@ _DEEDS = frozenset(
 )
 
 _EXPLANATIONS = 36
-"""How many explanations a page without a server carries; each takes some 0.1 s to work out."""
+"""How many explanations a page without a server carries, at most; each takes some 0.1 s."""
+
+_ENTRIES = 6000
+"""How many entries may be folded for them in all: in long runs they are left to the server."""
 
 _LOOKS = 6000
 """How many looks of agents at each other in a timeline such a page knows, at most."""
@@ -195,7 +198,8 @@ def _explanations(
 ) -> dict[str, list[Any]]:
     reader, found = data.reader, {}
     wanted = sorted(nodes, key=lambda each: (each[1] not in data.about.paths, bool(each[0].base)))
-    left = _EXPLANATIONS
+    longest = max((info.entries for info, _ in nodes), default=1)
+    left = min(_EXPLANATIONS, _ENTRIES // max(1, longest))
     for kind in ("c", "a"):
         for info, path in wanted:
             for thing in _things(reader, kind) if path else ():

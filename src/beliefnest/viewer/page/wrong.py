@@ -87,10 +87,10 @@ class WrongThings:
         for number, agent in np.argwhere(known & ~apart & (pose_id != pose_id[0])).tolist():
             pair = (self._pose(int(pose_id[at, agent])) for at in (0, number))
             apart[number, agent] = are_apart(*pair)
-        return [
-            tuple(f"a{agent}" for agent in np.flatnonzero(apart[number]).tolist())
-            for number in self._numbers
-        ]
+        found: list[list[str]] = [[] for _ in self._numbers]
+        for at, agent in np.argwhere(apart[self._numbers]).tolist():
+            found[at].append(f"a{agent}")
+        return [tuple(things) for things in found]
 
     def _pose(self, pose_id: int) -> Pose:
         poses = self._forest.poses

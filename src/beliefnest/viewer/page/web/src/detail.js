@@ -124,11 +124,11 @@ function valueText (run, track, tick, thing) {
     return state < 0 ? 'not known' : run.states[state].text
   }
   const [items, complete] = track.owned(number, tick)
-  const has = itemsText(items) || (complete ? 'nothing' : 'nothing known')
+  const has = itemsText(items) ? `has ${itemsText(items)}${complete ? '' : ', perhaps more'}` : complete ? 'has nothing' : 'what it has is not known'
   if (thing[0] === 'i') return has
   const pose = track.agent(number, tick)
   const age = pose && !pose.current ? `, seen ${ago(tick - pose.seenAt)}` : ''
-  return `${placeText(pose)}${age}; has ${has}${complete ? '' : ', perhaps more'}`
+  return `${placeText(pose)}${age}; ${has}`
 }
 
 /** What the data itself says of a thing, where the whole chain was not written into the page. */

@@ -9,12 +9,15 @@ import { thingsOf } from './things.js'
 
 const VIEWS = { space: '3D', plan: 'Plan', both: 'Both' }
 const NARROW = 720
+const BARS = 80
+const VIEW = 42
+const HALF_VIEW = Math.tan(VIEW / 360 * Math.PI)
 
 export class Stages {
   constructor (choose) {
     this.choose = choose
     this.webgl = hasWebGL()
-    this.camera = new PerspectiveCamera(42, 1, 0.1, 2000)
+    this.camera = new PerspectiveCamera(VIEW, 1, 0.1, 2000)
     this.target = new Vector3()
     this.stages = [new Stage(this), new Stage(this)]
     this.views = element('div', { class: 'views', role: 'group', 'aria-label': 'how it is drawn' })
@@ -63,13 +66,16 @@ export class Stages {
   }
 
   /** Turns the camera to a run once; later its user turns it. */
-  aim ({ run }) {
+  aim ({ run, beside, track }) {
     if (this.aimed === run) return
     this.aimed = run
+    const two = beside !== null && beside !== track
+    const room = this.element.getBoundingClientRect()
+    const aspect = Math.max(0.5, room.width / (two && innerWidth > NARROW ? 2 : 1) / Math.max(1, room.height - BARS))
     const [width, , depth] = run.shape
     const { low } = run.head.box
     this.target.set(low[0] + width / 2, low[1] + 1, low[2] + depth / 2)
-    const far = 0.98 * Math.max(width, depth) + 3
+    const far = Math.max(0.9 * depth + 3, (0.56 * width / (HALF_VIEW * aspect) + 0.35 * depth) / 1.2)
     this.camera.position.set(this.target.x, this.target.y + 0.92 * far, this.target.z + 0.78 * far)
     this.camera.lookAt(this.target)
   }
@@ -95,8 +101,8 @@ class Stage {
   draw (scene, view) {
     const { track, tick, things, run } = scene
     const count = things.wrong.size
-    refill(this.title, element('strong', {}, believesText(track)), element('span', { class: 'path' }, ` ${track.path} `),
-      element('span', { class: 'at' }, `tick ${tick}`), count ? element('span', { class: 'mark false' }, ` ${run.head.marks.false.sign} ${count} false`) : null)
+    refill(this.title, element('strong', {}, believesText(track)), count ? element('span', { class: 'mark false' }, ` ${run.head.marks.false.sign} ${count} false`) : null,
+      element('span', { class: 'path' }, ` ${track.path} `), element('span', { class: 'at' }, `tick ${tick}`))
     this.arrange(view)
     if (view !== 'space') this.plan.draw(scene)
     if (view !== 'plan') this.space.draw(scene)
