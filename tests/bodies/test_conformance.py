@@ -189,5 +189,5 @@ def test_the_same_seed_tells_the_same_frames(world, body, frames):
 
 
 def test_a_program_of_an_agent_who_is_not_there_is_refused(body):
-    with pytest.raises(WorldError, match=r"nobody has no bot|runs no programs"):
+    with pytest.raises(WorldError, match=r"nobody has no bot|nobody is not there"):
         body.run({"nobody": "await think(bot, 'hm')"}, 20)

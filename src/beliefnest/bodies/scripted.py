@@ -43,11 +43,14 @@ class ScriptedBody:
         return self.world.snapshot()
 
     def run(self, programs: Mapping[str, str], timeout_ticks: int) -> Mapping[str, ProgramResult]:
-        """Raise WorldError: this world has no bots that could run programs."""
-        raise WorldError(
-            f"the scripted world runs no programs (asked for {', '.join(sorted(programs))}); "
-            "act through the simulator's `scripted` world, or open the nest with world='embedded'"
-        )
+        """Run programs by agent, together, until the last has ended; see docs/scripted-world.md."""
+        for agent in programs:
+            if agent not in self.world.agents:
+                there = ", ".join(sorted(self.world.agents)) or "nobody"
+                raise WorldError(f"{agent} is not there: its pose is not known; there are {there}")
+        from beliefnest.bodies.scripted_programs import run_programs
+
+        return run_programs(self.world, programs, timeout_ticks, {})
 
     def step(self, ticks: int) -> None:
         """Let ticks pass."""

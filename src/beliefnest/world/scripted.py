@@ -16,18 +16,22 @@ import numpy as np
 from beliefnest.errors import BeliefNestError, InputError, WorldError
 from beliefnest.world.claims import Claim, with_claims
 from beliefnest.world.doors import used_door
-from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.frames import BlockGrid, Frame, Snapshot
 from beliefnest.world.limits import (
     AGENT_SLOTS,
     WORN_SLOTS,
-    agent_name_fault,
-    box_fault,
     container_slots,
     items_fault,
     snapshot_fault,
 )
 from beliefnest.world.registry import AIR, Registry
-from beliefnest.world.texts import fault_of
+from beliefnest.world.scripted_parts import (
+    checked_box,
+    checked_name,
+    checked_utterance,
+    rest_of,
+    sum_of,
+)
 from beliefnest.world.values import (
     EQUIPMENT_SLOTS,
     AgentState,
@@ -97,7 +101,7 @@ class ScriptedWorld:
         tick: int = 0,
     ) -> None:
         self._registry = Registry.load()
-        self._box = _checked_box(box)
+        self._box = checked_box(box)
         self._tick = tick
         self._listeners: list[Listener] = []
         self._pending: _Pending | None = None
@@ -112,7 +116,7 @@ class ScriptedWorld:
                 self._put(place, "chest")
             self._facts.containers[place] = self._items(items)
         for name, feet in (agents or {}).items():
-            self._facts.agents[_agent_name(name)] = AgentState(self._feet(feet))
+            self._facts.agents[checked_name(name)] = AgentState(self._feet(feet))
         for name, items in (inventories or {}).items():
             self._set_agent(name, inventory=self._items(items))
         for name, worn in (equipment or {}).items():
@@ -225,6 +229,31 @@ class ScriptedWorld:
             detail = {"position": min(moved), "open": open}
             pending.events.append(Event(EventKind.USE_DOOR, name, detail))
 
+    def arrive(self, name: str, destination: Point) -> None:
+        """An agent that was on its way somewhere is there; who sees it knows where it was going."""
+        with self._act() as pending:
+            self._agent(name)
+            x, y, z = (float(value) for value in destination)
+            pending.events.append(Event(EventKind.MOVE_TO, name, {"destination": (x, y, z)}))
+
+    @property
+    def agents(self) -> Mapping[str, AgentState]:
+        """What is the case about all agents."""
+        return dict(self._facts.agents)
+
+    def contents(self, position: Position) -> Items:
+        """What a container holds.
+
+        Raises:
+            WorldError: There is no container at the position.
+        """
+        return dict(self._facts.containers[self._container(position)])
+
+    @property
+    def blocks(self) -> BlockGrid:
+        """Block state ids of the box; what was handed out in one tick does not change later."""
+        return self._facts.blocks
+
     def deposit(self, name: str, position: Position, items: Items) -> None:
         """An agent puts items of its inventory into a container."""
         self._transfer(name, position, items, EventKind.DEPOSIT_ITEM_INTO_CHEST)
@@ -251,7 +280,7 @@ class ScriptedWorld:
                 raise WorldError(f"{name} cannot whisper to itself")
             self._agent(name)
             self._agent(other)
-            detail = self._claiming({"text": _utterance(text), "to": other}, claims)
+            detail = self._claiming({"text": checked_utterance(text), "to": other}, claims)
             pending.events.append(Event(EventKind.CHAT, name, detail))
 
     def think(self, name: str, text: str) -> None:
@@ -265,7 +294,7 @@ class ScriptedWorld:
                 raise WorldError(f"{giver} cannot give items to itself")
             other = self._agent(receiver)
             moved = self._items(items)
-            held = _less(self._agent(giver).inventory, moved, f"{giver} cannot give {moved}: it")
+            held = rest_of(self._agent(giver).inventory, moved, f"{giver} cannot give {moved}: it")
             self._set_agent(giver, inventory=held)
             self._set_agent(
                 receiver,
@@ -285,14 +314,14 @@ class ScriptedWorld:
             moved = self._items(items)
             held, inside = agent.inventory, self._facts.containers[place]
             if kind is EventKind.DEPOSIT_ITEM_INTO_CHEST:
-                held = _less(held, moved, f"{name} cannot put {moved} into {place}: it")
+                held = rest_of(held, moved, f"{name} cannot put {moved} into {place}: it")
                 state = self._state_at(place)
                 there = self._registry.name(state)
                 inside = self._fitting(
                     f"the {there} at {place}", inside, moved, container_slots(there)
                 )
             else:
-                inside = _less(inside, moved, f"{name} cannot take {moved}: the one at {place}")
+                inside = rest_of(inside, moved, f"{name} cannot take {moved}: the one at {place}")
                 held = self._fitting(name, held, moved, AGENT_SLOTS + WORN_SLOTS)
             self._set_agent(name, inventory=held)
             self._facts.containers[place] = inside
@@ -303,7 +332,7 @@ class ScriptedWorld:
     def _utter(self, kind: EventKind, name: str, text: str, claims: Iterable[Claim] = ()) -> None:
         with self._act() as pending:
             self._agent(name)
-            detail = self._claiming({"text": _utterance(text)}, claims)
+            detail = self._claiming({"text": checked_utterance(text)}, claims)
             pending.events.append(Event(kind, name, detail))
 
     def _claiming(self, detail: dict[str, Any], claims: Iterable[Claim]) -> dict[str, Any]:
@@ -445,7 +474,7 @@ class ScriptedWorld:
 
     def _fitting(self, who: str, held: Items, moved: Items, slots: int) -> dict[str, int]:
         """What somebody or something holds with what is moved there."""
-        items = _more(held, moved)
+        items = sum_of(held, moved)
         if fault := items_fault(items, self._registry, slots, who):
             raise WorldError(f"{moved} cannot be moved: they would {fault}")
         return items
@@ -457,40 +486,3 @@ class ScriptedWorld:
                 raise WorldError(f"there is no slot {slot!r}; there are {there}")
             self._items({item: 1})
         return dict(worn)
-
-
-def _checked_box(box: tuple[Position, Position]) -> Box:
-    low, high = (tuple(int(value) for value in corner) for corner in box)
-    if len(low) != 3 or len(high) != 3 or any(a > b for a, b in zip(low, high, strict=True)):
-        raise WorldError(f"the box {box} is none; give its lower and its upper corner")
-    made = Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
-    if fault := box_fault(made):
-        raise WorldError(fault)
-    return made
-
-
-def _agent_name(name: str) -> str:
-    if fault := agent_name_fault(name):
-        raise WorldError(fault)
-    return name
-
-
-def _utterance(text: str) -> str:
-    if fault := fault_of(str(text)):
-        raise WorldError(fault)
-    return str(text)
-
-
-def _more(items: Items, change: Items) -> dict[str, int]:
-    return {
-        name: items.get(name, 0) + change.get(name, 0)
-        for name in [*items, *(change.keys() - items.keys())]
-    }
-
-
-def _less(items: Items, change: Items, who: str) -> dict[str, int]:
-    for name, count in change.items():
-        if items.get(name, 0) < count:
-            raise WorldError(f"{who} has {items.get(name, 0)} {name}, not {count}")
-    rest = {name: count - change.get(name, 0) for name, count in items.items()}
-    return {name: count for name, count in rest.items() if count}

@@ -35,6 +35,8 @@ async function build (outdir) {
   fs.writeFileSync(
     path.join(outdir, `registry-${MINECRAFT_VERSION}.msgpack`), encode(buildRegistry(MINECRAFT_VERSION)))
   fs.writeFileSync(path.join(outdir, INTERPRETER), interpreterBytes())
+  // Programs in the scripted world have the same class.
+  fs.copyFileSync(path.join(SOURCE, 'sandbox', 'guest', 'vec3.js'), path.join(outdir, 'vec3.js'))
   const folders = packageFolders(result.metafile)
   fs.writeFileSync(path.join(outdir, 'packages.json'), `${JSON.stringify(packageList(folders), null, 1)}\n`)
   fs.writeFileSync(path.join(outdir, 'licenses.txt'), licenseTexts(folders))

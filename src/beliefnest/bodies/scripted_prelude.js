@@ -1,0 +1,124 @@
+// What programs of the scripted world find in scope. Evaluates to a function of (Vec3, names of skills) that gives
+// what Python calls: start, take, settle, see. Nothing here calls Python: it takes what is asked for after each turn.
+(function (Vec3, skills, username) {
+  'use strict'
+  const { parse, stringify } = JSON
+  const waiting = new Map()
+  let calls = []
+  let log = []
+  let done = null
+  let next = 1
+  let seen = null
+  let grid = null
+
+  const failure = (message, more) => Object.assign(new Error(message), more)
+  const refuse = what => { throw failure(`the scripted world has no ${what}; open the nest with world="embedded" for that`, { kind: 'refused' }) }
+  const offering = (object, what) => new Proxy(object, {
+    get (target, key) {
+      if (typeof key === 'symbol' || key === 'then' || key === 'toJSON' || key in target) return target[key]
+      return refuse(`${what}.${key}`)
+    }
+  })
+
+  function ask (name, args) {
+    return new Promise((resolve, reject) => {
+      waiting.set(next, { resolve, reject, name, place: new Error('').stack })
+      calls.push([next++, name, args])
+    })
+  }
+
+  function skill (name) {
+    return (...args) => {
+      if (args[0] !== bot) throw failure(`${name}: the first argument must be bot, your own bot`, { skill: name })
+      return ask(name, args.slice(1))
+    }
+  }
+
+  const vector = ([x, y, z]) => new Vec3(x, y, z)
+  const entity = (name, told) => ({
+    type: 'player', username: name, name: 'player', position: vector(told.position), yaw: told.yaw, pitch: told.pitch, height: 1.8
+  })
+  const others = () => Object.entries(seen.agents).filter(([name]) => name !== username)
+
+  function blockAt (position) {
+    grid ??= parse(seen.blocks)
+    const cell = [position.x, position.y, position.z].map(Math.floor)
+    const at = cell.map((value, axis) => value - grid.low[axis])
+    if (at.some((value, axis) => value < 0 || value >= grid.shape[axis])) return null
+    const text = grid.palette[grid.states[(at[0] * grid.shape[1] + at[1]) * grid.shape[2] + at[2]]]
+    if (text === null) return null
+    const [name, written] = text.split(/[[\]]/)
+    const properties = Object.fromEntries((written ?? '').split(',').filter(Boolean).map(each => each.split('=')))
+    return { name, position: vector(cell), getProperties: () => properties }
+  }
+
+  async function openContainer (block) {
+    if (block === null || typeof block !== 'object' || block.position === undefined) throw failure('openContainer: the argument must be a block')
+    const items = Object.entries(await ask('openContainer', [block.position])).map(([name, count]) => ({ name, count }))
+    return offering({ containerItems: () => items, close: () => undefined }, 'the window of a container')
+  }
+
+  const bot = offering({
+    username,
+    get entity () { return entity(username, seen.agents[username]) },
+    get players () {
+      const told = Object.entries(seen.players).map(([name, there]) => [name, { username: name, entity: there ? entity(name, seen.agents[name]) : null }])
+      return Object.fromEntries(told)
+    },
+    get entities () { return Object.fromEntries(others().map(([name, told], number) => [number + 1, entity(name, told)])) },
+    get inventory () { return offering({ items: () => Object.entries(seen.inventory).map(([name, count]) => ({ name, count })) }, 'bot.inventory') },
+    get health () { return seen.health },
+    get food () { return seen.food },
+    blockAt,
+    openContainer,
+    openChest: openContainer,
+    chat: text => { ask('bot.chat', [text]).catch(() => {}) },
+    whisper: (name, text) => { ask('bot.whisper', [name, text]).catch(() => {}) },
+    waitForTicks: ticks => ask('waitTicks', [ticks])
+  }, 'bot')
+
+  const shown = value => (typeof value === 'string' ? value : stringify(value) ?? String(value))
+  const written = level => (...values) => { if (log.length < 1000) log.push(values.map(shown).join(' ').slice(0, 1000)) }
+  const scope = {
+    bot,
+    Vec3,
+    goals: offering({}, 'goals'),
+    mcData: offering({}, 'mcData'),
+    console: Object.fromEntries(['log', 'info', 'warn', 'error', 'debug'].map(level => [level, written(level)])),
+    located: (item, place) => ({ kind: 'located', item, place }),
+    absent: (item, place) => ({ kind: 'absent', item, place }),
+    positionOf: (agent, place) => ({ kind: 'position', agent, place }),
+    blockAt: (place, state) => ({ kind: 'block', place, state }),
+    ...Object.fromEntries(skills.map(name => [name, skill(name)]))
+  }
+  Vec3.prototype.toJSON = function () { return [this.x, this.y, this.z] }
+
+  function ended (error) {
+    const { message, name, stack, skill = null, reason = null, kind = null, place = '' } = error instanceof Error ? error : { message: `the program threw ${shown(error)}` }
+    done = { ok: false, message: String(message), name: String(name ?? 'Error'), stack: `${place}${stack ?? ''}`, skill, reason, kind }
+  }
+
+  return {
+    names: () => stringify(Object.keys(scope)),
+    start (main, isWhole) {
+      const program = isWhole ? () => main(...Object.values(scope))(bot) : () => main(...Object.values(scope))
+      Promise.resolve().then(program).then(() => { done ??= { ok: true } }, ended)
+    },
+    take () {
+      const taken = stringify({ calls, log, done, waiting: waiting.size })
+      calls = []
+      return taken
+    },
+    settle (id, ok, text) {
+      const { resolve, reject, name, place } = waiting.get(id)
+      waiting.delete(id)
+      const value = parse(text)
+      if (ok) resolve(value ?? undefined)
+      else reject(failure(`${name}: ${value.message}`, { skill: name, reason: value.reason, place }))
+    },
+    see (text, blocks) {
+      if (seen === null || blocks !== seen.blocks) grid = null
+      seen = { ...parse(text), blocks }
+    }
+  }
+})

@@ -1,0 +1,252 @@
+"""Programs of agents in a scripted world, together, tick by tick.
+
+What a program does before its first wait belongs to the first tick. A skill that is called in one
+tick acts in the next ones. Agents act in the order in which their programs are given.
+"""
+
+import json
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from beliefnest.bodies.footpaths import Ground
+from beliefnest.bodies.javascript import JavaScriptProgram
+from beliefnest.bodies.protocol import Aim, Fault, ProgramResult, Unfinished
+from beliefnest.bodies.scripted_skills import CALLS, SKILLS, Doing, Hand, SkillError
+from beliefnest.errors import BeliefNestError
+from beliefnest.world.frames import BlockGrid, Frame
+from beliefnest.world.registry import Registry
+from beliefnest.world.scripted import ScriptedWorld
+from beliefnest.world.values import AgentState, Event, Point
+
+__all__ = ["Sensed", "run_programs"]
+
+_USING = frozenset({"getItemFromChest", "depositItemIntoChest", "openDoor", "closeDoor"})
+_MOST_AIMS = 100
+_DOINGS = {**SKILLS, **CALLS}
+
+
+@dataclass(frozen=True)
+class Sensed:
+    """What an agent's program may read of the world.
+
+    Attributes:
+        blocks: Block state ids of the box, -1 is unknown.
+        agents: Agents that are there as far as it knows, itself among them.
+    """
+
+    blocks: BlockGrid
+    agents: Mapping[str, AgentState]
+
+
+@dataclass
+class _Run:
+    """A program under way."""
+
+    hand: Hand
+    program: JavaScriptProgram
+    sense: Callable[[], Sensed]
+    doing: dict[int, tuple[str, Doing]] = field(default_factory=dict)
+    aims: list[Aim] = field(default_factory=list)
+    end_tick: int | None = None
+    end: Fault | None = None
+
+
+def run_programs(
+    world: ScriptedWorld,
+    programs: Mapping[str, str],
+    timeout_ticks: int,
+    senses: Mapping[str, Callable[[], Sensed]],
+) -> Mapping[str, ProgramResult]:
+    """Run programs by agent until the last has ended.
+
+    Args:
+        world: Where they act.
+        programs: JavaScript by agent.
+        timeout_ticks: Ticks after which they are ended.
+        senses: By agent, what its program may read now; those left out read what is the case.
+    """
+    first = world.now
+    happened: list[tuple[int, Event]] = []
+
+    def hear(frame: Frame) -> None:
+        happened.extend((frame.tick, event) for event in frame.events)
+
+    texts = _Texts(world)
+    world.listen(hear)
+    try:
+        runs = [_begun(world, agent, code, senses, texts) for agent, code in programs.items()]
+        while True:
+            with world.tick():
+                for run in runs:
+                    _act(run, texts)
+            for run in runs:
+                if run.end_tick is None and run.program.ended:
+                    run.end_tick = world.now
+            if all(run.end_tick is not None for run in runs):
+                break
+            if world.now - first >= timeout_ticks:
+                _time_out(runs, world.now, timeout_ticks)
+                break
+    finally:
+        world.unlisten(hear)
+    return {run.hand.name: _result(run, first, tuple(happened)) for run in runs}
+
+
+class _Texts:
+    """Blocks of a world as texts for programs, made once for each grid."""
+
+    def __init__(self, world: ScriptedWorld) -> None:
+        self._world = world
+        self._registry = Registry.load()
+        self._grids: dict[int, tuple[BlockGrid, str, Ground]] = {}
+
+    def of(self, grid: BlockGrid) -> tuple[str, Ground]:
+        """The text of a grid, and where one can stand in it."""
+        known = self._grids.get(id(grid))
+        if known is None or known[0] is not grid:
+            box = self._world.box
+            states, places = np.unique(grid, return_inverse=True)
+            palette = [None if s < 0 else self._registry.text(s) for s in states.tolist()]
+            text = json.dumps(
+                {
+                    "low": box.low,
+                    "shape": box.shape,
+                    "palette": palette,
+                    "states": places.reshape(-1).tolist(),
+                }
+            )
+            # The grid is kept with them, so that no other one gets its number.
+            known = self._grids[id(grid)] = (grid, text, Ground(self._registry, box, grid))
+        return known[1], known[2]
+
+
+def _begun(
+    world: ScriptedWorld,
+    agent: str,
+    code: str,
+    senses: Mapping[str, Callable[[], Sensed]],
+    texts: _Texts,
+) -> _Run:
+    def all_of_it() -> Sensed:
+        return Sensed(world.blocks, world.agents)
+
+    sense = senses.get(agent, all_of_it)
+    hand = Hand(
+        agent,
+        world,
+        known=lambda: texts.of(sense().blocks)[1],
+        ground=lambda: texts.of(world.blocks)[1],
+    )
+    run = _Run(hand, JavaScriptProgram(agent, SKILLS), sense)
+    _show(run, texts)
+    run.program.start(code)
+    _take_calls(run)
+    return run
+
+
+def _act(run: _Run, texts: _Texts) -> None:
+    """Advance what a program's agent does by a tick, and then the program."""
+    for number, (name, doing) in list(run.doing.items()):
+        # What is said without waiting is said, also if the program has ended by then.
+        if run.program.ended and name in SKILLS:
+            continue
+        try:
+            next(doing)
+        except StopIteration as ended:
+            _settle(run, texts, number, ok=True, value=ended.value)
+        except BeliefNestError as error:
+            _settle(run, texts, number, ok=False, value=_told(error))
+
+
+def _settle(run: _Run, texts: _Texts, number: int, *, ok: bool, value: object) -> None:
+    del run.doing[number]
+    _show(run, texts)
+    run.program.settle(number, ok=ok, value=value)
+    _take_calls(run)
+
+
+def _take_calls(run: _Run) -> None:
+    """Begin what a program has called; what cannot be begun fails at once."""
+    calls = run.program.calls()
+    while calls:
+        for number, name, args in calls:
+            _note_aim(run, name, args)
+            try:
+                doing = _DOINGS[name](run.hand, *args)
+                next(doing)
+                run.doing[number] = (name, doing)
+            except StopIteration as ended:
+                run.program.settle(number, ok=True, value=ended.value)
+            except (BeliefNestError, TypeError) as error:
+                run.program.settle(number, ok=False, value=_told(error))
+        calls = run.program.calls()
+
+
+def _told(error: Exception) -> dict[str, object]:
+    reason = error.reason if isinstance(error, SkillError) else None
+    message = str(error)
+    if isinstance(error, TypeError):
+        message = "it is called with too few or too many arguments"
+    return {"message": message, "reason": reason}
+
+
+def _show(run: _Run, texts: _Texts) -> None:
+    sensed = run.sense()
+    me = sensed.agents[run.hand.name]
+    told = {
+        "agents": {name: _pose(agent) for name, agent in sensed.agents.items()},
+        "players": {name: name in sensed.agents for name in sorted(run.hand.world.agents)},
+        "inventory": dict(me.inventory),
+        "health": me.health,
+        "food": me.food,
+    }
+    run.program.see(told, texts.of(sensed.blocks)[0])
+
+
+def _pose(agent: AgentState) -> dict[str, object]:
+    return {"position": agent.position, "yaw": agent.yaw, "pitch": agent.pitch}
+
+
+def _note_aim(run: _Run, name: str, args: list[Any]) -> None:
+    if len(run.aims) >= _MOST_AIMS or not args:
+        return
+    now = run.hand.world.now
+    if name == "goToPosition" or name in _USING or name == "openContainer":
+        place = _point(args[0])
+        if place is not None:
+            run.aims.append(Aim(now, name, place, None, name != "goToPosition"))
+    elif name == "giveItemToOther" and isinstance(args[0], str):
+        run.aims.append(Aim(now, name, None, args[0], uses=True))
+
+
+def _point(value: Any) -> Point | None:
+    if not isinstance(value, list) or len(value) != 3:
+        return None
+    if not all(isinstance(part, int | float) and math.isfinite(part) for part in value):
+        return None
+    return (float(value[0]), float(value[1]), float(value[2]))
+
+
+def _time_out(runs: list[_Run], tick: int, timeout_ticks: int) -> None:
+    for run in runs:
+        if run.end_tick is None:
+            run.end_tick = tick
+            run.end = Fault(f"the program did not end within {timeout_ticks} ticks", "timeout")
+
+
+def _result(run: _Run, first: int, happened: tuple[tuple[int, Event], ...]) -> ProgramResult:
+    fault = run.end or run.program.fault
+    return ProgramResult(
+        agent=run.hand.name,
+        ok=fault is None,
+        error=fault,
+        ticks=(run.end_tick or first) - first,
+        happened=happened,
+        log=run.program.log,
+        unfinished=tuple(Unfinished(name) for name, _ in run.doing.values()),
+        aims=tuple(run.aims),
+    )

@@ -1,0 +1,280 @@
+"""The skills of the scripted world, each a generator that is advanced once a tick.
+
+Walking takes one tick for each cell; opening, taking, putting, speaking, thinking and handing over
+take one tick each.
+"""
+
+import math
+from collections.abc import Callable, Generator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from beliefnest.bodies.footpaths import Ground, feet_in, find_way
+from beliefnest.bodies.protocol import NO_WAY
+from beliefnest.errors import BeliefNestError, WorldError
+from beliefnest.world.claims import claims_from_plain
+from beliefnest.world.registry import Registry
+from beliefnest.world.scripted import ScriptedWorld
+from beliefnest.world.values import EYE_HEIGHT, Point, Position
+
+__all__ = ["CALLS", "SKILLS", "Doing", "Hand", "SkillError"]
+
+_REACH = 4.0
+_NEAR = 2.0
+
+Doing = Generator[None, None, Any]
+"""A skill under way: advanced once in each tick, until it returns."""
+
+
+class SkillError(BeliefNestError):
+    """A skill could not do what it was asked for.
+
+    Attributes:
+        reason: As that of `Fault`.
+    """
+
+    def __init__(self, message: str, reason: str | None = None) -> None:
+        super().__init__(message)
+        self.reason = reason
+
+
+@dataclass(frozen=True)
+class Hand:
+    """An agent that acts in a scripted world.
+
+    Attributes:
+        name: Who it is.
+        world: Where it acts.
+        known: The ground as far as the agent may know it, which ways are looked for on.
+        ground: The ground as it is, which carries and stops a body.
+    """
+
+    name: str
+    world: ScriptedWorld
+    known: Callable[[], Ground]
+    ground: Callable[[], Ground]
+
+    @property
+    def feet(self) -> Point:
+        """Where it stands."""
+        return self.world.agents[self.name].position
+
+    @property
+    def cell(self) -> Position:
+        """The cell it stands in."""
+        x, y, z = self.feet
+        return (math.floor(x), math.floor(y), math.floor(z))
+
+
+def _go_to_position(hand: Hand, position: Any, dist: Any = 2) -> Doing:
+    target = _point("position", position)
+    near = _number("dist", dist)
+    block = (math.floor(target[0]), math.floor(target[1]), math.floor(target[2]))
+    moved = yield from _walk(
+        hand, target, lambda cell: math.dist(cell, block) <= near, "the position", within=near
+    )
+    if not moved:
+        yield
+    hand.world.arrive(hand.name, target)
+
+
+def _get_item_from_chest(hand: Hand, position: Any, items: Any) -> Doing:
+    place, wanted = _block(position), _items(items)
+    yield from _open(hand, place)
+    yield
+    there = hand.world.contents(place)
+    moved = {name: min(n, there.get(name, 0)) for name, n in wanted.items() if there.get(name, 0)}
+    if moved:
+        hand.world.withdraw(hand.name, place, moved)
+    missing = [
+        f"{n} {name} asked for from the chest at {place}, it holds {there.get(name, 0)}"
+        for name, n in wanted.items()
+        if there.get(name, 0) < n
+    ]
+    if missing:
+        raise SkillError(f"{'; '.join(missing)}. Ask for what is there, or look elsewhere.")
+
+
+def _deposit_item_into_chest(hand: Hand, position: Any, items: Any) -> Doing:
+    place, wanted = _block(position), _items(items)
+    yield from _open(hand, place)
+    yield
+    hand.world.deposit(hand.name, place, wanted)
+
+
+def _open_container(hand: Hand, position: Any) -> Doing:
+    place = _block(position)
+    yield from _open(hand, place, walks=False)
+    return dict(hand.world.contents(place))
+
+
+def _use_door(to_open: bool) -> Callable[..., Doing]:
+    def use(hand: Hand, position: Any) -> Doing:
+        place = _block(position)
+        yield from _walk_to_use(hand, place)
+        yield
+        hand.world.use_door(hand.name, place, open=to_open)
+
+    return use
+
+
+def _say(hand: Hand, text: Any, claims: Any = ()) -> Doing:
+    yield
+    hand.world.say(hand.name, _text(text), claims_from_plain(claims or ()))
+
+
+def _whisper(hand: Hand, other: Any, text: Any, claims: Any = ()) -> Doing:
+    yield
+    hand.world.whisper(hand.name, _text(other), _text(text), claims_from_plain(claims or ()))
+
+
+def _think(hand: Hand, text: Any) -> Doing:
+    yield
+    hand.world.think(hand.name, _text(text))
+
+
+def _give_item(hand: Hand, other: Any, item: Any, count: Any) -> Doing:
+    name = _text(other)
+    if name not in hand.world.agents:
+        raise SkillError(f"there is no other agent {name!r}; there are {sorted(hand.world.agents)}")
+    where = hand.world.agents[name].position
+    block = (math.floor(where[0]), math.floor(where[1]), math.floor(where[2]))
+    yield from _walk(hand, where, lambda cell: math.dist(cell, block) <= _NEAR, name, within=_NEAR)
+    yield
+    hand.world.give(hand.name, name, _items({_text(item): count}))
+
+
+def _wait_ticks(hand: Hand, ticks: Any) -> Doing:
+    for _ in range(math.ceil(_number("ticks", ticks))):
+        yield
+
+
+def _do_nothing(hand: Hand) -> Doing:
+    yield
+
+
+SKILLS: Mapping[str, Callable[..., Doing]] = {
+    "goToPosition": _go_to_position,
+    "getItemFromChest": _get_item_from_chest,
+    "depositItemIntoChest": _deposit_item_into_chest,
+    "openDoor": _use_door(to_open=True),
+    "closeDoor": _use_door(to_open=False),
+    "giveItemToOther": _give_item,
+    "say": _say,
+    "whisper": _whisper,
+    "think": _think,
+    "waitTicks": _wait_ticks,
+    "doNothing": _do_nothing,
+}
+"""By name."""
+
+CALLS: Mapping[str, Callable[..., Doing]] = {
+    "openContainer": _open_container,
+    "bot.chat": _say,
+    "bot.whisper": _whisper,
+}
+"""What a program asks of its bot itself."""
+
+
+def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:
+    if walks:
+        _check_container(hand, place)
+        yield from _walk_to_use(hand, place)
+    yield
+    _check_container(hand, place)
+    if not _reaches(hand.cell, place):
+        raise SkillError(f"the container at {place} is too far away to open it; go nearer")
+    hand.world.open(hand.name, place)
+
+
+def _check_container(hand: Hand, place: Position) -> None:
+    try:
+        hand.world.contents(place)
+    except WorldError as error:
+        raise SkillError(f"{error}. Give the position of a chest or barrel.") from None
+
+
+def _walk_to_use(hand: Hand, place: Position) -> Doing:
+    yield from _walk(hand, place, lambda cell: _reaches(cell, place), "the block", within=_REACH)
+
+
+def _reaches(cell: Position, place: Position) -> bool:
+    x, y, z = feet_in(cell)
+    middle = (place[0] + 0.5, place[1] + 0.5, place[2] + 0.5)
+    return math.dist((x, y + EYE_HEIGHT, z), middle) <= _REACH
+
+
+def _walk(
+    hand: Hand, target: Point, arrived: Callable[[Position], bool], what: str, *, within: float
+) -> Doing:
+    """Walk until a cell is reached that is good enough, one cell a tick; whether it walked."""
+
+    def distance(cell: Position) -> float:
+        block = [math.floor(value) for value in target]
+        return max(0.0, math.dist(cell, block) - within)
+
+    moved = False
+    bumped: set[Position] = set()
+    while not arrived(hand.cell):
+        way = find_way(hand.known(), hand.cell, arrived, distance)
+        if way is None or bumped & set(way):
+            far = math.dist(hand.feet, target)
+            raise SkillError(
+                f"could not reach {what} at {tuple(target)}: there is no way to it on foot; now at "
+                f"{hand.feet}, {far:.1f} blocks away. Go somewhere else, or clear the way first.",
+                NO_WAY,
+            )
+        for cell in way:
+            yield
+            if not hand.ground().stands(cell):
+                bumped.add(cell)
+                break
+            moved = True
+            _step_to(hand, cell)
+    return moved
+
+
+def _step_to(hand: Hand, cell: Position) -> None:
+    """One step, looking ahead."""
+    x, _, z = hand.feet
+    feet = feet_in(cell)
+    yaw = math.atan2(-(feet[0] - x), -(feet[2] - z))
+    hand.world.place_agent(hand.name, feet, yaw=yaw, pitch=0.0)
+
+
+def _point(name: str, value: Any) -> Point:
+    if not (isinstance(value, list | tuple) and len(value) == 3 and all(map(_is_number, value))):
+        raise SkillError(f"{name} must be a Vec3 of three finite numbers; it is {value!r}")
+    return (float(value[0]), float(value[1]), float(value[2]))
+
+
+def _block(value: Any) -> Position:
+    x, y, z = _point("position", value)
+    return (math.floor(x), math.floor(y), math.floor(z))
+
+
+def _items(value: Any) -> dict[str, int]:
+    registry = Registry.load()
+    if not isinstance(value, dict) or not value:
+        raise SkillError(f"items must say how many of which, like {{diamond: 1}}; it is {value!r}")
+    for name, count in value.items():
+        registry.item_stack(name)
+        if not _is_number(count) or count != int(count) or count < 1:
+            raise SkillError(f"items.{name} must be a whole number above 0; it is {count!r}")
+    return {name: int(count) for name, count in value.items()}
+
+
+def _text(value: Any) -> str:
+    if not isinstance(value, str) or not value.strip():
+        raise SkillError(f"a text is wanted that is not empty; it is {value!r}")
+    return value
+
+
+def _number(name: str, value: Any) -> float:
+    if not _is_number(value) or value < 0:
+        raise SkillError(f"{name} must be a number of at least 0; it is {value!r}")
+    return float(value)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
