@@ -78,9 +78,9 @@ def run_probe(
     for question in probe.questions:
         replies[question], used = ask_question(nest, probe, question, noting, seed, asking.sampling)
         usage += used
-    judged = {each.expected: each for each in programs.verdicts}
+    judged = iter(programs.verdicts)
     verdicts = tuple(
-        answer_verdict(each, replies[each].answer) if isinstance(each, Answers) else judged[each]
+        answer_verdict(each, replies[each].answer) if isinstance(each, Answers) else next(judged)
         for each in probe.expect
     )
     trial = programs.trial

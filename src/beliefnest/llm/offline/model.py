@@ -1,13 +1,17 @@
 """The offline model: answers from the prompt's text alone, without network or key."""
 
+import re
 from collections.abc import Sequence
 
 from beliefnest.llm.messages import Answer, Message, Sampling
+from beliefnest.llm.offline.answering import answer_question
 from beliefnest.llm.offline.javascript import fenced
 from beliefnest.llm.offline.planning import plan
 from beliefnest.llm.offline.prompt_reading import read_prompt
 
 __all__ = ["OfflineModel"]
+
+_QUESTION = re.compile(r"^Question: *(.+)$", re.MULTILINE)
 
 
 class OfflineModel:
@@ -21,6 +25,13 @@ class OfflineModel:
     name = "offline"
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """A program for the last task in the messages; the sampling changes nothing."""
+        """A program for the task in the messages, or an answer if there is a question instead.
+
+        The sampling changes nothing.
+        """
         text = "\n".join(message.text for message in messages if message.role != "assistant")
-        return Answer(fenced(plan(read_prompt(text))))
+        reading = read_prompt(text)
+        asked = _QUESTION.findall(text)
+        if asked and not reading.task:
+            return Answer(answer_question(asked[-1], text, reading))
+        return Answer(fenced(plan(reading)))

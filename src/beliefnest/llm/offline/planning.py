@@ -27,7 +27,7 @@ from beliefnest.llm.offline import javascript
 from beliefnest.llm.offline.naming import match_item, match_name, place_named_last, singular
 from beliefnest.llm.offline.prompt_reading import Point, Reading, points_in, words
 
-__all__ = ["plan"]
+__all__ = ["believed_place", "plan"]
 
 _GO = re.compile(
     r"(?:please )?(?:go|walk|move|come|run|return|travel|head)(?: back| over)? to (?:the )?(.+)",
@@ -129,7 +129,7 @@ def _help(phrase: str, reading: Reading) -> str | None:
         return javascript.wonder(f"I know of no chest that holds {wanted.phrase} for {player}.")
     takings = _takings(wanted.count, item, chests, reading)
     count = sum(taken[item] for _, taken in takings)
-    where = _believed_place(player, reading)
+    where = believed_place(player, reading)
     parts = [
         javascript.take_items(takings),
         *([] if where is None else [javascript.go_to(where)]),
@@ -192,13 +192,13 @@ def _go(phrase: str, reading: Reading) -> str | None:
         return javascript.go_to(reading.places[place])
     if player is None:
         return None
-    where = _believed_place(player, reading)
+    where = believed_place(player, reading)
     if where is not None:
         return javascript.go_to(where)
     return javascript.look_for_player(player, list(reading.places.values()))
 
 
-def _believed_place(player: str, reading: Reading) -> Point | None:
+def believed_place(player: str, reading: Reading) -> Point | None:
     """Where a player is seen, else said to be, else was last seen."""
     return (
         reading.players[player] or _said_to_be_at(player, reading) or reading.sightings.get(player)

@@ -1,0 +1,80 @@
+"""From what a prompt says to an answer to its question.
+
+Where an item is: in the chest that is said to hold it, by the name of a place there if it has one.
+Where a player is: where it is seen, else said to be, else was last seen; by the name of the nearest
+place within a few blocks. Anything else, and what the prompt does not tell, is not known.
+"""
+
+import math
+import re
+
+from beliefnest.llm.offline.naming import match_item, match_name, singular
+from beliefnest.llm.offline.planning import believed_place
+from beliefnest.llm.offline.prompt_reading import Point, Reading, words
+
+__all__ = ["answer_question"]
+
+_NEAR = 3.0
+_OPTION = re.compile(r"^([A-Z])\) (.+)$", re.MULTILINE)
+_NOT_KNOWN = "I do not know"
+
+
+def answer_question(question: str, text: str, reading: Reading) -> str:
+    """An answer in the form that is asked for.
+
+    Args:
+        question: What is asked.
+        text: The whole prompt, for its options.
+        reading: What the prompt says.
+    """
+    found = _found(question, reading)
+    if found is None:
+        return _said(_NOT_KNOWN, "Nothing that I was told says so.")
+    place, reason = found
+    names = _names(place, reading)
+    options = [option for _, option in _OPTION.findall(text.rpartition("Options:")[2])]
+    chosen = [option for option in options if any(_same(option, name) for name in names)]
+    if options and len(chosen) != 1:
+        return _said(_NOT_KNOWN, reason)
+    return _said(chosen[0] if options else names[0], reason)
+
+
+def _found(question: str, reading: Reading) -> tuple[Point, str] | None:
+    asked = set(singular(question))
+    named = {item for held in reading.chests.values() for item in held}
+    items = [item for item in sorted(named) if set(singular(item)) <= asked]
+    if items:
+        item = match_item(items[-1], named) or items[-1]
+        holding = [chest for chest, held in reading.chests.items() if held.get(item)]
+        return (holding[0], f"{_text(holding[0])} holds {item}.") if len(holding) == 1 else None
+    mentioned = [word for word in words(question) if match_name(word, reading.players) is not None]
+    for word in reversed(mentioned):
+        player = match_name(word, reading.players)
+        place = None if player is None else believed_place(player, reading)
+        if place is not None:
+            return place, f"{player} is at {_text(place)}, as far as I know."
+    return None
+
+
+def _names(place: Point, reading: Reading) -> list[str]:
+    """What a place is called, the nearest name first; its numbers at last."""
+    far = {name: math.dist(place, there) for name, there in reading.places.items()}
+    near = sorted((name for name in far if far[name] <= _NEAR), key=lambda name: far[name])
+    exact = [name for name in near if far[name] == 0]
+    return [*(exact or near[:1]), _text(place)]
+
+
+def _same(option: str, name: str) -> bool:
+    one, other = (
+        [word for word in words(text) if word not in ("the", "a", "in", "at")]
+        for text in (option, name)
+    )
+    return one == other
+
+
+def _text(point: Point) -> str:
+    return f"({', '.join(f'{value:g}' for value in point)})"
+
+
+def _said(answer: str, reason: str) -> str:
+    return f"Answer: {answer}\nReason: {reason}"
