@@ -33,10 +33,8 @@ notices: ## THIRD_PARTY_NOTICES.md from what is bundled
 pages: ## The pictures of docs/page.md, taken in a real browser
 	python tools/page_pictures.py
 
-picture: ## The picture of the README, made by the program itself
-	rm -rf build/picture
-	beliefnest run sally-anne --out build/picture
-	cp build/picture/picture.png docs/img/sally-anne.png
+picture: ## The pictures of README and docs, by the program itself
+	python tools/pictures.py
 
 docs: ## The documentation site, in build/site; a broken link is an error
 	NO_MKDOCS_2_WARNING=1 mkdocs build --quiet --strict

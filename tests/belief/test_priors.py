@@ -1,5 +1,6 @@
 """What is known from the start (semantics 4): static blocks and initial beliefs."""
 
+import pytest
 from tests.nest.places import CLOSED, EAST, WEST, nest_of
 
 import beliefnest as bn
@@ -121,3 +122,66 @@ def test_what_only_the_deeper_belief_knows_is_kept_where_the_shallower_one_sees_
     assert believed[place] == "stone"
     assert believed.basis(place).source is Source.PRIOR
     assert not believed.current(place)
+
+
+CANDY = {PLACE: ({"cookie": 1}, True)}
+
+
+def test_what_everybody_takes_for_granted_everybody_takes_everybody_to():
+    _, nest = initially(("**",), containers=CANDY)
+    for path in ("/a", "/b/a", "/c/a/b", "/a/b/c/a"):
+        assert nest[path].state.containers[PLACE].items == {"cookie": 1}
+    assert PLACE not in nest["/"].state.containers
+
+
+def test_a_prior_below_a_belief_is_that_belief_s_alone():
+    _, nest = initially(("a", "**"), containers=CANDY)
+    assert PLACE in nest["/a"].state.containers
+    assert PLACE in nest["/a/b"].state.containers
+    assert PLACE not in nest["/b"].state.containers
+    assert PLACE not in nest["/b/a"].state.containers
+
+
+def test_who_is_named_more_exactly_counts():
+    beliefs = [
+        bn.InitialBelief(("a",), containers={PLACE: ({"diamond": 1}, False)}),
+        bn.InitialBelief(("a", "**"), containers={PLACE: ({"apple": 1}, True)}),
+        bn.InitialBelief(("**",), containers=CANDY, blocks={(8, 0, 8): STONE}),
+    ]
+    _, nest = nest_of(AGENTS, CLOSED, chests={PLACE: {}}, initial_beliefs=beliefs)
+    held = {path: nest[path].state.containers[PLACE].items for path in ("/a", "/a/b", "/b")}
+    assert held == {"/a": {"diamond": 1}, "/a/b": {"apple": 1}, "/b": {"cookie": 1}}
+    assert nest["/a/b"].state.blocks[8, 0, 8] == "stone"
+
+
+def test_unexpected_contents_one_s_own_past_belief_and_another_s():
+    """Smarties: who has looked in knows, others and one's own past self believe the look."""
+    world, nest = nest_of(
+        AGENTS,
+        chests={PLACE: {"stick": 1}},
+        initial_beliefs=[bn.InitialBelief(("**",), containers=CANDY)],
+        containers="opaque",
+    )
+    world.place_agent("a", (8.5, 0, 1.5))
+    world.open("a", PLACE)
+    held = {
+        "own": nest["/a"].state.containers[PLACE].items,
+        "own, past": nest.at(0)["/a"].state.containers[PLACE].items,
+        "another's": nest["/a/c"].state.containers[PLACE].items,
+        "another's of another's": nest["/c/b"].state.containers[PLACE].items,
+    }
+    assert held == {
+        "own": {"stick": 1},
+        "own, past": {"cookie": 1},
+        "another's": {"cookie": 1},
+        "another's of another's": {"cookie": 1},
+    }
+
+
+def test_a_static_position_is_known_to_everybody_whatever_is_there():
+    blocks = CLOSED | {PLACE: "bricks", (9, 0, 2): "bricks"}
+    _, nest = nest_of(AGENTS, blocks, static_blocks=[PLACE])
+    state = nest["/a/c"].state
+    assert (state.blocks[PLACE], state.blocks[9, 0, 2]) == ("bricks", None)
+    with pytest.raises(bn.InputError, match="outside the box"):
+        nest_of(AGENTS, CLOSED, static_blocks=[(99, 0, 0)])

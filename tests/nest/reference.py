@@ -64,7 +64,7 @@ class Reference:
     ) -> None:
         self.rules = Rules(start, options)
         self._static = static_blocks
-        self._initial = {belief.path: belief for belief in initial_beliefs}
+        self._initial = initial_beliefs
         self._start = start
         root = Tree(self._reality(start), head=start.tick)
         self._grow(root, (), depth)
@@ -206,7 +206,7 @@ class Reference:
         known = {p: s for p, s in states.items() if registry.name(s) in self._static}
         nobody = {name: AgentBelief() for name in start.agents}
         node = Node(start.tick, {}, {}, nobody, self._ear(), path)
-        special = self._initial.get(path, bn.InitialBelief(path))
+        special = self._special(path)
         known |= special.blocks
         node.blocks = {p: Block(s, basis, False) for p, s in known.items() if s != UNKNOWN}
         for place, block in node.blocks.items():
@@ -217,6 +217,20 @@ class Reference:
         for name, feet in special.agents.items():
             node.agents[name] = AgentBelief(position=feet, basis=basis)
         return node
+
+    def _special(self, path: Path) -> bn.InitialBelief:
+        """What initial beliefs say of a node: what names it best counts (4)."""
+        special = bn.InitialBelief(path)
+        for pattern in (*((*path[:n], "**") for n in range(len(path) + 1)), path):
+            for belief in self._initial:
+                if belief.path == pattern:
+                    special = bn.InitialBelief(
+                        path,
+                        {**special.containers, **belief.containers},
+                        {**special.blocks, **belief.blocks},
+                        {**special.agents, **belief.agents},
+                    )
+        return special
 
     def _perceive_below(self, tree: Tree, *, happening: bool) -> None:
         for name, kid in tree.kids.items():

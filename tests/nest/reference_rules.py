@@ -200,9 +200,13 @@ class Rules:
         """Containers found and forgotten, items seen to move, contents looked into (4)."""
         self._find_and_forget(after, before, around, view)
         own = [e for e in after.news if e.kind in TOUCHES and e.actor == me]
-        looked_into = {e.detail["position"] for e in own} & around.containers.keys()
+        touched = [e.detail["position"] for e in own if e.detail["position"] in around.containers]
+        looked_into = set(touched)
         if self.options.containers == "transparent":
-            looked_into |= {place for place in around.containers if view.sees(place)}
+            seen_into = {place for place in around.containers if view.sees(place)}
+            looked_into |= seen_into
+            for place in sorted(seen_into):
+                after.ear.look_into(place, around.containers[place].items)
         for event in after.news:
             if event.kind not in MOVES or event.detail["position"] in looked_into:
                 continue
@@ -219,11 +223,12 @@ class Rules:
                 after.ear.put(place, event.detail["items"], MOVES[event.kind])
         for place in looked_into:
             after.containers[place] = around.containers[place]
-            after.ear.look_into(place, around.containers[place].items)
             acts = [e.kind for e in own if e.detail["position"] == place]
             if acts and after.containers[place].current:
                 basis = Basis(around.tick, Source.WITNESSED, acts[-1])
                 after.containers[place] = replace(after.containers[place], basis=basis)
+        for place in touched:
+            after.ear.look_into(place, around.containers[place].items)
 
     def _find_and_forget(self, after: Node, before: Node, around: Node, view: "View") -> None:
         for place in around.blocks:

@@ -130,6 +130,7 @@ class Stories:
         ticks: Whether several acts may happen in one tick.
         priors: Whether there are static blocks and initial beliefs.
         whispers: Whether agents whisper as well.
+        claims: Whether they claim something, which hearers may take up.
     """
 
     def __init__(
@@ -142,6 +143,7 @@ class Stories:
         ticks: bool = True,
         priors: bool = True,
         whispers: bool = True,
+        claims: bool = False,
     ) -> None:
         self._blocks = st.sampled_from(blocks)
         self._options = options
@@ -150,6 +152,7 @@ class Stories:
         self._ticks = ticks
         self._priors = priors
         self._whispers = whispers
+        self._claims = claims
 
     @cached_property
     def story(self) -> st.SearchStrategy[Story]:
@@ -183,7 +186,9 @@ class Stories:
         contents = st.tuples(st.just({"emerald": 1}), st.booleans())
         return st.builds(
             bn.InitialBelief,
-            path=paths.map(tuple),
+            path=st.one_of(
+                paths.map(tuple), paths.map(lambda names: (*names[:2], "**")), st.just(("**",))
+            ),
             containers=st.dictionaries(st.sampled_from(CONTAINERS), contents, max_size=1),
             blocks=st.dictionaries(self._cell(range(2)), states, max_size=3),
             agents=st.dictionaries(st.sampled_from(NAMES), self._feet, max_size=1),
@@ -209,7 +214,13 @@ class Stories:
         speech = st.tuples(st.sampled_from(["say", "think"]), who, st.sampled_from(["hi", "hm"]))
         if self._whispers:
             speech |= st.tuples(st.just("whisper"), who, who, st.sampled_from(["hi", "hm"]))
+        if self._claims:
+            claims = st.lists(self._claim, min_size=1, max_size=2)
+            told = st.tuples(st.just("say"), who, st.just("so"), claims)
+            told |= st.tuples(st.just("whisper"), who, who, st.just("so"), claims)
+            speech = st.one_of(speech, told, told, told)
         return st.one_of(
+            *([speech] if self._claims else []),
             place,
             place,
             st.tuples(st.just("set_block"), anywhere, block),
@@ -217,6 +228,20 @@ class Stories:
             st.tuples(st.just("open"), who, container),
             speech,
             st.tuples(st.just("give"), who, who, items),
+        )
+
+    @cached_property
+    def _claim(self) -> st.SearchStrategy[bn.Claim]:
+        """A claim, sometimes about a place without a container."""
+        place = st.sampled_from(CONTAINERS) | self._cell(range(2))
+        item = st.sampled_from(["diamond", "emerald"])
+        block = self._blocks | st.sampled_from(["air", "chest", "chest[facing=east]", "barrel"])
+        return st.one_of(
+            st.builds(bn.Claim.located, item, st.sampled_from(CONTAINERS)),
+            st.builds(bn.Claim.located, item, place),
+            st.builds(bn.Claim.absent, item, place),
+            st.builds(bn.Claim.position, st.sampled_from(NAMES), self._feet),
+            st.builds(bn.Claim.block, place, block),
         )
 
     @cached_property
@@ -249,8 +274,13 @@ class Stories:
     def _perception(self) -> st.SearchStrategy[dict[str, Any]]:
         if self._options is not None:
             return st.just(dict(self._options))
+        testimony = {
+            "testimony": st.sampled_from(["accept", "informed", "informed", "informed"]),
+            "grace": st.integers(0, 3),
+            "sincere": st.booleans(),
+        }
         return st.fixed_dictionaries(
-            {},
+            testimony if self._claims else {},
             optional={
                 "hearing": st.sampled_from(["sight", {"radius": 3}]),
                 "containers": st.just("transparent"),

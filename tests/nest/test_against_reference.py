@@ -1,4 +1,4 @@
-"""The nest against the slow reference, on random stories, every node to depth 3."""
+"""The nest against the slow reference, on random stories, every node to depth 3 or 4."""
 
 from hypothesis import given
 from tests.nest.comparing import everything
@@ -6,18 +6,18 @@ from tests.nest.reference import Path, Reference, paths_to
 from tests.nest.stories import NAMES, REGISTRY, Act, Stage, Stories, Story
 
 DEPTH = 3
-PATHS = list(paths_to(NAMES, DEPTH))
 
 
 class Double:
     """A story played in the nest and in the reference side by side."""
 
-    def __init__(self, story: Story) -> None:
+    def __init__(self, story: Story, depth: int) -> None:
+        self._paths = list(paths_to(NAMES, depth))
         self.stage = Stage(story)
         start = self.stage.world.snapshot()
         options = story.perception()
         self.reference = Reference(
-            start, options, frozenset(story.static), story.initial, depth=DEPTH
+            start, options, frozenset(story.static), story.initial, depth=depth
         )
         self._bodies = {(): self.stage.world}
         self.stage.world.listen(lambda frame: self.reference.frame((), frame))
@@ -43,7 +43,7 @@ class Double:
                 body.listen(lambda frame: self.reference.frame(path, frame))
 
     def check(self) -> None:
-        for path in PATHS:
+        for path in self._paths:
             simulator = self.stage.nest["/" + "/".join(path)]
             expected, found = self.reference.everything(path), everything(simulator.state)
             for part, value in expected.items():
@@ -55,8 +55,8 @@ def split(path: str) -> Path:
     return tuple(name for name in path.split("/") if name)
 
 
-def compare(story: Story, *, each_tick: bool) -> None:
-    double = Double(story)
+def compare(story: Story, *, each_tick: bool, depth: int = DEPTH) -> None:
+    double = Double(story, depth)
     for act in story.acts:
         if each_tick:
             double.check()
@@ -82,3 +82,23 @@ def test_every_node_with_forks_and_edits(story):
 @given(Stories(forks=True, max_acts=10).story)
 def test_every_node_with_forks_and_edits_asked_at_every_tick(story):
     compare(story, each_tick=True)
+
+
+@given(Stories(claims=True, max_acts=25).story)
+def test_every_node_where_something_is_claimed(story):
+    compare(story, each_tick=False)
+
+
+@given(Stories(claims=True, max_acts=10).story)
+def test_every_node_where_something_is_claimed_asked_at_every_tick(story):
+    compare(story, each_tick=True, depth=2)
+
+
+@given(Stories(claims=True, forks=True, max_acts=20).story)
+def test_every_node_with_claims_forks_and_edits(story):
+    compare(story, each_tick=False)
+
+
+@given(Stories(claims=True, max_acts=12).story)
+def test_every_node_to_depth_four_where_something_is_claimed(story):
+    compare(story, each_tick=False, depth=4)

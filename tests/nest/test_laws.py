@@ -10,6 +10,7 @@ from tests.nest.comparing import everything
 from tests.nest.places import wall
 from tests.nest.reference import paths_to
 from tests.nest.reference_rules import Block, Node, Rules
+from tests.nest.reference_testimony import Ear
 from tests.nest.stories import NAMES, REGISTRY, Act, Stage, Stories, Story
 from tests.nest.symmetries import SYMMETRIES, Symmetry, with_directions
 
@@ -38,7 +39,8 @@ def states(stage: Stage) -> dict[str, dict[str, Any]]:
 
 def node_of(state: State, tick: int) -> Node:
     """A state as the reference holds it, with what happened in it at a tick as its news."""
-    node = Node(tick, {}, dict(state.containers), dict(state.agents))
+    ear = Ear(tick, dict.fromkeys(state.agents, 0))
+    node = Node(tick, {}, dict(state.containers), dict(state.agents), ear)
     for position in state.blocks:
         text, basis = state.blocks[position], state.blocks.basis(position)
         if text is not None and basis is not None:
@@ -69,7 +71,7 @@ def test_locality_a_node_follows_from_its_parent_s_states_alone(story):
         node = node_of(stage.nest.at(stage.start)[path].state, stage.start)
         for tick in [frame.tick for frame in frames if not frame.is_empty]:
             around = node_of(stage.nest.at(tick)[parent(path)].state, tick)
-            node = rules.perceive(around, node, path.rsplit("/", 1)[1])
+            node = rules.perceive(around, node, path.rsplit("/", 1)[1], happening=True)
         state = stage.nest[path].state
         found = node_of(state, stage.nest.tick)
         assert node.blocks == found.blocks, path

@@ -63,6 +63,7 @@ class Senses(NamedTuple):
         hearing: One of `HEAR_ALL`, `HEAR_SEEN`, `HEAR_NEAR`.
         radius: Greatest distance of hearing, blocks, for `HEAR_NEAR`.
         negative: Whether a pose becomes unknown when its place is seen empty.
+        weighs: Whether hearers weigh claims, so that what they watch is counted.
     """
 
     far: float
@@ -70,6 +71,7 @@ class Senses(NamedTuple):
     hearing: int
     radius: float
     negative: bool
+    weighs: bool
 
 
 class Space(NamedTuple):
@@ -114,7 +116,8 @@ class Facts(NamedTuple):
         pose_at, pose_agent, pose_id: Agents that moved, and the ids of their new poses.
         block_at, block_cell, block_state: Blocks that changed.
         event_at, event_kind, event_actor, event_cell, event_to: What happened; kinds as
-            `KIND_...`; `event_to` is whom an utterance is whispered to, `NOBODY` if it is aloud.
+            `KIND_...`; the cell of what has a place; `event_to` is whom an utterance is
+            whispered to, `NOBODY` if it is aloud.
     """
 
     tick: Ints
@@ -154,7 +157,16 @@ class Nodes(NamedTuple):
         tracked: (T,), cells whose basis is tracked: those that ever hold a container.
         watched: (N, T), whether the owner sees the tracked cell in the parent.
         basis_at: (N, T), tick that the tracked cell rests on; -1 unknown.
-        basis_source: (N, T), its source, a row of `belief.entries.SOURCES`.
+        basis_source: (N, T), its source, a code of `BeliefContext.basis_code`.
+        counted: (N,), tick to which the next four count. They have no room if nobody weighs
+            claims (semantics, section 8).
+        missed: (N, A), ticks at which the owner did not perceive the agent.
+        met: (N, A), id of the pose that the owner last perceived the agent in; -1: it never
+            did, or has seen since that the agent is not there any more.
+        meets: (N, A), whether the owner sees the agent in the parent.
+        met_missed: (N, A, A), `missed` as it was when the agent was last seen.
+        watch_missed: (N, T, A), `missed` as it was when the tracked cell was last watched; -1:
+            it never was.
     """
 
     parent: Ints
@@ -178,6 +190,12 @@ class Nodes(NamedTuple):
     watched: Flags
     basis_at: Ints
     basis_source: npt.NDArray[np.uint8]
+    counted: Ints
+    missed: Ints
+    met: Ints
+    meets: Flags
+    met_missed: Ints
+    watch_missed: Ints
 
 
 class Changes(NamedTuple):

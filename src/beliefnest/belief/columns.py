@@ -16,6 +16,7 @@ from beliefnest.belief.arrays import (
     Facts,
 )
 from beliefnest.belief.poses import Growing, PoseTable
+from beliefnest.world.claims import ClaimKind, claims_of
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import Box, Event, EventKind, Position
 
@@ -60,9 +61,11 @@ class Columns:
             the kernel knows nothing of.
         events: The stretch's events, in order.
         acts: By entry, the numbers of its events that are deeds.
-        held: Cells where a container came or went, in order, possibly again.
+        held: Cells where a container came or went or that a claim is about, in order, possibly
+            again.
         item_entries: Entries with dropped items, rising.
         act_entries: Entries with deeds, rising.
+        claim_entries: Entries in which something is claimed, rising.
     """
 
     def __init__(
@@ -82,6 +85,7 @@ class Columns:
         self.held: list[int] = []
         self.item_entries: list[int] = []
         self.act_entries: list[int] = []
+        self.claim_entries: list[int] = []
         self._effects: list[int] = []
         self._numbers = {name: number for number, name in enumerate(agents)}
         self.frames: dict[int, Frame] = {}
@@ -134,6 +138,11 @@ class Columns:
             return {start} if start in self.frames or start in self.acts else set()
         low, high = bisect_left(self._effects, start), bisect_left(self._effects, stop)
         return set(self._effects[low:high])
+
+    def has_claims(self, entry: int) -> bool:
+        """Whether something is claimed in an entry."""
+        number = bisect_left(self.claim_entries, entry)
+        return self.claim_entries[number : number + 1] == [entry]
 
     def facts(self) -> Facts:
         """The columns for the kernel, which counts entries and events from the stretch's first."""
@@ -188,12 +197,20 @@ class Columns:
             self.acts.setdefault(entry, []).append(number)
         self._event[0].append(kind)
         self._event[1].append(NOBODY if event.actor is None else self._numbers[event.actor])
-        self._event[2].append(
-            cell_of(self._box, place) if kind == KIND_UPDATE and place is not None else UNKNOWN
-        )
+        cell = UNKNOWN if place is None or place not in self._box else cell_of(self._box, place)
+        self._event[2].append(cell)
         to = event.detail.get("to") if kind == KIND_CHAT else None
         self._event[3].append(NOBODY if to is None else self._numbers[to])
+        if event.detail.get("claims"):
+            self._add_claims(entry, event)
         self.events.append(event)
+
+    def _add_claims(self, entry: int, event: Event) -> None:
+        if self.claim_entries[-1:] != [entry]:
+            self.claim_entries.append(entry)
+        about = [claim for claim in claims_of(event) if claim.kind is not ClaimKind.POSITION]
+        # Who weighs a claim has to know who watches the place.
+        self.held.extend(cell_of(self._box, claim.cell) for claim in about)
 
     def _close_entry(self) -> None:
         self._pose_at.append(len(self._pose[0]))

@@ -9,10 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.arrays import HEAR_ALL, HEAR_NEAR, HEAR_SEEN, Senses, Space
+from beliefnest.belief.entries import SOURCES, Basis, Source
 from beliefnest.perception.options import Perception, Radius
 from beliefnest.perception.sight import Sight
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import Box
+from beliefnest.world.values import Box, EventKind
 
 __all__ = ["BeliefContext"]
 
@@ -99,7 +100,20 @@ class BeliefContext:
             hearing,
             options.hearing.blocks if isinstance(options.hearing, Radius) else 0.0,
             options.negative_evidence,
+            options.testimony == "informed",
         )
+
+    def basis_code(self, basis: Basis) -> int:
+        """The source of a basis as arrays hold it: a row of `SOURCES`, or who was heard."""
+        if basis.speaker is not None:
+            return len(SOURCES) + self.numbers[basis.speaker]
+        return SOURCES.index(basis.source)
+
+    def basis(self, tick: int, code: int) -> Basis:
+        """The basis that arrays hold as a tick and a code."""
+        if code < len(SOURCES):
+            return Basis(tick, SOURCES[code])
+        return Basis(tick, Source.HEARD, EventKind.CHAT, self.agents[code - len(SOURCES)])
 
     def container_name(self, state: int) -> str | None:
         """Name of the container block of a state; None if it is none, or unknown."""

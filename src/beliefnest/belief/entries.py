@@ -112,7 +112,10 @@ class InitialBelief:
     """What a node of the nest holds before anything happens.
 
     Attributes:
-        path: Agent names from the outermost believer inwards.
+        path: Agent names from the outermost believer inwards; `**` at the end means that node and
+            everything below it, `**` alone what everybody takes for granted, and takes it for
+            granted that everybody does. Where several speak of the same, the longer path counts,
+            and of these the one without `**`.
         containers: Position to (items, complete).
         blocks: Position to block state id; -1 makes a block unknown.
         agents: Agent name to believed feet position.

@@ -1,7 +1,7 @@
 """All nodes below one timeline, folded together: arrays for the kernel, holdings for the rest."""
 
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from weakref import WeakSet
 
@@ -18,6 +18,7 @@ from beliefnest.belief.holdings_table import HoldingsTable, RootFacts, SavedHold
 from beliefnest.belief.node_table import NodeTable, SavedNode
 from beliefnest.belief.poses import PoseTable, SavedPoses
 from beliefnest.belief.protocols import EventHistory, Reader
+from beliefnest.belief.testimony import Testimony, Verdict
 from beliefnest.world.values import Event, Items
 
 __all__ = ["Forest", "ForestState", "NodeState"]
@@ -37,6 +38,7 @@ class ForestState:
         tick: Tick of the last of them, or of the beginning.
         root: What is known of node 0 besides its holdings.
         tracked: int32, cells whose basis is tracked, as native bytes.
+        since: Those of them that have been tracked since the beginning.
         poses: The poses that nodes refer to.
     """
 
@@ -45,6 +47,7 @@ class ForestState:
     tick: int
     root: RootFacts
     tracked: bytes
+    since: tuple[int, ...]
     poses: SavedPoses
 
 
@@ -68,6 +71,9 @@ class Forest:
         hearing: Who perceived which event.
         position: Entries folded.
         tick: Tick of the last of them, or of the beginning.
+        since: Cells that have been tracked since the beginning.
+        verdicts: What nodes made of the claims of the last entry that has any: by number of
+            event in the entry and of claim in the event.
     """
 
     def __init__(
@@ -78,6 +84,8 @@ class Forest:
         self.position, self.tick = 0, tick
         self.columns = self._nowhere(0, 0, table.poses)
         self.hearing = Hearing()
+        self.since = frozenset(table.tracked.tolist())
+        self.verdicts: Mapping[tuple[int, int], Sequence[Verdict]] = {}
         self._readers: WeakSet[Reader] = WeakSet()
 
     def saved(self) -> tuple[ForestState, Iterator[NodeState]]:
@@ -99,7 +107,8 @@ class Forest:
         )
         tracked = self.table.tracked.tobytes()
         root, poses = self.holdings.root.copy(), self.poses.saved()
-        return ForestState(self.position, count, self.tick, root, tracked, poses), nodes
+        since = tuple(sorted(self.since))
+        return ForestState(self.position, count, self.tick, root, tracked, since, poses), nodes
 
     @classmethod
     def restored(
@@ -114,7 +123,7 @@ class Forest:
         context.track(tracked.tolist())
         table = NodeTable(context, PoseTable.restored(state.poses))
         forest = cls(events, table, HoldingsTable(table, state.root), state.tick)
-        forest.position = state.position
+        forest.position, forest.since = state.position, frozenset(state.since)
         forest.columns = forest._nowhere(state.position, state.events, table.poses)
         for number, node in enumerate(nodes):
             table.restore(node.row, tracked)
@@ -230,11 +239,20 @@ class Forest:
         if self.holdings.needs_looks():
             return start + 1
         # Effects of deeds and items look at the arrays as they are after the very entry.
-        for entries, after in ((self.columns.item_entries, 0), (self.columns.act_entries, 1)):
+        columns = self.columns
+        apart = [(columns.item_entries, 0), (columns.act_entries, 1)]
+        if self._weighs:
+            apart.append((columns.claim_entries, 0))
+        for entries, after in apart:
             number = bisect_left(entries, start)
             if number < len(entries):
                 stop = min(stop, max(entries[number] + after, start + 1))
         return min(stop, start + _BATCH)
+
+    @property
+    def _weighs(self) -> bool:
+        """Whether claims change beliefs."""
+        return self.context.options.testimony != "none"
 
     def _changes(self, events: int) -> Changes:
         # In one entry every node can change every tracked cell once; see `kernel.fold`.
@@ -246,6 +264,8 @@ class Forest:
         )
 
     def _fold(self, start: int, stop: int) -> int:
+        if self._weighs and self.columns.has_claims(start):
+            return self._fold_claims(start)
         context, columns, facts = self.context, self.columns, self.columns.facts()
         first = columns.events_until(start)
         changes = self._changes(columns.events_until(stop) - first)
@@ -253,7 +273,7 @@ class Forest:
         everywhere = np.ones(self.table.count, dtype=np.bool_)
         where = start - columns.first, stop - columns.first
         reached = columns.first + kernel.fold(
-            context.space, poses, facts, nodes, changes, *where, everywhere
+            context.space, poses, facts, nodes, changes, *where, everywhere, True
         )
         count = columns.events_until(reached) - first
         self.hearing.note(first, changes.perceived[:count])
@@ -262,16 +282,37 @@ class Forest:
         if self.holdings.needs_looks():
             entries.add(start)
         for entry in sorted(entries):
-            acts: dict[int, list[Event]] = {}
-            for number in columns.acts.get(entry, ()):
-                for node in np.flatnonzero(changes.perceived[number - first]).tolist():
-                    acts.setdefault(node, []).append(columns.event(number))
+            acts = _acts(columns, entry, changes.perceived, first)
             self._note_look(columns, entry)
             self.holdings.apply_frame(entry, columns.frames.get(entry))
             self.holdings.follow(entry, columns.tick(entry), rows.get(entry, {}), acts, everywhere)
         self._note_look(columns, reached - 1)
         self.table.edited_cells.clear()
         return reached
+
+    def _fold_claims(self, entry: int) -> int:
+        """Fold an entry with claims, level by level: who is deeper sees what the others took up."""
+        columns, tick, space = self.columns, self.columns.tick(entry), self.context.space
+        first, at = columns.events_until(entry), entry - columns.first
+        count = columns.events_until(entry + 1) - first
+        perceived = np.zeros((count, self.table.count), dtype=np.bool_)
+        testimony = Testimony(columns, self.table, self.holdings, entry, perceived)
+        self._note_look(columns, entry)
+        for level in self.table.levels():
+            changes = self._changes(0)._replace(perceived=perceived)
+            poses, nodes, facts = self.poses.arrays(), self.table.nodes(), columns.facts()
+            kernel.fold(space, poses, facts, nodes, changes, at, at + 1, level, True)
+            if level[0]:
+                self.holdings.apply_frame(entry, columns.frames.get(entry))
+            rows = _by_entry(changes, columns.first).get(entry, {})
+            acts = _acts(columns, entry, perceived, first)
+            self.holdings.follow(entry, tick, rows, acts, level)
+            testimony.hear(level)
+            self.table.edited_cells |= testimony.told_cells
+        self.hearing.note(first, perceived)
+        self.table.edited_cells = testimony.told_cells
+        self.verdicts = testimony.verdicts()
+        return entry + 1
 
     def _note_look(self, columns: Columns, entry: int) -> None:
         """Note that in an entry everybody perceived what there is."""
@@ -289,11 +330,22 @@ class Forest:
             *(at, nothing, nothing, nothing, nothing),
         )
         poses = self.poses.arrays()
-        kernel.fold(context.space, poses, facts, nodes, changes, 0, 1, below)
+        kernel.fold(context.space, poses, facts, nodes, changes, 0, 1, below, False)
         entry, edited = self.position - 1, self.table.edited_cells
         self.holdings.note_look(np.flatnonzero(below).tolist(), entry)
         edited.difference_update([(node, cell) for node, cell in edited if below[node]])
         self.holdings.follow(entry, self.tick, _by_entry(changes, 0).get(0, {}), {}, below)
+
+
+def _acts(
+    columns: Columns, entry: int, perceived: npt.NDArray[np.bool_], first: int
+) -> dict[int, list[Event]]:
+    """Acts of an entry by the node that perceived them; events are counted from `first`."""
+    acts: dict[int, list[Event]] = {}
+    for number in columns.acts.get(entry, ()):
+        for node in np.flatnonzero(perceived[number - first]).tolist():
+            acts.setdefault(node, []).append(columns.event(number))
+    return acts
 
 
 def _by_entry(changes: Changes, first: int) -> dict[int, dict[int, list[Sequence[int]]]]:

@@ -75,15 +75,50 @@ class Holdings:
         containers: Known contents by cell.
         inventories: Known possessions by agent number, of agents other than the owner.
         items: Dropped items by number.
+        found: Item to the cell of the container in which the owner last perceived it.
+        counts: By cell and item, how many of it were perceived there.
     """
 
     containers: dict[int, Content] = field(default_factory=dict)
     inventories: dict[int, Items] = field(default_factory=dict)
     items: dict[int, BelievedItem] = field(default_factory=dict)
+    found: dict[str, int] = field(default_factory=dict)
+    counts: dict[int, Items] = field(default_factory=dict)
 
     def copy(self) -> "Holdings":
         """The same holdings, to be changed apart."""
-        return Holdings(dict(self.containers), dict(self.inventories), dict(self.items))
+        return Holdings(
+            dict(self.containers),
+            dict(self.inventories),
+            dict(self.items),
+            dict(self.found),
+            dict(self.counts),
+        )
+
+    def drop(self, cell: int) -> None:
+        """Forget a container, and that anything was perceived in it."""
+        self.containers.pop(cell, None)
+        self._perceive_none(cell)
+
+    def look_into(self, cell: int, items: Items) -> None:
+        """All that is to be found in a container was perceived."""
+        self._perceive_none(cell)
+        if items:
+            self.counts[cell] = items
+            self.found.update(dict.fromkeys(items, cell))
+
+    def see_moved(self, cell: int, items: Items, sign: int) -> None:
+        """Items were perceived to go into a container (sign 1), or out of it (sign -1)."""
+        left = self.counts[cell] = changed_items(self.counts.get(cell, {}), items, sign)
+        for name in items:
+            if name in left:
+                self.found[name] = cell
+            else:
+                self.found.pop(name, None)
+
+    def _perceive_none(self, cell: int) -> None:
+        if self.counts.pop(cell, None):
+            self.found = {item: at for item, at in self.found.items() if at != cell}
 
 
 def changed_items(items: Items, change: Items, sign: int) -> Mapping[str, int]:
@@ -108,7 +143,7 @@ def replaced_block(
     """
     known = holdings.containers.get(cell)
     if known is not None and (new is None or old not in (None, new)):
-        del holdings.containers[cell]
+        holdings.drop(cell)
         known = None
     if new is not None and known is None:
         holdings.containers[cell] = Content({}, complete=False, basis=basis)
@@ -128,6 +163,7 @@ def witness(holdings: Holdings, cell: int, event: Event, tick: int, entry: int) 
         basis=Basis(tick, Source.WITNESSED, event.kind),
         entry=entry,
     )
+    holdings.see_moved(cell, event.detail["items"], _MOVES[event.kind])
 
 
 def learn(
@@ -136,6 +172,7 @@ def learn(
     """Learn what the parent node holds, by touching the container or by seeing into it."""
     basis = content.basis if kind is None else Basis(tick, Source.WITNESSED, kind)
     holdings.containers[cell] = replace(content, basis=basis)
+    holdings.look_into(cell, content.items)
 
 
 def follow_acts(inventory: Items, acts: Iterable[Event]) -> Items:

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.columns import cell_of
-from beliefnest.belief.entries import SOURCES, Basis, Source
+from beliefnest.belief.entries import Basis, Source
 from beliefnest.belief.holdings import (
     NEVER,
     TOUCHES,
@@ -91,7 +91,7 @@ class HoldingsTable:
         if looked is not None:
             self._looked[node] = looked
         for cell in holdings.containers:
-            self._doubt(node, cell)
+            self.doubt(node, cell)
 
     def of(self, node: int) -> Holdings:
         """Holdings of a node."""
@@ -202,7 +202,7 @@ class HoldingsTable:
         for node in range(1, self._table.count):
             for _, _, cell, old, new, observed_at, source in rows.get(node, ()):
                 names = self._context.block_name(old), self._context.container_name(new)
-                basis = Basis(observed_at, SOURCES[source])
+                basis = self._context.basis(observed_at, source)
                 replaced_block(self._holdings[node], cell, *names, basis)
             perceived = acts.get(node, [])
             if not which[node] or not (perceived or things) or not self._table.is_present(node):
@@ -226,12 +226,12 @@ class HoldingsTable:
             self._table.put(node, cell, state, basis)
             new = self._context.container_name(state)
             if old != new:
-                holdings.containers.pop(cell, None)
+                holdings.drop(cell)
             if new is not None and cell not in holdings.containers:
                 holdings.containers[cell] = Content({}, complete=node == 0, basis=basis)
         for cell, items in contents.items():
             holdings.containers[cell] = Content(dict(items), complete=True, basis=basis)
-            self._doubt(node, cell)
+            self.doubt(node, cell)
         if node == 0:
             self.root.edited |= {*blocks, *contents}
 
@@ -247,14 +247,14 @@ class HoldingsTable:
         for cell, act in touched:
             if cell not in own | into and not self._is_gone(node, cell):
                 witness(holdings, cell, act, tick, entry)
-                self._doubt(node, cell)
+                self.doubt(node, cell)
         for cell, act in touched:
             if cell in own and act.actor == owner:
                 content = self._learnt(parent, cell, entry)
                 # What the parent node holds by hearsay of its own is no perception now.
                 kind = act.kind if content.entry == entry else None
                 learn(holdings, cell, content, kind, tick)
-                self._doubt(node, cell)
+                self.doubt(node, cell)
         for name in {act.actor for act in acts if act.actor not in (None, owner)}:
             number = self._context.numbers[str(name)]
             before = holdings.inventories.get(number, {})
@@ -262,7 +262,7 @@ class HoldingsTable:
             if after is not before:
                 holdings.inventories[number] = after
 
-    def _doubt(self, node: int, cell: int) -> None:
+    def doubt(self, node: int, cell: int) -> None:
         """Note a content at a place where a node knows no container."""
         state = self._table.block(node, cell)
         if node > 0 and cell in self._holdings[node].containers and not self._context.holds[state]:
@@ -283,7 +283,7 @@ class HoldingsTable:
                 and not self._context.holds[parent]
                 and self._table.sees_cells(node, (cell,))
             ):
-                del self._holdings[node].containers[cell]
+                self._holdings[node].drop(cell)
                 del self._doubtful[node, cell]
             else:
                 self._doubtful[node, cell] = state
@@ -305,9 +305,9 @@ class HoldingsTable:
             return set()
         parent = self._table.parent(node)
         into = self._table.sees_cells(node, self._holdings[parent].containers)
-        for cell in into:
+        for cell in sorted(into):
             learn(self._holdings[node], cell, self._learnt(parent, cell, entry), None, tick)
-            self._doubt(node, cell)
+            self.doubt(node, cell)
         return into
 
     def _learnt(self, node: int, cell: int, entry: int) -> Content:

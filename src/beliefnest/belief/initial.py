@@ -17,6 +17,8 @@ from beliefnest.belief.node_table import NodeTable
 from beliefnest.belief.poses import PoseTable
 from beliefnest.belief.protocols import EventHistory
 from beliefnest.world.frames import Snapshot
+from beliefnest.world.paths import AND_BELOW
+from beliefnest.world.values import Position
 
 __all__ = ["forked_forest", "initial_forest"]
 
@@ -27,7 +29,7 @@ def initial_forest(
     context: BeliefContext,
     events: EventHistory,
     snapshot: Snapshot,
-    static_blocks: frozenset[str],
+    static_blocks: frozenset[str | Position],
     initial: Sequence[InitialBelief],
     path: Path,
     extra: Sequence[int] = (),
@@ -38,13 +40,16 @@ def initial_forest(
         context: What all nodes share.
         events: What happens on the real world's timeline.
         snapshot: The real world at its first tick.
-        static_blocks: Names of blocks that everybody knows from the start.
+        static_blocks: Names and positions of blocks that everybody knows from the start.
         initial: Further priors, at any depth.
         path: The deepest node.
         extra: Further cells whose basis is to be tracked.
     """
-    known = _states_of(context, static_blocks)
+    known = _states_of(context, {name for name in static_blocks if isinstance(name, str)})
     prior = np.where(known[snapshot.blocks], snapshot.blocks, UNKNOWN).astype(np.int32)
+    for place in static_blocks:
+        if not isinstance(place, str):
+            prior[context.box.index(place)] = snapshot.blocks[context.box.index(place)]
     context.track(np.flatnonzero(context.holds[snapshot.blocks.ravel()]).tolist())
     for belief in initial:
         context.track(cell_of(context.box, place) for place in belief.containers)
@@ -58,15 +63,39 @@ def initial_forest(
     holdings.add(_add_world(table, snapshot))
     for depth in range(1, len(path) + 1):
         node = path[:depth]
-        mine = next((belief for belief in initial if belief.path == node), InitialBelief(node))
-        holdings.add(_add_prior(table, node, prior, mine, snapshot.tick))
+        holdings.add(_add_prior(table, node, prior, _merged(initial, node), snapshot.tick))
     table.link()
     forest = Forest(events, table, holdings, snapshot.tick)
     forest.perceive_at_first()
     return forest
 
 
-def _states_of(context: BeliefContext, names: frozenset[str]) -> npt.NDArray[np.bool_]:
+def _merged(initial: Sequence[InitialBelief], node: Path) -> InitialBelief:
+    """All that initial beliefs say of a node; the more is said of it alone, the more it counts."""
+    known = [belief for belief in initial if _is_about(belief.path, node)]
+    merged = InitialBelief(node)
+    for belief in sorted(known, key=_precision):
+        merged = InitialBelief(
+            node,
+            {**merged.containers, **belief.containers},
+            {**merged.blocks, **belief.blocks},
+            {**merged.agents, **belief.agents},
+        )
+    return merged
+
+
+def _precision(belief: InitialBelief) -> tuple[int, bool]:
+    is_exact = AND_BELOW not in belief.path
+    return len(belief.path) - (not is_exact), is_exact
+
+
+def _is_about(path: Path, node: Path) -> bool:
+    if path[-1:] == (AND_BELOW,):
+        return node[: len(path) - 1] == path[:-1]
+    return path == node
+
+
+def _states_of(context: BeliefContext, names: Iterable[str]) -> npt.NDArray[np.bool_]:
     known = np.zeros(context.registry.states, dtype=np.bool_)
     for name in names:
         ids = context.registry.state_ids(name)
@@ -150,7 +179,9 @@ def forked_forest(
         table.copy_node(source.table, old, is_root=is_root, recorded=False)
         holdings.add(_forked_holdings(source.holdings, old, agents, is_root=is_root))
     table.link()
-    return Forest(events, table, holdings, tick)
+    forest = Forest(events, table, holdings, tick)
+    forest.since &= source.since
+    return forest
 
 
 def _forked_holdings(

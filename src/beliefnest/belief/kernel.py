@@ -41,7 +41,7 @@ from beliefnest.perception.eyes import (
 from beliefnest.perception.rays import Cell, Scene, compiled, inlined
 from beliefnest.world.values import EYE_HEIGHT
 
-__all__ = ["fold", "put", "refresh_pending", "sees_cells", "sees_point"]
+__all__ = ["fold", "put", "put_all", "refresh_pending", "sees_cells", "sees_place", "sees_point"]
 
 _WORD = 64
 
@@ -156,6 +156,19 @@ def _put(
                 changes.rows[row, 6] = nodes.basis_source[parent, spot]
         changes.used[0] = row + 1
     put(space, nodes, node, cell, state)
+
+
+@compiled
+def put_all(
+    space: Space,
+    nodes: Nodes,
+    which: npt.NDArray[np.int64],
+    cell: int,
+    states: npt.NDArray[np.int64],
+) -> None:
+    """`put` for several nodes, each with a state of its own."""
+    for number in range(len(which)):
+        put(space, nodes, _whole(which[number]), _whole(cell), _whole(states[number]))
 
 
 @compiled
@@ -324,6 +337,7 @@ def _update_absent(
     nodes.current[node, :] = False
     nodes.eye[node] = UNKNOWN
     nodes.watched[node, :] = False
+    nodes.meets[node, :] = False
     me = _whole(nodes.agent[node])
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
         if facts.event_kind[event] == KIND_CHAT and (
@@ -332,6 +346,65 @@ def _update_absent(
         ):
             heard = changes.perceived[event - first_event, nodes.parent[node]]
             changes.perceived[event - first_event, node] = heard
+
+
+@inner
+def _count_to(nodes: Nodes, node: int, tick: int) -> None:
+    """Count ticks whom the owner of a node misses, all being as it was last (section 8)."""
+    if nodes.counted[node] < 0:
+        nodes.counted[node] = tick
+    passed = tick - nodes.counted[node]
+    nodes.counted[node] = tick
+    for who in range(nodes.missed.shape[1]):
+        if not nodes.current[node, who]:
+            nodes.missed[node, who] += passed
+    for spot in range(len(nodes.tracked)):
+        if nodes.watched[node, spot]:
+            nodes.watch_missed[node, spot, :] = nodes.missed[node, :]
+    for who in range(nodes.missed.shape[1]):
+        if nodes.meets[node, who]:
+            nodes.met_missed[node, who, :] = nodes.missed[node, :]
+
+
+@inner
+def _meet(space: Space, poses: Poses, nodes: Nodes, node: int, moved: bool) -> None:
+    """Where the present owner of a node perceives others, and where it sees that they are gone."""
+    parent, me = _whole(nodes.parent[node]), _whole(nodes.agent[node])
+    eye = _eye(space, poses, _whole(nodes.eye[node]))
+    for who in range(nodes.missed.shape[1]):
+        pose = _whole(nodes.pose[parent, who])
+        if who == me or (pose != UNKNOWN and nodes.sees[node, who]):
+            nodes.met[node, who] = pose
+            nodes.meets[node, who] = True
+            continue
+        met = _whole(nodes.met[node, who])
+        if (
+            met != UNKNOWN
+            and (moved or nodes.meets[node, who])
+            and _sees_agent(space, poses, nodes, parent, eye, met)
+        ):
+            nodes.met[node, who] = UNKNOWN
+        nodes.meets[node, who] = False
+
+
+@inner
+def _watch(
+    facts: Facts,
+    nodes: Nodes,
+    changes: Changes,
+    entry: int,
+    first_event: int,
+    node: int,
+) -> None:
+    """Note the places at which the present owner of a node perceives somebody act."""
+    for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
+        cell = facts.event_cell[event]
+        if cell < 0 or facts.event_actor[event] < 0:
+            continue
+        if changes.perceived[event - first_event, node]:
+            for spot in range(len(nodes.tracked)):
+                if nodes.tracked[spot] == cell:
+                    nodes.watch_missed[node, spot, :] = nodes.missed[node, :]
 
 
 @inner
@@ -344,11 +417,17 @@ def _update_node(
     entry: int,
     first_event: int,
     node: int,
+    happens: bool,
 ) -> None:
     """Fold an entry into one node, after its parent."""
+    tick = _whole(facts.tick[entry])
+    if space.senses.weighs:
+        _count_to(nodes, node, tick - 1 if happens else tick)
     parent, me = _whole(nodes.parent[node]), _whole(nodes.agent[node])
     if not nodes.current[parent, me]:
         _update_absent(space.senses, facts, nodes, changes, entry, first_event, node)
+        if space.senses.weighs:
+            _count_to(nodes, node, tick)
         return
     pose = _whole(nodes.pose[parent, me])
     eye = _eye(space, poses, pose)
@@ -360,6 +439,10 @@ def _update_node(
         _observe_blocks(space, nodes, changes, entry, node, eye)
     _perceive_events(space, poses, facts, nodes, changes, entry, first_event, node)
     _propagate_bases(space, nodes, node, eye, moved)
+    if space.senses.weighs:
+        _meet(space, poses, nodes, node, moved)
+        _count_to(nodes, node, tick)
+        _watch(facts, nodes, changes, entry, first_event, node)
 
 
 @compiled
@@ -372,12 +455,12 @@ def fold(
     start: int,
     stop: int,
     which: npt.NDArray[np.bool_],
+    happens: bool,
 ) -> int:
     """Fold entries start to stop - 1 into the nodes that `which` marks.
 
-    Where node 0 is not marked, nothing happens in it, and the others look at what there
-    is. Returns the entry it got to: it stops early when `changes.rows` might not hold what
-    the next entry adds.
+    If nothing `happens`, the nodes look at what there is between two ticks. Returns the entry
+    it got to: it stops early when `changes.rows` might not hold what the next entry adds.
     """
     first_event = _whole(facts.event_at[start])
     room = changes.rows.shape[0]
@@ -390,8 +473,27 @@ def fold(
                 changes.perceived[event - first_event, 0] = True
         for node in range(1, len(nodes.parent)):
             if which[node]:
-                _update_node(space, poses, facts, nodes, changes, entry, first_event, node)
+                _update_node(space, poses, facts, nodes, changes, entry, first_event, node, happens)
     return stop
+
+
+@compiled
+def sees_place(
+    space: Space,
+    poses: Poses,
+    nodes: Nodes,
+    which: npt.NDArray[np.int64],
+    pose: int,
+) -> npt.NDArray[np.bool_]:
+    """Which present owners of some nodes would see an agent that stood at a pose."""
+    seen = np.zeros(len(which), dtype=np.bool_)
+    for number in range(len(which)):
+        node = which[number]
+        parent, eye = _whole(nodes.parent[node]), _whole(nodes.eye[node])
+        if eye != UNKNOWN:
+            look = _eye(space, poses, eye)
+            seen[number] = _sees_agent(space, poses, nodes, parent, look, _whole(pose))
+    return seen
 
 
 @compiled

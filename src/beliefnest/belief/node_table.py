@@ -1,7 +1,7 @@
 """The kernel's arrays of the nodes of one forest, growing with the nodes that are asked for."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy.typing as npt
 from beliefnest.belief import kernel
 from beliefnest.belief.arrays import UNKNOWN, Nodes
 from beliefnest.belief.context import BeliefContext
-from beliefnest.belief.entries import SOURCES, Basis
+from beliefnest.belief.entries import Basis
 from beliefnest.belief.poses import Condition, PoseTable
 from beliefnest.perception.codes import mark_intruded
 from beliefnest.world.frames import BlockGrid
@@ -21,16 +21,19 @@ __all__ = ["NodeTable", "SavedNode"]
 Path = tuple[str, ...]
 Row = npt.NDArray[Any]
 
-_POSE_IDS = ("pose", "equipment", "eye", "tried")
+_POSE_IDS = ("pose", "equipment", "eye", "tried", "met")
 """Rows that hold pose ids."""
 
-_BY_SPOT = {"watched": 0, "basis_at": UNKNOWN, "basis_source": 0}
+_BY_SPOT = {"watched": 0, "basis_at": UNKNOWN, "basis_source": 0, "watch_missed": UNKNOWN}
 """Rows with a column for each tracked cell, and what stands where nothing is known."""
 
 
 @dataclass(frozen=True, slots=True)
 class SavedNode:
-    """A node's rows, as native bytes, by their names in `arrays.Nodes`."""
+    """A node's rows, as native bytes, by their names in `arrays.Nodes`.
+
+    `weighing` are those that are there if hearers weigh claims.
+    """
 
     path: Path
     blocks: bytes
@@ -41,8 +44,10 @@ class SavedNode:
     basis_at: bytes
     basis_source: bytes
     edited_cells: list[int]
+    weighing: dict[str, bytes] = field(default_factory=dict)
 
 
+_WEIGHING = ("counted", "missed", "met", "meets", "met_missed", "watched", "watch_missed")
 _SAVED = ("blocks", "pose", "equipment", "seen_at", "current", "basis_at", "basis_source")
 
 
@@ -54,7 +59,8 @@ class NodeTable:
         count: How many nodes there are.
         context: What all nodes share.
         poses: The pose table that the nodes' pose ids are rows of.
-        edited_cells: Nodes and cells of blocks changed by hand since somebody last looked there.
+        edited_cells: Nodes and cells of blocks changed by hand, or that somebody was told of, since
+            somebody last looked there.
     """
 
     def __init__(self, context: BeliefContext, poses: PoseTable, extra: Sequence[int] = ()) -> None:
@@ -88,9 +94,22 @@ class NodeTable:
             "watched": np.zeros((2, spots), dtype=np.bool_),
             "basis_at": np.full((2, spots), UNKNOWN, dtype=np.int32),
             "basis_source": np.zeros((2, spots), dtype=np.uint8),
+            **self._weighing_rows(agents if context.space.senses.weighs else 0, spots),
         }
         self._child_at = np.zeros(1, dtype=np.int32)
         self._child = np.zeros(0, dtype=np.int32)
+
+    @staticmethod
+    def _weighing_rows(agents: int, spots: int) -> dict[str, Row]:
+        """Rows for who weighs claims; they have no room where nobody does."""
+        return {
+            "counted": np.full(2, UNKNOWN, dtype=np.int32),
+            "missed": np.zeros((2, agents), dtype=np.int32),
+            "met": np.full((2, agents), UNKNOWN, dtype=np.int32),
+            "meets": np.zeros((2, agents), dtype=np.bool_),
+            "met_missed": np.zeros((2, agents, agents), dtype=np.int32),
+            "watch_missed": np.full((2, spots, agents), UNKNOWN, dtype=np.int32),
+        }
 
     def nodes(self) -> Nodes:
         """The arrays for the kernel."""
@@ -133,13 +152,14 @@ class NodeTable:
         theirs = [spots.get(cell, -1) for cell in self._tracked.tolist()]
         for name, row in self._rows.items():
             if name in _BY_SPOT:
-                wide = np.append(other._rows[name][source], _BY_SPOT[name])
-                row[node] = wide[theirs]
+                known = other._rows[name][source]
+                none = np.full((1, *known.shape[1:]), _BY_SPOT[name], dtype=known.dtype)
+                row[node] = np.concatenate([known, none])[theirs]
             else:
                 row[node] = other._rows[name][source]
         for name in ("eye", "seen_geometry", "tried"):
             self._rows[name][node] = UNKNOWN
-        for name in ("pose", "equipment"):
+        for name in ("pose", "equipment", "met"):
             row = self._rows[name][node]
             row[row >= 0] = self.poses.take(other.poses, row[row >= 0], recorded=recorded)
         self._rows["geometry"][node] = 0
@@ -194,22 +214,23 @@ class NodeTable:
         for spot in np.flatnonzero(self._tracked == cell):
             self._rows["basis_at"][node, spot] = UNKNOWN if basis is None else basis.observed_at
             if basis is not None:
-                self._rows["basis_source"][node, spot] = SOURCES.index(basis.source)
+                self._rows["basis_source"][node, spot] = self.context.basis_code(basis)
 
     def set_known_bases(self, node: int, basis: Basis) -> None:
         """Set what all tracked cells that a node knows rest on."""
         known = self._rows["blocks"][node][self._tracked] >= 0
         self._rows["basis_at"][node][known] = basis.observed_at
-        self._rows["basis_source"][node][known] = SOURCES.index(basis.source)
+        self._rows["basis_source"][node][known] = self.context.basis_code(basis)
 
     def bases(self, node: int, cells: Sequence[int]) -> dict[int, Basis | None]:
         """What tracked cells rest on in a node; None where a block is unknown."""
         spots = {cell: spot for spot, cell in enumerate(self._tracked.tolist())}
         ticks = self._rows["basis_at"][node].tolist()
-        sources = self._rows["basis_source"][node].tolist()
+        codes = self._rows["basis_source"][node].tolist()
+        basis = self.context.basis
         known = self._rows["blocks"][node] >= 0
         return {
-            cell: Basis(ticks[spots[cell]], SOURCES[sources[spots[cell]]]) if known[cell] else None
+            cell: basis(ticks[spots[cell]], codes[spots[cell]]) if known[cell] else None
             for cell in cells
         }
 
@@ -218,6 +239,23 @@ class NodeTable:
         self.edited_cells.add((node, cell))
         kernel.put(self.context.space, self.nodes(), node, cell, state)
         self.set_basis(node, cell, basis if state >= 0 else None)
+
+    def tell(
+        self, which: npt.NDArray[np.int64], cell: int, states: Sequence[int], basis: Basis
+    ) -> None:
+        """Let nodes hold block states that they were told of."""
+        wanted = np.array(states, dtype=np.int64)
+        kernel.put_all(self.context.space, self.nodes(), which, cell, wanted)
+        for node in which.tolist():
+            self.set_basis(node, cell, basis)
+
+    def levels(self) -> Iterator[npt.NDArray[np.bool_]]:
+        """Which nodes lie how deep, node 0 first."""
+        parent = self._rows["parent"][: self.count]
+        level = parent == UNKNOWN
+        while level.any():
+            yield level
+            level = (parent >= 0) & level[parent]
 
     def track(self) -> None:
         """Track the cells that the context tracks by now."""
@@ -229,7 +267,7 @@ class NodeTable:
         size = len(self._rows["parent"])
         for name, filler in _BY_SPOT.items():
             row = self._rows[name]
-            wide = np.full((size, len(new)), filler, dtype=row.dtype)
+            wide = np.full((size, len(new), *row.shape[2:]), filler, dtype=row.dtype)
             self._rows[name] = np.concatenate([row, wide], axis=1)
         # Whoever looks next looks at the new cells too.
         self._rows["eye"][: self.count] = UNKNOWN
@@ -238,7 +276,9 @@ class NodeTable:
         """What a node holds, as plain data; what it was asked last is not part of that."""
         row = {name: self._rows[name][node].tobytes() for name in _SAVED}
         edited = sorted(cell for other, cell in self.edited_cells if other == node)
-        return SavedNode(self.path(node), **row, edited_cells=edited)
+        names = _WEIGHING if self.context.space.senses.weighs else ()
+        weighing = {name: self._rows[name][node].tobytes() for name in names}
+        return SavedNode(self.path(node), **row, edited_cells=edited, weighing=weighing)
 
     def restore(self, saved: SavedNode, tracked: npt.NDArray[np.int32]) -> None:
         """Add a node that was saved, with what was tracked then; `link` has to follow."""
@@ -246,21 +286,27 @@ class NodeTable:
         self.edited_cells |= {(node, cell) for cell in saved.edited_cells}
         spots = {cell: spot for spot, cell in enumerate(self._tracked.tolist())}
         places = [spots[cell] for cell in tracked.tolist()]
-        for name in _SAVED:
+        bodies = {name: getattr(saved, name) for name in _SAVED} | saved.weighing
+        for name, body in bodies.items():
             row = self._rows[name]
-            values = np.frombuffer(getattr(saved, name), dtype=row.dtype)
+            values = np.frombuffer(body, dtype=row.dtype)
             if name == "blocks":
                 self.set_blocks(node, values.reshape(self.context.box.shape))
             elif name in _BY_SPOT:
                 row[node] = _BY_SPOT[name]
-                row[node, places] = values
+                row[node, places] = values.reshape(len(places), *row.shape[2:])
             else:
-                row[node] = values
+                row[node] = values.reshape(row.shape[1:])
 
     @property
     def tracked(self) -> npt.NDArray[np.int32]:
         """Cells whose basis is tracked."""
         return self._tracked
+
+    def spot(self, cell: int) -> int:
+        """Number of a tracked cell; -1: it is not tracked."""
+        found = np.flatnonzero(self._tracked == cell)
+        return int(found[0]) if len(found) else UNKNOWN
 
     def parent(self, node: int) -> int:
         """Number of the parent of a node; -1 for node 0."""
@@ -359,3 +405,4 @@ class NodeTable:
             else:
                 row[node] = 0
         self._rows["geometry"][node] = 0
+        self._rows["missed"][node] = 0

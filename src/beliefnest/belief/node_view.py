@@ -12,7 +12,7 @@ from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, Perce
 from beliefnest.belief.forest import Forest
 from beliefnest.perception.sight import Geometry
 from beliefnest.world.frames import BlockGrid, Snapshot
-from beliefnest.world.values import EYE_HEIGHT, AgentState, DroppedItem, Position
+from beliefnest.world.values import EYE_HEIGHT, AgentState, DroppedItem, EventKind, Position
 
 __all__ = ["NodeView"]
 
@@ -140,7 +140,6 @@ class NodeView:
             )
         posed = poses.condition(pose)
         yaw, pitch = poses.angles(pose)
-        source = Source.PRIOR if posed is None else Source.SEEN
         return AgentBelief(
             position=poses.position(pose),
             yaw=yaw,
@@ -151,9 +150,17 @@ class NodeView:
             inventory_complete=complete,
             health=health,
             food=food,
-            basis=Basis(table.seen_at(node, number), source),
+            basis=self._basis(pose, table.seen_at(node, number)),
             current=table.is_current(node, number),
         )
+
+    def _basis(self, pose: int, tick: int) -> Basis:
+        """What a believed pose rests on."""
+        poses = self._forest.poses
+        if poses.speaker(pose) >= 0:
+            speaker = self._forest.context.agents[poses.speaker(pose)]
+            return Basis(tick, Source.HEARD, EventKind.CHAT, speaker)
+        return Basis(tick, Source.PRIOR if poses.condition(pose) is None else Source.SEEN)
 
 
 def _with_equipment(agent: AgentBelief) -> dict[str, int]:

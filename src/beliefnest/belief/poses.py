@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.arrays import Ints, Poses
+from beliefnest.belief.arrays import NOBODY, Ints, Poses
 from beliefnest.world.values import AgentState, Items, Point
 
 __all__ = ["Condition", "Growing", "PoseTable", "SavedPoses"]
@@ -67,6 +67,7 @@ class PoseTable:
         self._angles = Growing(np.float64, 2)
         self._conditions = Growing(np.int32)
         self._recorded = Growing(np.bool_)
+        self._heard = Growing(np.int32)
         self._table: list[Condition | None] = [None]
         self._last: dict[str, int] = {}
 
@@ -84,9 +85,9 @@ class PoseTable:
             last = self._last[name] = len(self._table) - 1
         return self._add(agent.position, agent.yaw, agent.pitch, last, recorded=True)
 
-    def add_pose(self, position: Point, yaw: float, pitch: float) -> int:
-        """Id of a pose in which nobody was seen."""
-        return self._add(position, yaw, pitch, 0, recorded=False)
+    def add_pose(self, position: Point, yaw: float, pitch: float, speaker: int = NOBODY) -> int:
+        """Id of a pose in which nobody was seen; an agent `speaker` may have told of it."""
+        return self._add(position, yaw, pitch, 0, speaker, recorded=False)
 
     def take(self, other: "PoseTable", numbers: Ints, *, recorded: bool = True) -> Ints:
         """Copy poses of another table; returns their ids in this one.
@@ -111,6 +112,7 @@ class PoseTable:
         self._angles.extend(angles)
         self._conditions.extend([table[number] for number in conditions.tolist()])
         self._recorded.extend(was_recorded & recorded)
+        self._heard.extend(other._heard.view()[numbers])
         return np.arange(first, len(self), dtype=np.int32)
 
     def position(self, pose: int) -> Point:
@@ -131,6 +133,10 @@ class PoseTable:
         """Whether the timeline recorded a pose, so that it is not only believed since a fork."""
         return bool(self._recorded.view()[pose])
 
+    def speaker(self, pose: int) -> int:
+        """Number of the agent who told of a pose; `NOBODY`: it is no hearsay."""
+        return int(self._heard.view()[pose])
+
     def arrays(self) -> Poses:
         """The table for the kernel."""
         return Poses(self._feet.view(), self._angles.view())
@@ -142,6 +148,7 @@ class PoseTable:
             self._angles.view().tobytes(),
             self._conditions.view().tobytes(),
             self._recorded.view().tobytes(),
+            self._heard.view().tobytes(),
             self._table,
         )
 
@@ -153,16 +160,25 @@ class PoseTable:
         restored._angles.extend(np.frombuffer(saved.angles, np.float64).reshape(-1, 2))
         restored._conditions.extend(np.frombuffer(saved.conditions, np.int32))
         restored._recorded.extend(np.frombuffer(saved.recorded, np.bool_))
+        restored._heard.extend(np.frombuffer(saved.heard, np.int32))
         restored._table = list(saved.table)
         return restored
 
     def _add(
-        self, position: Point, yaw: float, pitch: float, condition: int, *, recorded: bool
+        self,
+        position: Point,
+        yaw: float,
+        pitch: float,
+        condition: int,
+        speaker: int = NOBODY,
+        *,
+        recorded: bool,
     ) -> int:
         self._feet.append(position)
         self._angles.append((yaw, pitch))
         self._conditions.append(condition)
         self._recorded.append(recorded)
+        self._heard.append(speaker)
         return len(self._feet) - 1
 
 
@@ -174,4 +190,5 @@ class SavedPoses:
     angles: bytes
     conditions: bytes
     recorded: bytes
+    heard: bytes
     table: list[Condition | None]

@@ -146,6 +146,11 @@ class EmbeddedWorld:
         return world
 
     @property
+    def has_physics(self) -> bool:
+        """True: it is Minecraft."""
+        return True
+
+    @property
     def versions(self) -> Mapping[str, str]:
         """Program to version, of what runs; the channel's protocol among them."""
         return self._versions

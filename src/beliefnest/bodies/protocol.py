@@ -1,7 +1,7 @@
 """What a world and the bodies in it can do, whichever world it is."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from beliefnest.world.frames import Frame, Snapshot
@@ -109,6 +109,8 @@ class ProgramResult:
         log: What it wrote to its console, bounded.
         unfinished: What was stopped because it was still going on at the program's end.
         aims: What it asked its bot to make for, in order, bounded.
+        placed: Whom the body had to move when it began, agent to from where and to where, because
+            they cannot be where they are believed to be.
     """
 
     agent: str
@@ -120,11 +122,13 @@ class ProgramResult:
     log: tuple[str, ...] = ()
     unfinished: tuple[Unfinished, ...] = ()
     aims: tuple[Aim, ...] = ()
+    placed: Mapping[str, tuple[Point, Point]] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         ended = "ended well" if self.ok else f"failed: {self.error}"
         deeds = f"{len(self.actions)} action{'s' * (len(self.actions) != 1)}"
-        return f"<program of {self.agent}, {self.ticks} ticks, {deeds}: {ended}>"
+        moved = f", {', '.join(self.placed)} moved at first" if self.placed else ""
+        return f"<program of {self.agent}, {self.ticks} ticks, {deeds}{moved}: {ended}>"
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -199,6 +203,10 @@ class Body(Protocol):
 
 class World(Protocol):
     """Where bodies live. If its process has ended, the next body is opened in a new one."""
+
+    @property
+    def has_physics(self) -> bool:
+        """Whether agents in its bodies stand, fall and are stopped by blocks."""
 
     @property
     def versions(self) -> Mapping[str, str]:

@@ -74,6 +74,11 @@ class ScriptedBodies:
         self._first = first
 
     @property
+    def has_physics(self) -> bool:
+        """False: agents are wherever they are told to be."""
+        return False
+
+    @property
     def versions(self) -> Mapping[str, str]:
         """Nothing runs but this package."""
         return {}

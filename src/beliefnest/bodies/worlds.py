@@ -15,6 +15,8 @@ __all__ = ["WORLDS", "LazyWorld", "Worlds", "check_world", "open_world"]
 WORLDS = ("embedded", "scripted")
 """Names of the worlds."""
 
+_WITHOUT_PHYSICS = frozenset({"scripted"})
+
 
 def open_world(name: str, seed: int, limits: ProcessLimits | None = None) -> World:
     """Start a world.
@@ -68,6 +70,11 @@ class LazyWorld:
         self._seed = seed
         self._limits = limits
         self._world: World | None = None
+
+    @property
+    def has_physics(self) -> bool:
+        """Whether agents in its bodies stand, fall and are stopped by blocks."""
+        return self._name not in _WITHOUT_PHYSICS
 
     @property
     def versions(self) -> Mapping[str, str]:
@@ -147,6 +154,11 @@ class _SharedWorld:
     def __init__(self, world: World) -> None:
         self._world = world
         self._bodies: list[Body] = []
+
+    @property
+    def has_physics(self) -> bool:
+        """Whether agents in its bodies stand, fall and are stopped by blocks."""
+        return self._world.has_physics
 
     @property
     def versions(self) -> Mapping[str, str]:

@@ -1,32 +1,58 @@
 """Where results and progress go: results to stdout, progress to stderr."""
 
+import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table
 
 from beliefnest.cli.text import printable
 from beliefnest.nest.face.nest import Progress as OnProgress
 
-__all__ = ["progress_on", "stdout"]
+__all__ = ["folded", "progress_on", "stdout"]
 
 _PLAIN_WIDTH = 140
+_NARROWEST = 20
 
 
 def stdout() -> Console:
-    """The console for results; wide enough for a table where there is no terminal."""
-    return Console(width=None if sys.stdout.isatty() else _PLAIN_WIDTH)
+    """The console for results: coloured on a terminal alone.
+
+    It is as wide as the terminal, or as COLUMNS says, or else wide enough for a table.
+    """
+    terminal = sys.stdout.isatty()
+    # Files get no codes, whatever the environment says of colours.
+    return Console(width=_width(terminal=terminal), force_terminal=terminal)
+
+
+def folded(table: Table) -> Table:
+    """The same table, whose cells are folded and never cut, however little room there is."""
+    for column in table.columns:
+        column.overflow, column.no_wrap = "fold", False
+    return table
+
+
+def _width(*, terminal: bool) -> int | None:
+    """Columns; None: as many as the terminal has."""
+    wanted = os.environ.get("COLUMNS", "")
+    if wanted.isdecimal() and int(wanted) >= _NARROWEST:
+        return int(wanted)
+    return None if terminal else _PLAIN_WIDTH
 
 
 @contextmanager
 def progress_on(title: str) -> Iterator[OnProgress]:
     """Show what is being done on stderr: a bar on a terminal, a line each elsewhere."""
-    console = Console(stderr=True, markup=False)
+    # A notebook shows what a command writes, and is no terminal, whatever it says of itself.
+    notebook = "JPY_PARENT_PID" in os.environ
+    plain = notebook or not sys.stderr.isatty()
+    console = Console(stderr=True, markup=False, force_terminal=not plain)
     title = printable(title)
-    if not console.is_terminal:
-        console.width = _PLAIN_WIDTH
+    if plain:
+        console.width = _width(terminal=False) or _PLAIN_WIDTH
 
         def say(what: str, done: int, total: int) -> None:
             console.print(f"{title}: {printable(what)} ({done}/{total})", highlight=False)

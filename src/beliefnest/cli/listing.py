@@ -7,7 +7,7 @@ from rich import box
 from rich.table import Table
 
 from beliefnest.bodies.worlds import WORLDS
-from beliefnest.cli.console import stdout
+from beliefnest.cli.console import folded, stdout
 from beliefnest.llm.resolve import model_names
 from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.scenario import Scenario
@@ -42,6 +42,6 @@ def print_installed(*, as_json: bool) -> None:
         for number, text in scenario.conditions.items():
             table.add_row("", str(number), text)
     console = stdout()
-    console.print(table)
+    console.print(folded(table))
     console.print(f"worlds: {', '.join(WORLDS)}", highlight=False)
     console.print(f"models: {', '.join(model_names())}", highlight=False)

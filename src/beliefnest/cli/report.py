@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from rich import box
+from rich.console import Console
 from rich.markup import escape
+from rich.measure import Measurement
 from rich.table import Table
 
 from beliefnest.belief.entries import Basis
@@ -39,6 +41,7 @@ __all__ = [
     "outcome_json",
     "outcome_table",
     "place_key",
+    "placed_lines",
     "report_json",
     "state_json",
     "usage_json",
@@ -177,13 +180,21 @@ def _counted(
     return {outcome: found[outcome] for outcome in OUTCOMES}
 
 
-def outcome_table(outcomes: Sequence[Outcome]) -> Table:
+def outcome_table(outcomes: Sequence[Outcome], console: Console) -> Table:
     """What is where, what was predicted, whether it is as expected, in each condition.
 
-    One row for each condition, or one column where there is too much to tell for a row.
+    One row for each condition, or one column where there is too much to tell for a row of the
+    console.
     """
-    if len(_headings(outcomes)) > _WIDEST:
+    wide = _wide_table(outcomes)
+    # Rich's measure is no wider than the room it is told of.
+    least = Measurement.get(console, console.options.update(max_width=10_000), wide).minimum
+    if len(_headings(outcomes)) > _WIDEST or least > console.width:
         return _tall_table(outcomes)
+    return wide
+
+
+def _wide_table(outcomes: Sequence[Outcome]) -> Table:
     scenario = outcomes[0].scenario
     table = Table(title=scenario.name, title_justify="left", box=box.SIMPLE_HEAVY)
     if scenario.conditions:
@@ -231,6 +242,14 @@ def cost_text(cost: float | None) -> str:
     return "not known" if cost is None else f"${cost:.4f}"
 
 
+def placed_lines(placed: Mapping[str, tuple[Point, Point]]) -> list[str]:
+    """Whom a body had to move, for people, a line each."""
+    return [
+        f"{name} begins at {point_text(end)}, could not be at {point_text(start)}"
+        for name, (start, end) in placed.items()
+    ]
+
+
 def _verb(scenario: Scenario) -> str:
     return " reports" if scenario.reported_by else ""
 
@@ -255,6 +274,8 @@ def _cells(outcome: Outcome) -> dict[str, str]:
         cells.setdefault(heading, []).append(text)
     for probe in outcome.probes:
         heading, text = _acted(probe, outcome.scenario)
+        placed = {} if probe.trial is None else probe.trial.result.placed
+        text += "".join(f"\n({escape(line)})" for line in placed_lines(placed))
         if len(outcome.probes) > 1 and probe.probe.label:
             text = f"{escape(printable(probe.probe.label))}: {text}"
         cells.setdefault(heading, []).append(text)

@@ -10,11 +10,12 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any, Literal
 
+from rich.console import Console
 from rich.table import Table
 
 from beliefnest.bodies.worlds import Worlds, check_world
 from beliefnest.cli.accounts import accounts
-from beliefnest.cli.console import progress_on, stdout
+from beliefnest.cli.console import folded, progress_on, stdout
 from beliefnest.cli.folder import ConditionFolder, RunFolder, kept_scenario_file
 from beliefnest.cli.matrix import score_runs, score_table, scores_json
 from beliefnest.cli.pictures import read_condition
@@ -282,16 +283,16 @@ def _print(
         for number, about in cells[0].scenario.conditions.items():
             if any(cell.scenario.condition == number for cell in cells):
                 console.print(f"condition {number}: {about}", highlight=False)
-        console.print(_table(run, cells))
+        console.print(folded(_table(run, cells, console)))
         console.print(f"recorded in {run.folder.path}", highlight=False, soft_wrap=True)
     text = captured.get()
     run.folder.write_summary(text)
     sys.stdout.write(json.dumps(report, indent=2) + "\n" if as_json else text)
 
 
-def _table(run: _Run, cells: Sequence[Cell]) -> Table:
+def _table(run: _Run, cells: Sequence[Cell], console: Console) -> Table:
     """Of one round what was found in each condition, of several how often it was as expected."""
     flat = len(cells[0].folder.parts) == 1
     if flat and run.outcomes and len(run.outcomes) == len(cells):
-        return outcome_table(run.outcomes)
+        return outcome_table(run.outcomes, console)
     return score_table(cells[0].scenario.name, score_runs(run.results, run.failures))

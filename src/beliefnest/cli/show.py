@@ -13,18 +13,20 @@ from rich.table import Table
 from rich.text import Text
 
 from beliefnest.belief.view import State
-from beliefnest.cli.console import stdout
+from beliefnest.cli.console import folded, stdout
 from beliefnest.cli.folder import store_in, stores_in
 from beliefnest.cli.pictures import container_name, place_text, titled
-from beliefnest.cli.report import state_json
+from beliefnest.cli.report import placed_lines, state_json
 from beliefnest.cli.text import printable
 from beliefnest.errors import InputError
+from beliefnest.nest.explain.told import ToldClaim
 from beliefnest.nest.face.past_simulator import PastSimulator
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.pictures.animation import check_animated, save_animation
 from beliefnest.pictures.figure import figure_of
 from beliefnest.pictures.scene import Scene
 from beliefnest.prompts.templates import Template, built_in_template, load_template
+from beliefnest.scenarios.records import placed_json
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import FOLLOW
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
@@ -102,14 +104,34 @@ def _show(options: ShowOptions, store: Path) -> None:
             content = {
                 **place,
                 **state_json(state),
+                "placed": placed_json(simulator.placed),
                 "programs": [_program_json(each) for each in programs],
                 "prompts": [prompt_row(each)[1] for each in asked],
             }
             sys.stdout.write(json.dumps(content, indent=2) + "\n")
         else:
             _print_state(state, simulator.path, scenario)
+            _print_claims(nest.at(state.tick).claims(options.path), simulator.path)
+            for line in placed_lines(simulator.placed):
+                stdout().print(_foreign(line), highlight=False)
             _print_programs(programs)
             _print_prompts(asked)
+
+
+def _print_claims(claims: Sequence[ToldClaim], path: str) -> None:
+    """Every claim of the run, and what the simulator made of it."""
+    if not claims:
+        return
+    table = Table("tick", "speaker", "claim", "", "heard by", box=box.SIMPLE, title_justify="left")
+    is_belief = path != "/"
+    if is_belief:
+        table.add_column(f"in {path}")
+    for told in claims:
+        kind = "a lie" if told.lie else "false" if told.false else ""
+        row = [str(told.tick), told.speaker, str(told.claim), kind, ", ".join(told.hearers)]
+        table.add_row(*map(printable, row), *([told.why(path)] if is_belief else []))
+    stdout().print("Claims")
+    stdout().print(table)
 
 
 def _simulator(options: ShowOptions, nest: RecordedNest) -> PastSimulator:
@@ -218,7 +240,7 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
         where = "unknown" if agent.position is None else place_text(agent.position, scenario)
         holds = (agent.equipment or {}).get("main_hand", "-")
         agents.add_row(titled(name), _foreign(where), "yes" if agent.current else "no", holds)
-    console.print(containers, agents)
+    console.print(folded(containers), folded(agents))
     for (tick, speaker, text), to in zip(state.chat, state.addressees, strict=True):
         said = speaker if to is None else f"{speaker} whispers to {to}"
         console.print(_foreign(f"{tick} {said}: {text}"), highlight=False)
@@ -262,7 +284,7 @@ def _print_prompts(prompts: Sequence[PromptRecord]) -> None:
             given.strip(),
         )
         table.add_row(*map(_foreign, cells))
-    stdout().print(table)
+    stdout().print(folded(table))
 
 
 def _foreign(text: str) -> Text:

@@ -11,7 +11,7 @@ from rich import box
 from rich.table import Table
 
 from beliefnest.bodies.worlds import check_world
-from beliefnest.cli.console import progress_on, stdout
+from beliefnest.cli.console import folded, progress_on, stdout
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.scenarios.stories.data import StoryItems, read_items
 from beliefnest.scenarios.stories.suite import (
@@ -142,7 +142,7 @@ def _print(options: SuiteOptions, stories: Sequence[StoryItems], judged: Sequenc
     total = score(each for each in judged if each.needs_first)
     table.add_row("all", *_cells(score(judged)), *_cells(total))
     console = stdout()
-    console.print(table)
+    console.print(folded(table))
     for each in judged:
         if not each.ok:
             console.print(f"row {each.item.row}: {each.item.question.text}", markup=False)

@@ -178,7 +178,7 @@ def _png(drawing: Drawing, dpi: float) -> bytes:
     from beliefnest.pictures.raster import raster
 
     out = io.BytesIO()
-    raster(drawing, dpi).save(out, format="PNG", dpi=(dpi, dpi))
+    raster(drawing, dpi).save(out, format="PNG", dpi=(dpi, dpi), compress_level=4)
     return out.getvalue()
 
 

@@ -10,6 +10,7 @@ from beliefnest.belief.entries import AgentBelief, PerceivedEvent
 from beliefnest.belief.view import State
 from beliefnest.prompts import actions, text
 from beliefnest.prompts.filterset import FilterSet, filter
+from beliefnest.prompts.memory import FILTERS
 from beliefnest.prompts.view import BranchView, belief_of, believed_agent, owner_of
 from beliefnest.world.values import EQUIPMENT_SLOTS, Position
 
@@ -320,6 +321,7 @@ BUILT_IN = FilterSet.of(
         block_property,
         events,
         events_and_visibilities,
+        *FILTERS,
     ]
 )
-"""The filters of interface.md."""
+"""The filters of interface.md, and those of our own default template."""

@@ -78,6 +78,7 @@ class ExampleBranch:
 
     state: FixedState
     children: Mapping[str, "ExampleBranch"] = field(default_factory=dict)
+    labels: Mapping[Position, str] = field(default_factory=dict)
 
     def child(self, agent: str) -> "ExampleBranch":
         """The belief of an agent in it; the owner's is this one.

@@ -24,16 +24,19 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
     ),
     "chat_log": ("{{ branch | chat_log }}",),
     "chests": ("{{ branch | chests }}",),
+    "containers": ("{{ branch | containers }}",),
     "equipment": ("{{ branch | equipment }}", '{{ branch | equipment("anne") }}'),
     "events": ("{{ branch | events }}",),
     "events_and_visibilities": (
         "{{ branch | events_and_visibilities }}",
         '{{ branch | events_and_visibilities(me="anne") }}',
     ),
+    "mechanisms": ("{{ branch | mechanisms }}",),
     "helditem": ("{{ branch | helditem }}", '{{ branch | helditem("anne") }}'),
     "inventory": ("{{ branch | inventory }}", '{{ branch | inventory("anne") }}'),
     "other_players": ("{{ branch | other_players }}",),
     "position": ("{{ branch | position }}", '{{ branch | position("anne") }}'),
+    "whereabouts": ("{{ branch | whereabouts }}",),
     "thought": ("{{ branch | thought }}",),
 }
 """Filter to the templates that show it."""

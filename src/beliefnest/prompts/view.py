@@ -1,11 +1,13 @@
 """What prompts need of a simulator: its state, and the beliefs of the agents in it."""
 
+from collections.abc import Mapping
 from typing import Protocol
 
 from beliefnest.belief.entries import AgentBelief
 from beliefnest.belief.view import State
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.prompts.text import nearest
+from beliefnest.world.values import Position
 
 __all__ = ["BranchView", "belief_of", "believed_agent", "owner_of"]
 
@@ -16,6 +18,10 @@ class BranchView(Protocol):
     @property
     def state(self) -> State:
         """The simulator's state."""
+
+    @property
+    def labels(self) -> Mapping[Position, str]:
+        """What containers are called and look as if they held, where prompts may say so."""
 
     def child(self, agent: str) -> "BranchView":
         """The belief simulator of an agent in this one; the owner's own is this one."""

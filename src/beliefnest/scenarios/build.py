@@ -11,6 +11,7 @@ from beliefnest.belief.entries import InitialBelief
 from beliefnest.files import read_regular_text
 from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.perception.options import Perception
+from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, built_in_template
 from beliefnest.scenarios.content import Probe, ScenarioContent
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.expected import (
@@ -50,7 +51,7 @@ from beliefnest.scenarios.space import (
 )
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.limits import AGENT_SLOTS, container_slots
-from beliefnest.world.paths import parse_path
+from beliefnest.world.paths import parse_path, parse_pattern
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Position
 
@@ -122,8 +123,13 @@ class _Builder:
     def setting(self) -> Setting:
         """What a nest starts from."""
         file = self._file
-        for number, name in enumerate(file.static_blocks):
-            self._check_block_name(("static_blocks", number), name)
+        for number, static in enumerate(file.static_blocks):
+            if isinstance(static, str):
+                self._check_block_name(("static_blocks", number), static)
+            elif static not in self._snapshot.box:
+                raise self._document.fault(
+                    ("static_blocks", number), f"{list(static)} lies outside the box"
+                )
         for name, place in file.places.items():
             if place not in self._snapshot.box:
                 raise self._document.fault(("places", name), f"{list(place)} lies outside the box")
@@ -137,6 +143,7 @@ class _Builder:
             ),
             script=tuple(self._step(n, entry) for n, entry in enumerate(file.script)),
             labels={entry.at: entry.label for entry in file.containers if entry.label},
+            prompt_labels=_prompt_labels(file) if file.labels else {},
             places=dict(file.places),
         )
 
@@ -279,7 +286,8 @@ class _Builder:
 
     def _initial_belief(self, number: int, entry: InitialBeliefEntry) -> InitialBelief:
         path = ("initial_beliefs", number)
-        names = self._check_belief_path((*path, "path"), entry.path)
+        with self._document.naming((*path, "path")):
+            names = parse_pattern(entry.path, self._snapshot.agents)
         if not names:
             raise self._document.fault((*path, "path"), "'/' is the real world, not a belief")
         box = self._snapshot.box
@@ -316,6 +324,8 @@ class _Builder:
             return None
         if name in self._document.templates:
             return self._document.templates[name]
+        if name in BUILT_IN_TEMPLATES:
+            return built_in_template(name).text
         file = self._document.folder / name
         try:
             return read_regular_text(file)
@@ -356,3 +366,14 @@ def _listed(entry: T | list[T] | None) -> list[T]:
     if entry is None:
         return []
     return entry if isinstance(entry, list) else [entry]
+
+
+def _prompt_labels(file: ScenarioFile) -> dict[Position, str]:
+    """What containers are called, and what they look as if they held."""
+    labels = {}
+    for entry in file.containers:
+        looks = f"looks as if it held {entry.looks}" if entry.looks else ""
+        told = ", ".join(part for part in (entry.label, looks) if part)
+        if told:
+            labels[entry.at] = told
+    return labels

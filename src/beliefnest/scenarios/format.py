@@ -76,6 +76,9 @@ class ContainerEntry(_Entry, frozen=True):
     block: Annotated[str, _note("A block state of a container.")] = "chest"
     items: _ItemsField = {}
     label: Annotated[str, _note("What people call it, in tables and pictures.")] = ""
+    looks: Annotated[str, _note("What it looks as if it held, in words; see the key `labels`.")] = (
+        ""
+    )
 
 
 class EquipmentEntry(_Entry, frozen=True):
@@ -155,7 +158,10 @@ class _BelievedContainerEntry(_Entry, frozen=True):
 class InitialBeliefEntry(_Entry, frozen=True):
     """What a belief holds before anything happens."""
 
-    path: Annotated[str, _note("A belief path such as /observer/sally.")]
+    path: Annotated[
+        str,
+        _note("A belief path such as /observer/sally; /** at its end: that and all below it."),
+    ]
     containers: list[_BelievedContainerEntry] = []
     blocks: Annotated[list[BlockEntry], _note("Believed blocks; block null: unknown.")] = []
     agents: Annotated[dict[str, Point], _note("Believed positions of the feet.")] = {}
@@ -257,7 +263,8 @@ class ProbeEntry(_Entry, frozen=True):
     task: Annotated[str | None, _note("What the model is asked to make the agent do.")] = None
     label: Annotated[str, _note("A name for tables and overrides.")] = ""
     template: Annotated[
-        str | None, _note("A prompt template file beside the scenario; null: the paper's.")
+        str | None,
+        _note("`default`, `paper`, or a prompt template file beside the scenario; null: `paper`."),
     ] = None
     expect: Annotated[ExpectEntry | None, _note("How the outcome is judged.")] = None
     timeout_ticks: Annotated[
@@ -307,7 +314,14 @@ class ScenarioFile(_Entry, frozen=True):
     containers: list[ContainerEntry] = []
     places: Annotated[dict[str, Position], _note("What people call places: name to block.")] = {}
     perception: PerceptionEntry = PerceptionEntry()
-    static_blocks: Annotated[list[str], _note("Blocks that everybody knows from the start.")] = []
+    static_blocks: Annotated[
+        list[str | Position],
+        _note("Blocks that everybody knows from the start: names, or positions."),
+    ] = []
+    labels: Annotated[
+        bool,
+        _note("Whether prompts say what containers are called and look as if they held."),
+    ] = False
     initial_beliefs: list[InitialBeliefEntry] = []
     script: Annotated[list[StepEntry], _note("What happens in the real world, in order.")] = []
     probes: list[ProbeEntry] = []

@@ -152,7 +152,7 @@ class _Prompts:
 
     def _render(self, code: str | None, error: str | None) -> str:
         return self._believer.render(
-            self._template, task=self._task, last_code=code, last_error=error
+            self._template, task=self._task, last_code=code, last_error=error, instructed=True
         )
 
 

@@ -23,7 +23,7 @@ from beliefnest.scenarios.expected import (
 from beliefnest.scenarios.outcome import ExpectationOutcome, ProbeOutcome, Reply
 from beliefnest.world.values import Point
 
-__all__ = ["expectation_json", "expected_json", "probe_json", "usage_json"]
+__all__ = ["expectation_json", "expected_json", "placed_json", "probe_json", "usage_json"]
 
 
 def usage_json(usage: Usage) -> dict[str, object]:
@@ -55,6 +55,11 @@ def expected_json(expected: tuple[Expected, ...]) -> dict[str, object] | None:
     return found or None
 
 
+def placed_json(placed: Mapping[str, tuple[Point, Point]]) -> dict[str, object]:
+    """Whom a body had to move when it began: agent to from where, to where."""
+    return {name: [list(start), list(end)] for name, (start, end) in placed.items()}
+
+
 def probe_json(outcome: ProbeOutcome, run_dir: Path | str) -> dict[str, object]:
     """What came of a probe.
 
@@ -80,6 +85,7 @@ def probe_json(outcome: ProbeOutcome, run_dir: Path | str) -> dict[str, object]:
         "unfinished": [] if result is None else [str(each) for each in result.unfinished],
         "aims": [] if result is None else [_aim_json(each) for each in result.aims],
         "branch": outcome.branch,
+        "placed": {} if result is None else placed_json(result.placed),
         "intended": _list(outcome.intended),
         "opened": [list(place) for place in outcome.opened],
         "arrived": _list(outcome.arrived),

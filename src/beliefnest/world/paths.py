@@ -4,7 +4,10 @@ from collections.abc import Collection, Iterable
 
 from beliefnest.errors import PathError
 
-__all__ = ["normalised", "parse_path", "path_text"]
+__all__ = ["AND_BELOW", "normalised", "parse_path", "parse_pattern", "path_text"]
+
+AND_BELOW = "**"
+"""At the end of a path: the node and everything below it; alone: every belief."""
 
 _LONGEST_TOLD = 100
 
@@ -28,6 +31,17 @@ def parse_path(text: str, agents: Collection[str]) -> tuple[str, ...]:
                 f"{_short(text)} names {_short(name)}; the agents are {', '.join(sorted(agents))}"
             )
     return normalised(names)
+
+
+def parse_pattern(text: str, agents: Collection[str]) -> tuple[str, ...]:
+    """A path that may end in `/**`, which then is the last of the names.
+
+    Raises:
+        PathError: As for `parse_path`.
+    """
+    if isinstance(text, str) and text.endswith(f"/{AND_BELOW}"):
+        return (*parse_path(text.removesuffix(AND_BELOW), agents), AND_BELOW)
+    return parse_path(text, agents)
 
 
 def normalised(names: Iterable[str]) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ from rich.table import Table
 
 from beliefnest.cli.bench.figures import Figure
 from beliefnest.cli.bench.registry import BENCHES, measure
-from beliefnest.cli.console import progress_on, stdout
+from beliefnest.cli.console import folded, progress_on, stdout
 
 __all__ = ["run_benches"]
 
@@ -30,7 +30,7 @@ def run_benches(names: Sequence[str], *, as_json: bool) -> int:
         content = {name: [_json(figure) for figure in found] for name, found in figures.items()}
         sys.stdout.write(json.dumps(content, indent=2) + "\n")
     else:
-        stdout().print(_table(figures))
+        stdout().print(folded(_table(figures)))
     return 1 if any(figure.ok is False for found in figures.values() for figure in found) else 0
 
 

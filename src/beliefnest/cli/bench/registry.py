@@ -18,6 +18,7 @@ BENCHES: Mapping[str, str] = {
     "prompts": "beliefnest.cli.bench.prompts",
     "beliefs": "beliefnest.cli.bench.beliefs",
     "stories": "beliefnest.cli.bench.stories",
+    "pictures": "beliefnest.cli.bench.pictures",
     "viewer": "beliefnest.cli.bench.viewer",
 }
 """Name to the module whose `measure()` it is; loaded when it is run."""

@@ -1,4 +1,4 @@
-"""What a prompt in the paper's form says, read from its text alone."""
+"""What a prompt in the paper's form or of our own default says, read from its text alone."""
 
 import ast
 import json
@@ -16,6 +16,10 @@ _DIVIDER = re.compile(r"<[^<>]+>|\[[^\[\]]*\]")
 _NUMBER = r"(-?\d+(?:\.\d+)?)"
 _POINT = re.compile(rf"[(\[]\s*{_NUMBER}\s*,\s*{_NUMBER}\s*,\s*{_NUMBER}\s*[)\]]")
 _CHEST = re.compile(rf"({_POINT.pattern}):\s*(\{{.*\}})")
+_CONTAINER = re.compile(
+    rf"({_POINT.pattern}) [^:]*: (?:unknown|known(?: in part)?, (empty|\{{[^}}]*\}}).*)"
+)
+_PLAYER = re.compile(rf"(\w+): (?:unknown|at ({_POINT.pattern}); ([^;]*)).*")
 _CHAT = re.compile(r"\d+;([A-Za-z0-9_]+)(?: whispers to \w+)?;(.*)")
 _SIGHTING = re.compile(
     rf"\d+;(?:goToPosition|lastSeen|visible);(\w+);(?:destination|position):({_POINT.pattern}).*"
@@ -76,8 +80,8 @@ def read_prompt(text: str) -> Reading:
     return Reading(
         task=_task(text),
         position=here[0] if here else None,
-        chests=_chests(sections.get("Chest", [])),
-        players=_players("\n".join(sections.get("Other players", []))),
+        chests=_chests(sections.get("Chest", [])) | _containers(sections.get("Containers", [])),
+        players=_players(sections.get("Other players", [])),
         chat=_chat(sections.get("Chat log", [])),
         places=_places(sections.get("Places", []), text),
         sightings=_sightings(text),
@@ -130,6 +134,13 @@ def _chests(lines: Sequence[str]) -> dict[Point, dict[str, int]]:
     return chests
 
 
+def _containers(lines: Sequence[str]) -> dict[Point, dict[str, int]]:
+    matches = (_CONTAINER.fullmatch(line.strip()) for line in lines)
+    return {
+        points_in(match[1])[0]: _items(match[5] or "") for match in matches if match is not None
+    }
+
+
 def _items(text: str) -> dict[str, int]:
     """Items written as `{'diamond': 1}`; an entry that is not of that kind is left out."""
     try:
@@ -145,11 +156,16 @@ def _items(text: str) -> dict[str, int]:
     }
 
 
-def _players(text: str) -> dict[str, Point | None]:
+def _players(lines: Sequence[str]) -> dict[str, Point | None]:
     try:
-        value = json.loads(text)
+        value = json.loads("\n".join(lines))
     except json.JSONDecodeError:
-        return {}
+        matches = (_PLAYER.fullmatch(line.strip()) for line in lines)
+        return {
+            match[1]: points_in(match[2])[0] if match[6] == "seen now" else None
+            for match in matches
+            if match is not None
+        }
     if not isinstance(value, dict):
         return {}
     players: dict[str, Point | None] = {}

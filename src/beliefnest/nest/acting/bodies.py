@@ -12,9 +12,10 @@ from beliefnest.errors import BodyError, BranchError, WorldError
 from beliefnest.nest.acting.frame_recorder import FrameRecorder
 from beliefnest.nest.acting.lives import Lives
 from beliefnest.nest.acting.speculation import SpeculatedBody, Speculation
-from beliefnest.nest.past.body_state import note_internal_state, present, snapshot_at
+from beliefnest.nest.acting.starting import Start, start_of
+from beliefnest.nest.past.body_state import note_internal_state, present
 from beliefnest.nest.past.recording import Recording
-from beliefnest.timeline.journal import TimelineKey
+from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.paths import path_text
 
@@ -85,10 +86,20 @@ class Bodies:
         """Seed of a simulator's body."""
         return f"{self._recording.seed} {path_text(path)}"
 
+    def start(self, path: Path, moment: ForkPoint) -> Start:
+        """What a simulator's body is filled with at a moment of its timeline or its parent's."""
+        recording = self._recording
+        return start_of(
+            recording.journal,
+            recording.history,
+            path,
+            moment,
+            has_physics=self.world.has_physics,
+        )
+
     def recorded(self, key: TimelineKey) -> Snapshot:
         """What a body on a timeline has to be like now."""
-        journal = self._recording.journal
-        return snapshot_at(journal, self._recording.history, key.path, present(journal, key))
+        return self.start(key.path, present(self._recording.journal, key)).snapshot
 
     def give_up(self, path: Path) -> None:
         """Close a simulator's body, if it has one."""

@@ -7,6 +7,7 @@ but for programs, which end as `killed`.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import wraps
 from typing import Concatenate, ParamSpec, Self, TypeVar
 
@@ -14,12 +15,8 @@ from beliefnest.bodies.protocol import KILLED, Body, Fault, ProgramResult, World
 from beliefnest.errors import BodyLostError, BranchError, TickError
 from beliefnest.nest.acting.bodies import Bodies
 from beliefnest.nest.acting.speculation import Speculation, SpeculationStart, speculate
-from beliefnest.nest.past.body_state import (
-    internal_state_at,
-    note_internal_state,
-    present,
-    snapshot_at,
-)
+from beliefnest.nest.past.body_state import internal_state_at, note_internal_state, present
+from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import FOLLOW, Edit, ForkPoint, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import ProgramRecord
@@ -82,9 +79,11 @@ class Engine:
             place, entries = recording.place_of(base.timeline, tick)
             base = ForkPoint(place, entries, tick)
         key = TimelineKey(path, name)
-        snapshot = snapshot_at(journal, recording.history, path, base)
-        with self.bodies.selecting(key, snapshot), journal.together():
+        start = self.bodies.start(path, base)
+        with self.bodies.selecting(key, start.snapshot), journal.together():
             journal.create(key, base, base.tick)
+            if start.frame is not None:
+                journal.append(key, [start.frame], base.tick)
             journal.records.select(path, name)
 
     @_surviving
@@ -170,6 +169,8 @@ class Engine:
             with self.bodies.acting(path) as body:
                 results = body.run(programs, timeout_ticks)
                 self._note(before, programs, results, timeout_ticks, step)
+            placed = placed_in(self.recording, path)
+            results = {name: replace(each, placed=placed) for name, each in results.items()}
         except BodyLostError as lost:
             message = (
                 f"nothing of the program is kept, {path_text(path)} is at tick {before.head} as "
@@ -201,11 +202,10 @@ class Engine:
         Returns:
             What became of each, by number; those for which no body could be made are left out.
         """
-        recording = self.recording
         start = SpeculationStart(
             f"{path_text(path)} ahead",
             self.bodies.seed_of(path),
-            snapshot_at(recording.journal, recording.history, path, base),
+            self.bodies.start(path, base).snapshot,
         )
         worlds = [self.bodies.world, *self.bodies.further_worlds(processes - 1)]
         return speculate(worlds, start, jobs, timeout_ticks)

@@ -5,8 +5,10 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from beliefnest.bodies.protocol import Body, World
-from beliefnest.nest.past.body_state import internal_state_at, snapshot_at
+from beliefnest.nest.acting.starting import start_of
+from beliefnest.nest.past.body_state import internal_state_at
 from beliefnest.nest.past.history import History
+from beliefnest.nest.past.placing import placing_frame
 from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.compare import EntryDifference, first_difference
 from beliefnest.timeline.journal import Edit, Entry, ForkPoint, Journal, TimelineInfo, TimelineKey
@@ -50,10 +52,11 @@ class _Recorded:
     history: History
     info: TimelineInfo
 
-    def after(self, entries: int, tick: int) -> Snapshot:
-        """What its body was like after some of its entries."""
+    def after(self, entries: int, tick: int, world: World) -> Snapshot:
+        """What its body was like after some of its entries, in a world of that kind."""
         moment = ForkPoint(self.info.key, entries, tick)
-        return snapshot_at(self.journal, self.history, self.info.key.path, moment)
+        path, physics = self.info.key.path, world.has_physics
+        return start_of(self.journal, self.history, path, moment, has_physics=physics).snapshot
 
     def wait_until(self, body: Body, tick: int) -> None:
         """Let time pass in a body, in the calls in which it passed.
@@ -116,15 +119,18 @@ def _run_again(
     calls: Sequence[_Call],
     seed: int,
 ) -> list[Entry]:
-    found: list[Entry] = []
+    info = recorded.info
+    # Where agents begin who could not be where they were believed to be is no body's doing.
+    moved = placing_frame(recorded.journal, info)
+    found: list[Entry] = [] if moved is None else [moved]
 
     def take(frame: Frame) -> None:
         if not frame.is_empty:
             found.append(frame)
 
-    info = recorded.info
     name = path_text(info.key.path)
-    body = world.open_body(name, f"{seed} {name}", recorded.after(0, info.start), take)
+    begins = recorded.after(len(found), info.start, world)
+    body = world.open_body(name, f"{seed} {name}", begins, take)
     try:
         edits = [(n, e) for n, e in enumerate(entries) if isinstance(e, Edit)]
         acts: list[tuple[int, int, Edit | _Call]] = [(e.tick, n, e) for n, e in edits]
@@ -135,7 +141,7 @@ def _run_again(
                 body.run(act.programs, act.timeout_ticks)
                 continue
             if act.path == info.key.path:
-                body.set_state(recorded.after(number + 1, act.tick))
+                body.set_state(recorded.after(number + 1, act.tick, world))
             found.append(act)
         recorded.wait_until(body, info.head)
     finally:

@@ -104,7 +104,8 @@ def _explained(
     if base is not None and fact.since is None:
         earlier = Place(base.timeline, base.entries)
         before = _explained(recording, root, earlier, base.tick, element)
-    levels = tuple(_level(trace, element) for trace in traces)
+    weighed = recording.setting.perception.testimony == "informed"
+    levels = tuple(replace(_level(trace, element), weighed=weighed) for trace in traces)
     return Explanation(element, tick, fact, levels, before)
 
 

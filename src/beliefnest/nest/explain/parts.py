@@ -167,6 +167,7 @@ class Level:
         stood: The holder's feet in the parent node at tick `since`; None: unknown.
         missed: The first change since that did not reach the belief, or for what was never
             known, why it is not perceived now; None: there is none.
+        weighed: Whether hearsay is believed of those alone who may know better.
     """
 
     path: tuple[str, ...]
@@ -179,3 +180,4 @@ class Level:
     since: int | None
     stood: Point | None
     missed: Missed | None
+    weighed: bool = False

@@ -75,7 +75,7 @@ def _context(level: Level, basis: Basis, name: str) -> str:
         case Source.EDITED:
             text = f"edited by hand at tick {tick}"
         case Source.HEARD:
-            text = f"{_knows(level)}{holder} heard so at tick {tick}"
+            text = f"{_knows(level)}{_heard(level, basis)}"
         case Source.WITNESSED:
             place = "" if level.stood is None or late else f", at {_point(level.stood)},"
             own = any(act.actor == holder for act in level.acts)
@@ -89,6 +89,16 @@ def _context(level: Level, basis: Basis, name: str) -> str:
         text += f"; {holder} took it over at tick {level.since}"
         text += "" if level.stood is None else f", at {_point(level.stood)}"
     return text
+
+
+def _heard(level: Level, basis: Basis) -> str:
+    holder, speaker, tick = level.holder, basis.speaker, basis.observed_at
+    if speaker is None:
+        return f"{holder} heard so at tick {tick}"
+    if speaker == holder:
+        return f"{holder} said so at tick {tick}"
+    text = f"{speaker} told {holder} so at tick {tick}"
+    return f"{text}; {holder} could not have looked" if level.weighed else text
 
 
 def _missed_text(missed: Missed, level: Level, fact: Fact, element: Element) -> str:

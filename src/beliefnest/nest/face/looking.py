@@ -10,11 +10,13 @@ import numpy.typing as npt
 from beliefnest.belief.view import State
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.nest.explain.comparison import Difference, Pose, false_beliefs, value_words
+from beliefnest.nest.face.plotting import plot_of_container
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.figure import Figure, figure_of
 from beliefnest.pictures.scene import Scene, Wrong, best_height, read_scene
 from beliefnest.pictures.words import place_words, state_words
 from beliefnest.world.paths import parse_path, path_text
+from beliefnest.world.values import Position
 
 __all__ = ["Looking", "LookingAtOne"]
 
@@ -95,6 +97,26 @@ class Looking:
         wanted = [paths] if isinstance(paths, str) else list(paths)
         then = self._moment() if tick is None else tick
         return _scenes(self._recording, wanted, then, against, sight=sight, height=height)
+
+    def plot_beliefs(
+        self, container: Position, item: str | None = None, paths: Sequence[str] = ("/",)
+    ) -> Figure:
+        """What simulators held of a container over time: a row for each, a band for each value.
+
+        Bands are marked where they are false; above stand the deeds of the real world that
+        mattered.
+
+        Args:
+            container: Where it is.
+            item: The item to follow; None: all that is in it.
+            paths: Belief paths.
+
+        Raises:
+            PathError: A path is malformed or names an unknown agent.
+            PositionError: The container lies outside the box.
+            InputError: There is no path.
+        """
+        return plot_of_container(self._recording, container, item, paths, self._moment())
 
     def __repr__(self) -> str:
         recording, tick = self._recording, self._moment()

@@ -18,6 +18,7 @@ from beliefnest.nest.face.opening import HasSetting, Start, begun, resumed
 from beliefnest.nest.face.past_simulator import Past
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.face.simulator import Simulator
+from beliefnest.nest.face.telling import Telling
 from beliefnest.nest.face.ticks import tick_of
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.face.viewing import Viewing
@@ -26,11 +27,12 @@ from beliefnest.perception.options import Perception
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
 from beliefnest.world.paths import parse_path
 from beliefnest.world.scripted import ScriptedWorld
+from beliefnest.world.values import Position
 
 __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 
 
-class Nest(Looking, Viewing):
+class Nest(Looking, Viewing, Telling):
     """The real world and every belief in it; each node is made on first use.
 
     `Nest(world)` wraps a `ScriptedWorld` and follows what happens in it; `Nest.open` opens a
@@ -39,7 +41,7 @@ class Nest(Looking, Viewing):
     Args:
         world: The scripted world that is the real one.
         perception: What agents can perceive.
-        static_blocks: Names of blocks that everybody knows from the start.
+        static_blocks: Names and positions of blocks that everybody knows from the start.
         initial_beliefs: Further priors, at any depth.
         store: File to record in; None: memory.
     """
@@ -48,7 +50,7 @@ class Nest(Looking, Viewing):
         self,
         world: ScriptedWorld,
         perception: Perception | None = None,
-        static_blocks: Iterable[str] = (),
+        static_blocks: Iterable[str | Position] = (),
         initial_beliefs: Iterable[InitialBelief] = (),
         store: str | Path | None = None,
     ) -> None:

@@ -1,5 +1,6 @@
 """What a simulator shows of itself, and simulators as they were; nothing here acts."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -12,11 +13,13 @@ from beliefnest.nest.explain.chain import element_of, explain
 from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs
 from beliefnest.nest.explain.explanation import Explanation
 from beliefnest.nest.face.looking import Looking, LookingAtOne
+from beliefnest.nest.face.telling import Telling
 from beliefnest.nest.face.turns import in_turn
+from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
 from beliefnest.prompts import Template, render
 from beliefnest.world.paths import normalised, parse_path, path_text
-from beliefnest.world.values import Position
+from beliefnest.world.values import Point, Position
 
 __all__ = ["Past", "PastSimulator", "ShownSimulator"]
 
@@ -37,6 +40,11 @@ class ShownSimulator(LookingAtOne):
     def owner(self) -> str | None:
         """The agent whose belief this is; None in the real world."""
         return self._path[-1] if self._path else None
+
+    @property
+    def labels(self) -> Mapping[Position, str]:
+        """What containers are called and look as if they held, where prompts may say so."""
+        return self._recording.setting.prompt_labels
 
     @property
     def tick(self) -> int:
@@ -89,6 +97,17 @@ class ShownSimulator(LookingAtOne):
 
     def _explained_tick(self) -> int | None:
         raise NotImplementedError
+
+    @property
+    @in_turn
+    def placed(self) -> Mapping[str, tuple[Point, Point]]:
+        """Whom its body had to move when it began: agent to (from where, to where), feet in blocks.
+
+        A belief may be impossible: somebody in a doorway that is now believed shut, two in one
+        place. Its body begins with them at the nearest place where they can stand; the belief is
+        left as it is. Empty in follow mode and where nobody had to be moved.
+        """
+        return placed_in(self._recording, self._path, self._explained_tick())
 
     def child(self, agent: str) -> "ShownSimulator":
         """The simulator of what `agent` believes in this one."""
@@ -146,7 +165,7 @@ class PastSimulator(ShownSimulator):
         return self._tick
 
 
-class Past(Looking):
+class Past(Looking, Telling):
     """All simulators at one past tick."""
 
     def __init__(self, recording: Recording, tick: int) -> None:

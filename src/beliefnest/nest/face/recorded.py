@@ -6,6 +6,7 @@ from typing import Self
 
 from beliefnest.nest.face.looking import Looking
 from beliefnest.nest.face.past_simulator import Past, PastSimulator
+from beliefnest.nest.face.telling import Telling
 from beliefnest.nest.face.viewing import Viewing
 from beliefnest.nest.past.over_time import Moment, over_time
 from beliefnest.nest.past.recording import Recording, read_recording
@@ -19,7 +20,7 @@ from beliefnest.world.paths import parse_path
 __all__ = ["RecordedNest"]
 
 
-class RecordedNest(Looking, Viewing):
+class RecordedNest(Looking, Viewing, Telling):
     """Simulators of a run as they were; nothing in it can act.
 
     Args:

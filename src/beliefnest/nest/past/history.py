@@ -16,6 +16,7 @@ from beliefnest.belief.forest import Forest
 from beliefnest.belief.initial import forked_forest, initial_forest
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.checkpoints import Checkpoints, Pace
+from beliefnest.nest.past.claimed_blocks import ClaimedBlocks
 from beliefnest.nest.past.event_log import EventLog
 from beliefnest.nest.past.setting import Setting
 from beliefnest.perception.sight import Sight
@@ -87,6 +88,7 @@ class History:
         self._setting = setting
         self._pace = Pace() if pace is None else pace
         self.context = context_of(setting)
+        self._claimed = ClaimedBlocks(journal, self.context, setting.snapshot)
         self._checkpoints = Checkpoints(journal, setting, self.context, self._pace)
         self._stretches: dict[tuple[TimelineKey, int], _Stretch] = {}
         self._logs: dict[TimelineKey, EventLog] = {}
@@ -120,6 +122,7 @@ class History:
 
         `advance` takes it on.
         """
+        self._keep_up(key)
         first, *others = paths
         forest = self._begun(key, first)
         for path in others:
@@ -136,6 +139,7 @@ class History:
 
     def note(self, key: TimelineKey) -> None:
         """Keep up with a timeline, so that who asks for a belief need not wait for long."""
+        self._keep_up(key)
         head, count = self._heads.get(key), self._journal.info(key).entries
         if count - (0 if head is None else head.position) >= self._pace.lag:
             self._head(key, key.path, count)
@@ -175,20 +179,29 @@ class History:
         self._logs.pop(key, None)
         self._heads.pop(key, None)
         self._checkpoints.forget(key)
+        self._claimed.forget(key)
         self._pasts = [(other, forest) for other, forest in self._pasts if other != key]
 
     def forget_all(self) -> None:
         """Drop what is remembered of all timelines."""
         self._stretches, self._logs, self._heads, self._pasts = {}, {}, {}, []
         self._checkpoints.forget_all()
+        self._claimed.forget_all()
+
+    def _keep_up(self, key: TimelineKey) -> None:
+        """Begin anew where a claim is about a block that nobody was watched looking at."""
+        if self._claimed.read(key):
+            self._heads.clear()
+            self._pasts.clear()
 
     def _forest(self, key: TimelineKey, path: Path, position: int) -> Forest:
         """A forest with a node, after some entries of a timeline."""
+        self._keep_up(key)
         if position == self._journal.info(key).entries:
             return self._head(key, path, position)
         forest = self._past(key, path, position)
         after = 0 if forest is None else forest.position
-        saved = self._checkpoints.before(key, position, self._log(key), path, after)
+        saved = self._saved(key, position, path, after)
         forest = saved or forest or self._begun(key, path)
         pasts = [past for past in self._pasts if past[1] is not forest]
         self._pasts = [(key, forest), *pasts][:_PASTS]
@@ -210,7 +223,7 @@ class History:
     def _head(self, key: TimelineKey, path: Path, count: int) -> Forest:
         head = self._heads.get(key)
         if head is None:
-            head = self._checkpoints.before(key, count, self._log(key))
+            head = self._saved(key, count)
         if head is None or (head.table.count == 1 and path != key.path):
             # Folded as the head it leaves checkpoints on the way, other than a late node.
             head = self._begun(key, path)
@@ -231,12 +244,20 @@ class History:
         self, key: TimelineKey, path: Path, position: int, extra: Sequence[int] = ()
     ) -> Forest:
         """A new forest of a node and its ancestors, after some entries of a timeline."""
+        self._keep_up(key)
         forest = None
         if not extra:
-            forest = self._checkpoints.before(key, position, self._log(key), path)
+            forest = self._saved(key, position, path)
         forest = forest or self._begun(key, path, extra)
         self._advance(key, forest, position)
         return forest
+
+    def _saved(
+        self, key: TimelineKey, position: int, path: Path | None = None, after: int = 0
+    ) -> Forest | None:
+        """The last checkpoint that serves: `Checkpoints.before`."""
+        found = self._checkpoints.before(key, position, self._log(key), path, after)
+        return found if found is None or self._claimed.cells <= found.since else None
 
     def _begun(self, key: TimelineKey, path: Path, extra: Sequence[int] = ()) -> Forest:
         """A forest of a node and its ancestors, at a timeline's beginning."""

@@ -8,7 +8,7 @@ from beliefnest.errors import InputError, PathError
 from beliefnest.perception.options import Perception
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.limits import agent_name_fault, snapshot_fault
-from beliefnest.world.paths import parse_path, path_text
+from beliefnest.world.paths import parse_path, parse_pattern, path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 
@@ -43,26 +43,31 @@ class Setting:
         name: Name of the scenario.
         snapshot: The real world at its first tick.
         perception: What agents can perceive.
-        static_blocks: Names of blocks that everybody knows from the start.
+        static_blocks: Names and positions of blocks that everybody knows from the start.
         initial_beliefs: Further priors, at any depth.
         script: What happens in the real world, in order.
         absent: Agents who are not in the world at its first tick and may come later.
         labels: What people call containers.
         places: What people call other places.
+        prompt_labels: What containers are called and look as if they held, for prompts.
     """
 
     name: str
     snapshot: Snapshot
     perception: Perception = field(default_factory=Perception)
-    static_blocks: frozenset[str] = frozenset()
+    static_blocks: frozenset[str | Position] = frozenset()
     initial_beliefs: tuple[InitialBelief, ...] = ()
     script: tuple[Step, ...] = ()
     absent: frozenset[str] = frozenset()
     labels: Mapping[Position, str] = field(default_factory=dict)
     places: Mapping[str, Position] = field(default_factory=dict)
+    prompt_labels: Mapping[Position, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         agents = self.snapshot.agents.keys() | self.absent
+        for place in self.static_blocks:
+            if not isinstance(place, str) and place not in self.snapshot.box:
+                raise InputError(f"static_blocks names {place}, which lies outside the box")
         fault = snapshot_fault(self.snapshot, Registry.load())
         for name in self.absent:
             fault = fault or agent_name_fault(name)
@@ -71,7 +76,7 @@ class Setting:
         seen: set[tuple[str, ...]] = set()
         for belief in self.initial_beliefs:
             text = path_text(belief.path)
-            if parse_path(text, agents) != belief.path:
+            if parse_pattern(text, agents) != belief.path:
                 raise PathError(f"initial belief {text!r} names an agent twice in a row")
             if not belief.path:
                 raise InputError("an initial belief of '/' would be the real world; give agents")

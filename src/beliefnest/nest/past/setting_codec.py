@@ -38,12 +38,17 @@ class _Start(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
     name: str
     snapshot: bytes
     perception: _Perception
-    static_blocks: tuple[str, ...]
+    static_blocks: tuple[str | Position, ...]
     initial_beliefs: tuple[InitialBelief, ...]
     script: tuple[Step, ...]
     absent: tuple[str, ...]
     labels: tuple[tuple[Position, str], ...] = ()
     places: tuple[tuple[str, Position], ...] = ()
+    prompt_labels: tuple[tuple[Position, str], ...] = ()
+
+
+def _names_first(static: str | Position) -> tuple[bool, str | Position]:
+    return not isinstance(static, str), static
 
 
 def encode_start(setting: Setting, world: str) -> bytes:
@@ -59,12 +64,13 @@ def encode_start(setting: Setting, world: str) -> bytes:
             name=setting.name,
             snapshot=codec.encode_snapshot(setting.snapshot),
             perception=_perception_to(setting.perception),
-            static_blocks=tuple(sorted(setting.static_blocks)),
+            static_blocks=tuple(sorted(setting.static_blocks, key=_names_first)),
             initial_beliefs=setting.initial_beliefs,
             script=setting.script,
             absent=tuple(sorted(setting.absent)),
             labels=tuple(sorted(setting.labels.items())),
             places=tuple(sorted(setting.places.items())),
+            prompt_labels=tuple(sorted(setting.prompt_labels.items())),
         )
     )
 
@@ -92,6 +98,7 @@ def decode_start(data: bytes) -> tuple[Setting, str]:
         absent=frozenset(start.absent),
         labels=dict(start.labels),
         places=dict(start.places),
+        prompt_labels=dict(start.prompt_labels),
     )
     return setting, start.world
 

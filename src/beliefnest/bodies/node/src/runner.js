@@ -2,10 +2,12 @@
 /** Runs the programs of agents in one region, together, tick by tick. */
 const { stopBot } = require('./bots/bot')
 
+const MOST_AIMS = 100
+
 class Runner {
   /**
    * @param {import('./regions/regions').Regions} regions
-   * @param {(request: {code: string, bot: object, scope: object, signal: AbortSignal}) =>
+   * @param {(request: {code: string, bot: object, scope: object, signal: AbortSignal, aim: function(object): void}) =>
    *   Promise<{ok: boolean, error: object | null, lines: number[], log: {text: string}[],
    *   unfinished: {what: string, line: number | null}[]}>} runProgram never rejects for a fault of the
    *   program; ends as soon as `signal` is aborted
@@ -45,11 +47,13 @@ class Runner {
   start (region, agent, { bot }, code) {
     const abort = new AbortController()
     const run = { agent, abort, result: null, endTick: null, end: null, crash: null }
+    const aims = []
+    const aim = made => { if (aims.length < MOST_AIMS) aims.push({ tick: region.tick, ...made }) }
     const emit = event => region.report(agent, event)
-    const request = { code, bot, scope: this.scopeOf(bot, emit, abort.signal), signal: abort.signal }
+    const request = { code, bot, scope: this.scopeOf(bot, emit, abort.signal), signal: abort.signal, aim }
     this.runProgram(request).then(report => {
       abort.abort()
-      run.result = resultOf(report, stopBot(bot), run.end)
+      run.result = { ...resultOf(report, stopBot(bot), run.end), aims }
     }).catch(error => { run.crash = error })
     return run
   }

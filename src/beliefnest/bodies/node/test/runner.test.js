@@ -53,8 +53,23 @@ describe('programs', () => {
     const { error } = results.sally
     assert.deepEqual([error.line, error.column], [3, 3])
     assert.match(error.message, /undefinedName/)
-    assert.deepEqual(results.anne, { ok: true, error: null, lines: [1], log: [], unfinished: [], ticks: results.anne.ticks })
+    assert.deepEqual(results.anne, { ok: true, error: null, lines: [1], log: [], unfinished: [], aims: [], ticks: results.anne.ticks })
     assert.equal(results.observer.error.kind, 'syntax')
+  })
+
+  it('are told by what they asked to make for, whether or not it is there', async () => {
+    const { results } = await run({
+      sally: "try { await getItemFromChest(bot, new Vec3(1, 1, 2), {diamond: 1}) } catch {}\nawait goToPosition(bot, bot.entity.position)\nsay(bot, 'I go to (9, 9, 9)')"
+    })
+    const { aims } = results.sally
+    assert.deepEqual(aims.map(({ call, uses }) => [call, uses]), [['getItemFromChest', true], ['goToPosition', false]])
+    assert.deepEqual(aims[0].place, [1, 1, 2])
+    assert.equal(aims[0].agent, null)
+  })
+
+  it('say that there is no way, if that is why they failed', async () => {
+    const { results } = await run({ sally: 'await goToPosition(bot, bot.entity.position.offset(0, 30, 0), 0)' })
+    assert.equal(results.sally.error.reason, 'no_way')
   })
 
   it('name the skill that failed', async () => {

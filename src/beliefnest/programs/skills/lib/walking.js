@@ -21,6 +21,7 @@ const REASONS = {
   PathStopped: 'the walk was stopped'
 }
 
+const noPath = () => Object.assign(new Error('no way'), { name: 'NoPath' })
 const rounded = ({ x, y, z }) => show({ x: Math.round(x * 10) / 10, y: Math.round(y * 10) / 10, z: Math.round(z * 10) / 10 })
 const centreOf = block => block.offset(0.5, 0.5, 0.5)
 
@@ -65,7 +66,7 @@ async function walk (context, goal, arrived, target, what, doors = ANY_DOOR) {
   if (arrived()) return
   const near = bot.entity.position.distanceTo(target)
   fail(`could not reach ${what} at ${show(target)}: ${REASONS[fault?.name ?? 'NoPath']}; now at ${rounded(bot.entity.position)}, ` +
-    `${near.toFixed(1)} blocks away. Go somewhere else, or clear the way first.`, fault ?? undefined)
+    `${near.toFixed(1)} blocks away. Go somewhere else, or clear the way first.`, fault ?? noPath())
 }
 
 /** Walks to within `dist` blocks of a position. */

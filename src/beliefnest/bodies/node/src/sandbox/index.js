@@ -35,8 +35,9 @@ function createSandbox (options = {}, alive = () => {}) {
  *   other values are not handed over. Vec3, goals, Movements and what makes
  *   claims are the guest's own.
  * @param {AbortSignal} [request.signal] ends the program when aborted
+ * @param {function(object): void} [request.aim] hears what the program asks its bot to make for (see aims.js)
  * @returns {Promise<{ok: boolean, error: ?{message: string, line: ?number, column: ?number, skill: ?string,
- *   kind: string}, lines: number[], log: {level: string, text: string}[],
+ *   kind: string, reason?: string}, lines: number[], log: {level: string, text: string}[],
  *   unfinished: {what: string, line: ?number}[], fuel: number}>}
  *   never rejects for a fault of the program. `kind` is syntax, error, skill (a skill or a call of the bot
  *   failed), refused (an argument that cannot be used), fuel, memory, stack, aborted or internal;
@@ -44,7 +45,7 @@ function createSandbox (options = {}, alive = () => {}) {
  *   statement that began them; `fuel` was used.
  *   Time, timers and random numbers are those of the process at the time of the call.
  */
-async function run (engine, { code, bot, scope = {}, fuel, memory, signal }) {
+async function run (engine, { code, bot, scope = {}, fuel, memory, signal, aim }) {
   if (!(fuel > 0 && fuel <= MAX_FUEL)) throw new RangeError(`the fuel must be between 1 and ${MAX_FUEL}, found ${fuel}`)
   const { skills, data } = splitScope(scope)
   const names = namesOf(scope)
@@ -57,7 +58,7 @@ async function run (engine, { code, bot, scope = {}, fuel, memory, signal }) {
     return { ok: false, error: { message, line, column, skill: null, kind: 'syntax' }, lines: [], log: [], unfinished: [], fuel: 0 }
   }
   const guest = await engine.open({ fuel, memory }, names)
-  const session = new Session(guest, { bot, skills, data, random: () => Math.random() })
+  const session = new Session(guest, { bot, skills, data, random: () => Math.random(), aim })
   const report = await observe(session, guest, program, { fuel, memory, signal })
   engine.close(guest)
   return report

@@ -22,10 +22,10 @@ const PLACE = /\(?program\.js:(\d+):(\d+)\)?/
  */
 function describeOutcome ({ ok, error, stray, ended }, program, limits, last) {
   if (ok) return null
-  const { message, skill, kind, stack } = ended ? ofEnd(ended, limits) : ofError(error, limits)
+  const { message, skill, kind, reason, stack } = ended ? ofEnd(ended, limits) : ofError(error, limits)
   const { place, callee } = placeIn(stack, program)
   const { line, column } = place ?? program.statement(last) ?? { line: null, column: null }
-  return { message: cut(named(message, callee), MAX_MESSAGE) + (stray ? NOT_AWAITED : ''), line, column, skill, kind }
+  return { message: cut(named(message, callee), MAX_MESSAGE) + (stray ? NOT_AWAITED : ''), line, column, skill, kind, ...(reason && { reason }) }
 }
 
 // The interpreter does not say what is not a function.
@@ -38,11 +38,11 @@ function ofEnd ({ kind, message, guestStack }, limits) {
 }
 
 function ofError (error, limits) {
-  const { message, name, skill, stack, kind } = plainError(error)
+  const { message, name, skill, stack, kind, reason } = plainError(error)
   const limit = limitOf(name, message)
   if (limit) return { message: limitMessage(limit, limits), skill: null, kind: limit, stack }
   const prefix = name === 'Error' || kind !== null || message.startsWith(`${name}:`) ? '' : `${name}: `
-  return { message: prefix + message, skill, kind: kind ?? 'error', stack }
+  return { message: prefix + message, skill, kind: kind ?? 'error', reason, stack }
 }
 
 // The record comes from the guest: any field may be anything.
@@ -55,6 +55,7 @@ function plainError (record) {
     name: thrown ? 'Error' : field('name', 'Error', MAX_NAME),
     skill: skill !== null && SKILL.test(skill) ? skill : null,
     kind: ['skill', 'refused'].includes(record?.kind) ? record.kind : null,
+    reason: record?.reason === 'no_way' ? 'no_way' : null,
     stack: field('stack', '', MAX_STACK)
   }
 }

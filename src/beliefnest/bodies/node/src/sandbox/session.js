@@ -10,6 +10,7 @@ const { events } = require('./policy/events')
 const { GuestEnded } = require('./engine')
 const { stateOf } = require('./policy/types')
 const { kindOf } = require('./kind-of')
+const { aimOfCall, aimOfSkill } = require('./aims')
 const { cut, parsed } = require('./text')
 
 const LIMITS = { message: 1_000_000, calls: 100, timers: 1000, listeners: 100, logLines: 1000, logCharacters: 50_000, error: 4000, name: 100, level: 10 }
@@ -20,15 +21,16 @@ const REQUEST_COST = { each: 1500, character: 20, answered: 2 }
 class Session {
   /**
    * @param {import('./engine').Guest} guest
-   * @param {{bot: object, skills: Object<string, function>, data: ?object, random: function(): number}} world
-   *   `data` the tables of minecraft-data
+   * @param {{bot: object, skills: Object<string, function>, data: ?object, random: function(): number,
+   *   aim: function(object): void}} world `data` the tables of minecraft-data; `aim` hears what the program makes for
    */
-  constructor (guest, { bot, skills, data, random }) {
+  constructor (guest, { bot, skills, data, random, aim = () => {} }) {
     this.guest = guest
     this.bot = bot
     this.skills = skills
     this.data = data
     this.random = random
+    this.aim = aim
     this.exchange = new Exchange({
       bot, functionFor: (id) => this.functionFor(id), kindOf: (value) => kindOf(value, bot), spend: (units) => this.spend(units)
     })
@@ -142,7 +144,8 @@ class Session {
     const message = cut(isError ? error.message : primitive(error), LIMITS.error)
     const name = isError && typeof error.name === 'string' && error.name !== 'RefusedError' ? cut(error.name, LIMITS.name) : 'Error'
     const place = isError ? this.places.get(error) ?? this.places.get(error.cause) : undefined
-    return { $: 'e', message, name, skill, kind: error instanceof RefusedError ? 'refused' : 'skill', stack: place }
+    const reason = reasonOf(error)
+    return { $: 'e', message, name, skill, kind: error instanceof RefusedError ? 'refused' : 'skill', ...(reason && { reason }), stack: place }
   }
 
   /** A promise of the host, under a number that the guest waits for. */
@@ -228,6 +231,7 @@ class Session {
     return this.outcomeOf(where, () => {
       const args = types.map((type, i) => type.toHost(this.exchange, missing(i, wires), `argument ${i + 1} of ${where}`))
       this.guest.charge(typeof cost === 'function' ? cost(args) : cost)
+      this.make(aimOfCall(name, args))
       return object[name](...trimmed(args))
     }, result)
   }
@@ -238,8 +242,13 @@ class Session {
     this.guest.charge(Object.hasOwn(skillCosts, name) ? skillCosts[name] : COST.call)
     return this.outcomeOf(name, () => {
       const args = wires.map((wire, i) => this.exchange.toHost(wire, `argument ${i + 1} of ${name}`))
+      this.make(aimOfSkill(name, args))
       return this.skills[name](...args)
     }, type)
+  }
+
+  make (aim) {
+    if (aim !== null) this.aim(aim)
   }
 
   outcomeOf (label, act, type) {
@@ -360,6 +369,11 @@ function plainToGuest (value) {
   if (value === null || typeof value !== 'object') return typeof value === 'function' ? { $: 'u' } : value
   if (Array.isArray(value)) return value.map(plainToGuest)
   return { $: 'o', o: Object.entries(value).filter(([, item]) => typeof item !== 'function').map(([key, item]) => [key, plainToGuest(item)]) }
+}
+
+// The pathfinder's own word for it; a skill that walked has it as its cause.
+function reasonOf (error) {
+  return [error, error?.cause].some(each => each instanceof Error && each.name === 'NoPath') ? 'no_way' : null
 }
 
 function missing (index, wires) {

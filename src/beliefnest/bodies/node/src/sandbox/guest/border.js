@@ -99,10 +99,10 @@ module.exports = function defineBorder (env) {
     return states.get(id)
   }
 
-  function decodeError ({ message, name, skill, kind, stack }) {
+  function decodeError ({ message, name, skill, kind, reason, stack }) {
     const error = new Error(message)
     if (name !== 'Error') Object.defineProperty(error, 'name', { value: name, configurable: true, writable: true })
-    errorNotes.set(error, { skill, kind, stack })
+    errorNotes.set(error, { skill, kind, reason, stack })
     return error
   }
 
@@ -150,7 +150,7 @@ module.exports = function defineBorder (env) {
     const note = errorNotes.get(error)
     const stack = note?.stack ?? error.stack ?? ''
     return '{"message":' + quote(error.message) + ',"name":' + quote(error.name) + ',"stack":' + quote(stack) +
-      (note ? ',"skill":' + encode(note.skill) + ',"kind":' + encode(note.kind) : '') + '}'
+      (note ? ',"skill":' + encode(note.skill) + ',"kind":' + encode(note.kind) + ',"reason":' + encode(note.reason) : '') + '}'
   }
 
   function settle (id, ok, value) {

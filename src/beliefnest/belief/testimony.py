@@ -1,0 +1,275 @@
+"""What claims do to nodes (semantics, section 8), after the kernel has folded their level.
+
+An entry with claims is folded level by level: who is deeper perceives what the shallower one
+has just come to believe. Who watches which place is counted by the kernel, in `Nodes`.
+"""
+
+from collections.abc import Mapping, Sequence
+from enum import StrEnum
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief import kernel
+from beliefnest.belief.arrays import UNKNOWN, Nodes
+from beliefnest.belief.columns import Columns, cell_of
+from beliefnest.belief.entries import Basis, Source
+from beliefnest.belief.holdings import NEVER, Content, Holdings, replaced_block
+from beliefnest.belief.holdings_table import HoldingsTable
+from beliefnest.belief.node_table import NodeTable
+from beliefnest.world.claims import Claim, ClaimKind, claims_of
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Event, EventKind, Items
+
+__all__ = ["Testimony", "Verdict", "believe_absent", "believe_located", "stated"]
+
+Flags = npt.NDArray[np.bool_]
+Numbers = npt.NDArray[np.int64]
+
+
+class Verdict(StrEnum):
+    """What became of a claim in a node, and by which condition (semantics, section 8)."""
+
+    NOT_HEARD = "not heard"
+    OFF = "off"
+    TAKEN_UP = "taken up"
+    OWN_PLACE = "own place"
+    SEES_KNOWN = "1a known"
+    SEES_CLAIMED = "1a claimed"
+    NO_CHANCE = "1b"
+    WORD = "3"
+    LEARNT_NOTHING = "3 grace"
+    NOT_SINCERE = "3 sincere"
+    SPEAKER = "4"
+
+    @property
+    def believed(self) -> bool:
+        """Whether the node came to hold what was claimed."""
+        return self in (Verdict.TAKEN_UP, Verdict.WORD)
+
+
+_VERDICTS = tuple(Verdict)
+_CODES = {verdict: code for code, verdict in enumerate(_VERDICTS)}
+
+
+class Testimony:
+    """The claims of one entry, being weighed by the nodes of a forest, level by level.
+
+    Args:
+        columns: The stretch of the timeline.
+        table: The nodes, of which the shallower levels are folded already.
+        holdings: Their contents.
+        entry: The entry.
+        perceived: By event of the entry and node, who perceived it; filled by the kernel.
+
+    Attributes:
+        told_cells: Nodes and cells of blocks that were taken over.
+    """
+
+    def __init__(
+        self,
+        columns: Columns,
+        table: NodeTable,
+        holdings: HoldingsTable,
+        entry: int,
+        perceived: Flags,
+    ) -> None:
+        self._table, self._holdings = table, holdings
+        self._context = table.context
+        self._tick = columns.tick(entry)
+        self._perceived = perceived
+        self.told_cells: set[tuple[int, int]] = set()
+        first = columns.events_until(entry)
+        self._claims = [
+            (row, columns.event(first + row), index, claim)
+            for row in range(len(perceived))
+            for index, claim in enumerate(claims_of(columns.event(first + row)))
+        ]
+        shape = (len(self._claims), table.count)
+        self._codes = np.full(shape, _CODES[Verdict.NOT_HEARD], dtype=np.int8)
+
+    def hear(self, level: Flags) -> None:
+        """Let the nodes of a level, node 0 excepted, take up what they take up, claim by claim."""
+        which = np.flatnonzero(level)
+        if which[0] == 0:
+            return
+        for number, (row, event, _, claim) in enumerate(self._claims):
+            speaker = self._context.numbers[str(event.actor)]
+            self._codes[number, which] = self._weighed(number, which, row, speaker, claim)
+            believed = np.isin(self._codes[number], _BELIEVED) & level
+            self._believe(np.flatnonzero(believed), event, claim)
+
+    def verdicts(self) -> Mapping[tuple[int, int], Sequence[Verdict]]:
+        """By number of event in the entry and of claim in the event, each node's verdict."""
+        return {
+            (row, index): [_VERDICTS[code] for code in self._codes[number].tolist()]
+            for number, (row, _, index, _) in enumerate(self._claims)
+        }
+
+    def _weighed(
+        self, number: int, which: Numbers, row: int, speaker: int, claim: Claim
+    ) -> npt.NDArray[np.int8]:
+        """Codes of what some nodes make of a claim (8.1, 8.3)."""
+        options, nodes = self._context.options, self._table.nodes()
+        subject = self._context.numbers.get(claim.agent or "", UNKNOWN)
+        owner, parent = nodes.agent[which], nodes.parent[which]
+        is_speaker = owner == speaker
+        heard = np.where(is_speaker, self._perceived[row, parent], self._perceived[row, which])
+        if options.testimony == "accept":
+            conditions = [(~is_speaker, Verdict.TAKEN_UP), (is_speaker, Verdict.WORD)]
+        else:
+            conditions = self._informed(number, which, speaker, claim, nodes)
+        is_reality = not self._table.path(0)
+        unknown = claim.agent is not None and subject == UNKNOWN
+        first = [
+            (~heard | unknown, Verdict.NOT_HEARD),
+            (~is_speaker & (owner == subject), Verdict.OWN_PLACE),
+            (is_speaker & (parent == 0) & is_reality, Verdict.SPEAKER),
+        ]
+        every = [*first, *conditions]
+        codes = [np.int8(_CODES[verdict]) for _, verdict in every]
+        return np.select([condition for condition, _ in every], codes).astype(np.int8)
+
+    def _informed(
+        self, number: int, which: Numbers, speaker: int, claim: Claim, nodes: Nodes
+    ) -> list[tuple[Flags, Verdict]]:
+        """Conditions in the order in which they decide, under `informed`."""
+        options = self._context.options
+        is_speaker = nodes.agent[which] == speaker
+        known, sees_known, missed = self._known(which, speaker, claim, nodes)
+        is_short = known & (missed <= options.grace)
+        up = np.isin(self._codes[number, nodes.parent[which]], [_CODES[Verdict.TAKEN_UP]])
+        others = ~is_speaker
+        return [
+            (is_speaker & is_short, Verdict.LEARNT_NOTHING),
+            (is_speaker & ~up & (not options.sincere), Verdict.NOT_SINCERE),
+            (is_speaker, Verdict.WORD),
+            (others & sees_known, Verdict.SEES_KNOWN),
+            (others & self._sees_claimed(which, claim, nodes), Verdict.SEES_CLAIMED),
+            (others & is_short, Verdict.NO_CHANCE),
+            (others, Verdict.TAKEN_UP),
+        ]
+
+    def _known(
+        self, which: Numbers, speaker: int, claim: Claim, nodes: Nodes
+    ) -> tuple[Flags, Flags, npt.NDArray[np.int64]]:
+        """By node: is there a known place, is it seen now, ticks without the speaker since."""
+        now = nodes.missed[which, speaker].astype(np.int64)
+        if claim.agent is not None:
+            subject = self._context.numbers[claim.agent]
+            known = nodes.met[which, subject] != UNKNOWN
+            seen = nodes.meets[which, subject]
+            return known, known & seen, now - nodes.met_missed[which, subject, speaker]
+        spots = self._known_spots(which, claim)
+        watched = nodes.watch_missed[which, spots, speaker]
+        known = (spots >= 0) & (watched >= 0)
+        return known, known & nodes.watched[which, spots], now - watched
+
+    def _known_spots(self, which: Numbers, claim: Claim) -> Numbers:
+        """By node, the tracked cell of the known place; -1: none."""
+        if claim.kind is ClaimKind.BLOCK:
+            here = self._table.spot(cell_of(self._context.box, claim.cell))
+            return np.full(len(which), here, dtype=np.int64)
+        item = str(claim.item)
+        spots = {cell: spot for spot, cell in enumerate(self._table.tracked.tolist())}
+        found = (self._holdings.of(node).found.get(item, -1) for node in which.tolist())
+        return np.array([spots.get(cell, UNKNOWN) for cell in found], dtype=np.int64)
+
+    def _sees_claimed(self, which: Numbers, claim: Claim, nodes: Nodes) -> Flags:
+        if claim.kind is ClaimKind.POSITION:
+            x, y, z = claim.place
+            pose = self._table.poses.add_pose((x, y, z), 0.0, 0.0)
+            poses, space = self._table.poses.arrays(), self._context.space
+            return kernel.sees_place(space, poses, nodes, which, pose)
+        spot = self._table.spot(cell_of(self._context.box, claim.cell))
+        seen: Flags = nodes.watched[which, spot]
+        return seen
+
+    def _believe(self, which: Numbers, event: Event, claim: Claim) -> None:
+        """Let nodes hold what is claimed (8.2)."""
+        if len(which) == 0:
+            return
+        speaker = str(event.actor)
+        basis = Basis(self._tick, Source.HEARD, EventKind.CHAT, speaker)
+        match claim.kind:
+            case ClaimKind.POSITION:
+                x, y, z = claim.place
+                subject = self._context.numbers[str(claim.agent)]
+                number = self._context.numbers[speaker]
+                pose = self._table.poses.add_pose((x, y, z), 0.0, 0.0, number)
+                for node in which.tolist():
+                    self._table.set_pose(node, subject, pose, self._tick, current=False)
+            case ClaimKind.BLOCK:
+                self._believe_block(which, claim, basis)
+            case ClaimKind.LOCATED | ClaimKind.ABSENT:
+                place = claim.cell
+                cell, item = cell_of(self._context.box, place), str(claim.item)
+                for node in which.tolist():
+                    if claim.kind is ClaimKind.LOCATED:
+                        believe_located(self._holdings.of(node), cell, item, basis)
+                        self._holdings.doubt(node, cell)
+                    else:
+                        believe_absent(self._holdings.of(node), cell, item, basis)
+
+    def _believe_block(self, which: Numbers, claim: Claim, basis: Basis) -> None:
+        context = self._context
+        cell, text = cell_of(context.box, claim.cell), str(claim.state)
+        old = [self._table.block(node, cell) for node in which.tolist()]
+        new = [stated(context.registry, text, state) for state in old]
+        self._table.tell(which, cell, new, basis)
+        for node, before, after in zip(which.tolist(), old, new, strict=True):
+            names = context.block_name(before), context.container_name(after)
+            replaced_block(self._holdings.of(node), cell, *names, basis)
+            self._holdings.doubt(node, cell)
+            self.told_cells.add((node, cell))
+
+
+_BELIEVED = [_CODES[verdict] for verdict in Verdict if verdict.believed]
+
+
+def stated(registry: Registry, text: str, believed: int) -> int:
+    """State of a claimed block; what is not stated of it stays as it is believed.
+
+    Args:
+        registry: Names of the blocks.
+        text: A block, `name` or `name[property=value,...]`.
+        believed: The state believed so far; -1: unknown.
+    """
+    state = registry.state_id(text)
+    name = registry.name(state)
+    if believed < 0 or registry.name(believed) != name:
+        return state
+    told = [pair.split("=") for pair in text[len(name) + 1 : -1].split(",") if pair]
+    properties = registry.properties(believed) | dict(told)
+    inner = ",".join(f"{key}={value}" for key, value in properties.items())
+    return registry.state_id(f"{name}[{inner}]" if inner else name)
+
+
+def believe_located(holdings: Holdings, cell: int, item: str, basis: Basis) -> None:
+    """Put one such item into a container, out of the one in which it was believed last."""
+    there = holdings.containers.get(cell)
+    items = {} if there is None else dict(there.items)
+    if item not in items:
+        holding = [
+            (c.basis.observed_at, -at) for at, c in holdings.containers.items() if item in c.items
+        ]
+        if holding:
+            donor = -max(holding)[1]
+            left = dict(holdings.containers[donor].items)
+            left[item] -= 1
+            _hold(holdings, donor, {name: n for name, n in left.items() if n}, basis)
+        items[item] = 1
+    _hold(holdings, cell, items, basis)
+
+
+def believe_absent(holdings: Holdings, cell: int, item: str, basis: Basis) -> None:
+    """Remove an item from a container, if it is believed to be there."""
+    there = holdings.containers.get(cell)
+    if there is not None and item in there.items:
+        left = {name: count for name, count in there.items.items() if name != item}
+        _hold(holdings, cell, left, basis)
+
+
+def _hold(holdings: Holdings, cell: int, items: Items, basis: Basis) -> None:
+    old = holdings.containers.get(cell)
+    holdings.containers[cell] = Content(items, old is not None and old.complete, basis, NEVER)

@@ -1,0 +1,41 @@
+"""How long figures take, and what a notebook shows of a nest."""
+
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from beliefnest.cli.bench.figures import Figure, median_seconds
+from beliefnest.nest.face.nest import Nest
+from beliefnest.scenarios.scenario import Scenario
+
+__all__ = ["measure"]
+
+_PATHS = ("/", "/observer", "/sally", "/observer/sally")
+_CHEST = (-2, -51, -4)
+_TIMES = 9
+
+
+def measure() -> Sequence[Figure]:
+    """Figures of the first condition of Sally-Anne, made and written."""
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        Nest.open(Scenario.load("sally-anne", condition=1)) as nest,
+    ):
+        nest.play()
+
+        def saved(ending: str) -> float:
+            file = Path(folder, f"figure.{ending}")
+            nest.figure(_PATHS).save(file)
+            return median_seconds(lambda: nest.figure(_PATHS).save(file), _TIMES) * 1000
+
+        shown = median_seconds(nest._repr_html_, _TIMES) * 1000
+        plot = median_seconds(
+            lambda: nest.plot_beliefs(_CHEST, "diamond", _PATHS)._repr_html_(), _TIMES
+        )
+        return [
+            Figure("a figure of four simulators, SVG", saved("svg"), "ms", 300.0),
+            Figure("a figure of four simulators, PDF", saved("pdf"), "ms", 300.0),
+            Figure("a figure of four simulators, PNG", saved("png"), "ms", 300.0),
+            Figure("what a notebook shows of a nest", shown, "ms", 50.0),
+            Figure("a plot of four beliefs over time", plot * 1000, "ms"),
+        ]

@@ -1,0 +1,239 @@
+"""Where a body begins with agents that cannot be where they are believed to be.
+
+A belief may be physically impossible: an agent in a doorway that is now believed shut, two agents
+in one place, a floor that is not known (semantics, section 7). Everything here is a pure function
+of the believed blocks, -1 unknown, and the believed agents. A place is the middle of an agent's
+feet; an agent takes up 0.6 by 1.8 by 0.6 blocks. Unknown blocks are in nobody's way.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+from beliefnest.world.frames import BlockGrid
+from beliefnest.world.registry import BoxBounds, Registry
+from beliefnest.world.values import AgentState, Box, Point, Position
+
+__all__ = ["FARTHEST", "BodySpace", "Placed", "moved_agents", "placed", "unknown_floors"]
+
+Placed = Mapping[str, tuple[Point, Point]]
+"""Agent to where it is believed to be and where its body begins."""
+
+FARTHEST = 3.0
+"""How far an agent is moved at most, in blocks."""
+
+_HALF_WIDTH = 0.3
+_HEIGHT = 1.8
+_TOUCH = 1e-3
+# A floor so little below the feet is settled on, not fallen to.
+_SETTLES = 0.5
+_JUMP = 1.25
+_DROP = 3.0
+_AROUND = 4
+_SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
+_HARMFUL = frozenset(
+    {"lava", "fire", "soul_fire", "magma_block", "cactus", "campfire", "soul_campfire"}
+)
+
+
+@dataclass(frozen=True, eq=False)
+class BodySpace:
+    """The believed blocks of a box, as what agents stand on and are stopped by."""
+
+    registry: Registry
+    box: Box
+    blocks: BlockGrid
+
+    def state(self, cell: Position) -> int:
+        """Block state at a cell; -1 where it is unknown, air outside the box."""
+        return int(self.blocks[self.box.index(cell)]) if cell in self.box else self.registry.air
+
+    def boxes_at(self, cell: Position) -> Iterator[BoxBounds]:
+        """Collision boxes of the block at a cell, in the coordinates of the box."""
+        state = self.state(cell)
+        x, y, z = cell
+        for x0, y0, z0, x1, y1, z1 in self.registry.boxes(state) if state >= 0 else ():
+            yield (x + x0, y + y0, z + z0, x + x1, y + y1, z + z1)
+
+    def hits(self, room: BoxBounds) -> Iterator[BoxBounds]:
+        """Collision boxes that reach into a room by more than a touch."""
+        x0, y0, z0, x1, y1, z1 = room
+        xs, zs = _span(x0, x1), _span(z0, z1)
+        # A shape may reach half a block out of its own cell, upwards.
+        for x, y, z in product(xs, _span(y0 - 1, y1), zs):
+            for box in self.boxes_at((x, y, z)):
+                sides = zip(box[:3], room[3:], box[3:], room[:3], strict=True)
+                if all(a < b - _TOUCH and c > d + _TOUCH for a, b, c, d in sides):
+                    yield box
+
+    def is_free(self, *places: Point) -> bool:
+        """Whether an agent can be at a place or, given two on a level, go straight between them."""
+        return not any(True for _ in self.hits(_body(*places)))
+
+    def has_floor(self, place: Point) -> bool:
+        """Whether known blocks hold an agent up."""
+        x, y, z = place
+        low = (x - _HALF_WIDTH, y - _SETTLES, z - _HALF_WIDTH)
+        return any(True for _ in self.hits((*low, x + _HALF_WIDTH, y, z + _HALF_WIDTH)))
+
+    def unknown_floor(self, place: Point) -> Position | None:
+        """The unknown block that an agent would fall into; None if it stands or falls on others."""
+        if self.has_floor(place):
+            return None
+        x, y, z = (math.floor(value) for value in place)
+        for level in range(y - 1, self.box.low[1] - 1, -1):
+            state = self.state((x, level, z))
+            if state < 0:
+                return (x, level, z)
+            if self.registry.boxes(state):
+                return None
+        return None
+
+    def heights(self, cell: Position) -> list[float]:
+        """Where in a cell the feet of one in its middle can be, lowest first, on known floors."""
+        x, y, z = cell
+        column = (x + 0.5 - _HALF_WIDTH, y - 1.0, z + 0.5 - _HALF_WIDTH)
+        room = (*column, x + 0.5 + _HALF_WIDTH, y + 1.0, z + 0.5 + _HALF_WIDTH)
+        tops = {box[4] for box in self.hits(room) if y <= box[4] < y + 1}
+        return [top for top in sorted(tops) if self.is_free((x + 0.5, top, z + 0.5))]
+
+    def is_clear(self, place: Point) -> bool:
+        """Whether nothing stands or burns beside an agent, in the blocks of its body or below."""
+        x, y, z = (math.floor(value) for value in place)
+        cells = [(x, y + up, z) for up in (-1, 0, 1)]
+        names = {self.registry.name(s) for cell in cells if (s := self.state(cell)) >= 0}
+        beside = (box for cell in cells for box in self.boxes_at(cell))
+        return not names & _HARMFUL and all(box[4] <= place[1] + _TOUCH for box in beside)
+
+
+def placed(
+    space: BodySpace, agents: Mapping[str, AgentState], seen_at: Mapping[str, int | None]
+) -> Placed:
+    """Who cannot be where it is believed to be, and where its body begins instead.
+
+    That is the nearest place within 3 blocks where it can stand, among those from which it can
+    walk to the block where it was last seen, if there are any. Where there is no place at all the
+    agent is left where it is. Of two in one place the one stays that was seen there last; two who
+    were seen there at the same tick did stand so, and stay.
+
+    Args:
+        space: The believed blocks.
+        agents: The believed agents.
+        seen_at: When each was last seen; None: never.
+    """
+    last = {name: -1 if tick is None else tick for name, tick in seen_at.items()}
+    moved: dict[str, tuple[Point, Point]] = {}
+    taken: list[tuple[Point, int | None]] = []
+    for name in sorted(agents, key=lambda name: (-last[name], name)):
+        agent, tick = agents[name], seen_at[name]
+        place = agent.position
+        others = [other for other, seen in taken if tick is None or seen != tick]
+        if not _can_be(space, agent) or _is_taken(place, others):
+            nearest = _nearest(space, place, [other for other, _ in taken])
+            if nearest is not None:
+                moved[name] = (place, nearest)
+                place = nearest
+        taken.append((place, tick))
+    return dict(sorted(moved.items()))
+
+
+def moved_agents(agents: Mapping[str, AgentState], moves: Placed) -> dict[str, AgentState]:
+    """The agents that are moved, where they begin."""
+    return {
+        name: replace(agents[name], position=to, on_ground=True) for name, (_, to) in moves.items()
+    }
+
+
+def unknown_floors(space: BodySpace, agents: Mapping[str, AgentState]) -> frozenset[Position]:
+    """Unknown blocks that agents would fall into; their bodies need something solid there."""
+    floors = (space.unknown_floor(agent.position) for agent in agents.values())
+    return frozenset(floor for floor in floors if floor is not None)
+
+
+def _can_be(space: BodySpace, agent: AgentState) -> bool:
+    place = agent.position
+    if not space.is_free(place):
+        return False
+    held = space.has_floor(place) or space.unknown_floor(place) is not None
+    return held or not agent.on_ground
+
+
+def _is_taken(place: Point, taken: Sequence[Point]) -> bool:
+    """Whether somebody's feet are in the same block."""
+    return _cell(place) in map(_cell, taken)
+
+
+def _nearest(space: BodySpace, place: Point, taken: Sequence[Point]) -> Point | None:
+    near = _walkable(space, _cell(place))
+    found = [
+        (_cell(to) not in near, not space.has_floor(to), math.dist(place, to), to)
+        for to in _places(space, place)
+        if math.dist(place, to) <= FARTHEST and space.is_clear(to) and not _is_taken(to, taken)
+    ]
+    return min(found)[-1] if found else None
+
+
+def _places(space: BodySpace, place: Point) -> Iterator[Point]:
+    """Where an agent can stand around a place, unknown floors included."""
+    for x, y, z in _cells_around(_cell(place)):
+        # Who stands on the topmost blocks has its feet above them.
+        if (x, min(y, space.box.high[1]), z) in space.box:
+            for height in _levels(space, (x, y, z)):
+                yield (x + 0.5, height, z + 0.5)
+
+
+def _levels(space: BodySpace, cell: Position) -> list[float]:
+    """The heights of a cell, or its lower face if the floor there is unknown."""
+    x, y, z = cell
+    known = space.heights(cell)
+    if known or space.state((x, y - 1, z)) >= 0 or not space.is_free((x + 0.5, y, z + 0.5)):
+        return known
+    return [float(y)]
+
+
+def _walkable(space: BodySpace, goal: Position) -> set[Position]:
+    """Cells from whose middle one can walk to the middle of a cell, itself included."""
+    around = set(_cells_around(goal))
+    waiting = [(goal, height) for height in _levels(space, goal)]
+    seen = set(waiting)
+    while waiting:
+        (x, y, z), height = waiting.pop()
+        for (dx, dz), up in product(_SIDES, range(-1, 4)):
+            cell = (x + dx, y + up, z + dz)
+            for other in space.heights(cell) if cell in around else ():
+                higher, step = max(height, other), (cell, other)
+                ends = (x + 0.5, higher, z + 0.5), (cell[0] + 0.5, higher, cell[2] + 0.5)
+                climbs = -_DROP <= height - other <= _JUMP
+                if climbs and step not in seen and space.is_free(*ends):
+                    seen.add(step)
+                    waiting.append(step)
+    return {cell for cell, _ in seen}
+
+
+def _cells_around(cell: Position) -> Iterator[Position]:
+    reach = range(-_AROUND, _AROUND + 1)
+    for dx, dy, dz in product(reach, reach, reach):
+        yield (cell[0] + dx, cell[1] + dy, cell[2] + dz)
+
+
+def _span(low: float, high: float) -> range:
+    return range(math.floor(low), math.floor(high) + 1)
+
+
+def _cell(place: Point) -> Position:
+    x, y, z = (math.floor(value) for value in place)
+    return (x, y, z)
+
+
+def _body(*places: Point) -> BoxBounds:
+    """The room that an agent takes up at places and between them."""
+    xs, ys, zs = zip(*places, strict=True)
+    return (
+        min(xs) - _HALF_WIDTH,
+        min(ys),
+        min(zs) - _HALF_WIDTH,
+        max(xs) + _HALF_WIDTH,
+        max(ys) + _HEIGHT,
+        max(zs) + _HALF_WIDTH,
+    )

@@ -1,0 +1,96 @@
+"""What bodies are filled with: what a timeline says, made possible where it is a belief's."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from beliefnest.belief.entries import Source
+from beliefnest.belief.node_view import NodeView
+from beliefnest.nest.acting.placement import BodySpace, moved_agents, placed, unknown_floors
+from beliefnest.nest.past.body_state import snapshot_at
+from beliefnest.nest.past.history import History
+from beliefnest.nest.past.placing import fork_of_belief
+from beliefnest.timeline.journal import ForkPoint, Journal
+from beliefnest.world.frames import BlockGrid, Frame, Snapshot
+from beliefnest.world.values import AgentState, Position
+
+__all__ = ["Start", "start_of"]
+
+Path = tuple[str, ...]
+
+_FLOOR = "barrier"
+"""What stands in a body for a floor that is unknown and holds somebody up."""
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """What a body begins with, and what is to be recorded of that.
+
+    Attributes:
+        snapshot: What the body is filled with.
+        frame: Where it begins with agents that cannot be where they are believed to be; None if
+            there are none.
+    """
+
+    snapshot: Snapshot
+    frame: Frame | None = None
+
+
+def start_of(
+    journal: Journal, history: History, path: Path, moment: ForkPoint, *, has_physics: bool
+) -> Start:
+    """What a body of the node `path`, the timeline's own or one below it, begins with.
+
+    Args:
+        journal: The timelines.
+        history: Their states.
+        path: The node.
+        moment: Of a timeline; if it is not the node's own, the node is about to be forked.
+        has_physics: Whether agents in the body stand, fall and are stopped by blocks.
+    """
+    snapshot = snapshot_at(journal, history, path, moment)
+    if not has_physics:
+        return Start(snapshot)
+    if moment.timeline.path != path:
+        return _begun(snapshot, history.reading(moment.timeline, path, moment.entries), history)
+    fork = fork_of_belief(journal, moment.timeline)
+    if fork is None:
+        return Start(snapshot)
+    # Floors stay where they were when the body began, for as long as nothing is known of them.
+    blocks = history.reading(moment.timeline, path, moment.entries).blocks
+    if not (blocks < 0).any():
+        return Start(snapshot)
+    _, base = fork
+    believed = history.reading(base.timeline, path, base.entries)
+    begun = _begun(believed.snapshot(), believed, history).snapshot.agents
+    space = BodySpace(history.context.registry, snapshot.box, believed.blocks)
+    return Start(_floored(snapshot, blocks, unknown_floors(space, begun), history))
+
+
+def _begun(snapshot: Snapshot, believed: NodeView, history: History) -> Start:
+    """A body of a belief, with agents where they can be and unknown floors that hold them."""
+    space = BodySpace(history.context.registry, snapshot.box, believed.blocks)
+    seen_at = {}
+    for name in snapshot.agents:
+        basis = believed.agents[name].basis
+        seen = basis is not None and basis.source is not Source.PRIOR
+        seen_at[name] = basis.observed_at if basis is not None and seen else None
+    moved = moved_agents(snapshot.agents, placed(space, snapshot.agents, seen_at))
+    agents: dict[str, AgentState] = {**snapshot.agents, **moved}
+    floors = unknown_floors(space, agents)
+    filled = _floored(replace(snapshot, agents=agents), believed.blocks, floors, history)
+    return Start(filled, Frame(snapshot.tick, agents=moved) if moved else None)
+
+
+def _floored(
+    snapshot: Snapshot, known: BlockGrid, floors: Iterable[Position], history: History
+) -> Snapshot:
+    cells = [snapshot.box.index(floor) for floor in floors]
+    cells = [cell for cell in cells if known[cell] < 0]
+    if not cells:
+        return snapshot
+    blocks = np.array(snapshot.blocks)
+    for cell in cells:
+        blocks[cell] = history.context.registry.state_id(_FLOOR)
+    return replace(snapshot, blocks=blocks)

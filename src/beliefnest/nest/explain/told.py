@@ -1,0 +1,214 @@
+"""Claims that were made: who heard them, whether they were false or lies, who took them up."""
+
+from collections.abc import Iterator
+from functools import cached_property
+
+import numpy as np
+
+from beliefnest.belief.forest import Forest
+from beliefnest.belief.testimony import Verdict
+from beliefnest.belief.view import State
+from beliefnest.errors import InputError
+from beliefnest.nest.past.recording import Recording
+from beliefnest.prompts.text import block_name, block_properties
+from beliefnest.timeline.journal import EntryFilter, TimelineKey
+from beliefnest.world.claims import Claim, ClaimKind, claims_of
+from beliefnest.world.frames import Frame
+from beliefnest.world.paths import parse_path, path_text
+from beliefnest.world.values import Event
+
+__all__ = ["ToldClaim", "claims_told", "says_otherwise"]
+
+Path = tuple[str, ...]
+
+
+class ToldClaim:
+    """A claim that was made, and what became of it; worked out when it is asked for.
+
+    Attributes:
+        tick: When it was made.
+        speaker: Who made it.
+        addressee: To whom it was whispered; None: it was said aloud.
+        text: The words it was made with.
+        claim: What was claimed.
+    """
+
+    def __init__(
+        self,
+        recording: Recording,
+        key: TimelineKey,
+        place: tuple[int, int, int],
+        frame: Frame,
+        claim: Claim,
+    ) -> None:
+        event: Event = frame.events[place[1]]
+        self.tick = frame.tick
+        self.speaker = str(event.actor)
+        self.addressee: str | None = event.detail.get("to")
+        self.text: str = event.detail["text"]
+        self.claim = claim
+        self._recording, self._key = recording, key
+        self._entry, self._row, self._index = place
+
+    def __repr__(self) -> str:
+        to = "" if self.addressee is None else f" to {self.addressee}"
+        return f"<tick {self.tick}: {self.speaker} claims{to} that {self.claim}>"
+
+    @cached_property
+    def hearers(self) -> tuple[str, ...]:
+        """Who heard it, the speaker excepted, in order of names."""
+        others = [name for name in self._recording.agents if name != self.speaker]
+        return tuple(name for name in others if self._is_heard((*self._key.path, name)))
+
+    @cached_property
+    def false(self) -> bool:
+        """Whether the world it was made in said otherwise at its tick."""
+        return says_otherwise(self._state(self._key.path), self.claim)
+
+    @cached_property
+    def lie(self) -> bool:
+        """Whether the speaker believed otherwise."""
+        return says_otherwise(self._state((*self._key.path, self.speaker)), self.claim)
+
+    def taken_up(self, path: str) -> bool:
+        """Whether it changed what a simulator holds, or holds the speaker to believe.
+
+        Raises:
+            PathError: The path is malformed or names an unknown agent.
+            InputError: It is no belief in the world in which the claim was made.
+        """
+        return self._verdict(path).believed
+
+    def why(self, path: str) -> str:
+        """Why it was taken up, or by which condition it was not; errors as for `taken_up`."""
+        verdict = self._verdict(path)
+        return _words(verdict, parse_path(path, self._recording.agents), self)
+
+    def grace(self) -> int:
+        """Ticks out of sight that a speaker needs to know better."""
+        return self._recording.setting.perception.grace
+
+    def _verdict(self, path: str) -> Verdict:
+        names = parse_path(path, self._recording.agents)
+        root = self._key.path
+        if names[: len(root)] != root or len(names) == len(root):
+            raise InputError(
+                f"{path!r} is no belief in {path_text(root)}, where the claim was made; "
+                f"ask for one such as {path_text((*root, self._recording.agents[0]))}"
+            )
+        with self._recording.turn:
+            if self._recording.setting.perception.testimony == "none":
+                return Verdict.OFF
+            forest = self._after(names)
+            return forest.verdicts[self._row, self._index][forest.table.index[names]]
+
+    def _after(self, path: Path) -> Forest:
+        """A forest with a node, just after the claim."""
+        steps = self._recording.history.steps(self._key, path, self._entry, self._entry + 1)
+        *_, forest = steps
+        return forest
+
+    def _is_heard(self, path: Path) -> bool:
+        with self._recording.turn:
+            forest = self._after(path)
+            first = forest.columns.events_until(self._entry)
+            count = forest.count_of_events
+            heard = forest.hearing.of(forest.table.index[path], count)
+            return bool(np.asarray(heard)[first + self._row])
+
+    def _state(self, path: Path) -> State:
+        with self._recording.turn:
+            return self._recording.state_after(self._key, path, self._entry + 1, self.tick)
+
+
+def claims_told(recording: Recording, path: Path, tick: int | None) -> list[ToldClaim]:
+    """All claims made in a simulator, oldest first.
+
+    Args:
+        recording: The nest's.
+        path: The simulator, or one that follows it.
+        tick: The last tick that counts; None: all.
+    """
+    place: tuple[TimelineKey, int] | None
+    info = recording.info(path)
+    place = (info.key, info.entries) if tick is None else recording.place_of(info.key, tick)
+    parts = []
+    while place is not None:
+        key, count = place
+        parts.append(list(_told(recording, key, count)))
+        base = recording.journal.info(key).base
+        same = base is not None and base.timeline.path == key.path
+        place = (base.timeline, base.entries) if base is not None and same else None
+    return [claim for part in reversed(parts) for claim in part]
+
+
+def _told(recording: Recording, key: TimelineKey, count: int) -> Iterator[ToldClaim]:
+    for number, entry in recording.journal.filtered(key, 0, count, EntryFilter.EVENTS):
+        if isinstance(entry, Frame):
+            for row, event in enumerate(entry.events):
+                for index, claim in enumerate(claims_of(event)):
+                    yield ToldClaim(recording, key, (number, row, index), entry, claim)
+
+
+def says_otherwise(state: State, claim: Claim) -> bool:
+    """Whether a state contradicts a claim; what it does not know it does not contradict."""
+    match claim.kind:
+        case ClaimKind.POSITION:
+            believed = state.agents[str(claim.agent)].position
+            return believed is not None and _cell(believed) != claim.cell
+        case ClaimKind.BLOCK:
+            return _is_other_block(state.blocks[claim.cell], str(claim.state))
+        case ClaimKind.ABSENT:
+            content = state.containers.get(claim.cell)
+            return content is not None and claim.item in content.items
+        case ClaimKind.LOCATED:
+            return _is_elsewhere(state, claim)
+
+
+def _cell(point: tuple[float, float, float]) -> tuple[int, ...]:
+    return tuple(int(np.floor(value)) for value in point)
+
+
+def _is_other_block(block: str | None, stated: str) -> bool:
+    if block is None:
+        return False
+    told, held = block_properties(stated), block_properties(block)
+    same = block_name(block) == block_name(stated)
+    return not same or any(held.get(name) != value for name, value in told.items())
+
+
+def _is_elsewhere(state: State, claim: Claim) -> bool:
+    """Whether an item is known to be missing in the container, or believed to be elsewhere."""
+    content = state.containers.get(claim.cell)
+    if content is not None and claim.item in content.items:
+        return False
+    if content is not None and content.complete:
+        return True
+    known = state.blocks[claim.cell]
+    if content is None and known is not None:
+        return True
+    others = any(claim.item in held.items for held in state.containers.values())
+    return others or any(claim.item in agent.inventory for agent in state.agents.values())
+
+
+def _words(verdict: Verdict, path: Path, told: ToldClaim) -> str:
+    """A verdict in words, and the condition that decided it."""
+    me, speaker, grace = path[-1], told.speaker, told.grace()
+    outer = path[-2] if len(path) > 1 else None
+    words = {
+        Verdict.TAKEN_UP: f"{me} believes what {speaker} said; nothing spoke against it",
+        Verdict.NOT_HEARD: f"{me} did not hear it",
+        Verdict.OFF: "testimony is 'none': what is said is known as text alone",
+        Verdict.OWN_PLACE: f"{me} knows where {me} is",
+        Verdict.SEES_KNOWN: f"{me} sees where it was last perceived, and needs no telling (1a)",
+        Verdict.SEES_CLAIMED: f"{me} sees the place that is spoken of, and needs no telling (1a)",
+        Verdict.NO_CHANCE: f"{me} did not lose sight of {speaker} for more than {grace} ticks "
+        f"since it last watched the place, so {speaker} cannot know better (1b)",
+        Verdict.WORD: f"{speaker} believes what {speaker} says (3)",
+        Verdict.LEARNT_NOTHING: f"{speaker} was out of sight for at most {grace} ticks since it "
+        "last watched the place, and can have learnt nothing new (3)",
+        Verdict.NOT_SINCERE: f"{outer} does not believe it, nor that {speaker} does "
+        "(3, sincere: false)",
+        Verdict.SPEAKER: f"what {speaker} says changes nothing of what {speaker} believes (4)",
+    }[verdict]
+    return words if outer is None or verdict is Verdict.OFF else f"as far as {outer} knows, {words}"

@@ -1,0 +1,82 @@
+"""Which blocks claims are about, so that it is known from the beginning who watches them.
+
+Whether a hearer takes a claim up depends on when it last saw the place (semantics, section 8).
+Who sees a cell is kept only for cells that are tracked: containers, doors and switches from
+the start, any other block from the first claim about it, for which timelines are folded anew.
+"""
+
+import numpy as np
+
+from beliefnest.belief.columns import cell_of
+from beliefnest.belief.context import BeliefContext
+from beliefnest.timeline.journal import EntryFilter, Journal, TimelineKey
+from beliefnest.world.claims import ClaimKind, claims_of
+from beliefnest.world.frames import Frame, Snapshot
+
+__all__ = ["ClaimedBlocks"]
+
+_SWITCHES = ("_door", "_trapdoor", "_fence_gate", "lever", "_button", "_sign")
+
+
+class ClaimedBlocks:
+    """The cells that have to be tracked from the beginning of every timeline.
+
+    Args:
+        journal: The timelines.
+        context: What all nodes share; it tracks the cells from now on.
+        snapshot: The real world at its first tick.
+
+    Attributes:
+        cells: The cells so far.
+    """
+
+    def __init__(self, journal: Journal, context: BeliefContext, snapshot: Snapshot) -> None:
+        self._journal = journal
+        self._context = context
+        self._weighs = context.options.testimony == "informed"
+        self._read: dict[TimelineKey, int] = {}
+        self.cells = frozenset(_switches(context, snapshot)) if self._weighs else frozenset()
+        context.track(sorted(self.cells))
+
+    def read(self, key: TimelineKey) -> bool:
+        """Read what was added to a timeline; returns whether there are new cells."""
+        count, first = self._journal.info(key).entries, self._read.get(key, 0)
+        if not self._weighs or count == first:
+            return False
+        self._read[key] = count
+        found = {
+            cell_of(self._context.box, claim.cell)
+            for _, entry in self._journal.filtered(key, first, count, EntryFilter.EVENTS)
+            if isinstance(entry, Frame)
+            for event in entry.events
+            for claim in claims_of(event)
+            if claim.kind is ClaimKind.BLOCK
+        }
+        new = found - self.cells
+        self.cells |= new
+        self._context.track(sorted(new))
+        return bool(new)
+
+    def forget(self, key: TimelineKey) -> None:
+        """Read a timeline anew, which was deleted or renamed."""
+        self._read.pop(key, None)
+
+    def forget_all(self) -> None:
+        """Read all timelines anew."""
+        self._read.clear()
+
+
+def _switches(context: BeliefContext, snapshot: Snapshot) -> list[int]:
+    """Cells of doors, gates, levers, buttons, signs and containers at the start."""
+    states = np.unique(snapshot.blocks).tolist()
+    registry = context.registry
+    wanted = [
+        state
+        for state in states
+        if state >= 0
+        and (
+            registry.name(state).endswith(_SWITCHES) or registry.is_container(registry.name(state))
+        )
+    ]
+    cells: list[int] = np.flatnonzero(np.isin(snapshot.blocks.ravel(), wanted)).tolist()
+    return cells

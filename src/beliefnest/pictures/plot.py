@@ -1,0 +1,211 @@
+"""Beliefs over time: a row for each simulator, a band for each value it held."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from beliefnest.pictures import icons
+from beliefnest.pictures.figure import MARGIN, TEXT_SIZE, Figure
+from beliefnest.pictures.lettering import ASCENT, ellipsis, text_width, wrap
+from beliefnest.pictures.marks import XY, Drawing, Lines, Rectangle, Text
+from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.palette import AGENT_COLOURS, INK, MARKS, PAPER, QUIET, Mark, mix
+from beliefnest.pictures.panel import Block, paragraph
+from beliefnest.pictures.plan import hatching
+
+__all__ = ["Act", "Band", "Row", "belief_plot"]
+
+_HIGH = 15.0
+_STEP = 21.0
+_ACT = TEXT_SIZE * 0.95
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    """A value that was held for a while.
+
+    Attributes:
+        start: First tick.
+        end: First tick at which it was held no more; for the last one the end of the plot.
+        words: The value; empty: nothing was known.
+        false: Whether reality was otherwise.
+    """
+
+    start: int
+    end: int
+    words: str
+    false: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """What one simulator held.
+
+    Attributes:
+        path: Belief path.
+        bands: In order of time, without gaps.
+    """
+
+    path: str
+    bands: tuple[Band, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Act:
+    """A deed that mattered.
+
+    Attributes:
+        tick: When.
+        words: Who did what.
+    """
+
+    tick: int
+    words: str
+
+
+def belief_plot(rows: Sequence[Row], acts: Sequence[Act], title: str) -> Figure:
+    """The figure of beliefs over time."""
+    return Figure(lambda width: _draw(rows, acts, title, width), 174.0, title)
+
+
+def _draw(rows: Sequence[Row], acts: Sequence[Act], title: str, width: float) -> Drawing:
+    head = Block(bottom=MARGIN)
+    paragraph(head, title, MARGIN, width - 2 * MARGIN, TEXT_SIZE * 1.2, bold=True)
+    # Names stand beside their rows if they leave most of the width to them, else above.
+    widest = max(text_width(row.path, TEXT_SIZE, bold=True) for row in rows)
+    beside = widest < width * 0.3
+    left = MARGIN + (widest + 6 if beside else 0)
+    chart = _Chart(rows, (left, width - MARGIN - 8))
+    marks: list[Drawn] = list(head.marks)
+    top = _acts(chart, acts, head.bottom + 3, marks)
+    first = top
+    for row in rows:
+        if beside:
+            base = top + _HIGH / 2 + TEXT_SIZE * ASCENT * 0.48
+            marks.append(Text(MARGIN, base, row.path, TEXT_SIZE, INK, bold=True))
+        else:
+            block = Block(bottom=top)
+            paragraph(block, row.path, MARGIN, width - 2 * MARGIN, TEXT_SIZE, bold=True)
+            marks += block.marks
+            top = block.bottom
+        marks += _bands(chart, row, top)
+        top += _STEP
+    lines = tuple(((chart.x(act.tick), first - 1.5), (chart.x(act.tick), top - 4)) for act in acts)
+    if lines:
+        marks.append(Lines(lines, INK, 0.4))
+    bottom = _axis(chart, top - 3, marks)
+    bottom = _legend(chart, (MARGIN, bottom + 4), width - 2 * MARGIN, marks)
+    return Drawing(width, bottom + MARGIN, tuple(marks), title)
+
+
+class _Chart:
+    """From ticks to places, from values to colours."""
+
+    def __init__(self, rows: Sequence[Row], span: XY) -> None:
+        self.start = min(row.bands[0].start for row in rows)
+        self.end = max(self.start + 1, *(row.bands[-1].end for row in rows))
+        self._span = span
+        words = dict.fromkeys(band.words for row in rows for band in row.bands if band.words)
+        self.fills: Mapping[str, str] = {
+            value: mix(PAPER, AGENT_COLOURS[n % len(AGENT_COLOURS)], 0.45)
+            for n, value in enumerate(words)
+        }
+        self.false = any(band.false for row in rows for band in row.bands)
+        self.unknown = any(not band.words for row in rows for band in row.bands)
+
+    def x(self, tick: int) -> float:
+        """Where a tick is."""
+        low, high = self._span
+        return low + (high - low) * (tick - self.start) / (self.end - self.start)
+
+
+def _acts(chart: _Chart, acts: Sequence[Act], top: float, marks: list[Drawn]) -> float:
+    """The words of deeds, each in the first line in which it touches no other."""
+    ends: list[float] = []
+    low, high = chart.x(chart.start), chart.x(chart.end)
+    for act in acts:
+        words = ellipsis(act.words, _ACT, high - low)
+        wide = text_width(words, _ACT)
+        x = max(low, min(high - wide, chart.x(act.tick) - wide / 2))
+        lane = next((n for n, end in enumerate(ends) if end + 3 <= x), len(ends))
+        if lane == len(ends):
+            ends.append(0.0)
+        ends[lane] = x + wide
+        marks.append(Text(x, top + lane * _ACT * 1.3 + _ACT * ASCENT, words, _ACT, QUIET))
+    return top + len(ends) * _ACT * 1.3 + 3
+
+
+def _bands(chart: _Chart, row: Row, top: float) -> list[Drawn]:
+    marks: list[Drawn] = []
+    for band in row.bands:
+        x0, x1 = chart.x(band.start), chart.x(band.end)
+        wide = max(x1 - x0, 0.8)
+        marks += _swatch(chart, band.words, (x0, top), wide, _HIGH)
+        inner = x0 + 3.0
+        if band.false:
+            colour = MARKS[Mark.FALSE].colour
+            marks.append(Rectangle(x0, top, wide, _HIGH, None, colour, 1.1))
+            if wide > 11:
+                marks += icons.false_sign((x0 + 6, top + _HIGH / 2), 3.0)
+                inner = x0 + 12.5
+        words = band.words or MARKS[Mark.UNKNOWN].words
+        if inner + text_width(words, TEXT_SIZE) < x1 - 2:
+            base = top + _HIGH / 2 + TEXT_SIZE * ASCENT * 0.48
+            marks.append(Text(inner, base, words, TEXT_SIZE, INK, halo=None))
+    return marks
+
+
+def _swatch(chart: _Chart, words: str, at: XY, wide: float, high: float) -> list[Drawn]:
+    """The look of a value; what is unknown is hatched."""
+    x, y = at
+    if words:
+        return [Rectangle(x, y, wide, high, chart.fills[words], mix(PAPER, INK, 0.5), 0.3)]
+    lines = hatching((x, y, x + wide, y + high), 1, 3.0)
+    area: list[Drawn] = [Rectangle(x, y, wide, high, PAPER, mix(PAPER, INK, 0.5), 0.3)]
+    return [*area, Lines(lines, mix(PAPER, INK, 0.2), 0.4)] if lines else area
+
+
+def _axis(chart: _Chart, top: float, marks: list[Drawn]) -> float:
+    low, high = chart.x(chart.start), chart.x(chart.end)
+    widest = text_width(str(chart.end), TEXT_SIZE)
+    step = _round_step((chart.end - chart.start) / max(1.0, (high - low) / (widest * 2.2)))
+    ticks = list(range(-(-chart.start // step) * step, chart.end + 1, step))
+    strokes = (
+        ((low, top), (high, top)),
+        *(((chart.x(t), top), (chart.x(t), top + 2)) for t in ticks),
+    )
+    marks.append(Lines(tuple(strokes), INK, 0.4))
+    base = top + 3.5 + TEXT_SIZE * ASCENT
+    marks += [Text(chart.x(t), base, str(t), TEXT_SIZE, QUIET, anchor="middle") for t in ticks]
+    marks.append(Text(high, base + TEXT_SIZE * 1.2, "tick", TEXT_SIZE, QUIET, anchor="end"))
+    return base + TEXT_SIZE * 1.5
+
+
+def _round_step(least: float) -> int:
+    """The least of 1, 2, 5, 10, 20, ... that is not below a number."""
+    power = 10 ** max(0, math.floor(math.log10(max(least, 1.0))))
+    return next(int(power * n) for n in (1, 2, 5, 10) if power * n >= least or n == 10)
+
+
+def _legend(chart: _Chart, at: XY, width: float, marks: list[Drawn]) -> float:
+    x, top = at
+    entries = [*chart.fills, *([""] if chart.unknown else [])]
+    wide, high = 13.0, TEXT_SIZE * 1.15
+    for words in [*entries, *(["false"] if chart.false else [])]:
+        told = words or MARKS[Mark.UNKNOWN].words
+        false = words == "false" and words not in chart.fills
+        told = "false: reality is otherwise" if false else told
+        told = " ".join(wrap(ellipsis(told, TEXT_SIZE, width - wide - 3), TEXT_SIZE, width))
+        taken = wide + 3 + text_width(told, TEXT_SIZE)
+        if x > at[0] and x + taken > at[0] + width:
+            x, top = at[0], top + high * 1.5
+        if false:
+            colour = MARKS[Mark.FALSE].colour
+            marks.append(Rectangle(x, top, wide, high, None, colour, 1.1))
+            marks += icons.false_sign((x + wide / 2, top + high / 2), 2.6)
+        else:
+            marks += _swatch(chart, words, (x, top), wide, high)
+        base = top + high / 2 + TEXT_SIZE * ASCENT * 0.48
+        marks.append(Text(x + wide + 3, base, told, TEXT_SIZE, QUIET))
+        x += taken + TEXT_SIZE * 1.5
+    return top + high

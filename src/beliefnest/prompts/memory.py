@@ -1,0 +1,144 @@
+"""Filters that tell what is known from what is not, how old a memory is and where it came from."""
+
+from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
+from beliefnest.belief.view import State
+from beliefnest.prompts import actions, text
+from beliefnest.prompts.filterset import filter
+from beliefnest.prompts.view import BranchView
+from beliefnest.world.values import TICKS_PER_SECOND, EventKind, Position
+
+__all__ = ["FILTERS", "memory"]
+
+_SWITCHES = ("lever", "_button")
+_DOORS = ("_door", "_trapdoor", "_fence_gate")
+_SAYINGS = frozenset({EventKind.CHAT, EventKind.THINK})
+
+
+@filter("containers")
+def containers(branch: BranchView) -> str:
+    """Known containers, one a line: what is known of each, and where that comes from.
+
+    What a container holds is `known`, `known in part` (there may be more in it) or `unknown`.
+    What it is called and looks as if it held is told if the scenario says `labels: true`.
+    `Not observed` when no container is known.
+    """
+    state = branch.state
+    lines = [_container(branch, at, state.containers[at]) for at in sorted(state.containers)]
+    return "\n".join(lines) or text.NOT_OBSERVED
+
+
+def _container(branch: BranchView, at: Position, content: ContainerBelief) -> str:
+    block = branch.state.blocks[at]
+    name = "container" if block is None else text.block_name(block)
+    label = branch.labels.get(at)
+    called = "" if label is None else f" ({text.one_line(label)})"
+    return f"{text.position(at)} {name}{called}: {_holds(branch.state, content)}"
+
+
+def _holds(state: State, content: ContainerBelief) -> str:
+    came = memory(state, content.basis, current=content.current)
+    if content.complete:
+        return f"known, {text.mapping(content.items) if content.items else 'empty'}; {came}"
+    if content.items:
+        return f"known in part, {text.mapping(content.items)} and maybe more; {came}"
+    return "unknown"
+
+
+@filter("whereabouts")
+def whereabouts(branch: BranchView) -> str:
+    """Every agent but the owner, one a line: where it is believed to be, and where that comes from.
+
+    With what it holds in its hand and is known to have. `unknown` for a place never learnt of.
+    """
+    state = branch.state
+    return "\n".join(
+        f"{name}: {_agent(state, state.agents[name])}"
+        for name in sorted(state.agents)
+        if name != state.owner
+    )
+
+
+def _agent(state: State, agent: AgentBelief) -> str:
+    parts = ["unknown"]
+    if agent.position is not None and agent.basis is not None:
+        came = memory(state, agent.basis, current=agent.current)
+        parts = [f"at {text.point(agent.position)}; {came}"]
+    held = (agent.equipment or {}).get("main_hand")
+    parts += [] if held is None else [f"{held} in its hand"]
+    parts += [f"known to have {text.mapping(agent.inventory)}"] if agent.inventory else []
+    return "; ".join(parts)
+
+
+@filter("mechanisms")
+def mechanisms(branch: BranchView) -> str:
+    """Known doors, trapdoors, gates, levers and buttons, one a line: open or shut, on or off.
+
+    With where that comes from, and who was last perceived to use it. `Not observed` when none
+    is known.
+    """
+    state = branch.state
+    lines = []
+    for at in state.blocks:
+        block = state.blocks[at]
+        stands = None if block is None else _stands(block)
+        if block is not None and stands is not None:
+            basis = state.blocks.basis(at)
+            came = "" if basis is None else f"; {_memory_of_block(state, at, basis)}"
+            lines.append(
+                f"{text.position(at)} {text.block_name(block)}: {stands}{came}{_use(state, at)}"
+            )
+    return "\n".join(lines) or text.NOT_OBSERVED
+
+
+def _memory_of_block(state: State, at: Position, basis: Basis) -> str:
+    return memory(state, basis, current=state.blocks.current(at))
+
+
+def _stands(block: str) -> str | None:
+    """Whether a door is open or a switch on; None for another block, or a door's upper half."""
+    name, properties = text.block_name(block), text.block_properties(block)
+    if name.endswith(_DOORS):
+        upper = properties.get("half") == "upper" and "hinge" in properties
+        return None if upper else "open" if properties.get("open") == "true" else "shut"
+    if name.endswith(_SWITCHES):
+        return "on" if properties.get("powered") == "true" else "off"
+    return None
+
+
+def _use(state: State, at: Position) -> str:
+    uses = [event for event in state.events if _is_use(event, at)]
+    if not uses:
+        return ""
+    last = uses[-1]
+    return f"; last used by {last.actor} {_age(state, last.tick)} ({actions.action_name(last)})"
+
+
+def _is_use(event: PerceivedEvent, at: Position) -> bool:
+    is_deed = event.actor is not None and event.kind not in _SAYINGS
+    return is_deed and event.detail.get("position") == at
+
+
+def memory(state: State, basis: Basis, *, current: bool) -> str:
+    """Where what a state holds comes from and how old that is, as `seen 2 s ago`."""
+    if current:
+        return "seen now"
+    age = _age(state, basis.observed_at)
+    match basis.source:
+        case Source.PRIOR:
+            return "believed from the start"
+        case Source.SEEN:
+            return f"seen {age}"
+        case Source.WITNESSED:
+            return f"witnessed {age}"
+        case Source.HEARD:
+            return f"heard {age}" if basis.speaker is None else f"heard from {basis.speaker} {age}"
+        case Source.EDITED:
+            return f"edited {age}"
+
+
+def _age(state: State, tick: int) -> str:
+    return f"{text.number(round((state.tick - tick) / TICKS_PER_SECOND, 1))} s ago"
+
+
+FILTERS = (containers, whereabouts, mechanisms)
+"""The filters of this module."""

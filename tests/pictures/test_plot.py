@@ -1,0 +1,80 @@
+"""Plots of beliefs over time show what was held when, and where it was false."""
+
+from collections.abc import Iterator
+
+import pytest
+from tests.pictures.measuring import faults, texts
+
+import beliefnest as bn
+from beliefnest.pictures.plot import Act, Band, Row, belief_plot
+
+CHEST = (3, 1, 3)
+LONG = ("abcdefghijklmnop", "qrstuvwxyzabcdef")
+
+
+@pytest.fixture
+def nest() -> Iterator[bn.Nest]:
+    """Sally puts a diamond away and goes behind a wall; Anne takes it out."""
+    blocks = {(x, 0, z): "stone" for x in range(10) for z in range(10)}
+    blocks |= {(x, y, 5): "bricks" for x in range(10) for y in (1, 2, 3)}
+    world = bn.ScriptedWorld(
+        ((0, 0, 0), (9, 4, 9)),
+        blocks,
+        {"sally": (2.5, 1, 2.5), "anne": (4.5, 1, 2.5)},
+        inventories={"sally": {"diamond": 1}},
+        containers={CHEST: {}},
+    )
+    with bn.Nest(world, static_blocks=["stone", "bricks"]) as nest:
+        world.step(4)
+        world.deposit("sally", CHEST, {"diamond": 1})
+        world.place_agent("sally", (2.5, 1, 7.5))
+        world.withdraw("anne", CHEST, {"diamond": 1})
+        world.step(3)
+        yield nest
+
+
+def test_bands_begin_and_end_with_what_was_held_and_are_false_where_they_are(
+    nest: bn.Nest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[tuple[list[Row], list[Act]]] = []
+    target = "beliefnest.nest.face.plotting.belief_plot"
+    monkeypatch.setattr(target, lambda rows, acts, _: drawn.append((rows, acts)))
+    nest.plot_beliefs(CHEST, "diamond", ["/", "/sally", "/anne/sally"])
+    ((rows, acts),) = drawn
+    assert rows[0].bands == (
+        Band(0, 5, "no diamond", False),
+        Band(5, 7, "1 diamond", False),
+        Band(7, 11, "no diamond", False),
+    )
+    held = (Band(0, 5, "", False), Band(5, 7, "1 diamond", False), Band(7, 11, "1 diamond", True))
+    assert rows[1] == Row("/sally", held)
+    assert [band.false for band in rows[2].bands][-1]
+    assert acts == [Act(5, "sally puts in"), Act(7, "anne takes out")]
+
+
+@pytest.mark.parametrize("size", [None, "one column", 50])
+def test_nothing_collides_however_many_deeds_and_values(nest: bn.Nest, size: object) -> None:
+    path = f"/{LONG[0]}/{LONG[1]}/{LONG[0]}"
+    bands = tuple(Band(t, t + 3, f"{t % 7} oak_log", t % 2 == 0) for t in range(0, 90, 3))
+    acts = [Act(t, f"{LONG[t % 2]} takes out") for t in range(0, 90, 4)]
+    many = belief_plot([Row("/", bands), Row(path, bands)], acts, "What is believed " * 5)
+    plain = nest.plot_beliefs(CHEST, paths=["/", "/sally"])
+    for figure in (many, plain):
+        assert faults(figure.drawing(size)) == []  # type: ignore[arg-type]
+    assert "sally puts in" in texts(plain.drawing())
+
+
+def test_the_past_ends_then_and_a_branch_goes_on(nest: bn.Nest) -> None:
+    assert "anne takes out" not in texts(nest.at(6).plot_beliefs(CHEST).drawing())
+    nest["/sally"].switch("try")
+    nest["/sally"].scripted.withdraw("sally", CHEST, {"diamond": 1})
+    assert "empty" in texts(nest.plot_beliefs(CHEST, paths=["/sally"]).drawing())
+
+
+def test_wrong_questions_are_errors(nest: bn.Nest) -> None:
+    with pytest.raises(bn.InputError, match="belief paths"):
+        nest.plot_beliefs(CHEST, paths=[])
+    with pytest.raises(bn.PositionError):
+        nest.plot_beliefs((99, 0, 0))
+    with pytest.raises(bn.PathError):
+        nest.plot_beliefs(CHEST, paths=["/bob"])

@@ -1,0 +1,31 @@
+"""Write the pictures of README and docs, with the program itself. Run by `make picture`."""
+
+import tempfile
+from pathlib import Path
+
+import beliefnest as bn
+from beliefnest.cli.app import run_command_line
+from beliefnest.cli.folder import STORE
+
+IMAGES = Path(__file__).parents[1] / "docs" / "img"
+CHEST = (-2, -51, -4)
+PATHS = ("/", "/observer", "/sally", "/observer/sally")
+
+
+def write_pictures(images: Path) -> None:
+    """Write them into a folder."""
+    with tempfile.TemporaryDirectory() as folder:
+        run = Path(folder, "run")
+        if run_command_line(["run", "sally-anne", "--out", str(run)]) != 0:
+            raise SystemExit("sally-anne is not as expected: mend that first")
+        (images / "sally-anne.png").write_bytes((run / "picture.png").read_bytes())
+        belief = str(images / "belief.png")
+        run_command_line(["show", str(run), "--path", "/observer/sally", "--png", belief])
+        with bn.Nest.read(run / "condition-1" / STORE) as nest:
+            nest.figure(PATHS).save(images / "figure.png")
+            plot = nest.plot_beliefs(container=CHEST, item="diamond", paths=PATHS)
+            plot.save(images / "beliefs-over-time.png")
+
+
+if __name__ == "__main__":
+    write_pictures(IMAGES)
