@@ -81,8 +81,8 @@ class HoldingsTable:
         self._holdings: list[Holdings] = []
         # By node, the entry after which its owner last perceived what there is.
         self._looked: dict[int, int] = {}
-        # Nodes and cells of contents where no container is known, with the block there.
-        self._doubtful: dict[tuple[int, int], int] = {}
+        # By node, cells of contents where no container is known, with the block there.
+        self._doubtful: dict[int, dict[int, int]] = {}
 
     def add(self, holdings: Holdings, looked: int | None = None) -> None:
         """Add the holdings of the node that was added to the node table last."""
@@ -99,7 +99,7 @@ class HoldingsTable:
 
     def saved(self, node: int) -> SavedHoldings:
         """Holdings of a node as plain data."""
-        doubtful = {cell: s for (other, cell), s in sorted(self._doubtful.items()) if other == node}
+        doubtful = dict(sorted(self._doubtful.get(node, {}).items()))
         return SavedHoldings(self._holdings[node], self.last_look(node), doubtful)
 
     def restore(self, saved: SavedHoldings) -> None:
@@ -107,7 +107,8 @@ class HoldingsTable:
         node = len(self._holdings)
         self._holdings.append(saved.holdings)
         self._looked[node] = saved.looked
-        self._doubtful |= {(node, cell): state for cell, state in saved.doubtful.items()}
+        if saved.doubtful:
+            self._doubtful[node] = dict(saved.doubtful)
 
     def last_look(self, node: int) -> int:
         """Entry after which a node's owner last perceived what there is; -1: at first."""
@@ -266,17 +267,18 @@ class HoldingsTable:
         """Note a content at a place where a node knows no container."""
         state = self._table.block(node, cell)
         if node > 0 and cell in self._holdings[node].containers and not self._context.holds[state]:
-            self._doubtful[node, cell] = state
+            self._doubtful.setdefault(node, {})[cell] = state
 
     def _forget(self, node: int) -> None:
         """Forget contents at places that are seen to hold no container."""
-        for (doubter, cell), before in list(self._doubtful.items()):
-            if doubter != node:
-                continue
+        doubtful = self._doubtful.get(node)
+        if doubtful is None:
+            return
+        for cell, before in list(doubtful.items()):
             state = self._table.block(node, cell)
             parent = self._table.block(self._table.parent(node), cell)
             if self._context.holds[state] or cell not in self._holdings[node].containers:
-                del self._doubtful[node, cell]
+                del doubtful[cell]
             elif self._is_gone(node, cell) or (
                 before < 0
                 and parent >= 0
@@ -284,9 +286,11 @@ class HoldingsTable:
                 and self._table.sees_cells(node, (cell,))
             ):
                 self._holdings[node].drop(cell)
-                del self._doubtful[node, cell]
+                del doubtful[cell]
             else:
-                self._doubtful[node, cell] = state
+                doubtful[cell] = state
+        if not doubtful:
+            del self._doubtful[node]
 
     def _is_gone(self, node: int, cell: int) -> bool:
         """Whether the owner of a node perceives now that a cell holds no container."""

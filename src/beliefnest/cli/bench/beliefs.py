@@ -17,9 +17,10 @@ from beliefnest.errors import BodyError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.perception.options import Perception
 from beliefnest.perception.sight import Geometry, Sight
+from beliefnest.world.claims import Claim
 from beliefnest.world.registry import Registry
 from beliefnest.world.scripted import ScriptedWorld
-from beliefnest.world.values import Point, Position
+from beliefnest.world.values import Items, Point, Position
 
 __all__ = ["keep_up", "measure"]
 
@@ -30,12 +31,14 @@ _STEP = 0.2158
 _WARM = 300
 _TICKS = 200
 _DOOR = (20, 1, 20)
+_CHESTS = ((1, 1, 20), (39, 1, 20))
+_CLAIMS = 40
 _LATE = 100_000
 
 
 def measure() -> Sequence[Figure]:
     """All figures of the beliefs, one after the other."""
-    return [*_visible_sets(), *_crowd(8, 3), *_crowd(16, 2), *_late(), _memory()]
+    return [*_visible_sets(), *_crowd(8, 3), *_crowd(16, 2), _claims(), *_late(), _memory()]
 
 
 def _visible_sets() -> list[Figure]:
@@ -81,7 +84,7 @@ class _Crowd:
     Everybody knows stone and air from the start, as the paper has it for floor and walls.
     """
 
-    def __init__(self, agents: int) -> None:
+    def __init__(self, agents: int, perception: Perception | None = None) -> None:
         self._chance = random.Random(agents)
         self._yaws = {f"agent{n}": self._chance.uniform(-math.pi, math.pi) for n in range(agents)}
         self._feet: dict[str, Point] = {
@@ -90,8 +93,10 @@ class _Crowd:
         self.pillars = {(x, z) for x in range(5, 40, 7) for z in range(2, 40, 7)}
         blocks: dict[Position, str] = {(x, 0, z): "stone" for x, z in product(range(41), repeat=2)}
         blocks |= {(x, y, z): "stone" for x, z in self.pillars for y in range(1, 20)}
-        self.world = ScriptedWorld(_BOX, blocks, self._feet)
-        self.nest = Nest(self.world, Perception(), static_blocks=["stone", "air"])
+        chests: dict[Position, Items] = {} if perception is None else {at: {} for at in _CHESTS}
+        self.world = ScriptedWorld(_BOX, blocks, self._feet, containers=chests)
+        options = perception or Perception()
+        self.nest = Nest(self.world, options, static_blocks=["stone", "air"])
         self._open = False
 
     def nodes(self, depth: int) -> list[str]:
@@ -151,6 +156,25 @@ def _crowd(agents: int, depth: int) -> list[Figure]:
         Figure(f"95th percentile of {title}", spent[int(0.95 * len(spent))], "ms", 25.0),
         Figure(f"node of {len(paths)} asked for with nothing changed", quiet * 1e3, "us", 50.0),
     ]
+
+
+def _claims() -> Figure:
+    """A tick in which somebody claims something that everybody hears and weighs."""
+    crowd = _Crowd(8, Perception(testimony="informed", grace=0))
+    paths = crowd.nodes(3)
+    spent = []
+    for number in range(_CLAIMS):
+        crowd.tick(8)
+        for path in paths:
+            crowd.nest[path].state  # noqa: B018 - up to date before the claim
+        claim = Claim.located("diamond", _CHESTS[number % 2])
+        crowd.world.say(f"agent{number % 8}", "It is there.", claims=[claim])
+        started = time.perf_counter()
+        for path in paths:
+            crowd.nest[path].state  # noqa: B018 - what is measured
+        spent.append((time.perf_counter() - started) * 1e3)
+    title = f"tick with a claim heard by 8 agents, {len(paths)} nodes"
+    return Figure(title, statistics.median(spent[_CLAIMS // 4 :]), "ms", 10.0)
 
 
 def _late() -> list[Figure]:

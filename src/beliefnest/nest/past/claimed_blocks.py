@@ -40,8 +40,10 @@ class ClaimedBlocks:
 
     def read(self, key: TimelineKey) -> bool:
         """Read what was added to a timeline; returns whether there are new cells."""
+        if not self._weighs:
+            return False
         count, first = self._journal.info(key).entries, self._read.get(key, 0)
-        if not self._weighs or count == first:
+        if count == first:
             return False
         self._read[key] = count
         found = {
