@@ -13,7 +13,8 @@ from beliefnest.bodies.footpaths import Ground, feet_in, find_way
 from beliefnest.bodies.protocol import NO_WAY
 from beliefnest.errors import BeliefNestError, WorldError
 from beliefnest.world.claims import claims_from_plain
-from beliefnest.world.registry import Registry
+from beliefnest.world.doors import is_open
+from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.values import EYE_HEIGHT, Point, Position
 
@@ -112,8 +113,12 @@ def _use_door(to_open: bool) -> Callable[..., Doing]:
     def use(hand: Hand, position: Any) -> Doing:
         place = _block(position)
         yield from _walk_to_use(hand, place)
+        world = hand.world
+        there = int(world.blocks[world.box.index(place)]) if place in world.box else AIR
+        if is_open(Registry.load(), there) is to_open:
+            return
         yield
-        hand.world.use_door(hand.name, place, open=to_open)
+        world.use_door(hand.name, place, open=to_open)
 
     return use
 
