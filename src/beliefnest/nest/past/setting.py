@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 from beliefnest.belief.entries import InitialBelief
 from beliefnest.errors import InputError, PathError
@@ -19,7 +20,10 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.texts import escaped, is_well_formed
 from beliefnest.world.values import Box, Position
 
-__all__ = ["MAIN", "Setting", "Step"]
+__all__ = ["MAIN", "Senses", "Setting", "Step"]
+
+Senses = Literal["world", "percepts"]
+"""What programs read: everything there is, or what their agents perceive or remember."""
 
 MAIN = "main"
 """Name of the real world's first branch."""
@@ -34,12 +38,14 @@ class Step:
         label: What the step is, for progress and messages ("sally puts the diamond away").
         where: Where the step is written, for messages ("sally_anne.yaml:41").
         timeout_ticks: Ticks after which the step has failed.
+        senses: What its programs read: the whole `world`, or their agents' `percepts` alone.
     """
 
     programs: Mapping[str, str]
     label: str = ""
     where: str = ""
     timeout_ticks: int = 1200
+    senses: Senses = "world"
 
 
 @dataclass(frozen=True, slots=True)
