@@ -269,9 +269,10 @@ def list_installed(json: Json = False) -> None:
 
 @app.command()
 def suite(
-    name: Annotated[str, typer.Argument(help="Name of the suite: hi-tom.")],
-    data: Annotated[Path, typer.Option(help="JSON file of stories, questions and answers.")],
+    name: Annotated[str, typer.Argument(help="Name of the suite: hi-tom, stories.")],
+    data: Annotated[Path, typer.Option(help="File of stories, questions and answers.")],
     world: Annotated[str, typer.Option(help="Where they play.")] = "scripted",
+    rows: Annotated[str | None, typer.Option(help="Rows to answer, as in 1-20,35.")] = None,
     limit: Annotated[int | None, typer.Option(help="Play no more stories than this.")] = None,
     seed: Annotated[int, typer.Option(help="Drives every random number.")] = 0,
     json: Json = False,
@@ -279,7 +280,7 @@ def suite(
     """Answer a file of questions about stories from nests; say how many answers are right."""
     from beliefnest.cli.suite import SuiteOptions, run_suite
 
-    return run_suite(SuiteOptions(name, data, world, limit, seed, json))
+    return run_suite(SuiteOptions(name, data, world, rows, limit, seed, json))
 
 
 @app.command()

@@ -1,6 +1,7 @@
 """`beliefnest suite`: all questions of a file answered from nests, and how many are right."""
 
 import json
+import re
 import sys
 import time
 from collections.abc import Mapping, Sequence
@@ -14,6 +15,7 @@ from beliefnest.bodies.worlds import check_world
 from beliefnest.cli.console import folded, progress_on, stdout
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.scenarios.stories.data import StoryItems, read_items
+from beliefnest.scenarios.stories.own import read_own
 from beliefnest.scenarios.stories.suite import (
     Judged,
     Score,
@@ -24,8 +26,10 @@ from beliefnest.scenarios.stories.suite import (
 
 __all__ = ["SUITES", "SuiteOptions", "run_suite"]
 
-SUITES = ("hi-tom",)
+SUITES = ("hi-tom", "stories")
 """Names of the suites."""
+
+_ROWS = re.compile(r"(?P<first>[0-9]{1,7})(?:\s*-\s*(?P<last>[0-9]{1,7}))?")
 
 _REPORTS = 20
 """Lines of progress where there is no terminal."""
@@ -39,6 +43,7 @@ class SuiteOptions:
         name: Name of the suite.
         data: File of stories, questions and answers.
         world: Name of the world.
+        rows: Numbers of the rows to answer, as in `1-20,35`; None: all.
         limit: Play no more stories than this; None: all.
         seed: Drives every random number.
         as_json: Whether to print one JSON object instead of a table.
@@ -47,6 +52,7 @@ class SuiteOptions:
     name: str
     data: Path
     world: str
+    rows: str | None
     limit: int | None
     seed: int
     as_json: bool
@@ -63,7 +69,9 @@ def run_suite(options: SuiteOptions) -> int:
     if options.limit is not None and options.limit < 1:
         raise InputError(f"--limit is {options.limit}; give 1 or more stories")
     check_world(options.world)
-    stories = read_items(options.data)[: options.limit]
+    rows = None if options.rows is None else parse_rows(options.rows)
+    read = read_items if options.name == "hi-tom" else read_own
+    stories = read(options.data, rows)[: options.limit]
     if not stories:
         raise InputError(f"{options.data} holds no rows; there is nothing to ask")
     started = time.perf_counter()
@@ -74,6 +82,21 @@ def run_suite(options: SuiteOptions) -> int:
     else:
         _print(options, stories, judged)
     return 0 if all(each.ok for each in judged) else 1
+
+
+def parse_rows(text: str) -> frozenset[int]:
+    """Numbers of rows, from text such as `1-20,35`.
+
+    Raises:
+        InputError: It is no such text.
+    """
+    rows: set[int] = set()
+    for part in text.split(","):
+        match = _ROWS.fullmatch(part.strip())
+        if match is None or int(match["first"]) > int(match["last"] or match["first"]):
+            raise InputError(f"--rows has {part!r}; write numbers and ranges, such as 1-20,35")
+        rows.update(range(int(match["first"]), int(match["last"] or match["first"]) + 1))
+    return frozenset(rows)
 
 
 def _answer(stories: Sequence[StoryItems], options: SuiteOptions) -> list[Judged]:
@@ -93,6 +116,11 @@ def _needs_first(judged: Sequence[Judged]) -> dict[int, Score]:
     return {order: found for order, found in scores.items() if order > 0}
 
 
+def _telling(judged: Sequence[Judged], *, tells: bool) -> list[Judged]:
+    """Those whose stories have claims in them, or those whose stories have none."""
+    return [each for each in judged if each.tells is tells]
+
+
 def _report(
     options: SuiteOptions, stories: int, judged: Sequence[Judged], seconds: float
 ) -> dict[str, object]:
@@ -106,7 +134,10 @@ def _report(
         "ok": all(each.ok for each in judged),
         "all": _score_json(score(judged)),
         "orders": _scores_json(scores_by_order(judged)),
+        "without_claims": _scores_json(scores_by_order(_telling(judged, tells=False))),
+        "with_claims": _scores_json(scores_by_order(_telling(judged, tells=True))),
         "first_believer_matters": _scores_json(_needs_first(judged)),
+        "wrong_in_data": [each.item.row for each in judged if each.data_fault is not None],
         "misses": [_miss_json(each) for each in judged if not each.ok],
     }
 
@@ -127,6 +158,8 @@ def _miss_json(judged: Judged) -> dict[str, object]:
         "path": judged.answer.path,
         "answer": judged.answer.text,
         "expected": judged.item.expected,
+        "claims": judged.tells,
+        "wrong_in_data": judged.data_fault,
         "explanation": list(judged.explanation),
     }
 
@@ -134,18 +167,24 @@ def _miss_json(judged: Judged) -> dict[str, object]:
 def _print(options: SuiteOptions, stories: Sequence[StoryItems], judged: Sequence[Judged]) -> None:
     title = f"{options.name}: {len(stories)} stories in the {options.world} world"
     table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAVY)
+    table.add_column("claims")
     for heading in ("order", "questions", "right", "first believer matters", "right"):
         table.add_column(heading, justify="right")
-    matters = _needs_first(judged)
-    for order, found in scores_by_order(judged).items():
-        table.add_row(str(order), *_cells(found), *_cells(matters.get(order, Score(0, 0))))
+    for tells, word in ((False, "none"), (True, "some")):
+        part = _telling(judged, tells=tells)
+        matters = _needs_first(part)
+        for order, found in scores_by_order(part).items():
+            cells = (*_cells(found), *_cells(matters.get(order, Score(0, 0))))
+            table.add_row(word, str(order), *cells)
     total = score(each for each in judged if each.needs_first)
-    table.add_row("all", *_cells(score(judged)), *_cells(total))
+    table.add_row("all", "all", *_cells(score(judged)), *_cells(total))
     console = stdout()
     console.print(folded(table))
     for each in judged:
         if not each.ok:
             console.print(f"row {each.item.row}: {each.item.question.text}", markup=False)
+            if each.data_fault is not None:
+                console.print(f"    {each.data_fault}", markup=False, soft_wrap=True)
             for line in each.explanation:
                 console.print(f"    {line}", markup=False, highlight=False, soft_wrap=True)
 

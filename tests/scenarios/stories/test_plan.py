@@ -35,7 +35,7 @@ def test_whoever_stands_in_a_room_sees_its_containers_and_no_others():
 
 
 def test_whoever_stands_in_a_room_sees_everyone_there_and_nobody_else():
-    everywhere = [*PLAN.stands.items(), *(((None, a), cell) for a, cell in PLAN.cells.items())]
+    everywhere = [*PLAN.stands.items(), *(((None, a), cell) for a, cell in PLAN.apart.items())]
     for (room, _), stand in PLAN.stands.items():
         seen = sees_stands(stand, [place for _, place in everywhere])
         assert seen.tolist() == [other == room for (other, _), _ in everywhere]
@@ -44,8 +44,8 @@ def test_whoever_stands_in_a_room_sees_everyone_there_and_nobody_else():
 def test_from_a_cell_and_from_the_corridor_nobody_is_seen_and_nothing():
     corridor = [(x, 1, 4) for x in range(1, BOX.high[0])]
     assert all(GRID[block] == 0 for block in corridor)
-    others = [*PLAN.stands.values(), *PLAN.cells.values()]
-    for block in (*corridor, *PLAN.cells.values()):
+    others = [*PLAN.stands.values(), *PLAN.apart.values()]
+    for block in (*corridor, *PLAN.apart.values()):
         assert seen_places(block) == set()
         seen = sees_stands(block, others)
         assert [o for o, s in zip(others, seen, strict=True) if s] == [
@@ -67,7 +67,7 @@ def test_every_room_and_cell_can_be_walked_to():
         if (spread == reached).all():
             break
         reached = spread
-    assert all(reached[x, z] for x, _, z in (*PLAN.stands.values(), *PLAN.cells.values()))
+    assert all(reached[x, z] for x, _, z in (*PLAN.stands.values(), *PLAN.apart.values()))
 
 
 def test_no_two_containers_share_a_position_and_all_hold_what_the_story_says():

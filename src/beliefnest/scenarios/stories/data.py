@@ -1,6 +1,7 @@
 """Files of stories with questions and the answers expected."""
 
-from collections.abc import Iterator
+import re
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +10,7 @@ import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular
-from beliefnest.scenarios.stories.playing import check_question
+from beliefnest.scenarios.stories.playing import Knowing, check_question
 from beliefnest.scenarios.stories.questions import Question, parse_question
 from beliefnest.scenarios.stories.story import Story, read_story
 
@@ -25,6 +26,15 @@ class _Row(msgspec.Struct):
     question_order: int | None = None
 
 
+class _Published(msgspec.Struct):
+    """The published file: the rows, under a key."""
+
+    data: list[_Row]
+
+
+_EVERYTHING = Knowing()
+
+
 @dataclass(frozen=True, slots=True)
 class Item:
     """A question and the answer that is expected.
@@ -32,50 +42,79 @@ class Item:
     Attributes:
         row: Its row in the file, from 1.
         question: What is asked.
-        expected: Name of a container.
+        expected: Name of a container; None: the thing is held to be in none.
     """
 
     row: int
     question: Question
-    expected: str
+    expected: str | None
 
 
 @dataclass(frozen=True, slots=True)
 class StoryItems:
-    """A story and all that is asked about it."""
+    """A story and all that is asked about it.
+
+    Attributes:
+        story: The story.
+        items: What is asked.
+        knowing: How its agents get to know what they do not see happen.
+    """
 
     story: Story
     items: tuple[Item, ...]
+    knowing: Knowing = _EVERYTHING
 
 
-def read_items(path: Path) -> tuple[StoryItems, ...]:
-    """The stories of a JSON file, an array of rows; rows of the same story are put together.
+def read_items(path: Path, rows: Collection[int] | None = None) -> tuple[StoryItems, ...]:
+    """The stories of a file as Hi-ToM has it; rows of the same story are put together.
 
     Args:
-        path: A file of rows with `story`, `question`, `answer` and, if it likes,
-            `question_order`.
+        path: A JSON file: an array of rows with `story`, `question`, `answer` and, if it likes,
+            `question_order`; or an object with that array under `data`.
+        rows: Numbers of the rows to take, from 1; None: all.
 
     Raises:
-        InputError: There is no such file, it is of another form, or a story or a question
-            cannot be understood; the message names the row, and the line of the story.
+        InputError: There is no such file or row, it is of another form, or a story or a
+            question cannot be understood; the message names the row, and the line of the story.
     """
     try:
-        rows = decode_json(read_regular(path), list[_Row])
+        text = read_regular(path)
+        if text.lstrip()[:1] == b"{":
+            every = decode_json(text, _Published).data
+        else:
+            every = decode_json(text, list[_Row])
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}; give a JSON file") from None
     except msgspec.DecodeError as error:
         raise InputError(
-            f"{path}: {error}; give an array of rows with 'story', 'question' and 'answer'"
+            f"{path}: {error}; give an array of rows with 'story', 'question' and 'answer', or an "
+            "object with that array under 'data'"
         ) from None
+    if rows is not None and not set(rows) <= set(range(1, len(every) + 1)):
+        missing = min(set(rows) - set(range(1, len(every) + 1)))
+        raise InputError(f"{path} has no row {missing}; it has rows 1 to {len(every)}")
     stories: dict[str, Story] = {}
     items: dict[str, list[Item]] = {}
-    for number, row in enumerate(rows, 1):
+    for number, row in enumerate(every, 1):
+        if rows is not None and number not in rows:
+            continue
         with _named(f"{path}, row {number}"):
-            if row.story not in stories:
-                stories[row.story] = read_story(row.story)
-            item = _item(number, row, stories[row.story])
-        items.setdefault(row.story, []).append(item)
-    return tuple(StoryItems(story, tuple(items[text])) for text, story in stories.items())
+            told = _told_in(row.story)
+            if told not in stories:
+                stories[told] = read_story(told)
+            item = _item(number, row, stories[told])
+        items.setdefault(told, []).append(item)
+    return tuple(StoryItems(story, tuple(items[told])) for told, story in stories.items())
+
+
+_NUMBERED = re.compile(r"\s*\d+\W*\s")
+
+
+def _told_in(text: str) -> str:
+    """The story alone, without what a prompt says before line 1 and without ends of chapters."""
+    lines = text.splitlines()
+    first = next((n for n, line in enumerate(lines) if _NUMBERED.match(line)), 0)
+    return "\n".join(line for line in lines[first:] if line.strip(" *"))
 
 
 def _item(number: int, row: _Row, story: Story) -> Item:

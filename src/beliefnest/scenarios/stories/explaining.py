@@ -9,7 +9,7 @@ __all__ = ["explain_answer"]
 
 
 def explain_answer(
-    played: PlayedStory, question: Question, answer: Answer, expected: str
+    played: PlayedStory, question: Question, answer: Answer, expected: str | None
 ) -> tuple[str, ...]:
     """What each simulator on the way to the belief asked for holds, since when, and why.
 
@@ -17,10 +17,13 @@ def explain_answer(
         played: The story, played.
         question: What was asked.
         answer: What the nest said.
-        expected: Name of the container expected.
+        expected: Name of the container expected; None: none.
     """
+    if question.door is not None:
+        return _door(played, question, answer, expected)
     said = "in no container" if answer.text is None else f"in the {answer.text}"
-    lines = [f"the {question.thing} is {said} in {answer.path}, expected the {expected}"]
+    wanted = "in no container" if expected is None else f"the {expected}"
+    lines = [f"the {question.thing} is {said} in {answer.path}, expected {wanted}"]
     for depth in range(question.order + 1):
         believers = question.believers[:depth]
         if depth > 1 and believers[-1] == believers[-2]:
@@ -32,12 +35,24 @@ def explain_answer(
     return (*lines, *_perceptions(played, question, answer, expected))
 
 
+def _door(
+    played: PlayedStory, question: Question, answer: Answer, expected: str | None
+) -> tuple[str, ...]:
+    room = str(question.door)
+    lines = [
+        f"the door of the {room} is {answer.text or 'unknown'} in {answer.path}, expected "
+        f"{expected or 'unknown'}"
+    ]
+    explained = played.asked(question).explain(block=played.plan.doors[room])
+    return (*lines, *str(explained).splitlines())
+
+
 def _perceptions(
-    played: PlayedStory, question: Question, answer: Answer, expected: str
+    played: PlayedStory, question: Question, answer: Answer, expected: str | None
 ) -> list[str]:
     """The nest's own account of the containers answered and expected."""
     room = played.story.things[question.thing].room
-    wanted = Place(room, expected)
+    wanted = None if expected is None else Place(room, expected)
     found = (answer.place, wanted)
     places = dict.fromkeys(p for p in found if p is not None and p in played.plan.places)
     simulator = played.asked(question)

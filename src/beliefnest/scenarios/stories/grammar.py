@@ -1,7 +1,8 @@
 """The sentences of text stories of the ToMi and Hi-ToM kind.
 
 Sources: Le et al. 2019 (ToMi), He et al. 2023 (Hi-ToM). A line may begin with its number;
-a name is one word, or several joined by `_` or blanks.
+a name is one word, or several joined by `_` or blanks. A line of nothing but stars ends a
+chapter and says nothing.
 """
 
 import re
@@ -11,14 +12,18 @@ from dataclasses import dataclass
 from beliefnest.errors import InputError
 
 __all__ = [
+    "DoorUsed",
     "Entered",
     "Exited",
     "Line",
     "Located",
     "Moved",
+    "Opened",
     "Remark",
     "Sentence",
     "Stayed",
+    "Told",
+    "parse_line",
     "parse_lines",
 ]
 
@@ -65,11 +70,47 @@ class Moved:
 
 
 @dataclass(frozen=True, slots=True)
+class DoorUsed:
+    """An agent in a room opens or shuts its door."""
+
+    agent: str
+    room: str
+    opens: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """An agent opens a container, looks into it and shuts it."""
+
+    agent: str
+    container: str
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """An agent says that a thing is in a container, or that it is not; true or not.
+
+    Attributes:
+        agent: Who says it.
+        hearer: To whom it is whispered; None: it is said aloud.
+        thing: What it is about.
+        container: Where that is said to be.
+        is_there: Whether it is said to be there, and not to be elsewhere.
+    """
+
+    agent: str
+    hearer: str | None
+    thing: str
+    container: str
+    is_there: bool = True
+
+
+@dataclass(frozen=True, slots=True)
 class Remark:
     """Something that changes neither the world nor what anyone knows of it."""
 
 
-Sentence = Entered | Exited | Stayed | Located | Moved | Remark
+Sentence = Entered | Exited | Stayed | Located | Moved | DoorUsed | Opened | Told | Remark
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,10 +140,20 @@ _NUMBER = re.compile(r"^\d+[.:)]?\s+")
 _JOINT = re.compile(_AND)
 _A = r"(?:the|a|an|his|her|their)"
 _ALL = r"(?:(?:both|all|together)\s+)?"
+_CLAIM = (
+    rf"(?:that )?(?:the )?(?P<thing>{_NAME}) (?P<link>is|is not) in (?:the )?"
+    rf"(?P<container>{_NAME})(?: now)?"
+)
 
 
 def _agents(match: re.Match[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(_JOINT.split(match["agents"])))
+
+
+def _told(match: re.Match[str]) -> Told:
+    hearer = match.groupdict().get("hearer")
+    there = match["link"] == "is"
+    return Told(match["agent"], hearer, match["thing"], match["container"], there)
 
 
 def _remark(_: re.Match[str]) -> Remark:
@@ -132,6 +183,22 @@ _FORMS: tuple[tuple[str, Callable[[re.Match[str]], Sentence]], ...] = (
         rf"[Tt]he (?P<thing>{_NAME}) (?:is|was) in (?:the )?(?P<place>{_NAME})",
         lambda match: Located(match["thing"], match["place"]),
     ),
+    (
+        rf"(?P<agent>{_AGENT}) (?P<how>opened|shut|closed) the door of (?:the )?(?P<room>{_NAME})",
+        lambda match: DoorUsed(match["agent"], match["room"], match["how"] == "opened"),
+    ),
+    (
+        rf"(?P<agent>{_AGENT}) (?:opened|looked into) (?:the )?(?P<container>{_NAME})",
+        lambda match: Opened(match["agent"], match["container"]),
+    ),
+    (
+        rf"(?P<agent>{_AGENT}) (?:privately told|whispered to) (?P<hearer>{_AGENT}) {_CLAIM}",
+        _told,
+    ),
+    (
+        rf"(?P<agent>{_AGENT}) (?:publicly claimed|said|told {_AGENT}) {_CLAIM}",
+        _told,
+    ),
     (rf"{_AGENTS} (?:dis)?likes? (?:{_A} )?{_NAME}", _remark),
     (rf"{_AGENTS} (?:hate|love)s? (?:{_A} )?{_NAME}", _remark),
     (rf"{_AGENTS} (?:saw|lost) {_A} {_NAME}", _remark),
@@ -147,10 +214,19 @@ def parse_lines(text: str) -> tuple[Line, ...]:
         InputError: A line is none of the sentences known; the message gives its number.
     """
     return tuple(
-        Line(number, line.strip(), _parse(number, line.strip()))
+        parse_line(number, line)
         for number, line in enumerate(text.splitlines(), 1)
-        if line.strip()
+        if line.strip(" *")
     )
+
+
+def parse_line(number: int, text: str) -> Line:
+    """One sentence of a story, the line of that number.
+
+    Raises:
+        InputError: It is none of the sentences known.
+    """
+    return Line(number, text.strip(), _parse(number, text.strip()))
 
 
 def _parse(number: int, line: str) -> Sentence:
@@ -161,6 +237,7 @@ def _parse(number: int, line: str) -> Sentence:
             return make(match)
     raise InputError(
         f"line {number}: {line!r} is no sentence of a story; write that someone entered, exited "
-        "or stayed in a room, moved a thing to a container, likes or dislikes something, or "
-        "that a thing is in a container"
+        "or stayed in a room, moved a thing to a container, opened a container, opened or shut "
+        "the door of a room, said or whispered to someone that a thing is in a container, likes "
+        "or dislikes something, or that a thing is in a container"
     )

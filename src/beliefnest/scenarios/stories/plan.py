@@ -18,6 +18,9 @@ A way in is `_BEND` blocks wide between its two openings, so that no ray passes 
 one block between the corners it would have to leave the first opening by its wall. So
 nobody in the corridor or in a room sees into any other room or cell. The walls are as high
 as the box, and eyes (1.62) are above barrels (1): within a room all is seen.
+
+In a story in which somebody tells something, who is in no room is in a further room without
+barrels, the hall, in place of a cell: there all see who comes, and hear each other.
 """
 
 from collections.abc import Mapping, Sequence
@@ -26,7 +29,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beliefnest.errors import InputError
-from beliefnest.scenarios.stories.story import Place, Story
+from beliefnest.scenarios.stories.story import WAITING_ROOM, Place, Story
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, Box, Items, Point, Position
@@ -37,6 +40,7 @@ WALL = "stone"
 """The block of walls and floors; nothing else is made of it."""
 
 _CONTAINER = "barrel"
+_DOOR = "oak_door"
 _HEIGHT = 3
 _CELL, _CORRIDOR, _ROOM, _STANDS, _BARRELS, _DEPTH = 1, 4, 8, 9, 10, 12
 """Rows along z."""
@@ -51,16 +55,19 @@ class FloorPlan:
     Attributes:
         snapshot: The world before the story.
         places: Position of each container's block.
-        cells: Each agent's own cell, the block of its feet.
+        apart: Where each agent is while it is in no room, the block of its feet: a cell of its
+            own, or its stand in the hall.
         stands: Where each agent stands in each room, by (room, agent), block of the feet.
+        doors: Where the door of each room that has one is, its lower half.
         items: The Minecraft item that stands for each thing; no two share one.
     """
 
     snapshot: Snapshot
     places: Mapping[Place, Position]
-    cells: Mapping[str, Position]
+    apart: Mapping[str, Position]
     stands: Mapping[tuple[str, str], Position]
     items: Mapping[str, str]
+    doors: Mapping[str, Position]
 
     def place_at(self, position: Position) -> Place:
         """The container at a position of one."""
@@ -68,7 +75,7 @@ class FloorPlan:
 
 
 def lay_out(story: Story) -> FloorPlan:
-    """A plan with all rooms, containers and agents of a story; everyone is in its cell.
+    """A plan with all rooms, containers and agents of a story; everyone is in no room.
 
     Raises:
         InputError: The story has more things than Minecraft has items.
@@ -78,7 +85,7 @@ def lay_out(story: Story) -> FloorPlan:
     stands: dict[tuple[str, str], Position] = {}
     spans: list[tuple[int, int]] = []
     start = 1
-    for room in story.rooms:
+    for room in (*story.rooms, WAITING_ROOM) if story.tells else story.rooms:
         inside = [place for place in story.places if place.room == room]
         width = max(_BEND + 1, len(inside), len(story.agents))
         places.update({p: (start + i, 1, _BARRELS) for i, p in enumerate(inside)})
@@ -87,20 +94,32 @@ def lay_out(story: Story) -> FloorPlan:
         start += width + 1
     cells = {
         agent: (1 + number * (_BEND + 2) + _BEND, 1, _CELL)
-        for number, agent in enumerate(story.agents)
+        for number, agent in enumerate(() if story.tells else story.agents)
     }
+    apart = {agent: stands.pop((WAITING_ROOM, agent)) for agent in story.agents if story.tells}
     length = max(start, 1 + len(cells) * (_BEND + 2), 3)
     box = Box((0, 0, 0), (length - 1, _HEIGHT - 1, _DEPTH - 1))
     grid = _carved(box, spans, cells, registry)
     for position in places.values():
         grid[position] = registry.state_id(_CONTAINER)
+    doors = {
+        room: (start + _BEND, 1, _ROOM - 1)
+        for room, (start, _) in zip(story.rooms, spans, strict=False)
+        if room in story.doors
+    }
+    for x, y, z in doors.values():
+        for height, half in enumerate(("lower", "upper")):
+            grid[x, y + height, z] = registry.state_id(
+                f"{_DOOR}[facing=north,half={half},open=true]"
+            )
     grid.flags.writeable = False
     items = item_names(tuple(story.things), registry)
     contents: dict[Position, Items] = {position: {} for position in places.values()}
     for thing, place in story.things.items():
         contents[places[place]] = {**contents[places[place]], items[thing]: 1}
-    agents = {name: AgentState(feet(cell)) for name, cell in cells.items()}
-    return FloorPlan(Snapshot(0, box, grid, contents, agents), places, cells, stands, items)
+    apart = apart or cells
+    agents = {name: AgentState(feet(block)) for name, block in apart.items()}
+    return FloorPlan(Snapshot(0, box, grid, contents, agents), places, apart, stands, items, doors)
 
 
 def feet(block: Position) -> Point:

@@ -11,16 +11,22 @@ from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.face.past_simulator import PastSimulator
 from beliefnest.nest.face.simulator import Simulator
 from beliefnest.nest.past.setting import Setting
-from beliefnest.perception.options import Perception
-from beliefnest.scenarios.stories.plan import WALL, FloorPlan, feet, lay_out
+from beliefnest.perception.options import ContainerMode, Perception, Testimony
+from beliefnest.scenarios.stories.acting import programs_of, tell
+from beliefnest.scenarios.stories.plan import WALL, FloorPlan, lay_out
 from beliefnest.scenarios.stories.questions import Question
-from beliefnest.scenarios.stories.story import Act, Come, Go, Move, Place, Story, Wait
-from beliefnest.world.scripted import ScriptedWorld
-from beliefnest.world.values import Position
+from beliefnest.scenarios.stories.story import (
+    Come,
+    Go,
+    Place,
+    Story,
+)
 
-__all__ = ["Answer", "PlayedStory"]
+__all__ = ["Answer", "Knowing", "PlayedStory"]
 
 _TIMEOUT_TICKS = 2400
+_TICKS_PER_BLOCK = 8
+"""More than walking takes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +39,7 @@ class Answer:
         thing: What was asked for.
         place: The container that holds it there; None: none does.
         basis: What that rests on; None: nothing.
+        is_open: For a door, whether it is open; None: that is unknown, or it is no door.
     """
 
     path: str
@@ -40,11 +47,33 @@ class Answer:
     thing: str
     place: Place | None
     basis: Basis | None
+    is_open: bool | None = None
 
     @property
     def text(self) -> str | None:
-        """Name of the container; None: none holds the thing."""
+        """Name of the container, `open` or `shut`; None: no container holds it, or unknown."""
+        if self.is_open is not None:
+            return "open" if self.is_open else "shut"
         return None if self.place is None else self.place.container
+
+
+@dataclass(frozen=True, slots=True)
+class Knowing:
+    """How the agents of a story get to know what they do not see happen.
+
+    Attributes:
+        containers: `transparent`: who is in a room knows where everything in it is; `opaque`:
+            who opened a container, or saw what was put there, knows what is in it.
+        testimony: How hearers take what is said (semantics, section 8).
+        sincere: Whether speakers are taken to believe what is not believed of them.
+    """
+
+    containers: ContainerMode = "transparent"
+    testimony: Testimony = "informed"
+    sincere: bool = False
+
+
+_KNOWING = Knowing()
 
 
 class PlayedStory:
@@ -70,6 +99,7 @@ class PlayedStory:
         world: str = "scripted",
         seed: int = 0,
         asked: Iterable[Question] = (),
+        knowing: Knowing = _KNOWING,
     ) -> Self:
         """Open a nest in a world and act the story out there.
 
@@ -79,6 +109,7 @@ class PlayedStory:
             seed: Drives every random number.
             asked: What will be asked: beliefs that are followed from the start cost less
                 than those made late. Other questions can be asked as well.
+            knowing: How agents get to know what they do not see happen.
 
         Raises:
             BodyError: The world could not be started, or died.
@@ -90,11 +121,12 @@ class PlayedStory:
         asked = tuple(asked)
         for question in asked:
             check_question(story, question)
-        nest = Nest.open(story_setting(plan), world=world, seed=seed)
+        grace = _grace(story, plan, world)
+        nest = Nest.open(story_setting(plan, grace, knowing), world=world, seed=seed)
         try:
             for path in sorted({question.path for question in asked}, key=_deepest_first):
                 _ = nest[path].state
-            ends = _play(story, plan, nest, world)
+            ends = _play(story, plan, nest, world, grace)
         except BaseException:
             nest.close()
             raise
@@ -117,6 +149,8 @@ class PlayedStory:
         Raises:
             InputError: The question names an agent or a thing that is not in the story.
         """
+        if question.door is not None:
+            return self._door(self.asked(question), question.door)
         return self._find(self.asked(question), question.thing)
 
     def asked(self, question: Question) -> Simulator | PastSimulator:
@@ -147,6 +181,11 @@ class PlayedStory:
             return None
         return next((n for n, end in enumerate(self.line_ends) if tick <= end), None)
 
+    def _door(self, simulator: Simulator | PastSimulator, room: str) -> Answer:
+        block = simulator.state.blocks[self.plan.doors[room]]
+        is_open = None if block is None else "open=true" in block
+        return Answer(simulator.path, simulator.tick, "", None, None, is_open)
+
     def _find(self, simulator: Simulator | PastSimulator, thing: str) -> Answer:
         item = self.plan.items[thing]
         containers = simulator.state.containers
@@ -173,6 +212,14 @@ def check_question(story: Story, question: Question) -> None:
         if agent not in story.agents:
             there = ", ".join(story.agents)
             raise InputError(f"{question.text!r}: {agent} is not in the story; there are {there}")
+    if question.door is not None:
+        if question.door not in story.doors:
+            there = ", ".join(story.doors) or "none"
+            raise InputError(
+                f"{question.text!r}: nobody opens or shuts a door of the {question.door}; there "
+                f"are doors of: {there}"
+            )
+        return
     if question.thing not in story.things:
         there = ", ".join(story.things)
         raise InputError(
@@ -180,47 +227,59 @@ def check_question(story: Story, question: Question) -> None:
         )
 
 
-def story_setting(plan: FloorPlan) -> Setting:
-    """What a nest of a story starts from.
+def _grace(story: Story, plan: FloorPlan, world: str) -> int:
+    """Ticks that somebody may be out of sight for no other reason than that one walks.
 
-    Whoever is in a room knows where everything in it is; all know the building.
+    Who leaves a room does not see those in the hall before it gets there; in the scripted
+    world that takes no time. In the embedded one the next line waits for longer than that, so
+    that only who stayed in the room for another line may have learnt something.
+    """
+    if world == "scripted" or not story.tells:
+        return 0
+    length, _, depth = plan.snapshot.box.shape
+    return _TICKS_PER_BLOCK * (length + depth)
+
+
+def story_setting(plan: FloorPlan, grace: int = 0, knowing: Knowing = _KNOWING) -> Setting:
+    """What a nest of a story starts from; all know the building.
+
+    Args:
+        plan: Where everything is.
+        grace: Ticks out of sight in which nobody learns anything.
+        knowing: How agents get to know what they do not see happen.
     """
     return Setting(
         name="story",
         snapshot=plan.snapshot,
-        perception=Perception(max_visible_distance=None, hearing="sight", containers="transparent"),
+        perception=Perception(
+            max_visible_distance=None,
+            hearing="sight",
+            containers=knowing.containers,
+            testimony=knowing.testimony,
+            grace=grace,
+            sincere=knowing.sincere,
+        ),
         static_blocks=frozenset({WALL}),
     )
 
 
-def _play(story: Story, plan: FloorPlan, nest: Nest, world: str) -> list[int]:
+def _play(story: Story, plan: FloorPlan, nest: Nest, world: str, grace: int) -> list[int]:
     """Act every line out; the tick each ended with."""
     ends = []
     for line, act in zip(story.lines, story.acts, strict=True):
         if world == "scripted":
-            _tell(nest["/"].scripted, plan, act)
+            tell(nest["/"].scripted, plan, act)
         else:
-            _perform(nest, programs_of(act, plan), f"line {line.number}: {line.text!r}")
+            programs = programs_of(act, plan)
+            # One after the other where each shuts the door behind itself.
+            shuts = isinstance(act, Come | Go) and act.shuts
+            steps = [{a: p} for a, p in programs.items()] if shuts else [programs]
+            for together in steps:
+                _perform(nest, together, f"line {line.number}: {line.text!r}")
+            if grace and isinstance(act, Go):
+                nest["/"].step(grace + 1)
         ends.append(nest.tick)
     return ends
-
-
-def _tell(world: ScriptedWorld, plan: FloorPlan, act: Act) -> None:
-    """One act, in one tick."""
-    with world.tick():
-        match act:
-            case Come(agents, room):
-                for agent in agents:
-                    world.place_agent(agent, feet(plan.stands[room, agent]))
-            case Go(agents):
-                for agent in agents:
-                    world.place_agent(agent, feet(plan.cells[agent]))
-            case Move(agent, thing, source, target):
-                item = {plan.items[thing]: 1}
-                world.withdraw(agent, plan.places[source], item)
-                world.deposit(agent, plan.places[target], item)
-            case Wait():
-                pass
 
 
 def _perform(nest: Nest, programs: Mapping[str, str], where: str) -> None:
@@ -231,30 +290,3 @@ def _perform(nest: Nest, programs: Mapping[str, str], where: str) -> None:
     for agent, result in nest["/"].run_all(programs, _TIMEOUT_TICKS).items():
         if not result.ok:
             raise ProgramError(f"{where}: the program of {agent} failed: {result.error}")
-
-
-def programs_of(act: Act, plan: FloorPlan) -> dict[str, str]:
-    """The programs that bots act something out with, by agent; empty: nothing is done."""
-    match act:
-        case Come(agents, room):
-            return {agent: _walk(plan.stands[room, agent]) for agent in agents}
-        case Go(agents):
-            return {agent: _walk(plan.cells[agent]) for agent in agents}
-        case Move(agent, thing, source, target):
-            items = f"{{{plan.items[thing]}: 1}}"
-            # Back to the stand, where it is in nobody's way.
-            return {
-                agent: f"await getItemFromChest(bot, {_vec3(plan.places[source])}, {items})\n"
-                f"await depositItemIntoChest(bot, {_vec3(plan.places[target])}, {items})\n"
-                + _walk(plan.stands[source.room, agent])
-            }
-        case Wait():
-            return {}
-
-
-def _walk(block: Position) -> str:
-    return f"await goToPosition(bot, {_vec3(block)}, 0)"
-
-
-def _vec3(position: Position) -> str:
-    return f"new Vec3({', '.join(map(str, position))})"

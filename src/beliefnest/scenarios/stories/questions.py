@@ -10,19 +10,21 @@ __all__ = ["Question", "parse_question"]
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """Where a thing is, or is believed to be.
+    """Where a thing is, or is believed to be; or whether a door is open.
 
     Attributes:
         believers: Agent names from the outermost believer inwards; empty: where it is.
-        thing: What is asked for.
+        thing: What is asked for; empty where it is a door.
         at_beginning: Whether the beginning of the story is meant, and not its end.
         text: The question as it is written.
+        door: The room whose door is asked for; None: it is about a thing.
     """
 
     believers: tuple[str, ...]
     thing: str
     at_beginning: bool
     text: str
+    door: str | None = None
 
     @property
     def order(self) -> int:
@@ -46,6 +48,11 @@ _BELIEF = re.compile(
     rf"(?:{_THING} (?:really )?is|(?P<who>{_AGENT}) (?:searches|looks|will search|will look) for "
     rf"{_THING.replace('thing', 'sought')})"
 )
+_DOOR = r"the door of (?:the )?(?P<room>[A-Za-z0-9][\w' -]*?)"
+_DOOR_REALITY = re.compile(rf"Is {_DOOR} (?:really )?open")
+_DOOR_BELIEF = re.compile(
+    rf"Does (?P<chain>{_AGENT} {_THINK}(?: {_AGENT} {_THINK})*) {_DOOR} is open"
+)
 _BELIEVER = re.compile(rf"({_AGENT}) {_THINK}(?: |$)")
 
 
@@ -56,6 +63,17 @@ def parse_question(text: str) -> Question:
         InputError: It is none of the questions known.
     """
     words = " ".join(text.split()).removesuffix("?").rstrip()
+    found = _about_a_thing(words, text) or _about_a_door(words, text)
+    if found is not None:
+        return found
+    raise InputError(
+        f"{text!r} is no question about a story; ask 'Where is the X really?', 'Where was the X "
+        "at the beginning?', 'Where will A look for the X?', 'Where does A think B thinks the "
+        "X is?' or 'Does A think the door of the R is open?'"
+    )
+
+
+def _about_a_thing(words: str, text: str) -> Question | None:
     if match := _REALITY.fullmatch(words):
         return Question((), match["thing"], False, text)
     if match := _BEGINNING.fullmatch(words):
@@ -67,8 +85,12 @@ def parse_question(text: str) -> Question:
         if match["who"] is None:
             return Question(chain, match["thing"], False, text)
         return Question((*chain, match["who"]), match["sought"], False, text)
-    raise InputError(
-        f"{text!r} is no question about a story; ask 'Where is the X really?', 'Where was the X "
-        "at the beginning?', 'Where will A look for the X?' or 'Where does A think B thinks the "
-        "X is?'"
-    )
+    return None
+
+
+def _about_a_door(words: str, text: str) -> Question | None:
+    if match := _DOOR_REALITY.fullmatch(words):
+        return Question((), "", False, text, match["room"])
+    if match := _DOOR_BELIEF.fullmatch(words):
+        return Question(tuple(_BELIEVER.findall(match["chain"])), "", False, text, match["room"])
+    return None

@@ -9,20 +9,38 @@ from dataclasses import dataclass, field
 
 from beliefnest.errors import InputError
 from beliefnest.scenarios.stories.grammar import (
+    DoorUsed,
     Entered,
     Exited,
     Line,
     Located,
     Moved,
+    Opened,
     Remark,
     Stayed,
+    Told,
     parse_lines,
 )
 
-__all__ = ["WAITING_ROOM", "Act", "Come", "Go", "Move", "Place", "Story", "Wait", "read_story"]
+__all__ = [
+    "WAITING_ROOM",
+    "Act",
+    "Come",
+    "Go",
+    "Look",
+    "Move",
+    "Place",
+    "Story",
+    "Tell",
+    "UseDoor",
+    "Wait",
+    "read_story",
+    "story_of",
+]
 
 WAITING_ROOM = "waiting_room"
-"""The room that shows nothing: nobody in it sees anyone else."""
+"""The room that shows nothing. Where nobody tells anything, nobody in it sees anyone else
+either; in other stories it is where all meet who are in no room."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -35,17 +53,25 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Come:
-    """Agents come into a room at the same time."""
+    """Agents come into a room at the same time.
+
+    Attributes:
+        agents: Who.
+        room: Where to.
+        shuts: The rooms with shut doors on their way; they open and shut those.
+    """
 
     agents: tuple[str, ...]
     room: str
+    shuts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Go:
-    """Agents go where each is alone."""
+    """Agents go out of all rooms, through shut doors as in `Come`."""
 
     agents: tuple[str, ...]
+    shuts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +89,49 @@ class Wait:
     """Nothing is done."""
 
 
-Act = Come | Go | Move | Wait
+@dataclass(frozen=True, slots=True)
+class Look:
+    """An agent opens a container and looks into it."""
+
+    agent: str
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class UseDoor:
+    """An agent in a room opens or shuts its door."""
+
+    agent: str
+    room: str
+    opens: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Tell:
+    """An agent says something, with a claim.
+
+    Attributes:
+        agent: Who says it.
+        hearer: To whom it is whispered; None: it is said aloud.
+        thing: What it is about.
+        place: Where that is said to be, or not to be.
+        is_there: Which of the two.
+    """
+
+    agent: str
+    hearer: str | None
+    thing: str
+    place: Place
+    is_there: bool = True
+
+    @property
+    def text(self) -> str:
+        """What is said, in words."""
+        link = "is" if self.is_there else "is not"
+        return f"The {self.thing} {link} in the {self.place.container}."
+
+
+Act = Come | Go | Move | Look | UseDoor | Tell | Wait
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +145,7 @@ class Story:
         places: The containers, in order of mention.
         agents: Who acts in it, in order of mention; each is in no room at first.
         things: Where each thing is at first, in order of mention.
+        doors: Rooms that have a door, open at first, in order of mention.
     """
 
     lines: tuple[Line, ...]
@@ -85,6 +154,12 @@ class Story:
     places: tuple[Place, ...]
     agents: tuple[str, ...]
     things: dict[str, Place]
+    doors: tuple[str, ...] = ()
+
+    @property
+    def tells(self) -> bool:
+        """Whether anybody tells anything in it."""
+        return any(isinstance(act, Tell) for act in self.acts)
 
 
 def read_story(text: str) -> Story:
@@ -94,26 +169,36 @@ def read_story(text: str) -> Story:
         InputError: A line cannot be parsed, or contradicts those before it; the message
             gives its number.
     """
-    lines = parse_lines(text)
+    return story_of(parse_lines(text))
+
+
+def story_of(lines: Sequence[Line]) -> Story:
+    """The story that some lines tell.
+
+    Raises:
+        InputError: There are none, or one contradicts those before it; the message gives its
+            number.
+    """
     if not lines:
         raise InputError("the story is empty; give it one sentence a line")
     rooms = _rooms(lines)
     reader = _Reader(lines, rooms, _stated_rooms(lines, rooms))
     acts = tuple(reader.act(number) for number in range(len(lines)))
     return Story(
-        lines=lines,
+        lines=tuple(lines),
         acts=acts,
         rooms=rooms,
         places=tuple(reader.places),
         agents=tuple(reader.whereabouts),
         things=reader.first,
+        doors=tuple(reader.is_open),
     )
 
 
 def _rooms(lines: Sequence[Line]) -> tuple[str, ...]:
     """Names of the rooms: what is gone into, and what containers are in."""
     sentences = [line.sentence for line in lines]
-    visited = [s.room for s in sentences if isinstance(s, Entered | Exited | Stayed)]
+    visited = [s.room for s in sentences if isinstance(s, Entered | Exited | Stayed | DoorUsed)]
     located = [s for s in sentences if isinstance(s, Located)]
     holders = {s.place for s in located if s.place not in visited}
     holders |= {s.container for s in sentences if isinstance(s, Moved)}
@@ -145,28 +230,49 @@ class _Reader:
     first: dict[str, Place] = field(default_factory=dict)
     now: dict[str, Place] = field(default_factory=dict)
     places: dict[Place, None] = field(default_factory=dict)
+    is_open: dict[str, bool] = field(default_factory=dict)
 
     def act(self, number: int) -> Act:
         """What is done in a line."""
         line = self.lines[number]
         match line.sentence:
-            case Entered(agents, room):
-                self.whereabouts.update(dict.fromkeys(agents, room))
-                return Go(agents) if room == WAITING_ROOM else Come(agents, room)
-            case Exited(agents, room):
-                self._check_inside(line, agents, room)
-                self.whereabouts.update(dict.fromkeys(agents))
-                return Go(agents)
-            case Stayed(agents, room):
-                self._check_inside(line, agents, room)
-                return Wait()
+            case Entered() | Exited():
+                return self._go(line, line.sentence)
             case Moved(agent, thing, container):
                 return self._move(line, agent, thing, container)
+            case Opened(agent, container):
+                room = self._room_of(line, agent)
+                return Look(agent, self._place(line, self._here(line, room, container), container))
+            case DoorUsed():
+                return self._use_door(line, line.sentence)
+            case Told():
+                return self._tell(line, line.sentence)
+            case Stayed(agents, room):
+                self._check_inside(line, agents, room)
             case Located(thing, place):
                 self._locate(number, thing, place)
-                return Wait()
             case Remark():
-                return Wait()
+                pass
+        return Wait()
+
+    def _go(self, line: Line, sentence: Entered | Exited) -> Come | Go:
+        agents, room = sentence.agents, sentence.room
+        passed = [room, *(self.whereabouts.get(agent) for agent in agents)]
+        shuts = tuple(dict.fromkeys(r for r in passed if r and not self.is_open.get(r, True)))
+        if isinstance(sentence, Exited):
+            self._check_inside(line, agents, room)
+            self.whereabouts.update(dict.fromkeys(agents))
+            return Go(agents, shuts)
+        self.whereabouts.update(dict.fromkeys(agents, room))
+        return Go(agents, shuts) if room == WAITING_ROOM else Come(agents, room, shuts)
+
+    def _use_door(self, line: Line, used: DoorUsed) -> UseDoor:
+        self._check_inside(line, (used.agent,), used.room)
+        if self.is_open.setdefault(used.room, True) is used.opens:
+            state = "open" if used.opens else "shut"
+            raise line.fault(f"the door of the {used.room} is {state} already")
+        self.is_open[used.room] = used.opens
+        return UseDoor(used.agent, used.room, used.opens)
 
     def _check_inside(self, line: Line, agents: Sequence[str], room: str) -> None:
         for agent in agents:
@@ -176,20 +282,41 @@ class _Reader:
                 raise line.fault(f"{agent} is {where}; let {agent} enter the {room} first")
 
     def _move(self, line: Line, agent: str, thing: str, container: str) -> Move:
-        room = self.whereabouts.get(agent)
-        if room is None or room == WAITING_ROOM:
-            raise line.fault(f"{agent} is in no room with containers; let {agent} enter one first")
+        room = self._room_of(line, agent)
         source = self.now.get(thing)
         if source is None:
             raise line.fault(f"nothing says where the {thing} was; say 'The {thing} is in the ...'")
         if source.room != room:
             raise line.fault(f"the {thing} is in the {source.room} and {agent} in the {room}")
-        stated = self.stated.get(container, room)
-        if stated != room:
-            raise line.fault(f"the {container} is in the {stated} and {agent} in the {room}")
-        target = self._place(line, room, container)
+        target = self._place(line, self._here(line, room, container), container)
         self.now[thing] = target
         return Move(agent, thing, source, target)
+
+    def _tell(self, line: Line, told: Told) -> Tell:
+        for name in (told.agent, told.hearer):
+            if name is not None and name not in self.whereabouts:
+                raise line.fault(f"{name} was in no room so far; let {name} enter one first")
+        if told.agent == told.hearer:
+            raise line.fault(f"{told.agent} cannot whisper to itself; name somebody else")
+        if told.thing not in self.now:
+            raise line.fault(f"nothing says where the {told.thing} was; say where it is first")
+        room = self.stated.get(told.container) or self.now[told.thing].room
+        place = self._place(line, room, told.container)
+        return Tell(told.agent, told.hearer, told.thing, place, told.is_there)
+
+    def _room_of(self, line: Line, agent: str) -> str:
+        """The room with containers that an agent is in."""
+        room = self.whereabouts.get(agent)
+        if room is None or room == WAITING_ROOM:
+            raise line.fault(f"{agent} is in no room with containers; let {agent} enter one first")
+        return room
+
+    def _here(self, line: Line, room: str, container: str) -> str:
+        """A room, once it is seen that its container is not stated to be in another one."""
+        stated = self.stated.get(container, room)
+        if stated != room:
+            raise line.fault(f"the {container} is in the {stated}, and they are in the {room}")
+        return room
 
     def _locate(self, number: int, thing: str, place: str) -> None:
         line = self.lines[number]

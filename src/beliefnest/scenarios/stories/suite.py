@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
+from beliefnest.scenarios.stories.checking import data_fault
 from beliefnest.scenarios.stories.data import Item, StoryItems
 from beliefnest.scenarios.stories.explaining import explain_answer
 from beliefnest.scenarios.stories.playing import Answer, PlayedStory
@@ -19,12 +20,16 @@ class Judged:
         answer: What the nest says.
         needs_first: Whether the answer expected differs from what the nest says with the
             first believer dropped; False where there is none.
+        tells: Whether somebody tells something in its story.
+        data_fault: What in its story the expected answer contradicts; None: nothing found.
         explanation: Why the nest says it, for a wrong answer; else empty.
     """
 
     item: Item
     answer: Answer
     needs_first: bool
+    tells: bool = False
+    data_fault: str | None = None
     explanation: tuple[str, ...] = ()
 
     @property
@@ -62,16 +67,20 @@ def answer_story(asked: StoryItems, world: str = "scripted", seed: int = 0) -> t
     questions = [item.question for item in asked.items]
     nested = [q for q in questions if q.believers]
     dropped = [replace(q, believers=q.believers[1:]) for q in nested]
-    with PlayedStory.play(asked.story, world, seed, [*questions, *dropped]) as played:
+    with PlayedStory.play(
+        asked.story, world, seed, [*questions, *dropped], asked.knowing
+    ) as played:
         answers = played.answer_all([*questions, *dropped])
         without = dict(zip(nested, answers[len(questions) :], strict=True))
         judged = []
         for item, answer in zip(asked.items, answers, strict=False):
             other = without.get(item.question)
-            each = Judged(item, answer, other is not None and other.text != item.expected)
+            needs_first = other is not None and other.text != item.expected
+            each = Judged(item, answer, needs_first, asked.story.tells)
             if not each.ok:
+                fault = data_fault(asked.story, item.question, item.expected)
                 why = explain_answer(played, item.question, answer, item.expected)
-                each = replace(each, explanation=why)
+                each = replace(each, data_fault=fault, explanation=why)
             judged.append(each)
     return tuple(judged)
 

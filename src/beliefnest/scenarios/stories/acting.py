@@ -1,0 +1,98 @@
+"""What the acts of a story are in a world: calls of the scripted one, programs for bots."""
+
+import json
+from collections.abc import Sequence
+
+from beliefnest.scenarios.stories.plan import FloorPlan, feet
+from beliefnest.scenarios.stories.story import Act, Come, Go, Look, Move, Tell, UseDoor
+from beliefnest.world.claims import Claim
+from beliefnest.world.scripted import ScriptedWorld
+from beliefnest.world.values import Position
+
+__all__ = ["programs_of", "tell"]
+
+
+def tell(world: ScriptedWorld, plan: FloorPlan, act: Act) -> None:
+    """Do one act in one tick."""
+    with world.tick():
+        match act:
+            case Come(agents, room):
+                for agent in agents:
+                    world.place_agent(agent, feet(plan.stands[room, agent]))
+            case Go(agents):
+                for agent in agents:
+                    world.place_agent(agent, feet(plan.apart[agent]))
+            case Move(agent, thing, source, target):
+                item = {plan.items[thing]: 1}
+                world.withdraw(agent, plan.places[source], item)
+                world.deposit(agent, plan.places[target], item)
+            case UseDoor(agent, room, opens):
+                world.use_door(agent, plan.doors[room], open=opens)
+            case Look(agent, place):
+                world.open(agent, plan.places[place])
+            case Tell(agent, None):
+                world.say(agent, act.text, [_claim(act, plan)])
+            case Tell(agent, str(hearer)):
+                world.whisper(agent, hearer, act.text, [_claim(act, plan)])
+            case _:
+                pass
+
+
+def programs_of(act: Act, plan: FloorPlan) -> dict[str, str]:
+    """The programs that bots act something out with, by agent; empty: nothing is done."""
+    match act:
+        case Come(agents, room):
+            return {agent: _walk(plan.stands[room, agent], act.shuts) for agent in agents}
+        case Go(agents):
+            return {agent: _walk(plan.apart[agent], act.shuts) for agent in agents}
+        case Move() | UseDoor() | Look() | Tell():
+            return {act.agent: _program(act, plan)}
+        case _:
+            return {}
+
+
+def _program(act: Move | UseDoor | Look | Tell, plan: FloorPlan) -> str:
+    """What one agent does; at the end it is at its stand, in nobody's way."""
+    match act:
+        case Move(agent, thing, source, target):
+            items = f"{{{plan.items[thing]}: 1}}"
+            taking = f"await getItemFromChest(bot, {_vec3(plan.places[source])}, {items})\n"
+            putting = f"await depositItemIntoChest(bot, {_vec3(plan.places[target])}, {items})\n"
+            return taking + putting + _walk(plan.stands[source.room, agent])
+        case UseDoor(agent, room, opens):
+            skill = "openDoor" if opens else "closeDoor"
+            return f"await {skill}(bot, {_vec3(plan.doors[room])})\n" + _walk(
+                plan.stands[room, agent]
+            )
+        case Look(agent, place):
+            where = _vec3(plan.places[place])
+            return (
+                f"await goToPosition(bot, {where}, 2)\n"
+                f"const inside = await bot.openContainer(bot.blockAt({where}))\n"
+                "await bot.closeWindow(inside)\n" + _walk(plan.stands[place.room, agent])
+            )
+        case Tell():
+            return _telling(act, plan)
+
+
+def _claim(told: Tell, plan: FloorPlan) -> Claim:
+    make = Claim.located if told.is_there else Claim.absent
+    return make(plan.items[told.thing], plan.places[told.place])
+
+
+def _telling(told: Tell, plan: FloorPlan) -> str:
+    make = "located" if told.is_there else "absent"
+    item, place = json.dumps(plan.items[told.thing]), _vec3(plan.places[told.place])
+    said = f"{json.dumps(told.text)}, [{make}({item}, {place})]"
+    if told.hearer is None:
+        return f"await say(bot, {said})"
+    return f"await whisper(bot, {json.dumps(told.hearer)}, {said})"
+
+
+def _walk(block: Position, shuts: Sequence[str] = ()) -> str:
+    doors = ", {closeDoors: true}" if shuts else ""
+    return f"await goToPosition(bot, {_vec3(block)}, 0{doors})"
+
+
+def _vec3(position: Position) -> str:
+    return f"new Vec3({', '.join(map(str, position))})"

@@ -1,0 +1,107 @@
+"""One's own stories: JSON lines, as sentences and as objects, in both worlds."""
+
+import json
+
+import pytest
+
+import beliefnest as bn
+from beliefnest.cli.app import run_command_line
+from beliefnest.scenarios.stories.own import read_own
+from beliefnest.scenarios.stories.suite import answer_story
+
+TOLD = {
+    "name": "told",
+    "events": [
+        "Sally and Anne entered the den.",
+        "The pear is in the box.",
+        {"event": "door", "agent": "Anne", "room": "den", "open": False},
+        {"event": "leave", "agents": ["Sally"], "room": "den"},
+        "Anne opened the door of the den.",
+        {"event": "move", "agent": "Anne", "thing": "pear", "container": "jar"},
+        "Anne exited the den.",
+        {
+            "event": "whisper",
+            "agent": "Anne",
+            "hearer": "Sally",
+            "thing": "pear",
+            "container": "tin",
+        },
+        {"event": "wait"},
+    ],
+    "questions": [
+        {"question": "Where is the pear really?", "answer": "jar"},
+        {"believers": ["Sally"], "thing": "pear", "answer": "tin"},
+        {"believers": ["Anne"], "thing": "pear", "answer": "jar"},
+        {"question": "Where does Anne think Sally thinks the pear is?", "answer": "tin"},
+        {"question": "Does Sally think the door of the den is open?", "answer": "shut"},
+        {"believers": ["Anne"], "door": "den", "answer": "open"},
+    ],
+}
+LOOKING = {
+    "name": "looking",
+    "containers": "opaque",
+    "events": [
+        {"event": "enter", "agents": ["Sally", "Anne"], "room": "den"},
+        {"event": "is", "thing": "pear", "place": "box"},
+        {"event": "open", "agent": "Sally", "container": "box"},
+    ],
+    "questions": [
+        {"believers": ["Sally"], "thing": "pear", "answer": "box"},
+        {"believers": ["Anne"], "thing": "pear", "answer": None},
+        {"believers": ["Anne", "Sally"], "thing": "pear", "answer": None},
+    ],
+}
+
+
+@pytest.fixture
+def file(tmp_path):
+    def write(*stories):
+        path = tmp_path / "own.jsonl"
+        path.write_text("\n".join(json.dumps(story) for story in stories) + "\n")
+        return path
+
+    return write
+
+
+@pytest.mark.parametrize("world", ["scripted", "embedded"])
+def test_own_stories_are_answered_as_they_say(file, world: str) -> None:
+    judged = [
+        each for story in read_own(file(TOLD, LOOKING)) for each in answer_story(story, world)
+    ]
+    assert [each.explanation for each in judged if not each.ok] == []
+    assert len(judged) == 9
+
+
+def test_the_command_lists_what_is_answered_otherwise(file, capsys) -> None:
+    questions = [{"believers": ["Sally"], "door": "den", "answer": "open"}]
+    path = file(LOOKING, {**TOLD, "questions": questions})
+    assert run_command_line(["suite", "stories", "--data", str(path)]) == 1
+    out = capsys.readouterr().out
+    assert "row 2: Sally thinks the door of the den is" in out
+    assert "the door of the den is shut in /Sally, expected open" in out
+    assert run_command_line(["suite", "stories", "--data", str(path), "--rows", "1"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        ({"events": [{"event": "juggle"}]}, "line 1: .*juggle"),
+        ({"events": ["Sally juggled."]}, "line 1: line 1: 'Sally juggled.'"),
+        ({"events": []}, "the story is empty"),
+        ({"colour": "red"}, "colour"),
+        ({"questions": [{"thing": "pear", "answer": "barn"}]}, "the answer 'barn' is none"),
+        ({"questions": [{"door": "den", "answer": "ajar"}]}, "the answer 'ajar' is none"),
+        ({"questions": [{"door": "hall", "answer": "open"}]}, "door of the hall"),
+        ({"questions": [{"thing": "pear", "door": "den", "answer": "open"}]}, "has to be one of"),
+        ({"questions": [{"believers": ["Zoe"], "thing": "pear", "answer": None}]}, "Zoe is not"),
+    ],
+)
+def test_what_is_wrong_is_said_with_the_line(file, change, what: str) -> None:
+    with pytest.raises(bn.InputError, match=what):
+        read_own(file({**TOLD, **change}))
+
+
+def test_a_door_that_is_open_already_is_a_fault(file) -> None:
+    events = ["Sally entered the den.", "Sally opened the door of the den."]
+    with pytest.raises(bn.InputError, match=r"line 2: .*is open already"):
+        read_own(file({"events": events, "questions": []}))
