@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.nest.comparing import everything
+from tests.nest.comparing import everything, values
 from tests.nest.places import wall
 from tests.nest.reference import paths_to
 from tests.nest.reference_rules import Block, Node, Rules
@@ -301,3 +301,36 @@ def timeless(state: State) -> dict[str, Any]:
         "chat": [(who, text) for _, who, text in state.chat],
         "thoughts": [(who, text) for _, who, text in state.thoughts],
     }
+
+
+# Testimony
+
+
+def weighing(story: Story, testimony: str) -> Story:
+    return replace(story, options={**story.options, "testimony": testimony, "grace": 1})
+
+
+@given(Stories(max_acts=10).story)
+def test_where_nothing_is_claimed_it_is_nothing_how_hearers_take_claims(story):
+    told = [states(Stage(weighing(story, how)).play()) for how in ("none", "accept", "informed")]
+    assert told[0] == told[1] == told[2]
+
+
+@given(Stories(max_acts=10, claims=True).story)
+def test_a_speaker_s_own_belief_is_what_it_would_be_without_its_words(story):
+    """A lie changes nothing of what the liar believes, nor anything that was not heard."""
+    acts = tuple(act for act in story.acts if len(act) < 4 or act[0] not in ("say", "whisper"))
+    silent = Stage(replace(story, acts=acts)).play()
+    mute = {name for name in NAMES if not _is_told(story, name)}
+    spoken = Stage(story).play()
+    for name in mute:
+        ours, theirs = (values(stage.nest[f"/{name}"].state) for stage in (spoken, silent))
+        assert (ours["blocks"], ours["containers"]) == (theirs["blocks"], theirs["containers"])
+
+
+def _is_told(story: Story, name: str) -> bool:
+    """Whether somebody else says or whispers a claim that an agent might hear."""
+    told = [act for act in story.acts if act[0] in ("say", "whisper") and len(act) >= 4]
+    inner = [each for act in story.acts if act[0] == "tick" for each in act[1:]]
+    told += [act for act in inner if act[0] in ("say", "whisper") and len(act) >= 4]
+    return any(act[1] != name and (act[0] == "say" or act[2] == name) for act in told)
