@@ -11,7 +11,8 @@ from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import condition_numbers
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.design import Design, Template
-from beliefnest.studies.variation import Variation, drawn_variations, listed_variations
+from beliefnest.studies.drawing import drawn_variations
+from beliefnest.studies.variation import Variation, listed_variations
 
 __all__ = ["Cell", "CellKey", "Invalid", "Plan", "plan_cells"]
 

@@ -1,30 +1,23 @@
-"""One variation of a scenario: values of its parameters, a symmetry, names; how it is drawn."""
+"""One variation of a scenario: values of its parameters, a symmetry, names."""
 
-import functools
 import itertools
 import json
-import random
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from beliefnest.errors import InputError
 from beliefnest.scenarios.document import Document, plain
-from beliefnest.scenarios.parameters import broken_constraint, choices, declared_in
 from beliefnest.studies.changes import Moved, Renamed
 from beliefnest.studies.scene import changed_scene
 from beliefnest.studies.symmetry import SYMMETRIES, Placing, symmetry_named
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box
 
-__all__ = ["CHANGES", "Variation", "drawn_variations", "listed_variations"]
+__all__ = ["CHANGES", "Variation", "listed_variations"]
 
 CHANGES = ("symmetry", "agents", "items")
 """Names in `variations` that are no parameters: a symmetry's name, new names of agents, items."""
-_LISTED = 20_000
-"""Variations that are listed and shuffled; of more, single ones are drawn."""
-_DRAWS = 200
-"""Draws for one variation that keeps all constraints, before giving up."""
 
 
 @dataclass(frozen=True)
@@ -113,65 +106,3 @@ def listed_variations(lists: Mapping[str, Sequence[Any]]) -> list[Variation]:
         Variation(dict(zip(names, combination, strict=True)))
         for combination in itertools.product(*lists.values())
     ]
-
-
-def drawn_variations(document: Document, count: int, seed: str) -> list[Variation]:
-    """So many different variations of a scenario's parameters and symmetries.
-
-    Which come first does not depend on how many are drawn, so that a study can be extended.
-
-    Args:
-        document: The scenario.
-        count: How many; fewer if there are not as many.
-        seed: Decides which.
-
-    Raises:
-        ScenarioError: A declaration or constraint is wrong.
-        InputError: The constraints leave next to nothing.
-    """
-    declared = declared_in(document)
-    symmetries = [symmetry.name for symmetry in SYMMETRIES]
-    lists = {name: choices(entry) for name, entry in declared.items()}
-    if all(values is not None for values in lists.values()):
-        number = functools.reduce(lambda n, values: n * len(values or ()), lists.values(), 8)
-        if number <= _LISTED:
-            return _shuffled(document, lists, symmetries, seed)[:count]
-    return list(itertools.islice(_draws(document, lists, symmetries, seed), count))
-
-
-def _shuffled(
-    document: Document, lists: Mapping[str, list[Any] | None], symmetries: list[str], seed: str
-) -> list[Variation]:
-    """All that there are, in an order that the seed decides."""
-    whole = {**{name: values or [] for name, values in lists.items()}, "symmetry": symmetries}
-    keeping = [
-        each
-        for each in listed_variations(whole)
-        if broken_constraint(document, each.parameters) is None
-    ]
-    random.Random(seed).shuffle(keeping)
-    return keeping
-
-
-def _draws(
-    document: Document, lists: Mapping[str, list[Any] | None], symmetries: list[str], seed: str
-) -> Iterator[Variation]:
-    declared, chance, seen = declared_in(document), random.Random(seed), set()
-    misses = 0
-    while misses < _DRAWS:
-        values = {
-            name: chance.choice(values)
-            if values is not None
-            else round(chance.uniform(*(declared[name].range or (0, 0))), 3)
-            for name, values in lists.items()
-        }
-        found = Variation({**values, "symmetry": chance.choice(symmetries)})
-        misses += 1
-        if found.key not in seen and broken_constraint(document, found.parameters) is None:
-            seen.add(found.key)
-            misses = 0
-            yield found
-    if not seen:
-        raise InputError(
-            f"{document.source}: none of {_DRAWS} draws keeps the constraints; widen a range"
-        )

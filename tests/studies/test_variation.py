@@ -1,0 +1,147 @@
+"""Parameters, and copies of scenes: everything moves and is renamed, or it is refused."""
+
+import pytest
+from tests.studies.small import SMALL, small_in
+
+import beliefnest as bn
+from beliefnest.errors import InputError, ScenarioError
+from beliefnest.scenarios.expressions import evaluate
+from beliefnest.scenarios.loading import read_document
+from beliefnest.studies.drawing import drawn_variations
+from beliefnest.studies.javascript import Rewriting, rewritten
+from beliefnest.studies.variation import Variation
+
+
+def varied(name, condition=None, **values):
+    variation = Variation(values)
+    document = read_document(name)
+    return bn.Scenario.varied(document, condition, variation.parameters, variation.scene)
+
+
+def test_a_value_takes_the_place_of_its_name_whole_or_within_a_text(tmp_path):
+    scenario = bn.Scenario.load(small_in(tmp_path), parameters={"spot": [5, 1, 1], "item": "bone"})
+    assert scenario.setting.snapshot.containers == {(5, 1, 1): {"bone": 1}}
+    assert scenario.probes[0].task == "Get a bone from a chest."
+    assert bn.Scenario.kept(scenario.text, {}, None, "kept").probes == scenario.probes
+
+
+def test_javascripts_own_holes_stay_in_programs(tmp_path):
+    program = "script: [{agent: ann, program: 'say(bot, `${bot.health} ${count + 1}`)'}]\n"
+    scenario = bn.Scenario.load(small_in(tmp_path, SMALL + program), parameters={"count": 4})
+    assert scenario.setting.script[0].programs["ann"] == "say(bot, `${bot.health} 5`)"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ('at: "${spot}"', 'at: "${sopt}"', "small.yaml:11: containers[0].at: 'sopt' names 'sopt'"),
+        ("default: diamond, ", "", "parameters.item: Object missing required field `default`"),
+        ("range: [1, 64]", "range: [64, 1]", "parameters.count.range: ends below its beginning"),
+        ("spot[0] + spot[2] < 10", "spot.x < 3", "is not allowed in an expression"),
+        ("spot[0] + spot[2] < 10", "spot[0] > 3", "'spot[0] > 3' does not hold for spot [1, 1, 1]"),
+    ],
+)
+def test_what_is_wrong_with_parameters_is_told_with_its_line(tmp_path, old, new, told):
+    file = small_in(tmp_path, SMALL.replace(old, new))
+    with pytest.raises(ScenarioError) as caught:
+        bn.Scenario.load(file)
+    assert told in str(caught.value)
+
+
+def test_an_undeclared_parameter_is_refused(tmp_path):
+    with pytest.raises(ScenarioError, match="no parameter 'spto'; declared are spot, item, count"):
+        bn.Scenario.load(small_in(tmp_path), parameters={"spto": 1})
+
+
+@pytest.mark.parametrize(
+    "text", ["__import__('os')", "'a' * 9**9", "[1] * 9", "2 ** 99", "x.y", "(lambda: 1)()", "1 +"]
+)
+def test_expressions_compute_with_values_alone(text):
+    with pytest.raises(InputError):
+        evaluate(text, {"x": 1})
+
+
+def test_a_turned_scene_has_all_of_it_turned():
+    written, turned = (
+        varied("sally-anne", 2, symmetry=name) for name in ("as-written", "turned-90")
+    )
+    # The box is 23 wide from -11: x' = -z - 0.5 + 0.5, z' = x for blocks.
+    assert set(turned.setting.snapshot.containers) == {
+        (-z, y, x) for x, y, z in written.setting.snapshot.containers
+    }
+    assert turned.setting.script[1].programs == {
+        "sally": "await goToPosition(bot, new Vec3(6, -51, 6), 1);"
+    }
+    sally, before = (s.setting.snapshot.agents["sally"] for s in (turned, written))
+    assert sally.position == (1 - before.position[2], -51, before.position[0])
+    assert sally.yaw == pytest.approx(-1.5707963)
+    assert turned.probes[0].expect[0].container == (4, -51, 2)
+
+
+def test_names_change_in_programs_texts_and_paths():
+    scenario = varied(
+        "help-sally", agents={"sally": "anne", "anne": "ed"}, items={"diamond": "apple"}
+    )
+    assert (
+        scenario.setting.script[3]
+        .programs["anne"]
+        .endswith('await say(bot, "I want to get an apple from a chest.");\n')
+    )
+    assert "{apple: 1}" in scenario.setting.script[2].programs["ed"]
+    assert [probe.path for probe in scenario.probes] == ["/ed/anne", "/ed", "/ed"]
+    assert scenario.probes[1].task == "Help Anne."
+    assert scenario.expectations[3].content.text == "an apple"
+
+
+def test_two_agents_cannot_get_one_name():
+    with pytest.raises(InputError, match="two agents would be called 'anne'"):
+        varied("help-sally", agents={"sally": "anne"})
+
+
+MOVED = Rewriting(lambda place, _: (-place[0], place[1], place[2]), str, str)
+
+
+@pytest.mark.parametrize(
+    ("program", "why"),
+    [
+        (
+            "const at = 3;\nawait goToPosition(bot, new Vec3(at, 1, 2));",
+            "line 2 .*computes a position",
+        ),
+        ("bot.entity.position.x > 3", "computes with 'x'"),
+        ("for (const [x, z] of [[1, 0]]) {}", "which may be a position"),
+        ("say(bot, 'go north')", "names a direction"),
+        ("await (", "is not JavaScript"),
+        ("bot.pathfinder.goto(new goals.GoalXZ(1, 2))", "holds positions by 'goals'"),
+    ],
+)
+def test_what_cannot_be_moved_for_certain_is_refused(program, why):
+    with pytest.raises(InputError, match=why):
+        rewritten(program, MOVED)
+
+
+def test_positions_in_comments_and_strings_are_no_code():
+    program = "// new Vec3(1, 2, 3)\nawait lookAt(bot, new Vec3(1.5, 2, -3));"
+    moved = "// new Vec3(1, 2, 3)\nawait lookAt(bot, new Vec3(-1.5, 2, -3));"
+    assert rewritten(program, MOVED) == moved
+
+
+def test_a_task_that_names_a_side_is_refused_with_its_line(tmp_path):
+    file = small_in(tmp_path, SMALL.replace("Get a ${item} from a", "Open the left"))
+    with pytest.raises(ScenarioError, match=r"small.yaml:21: probes\[0\].task: says 'left'"):
+        varied(file, symmetry="mirrored")
+
+
+def test_draws_keep_constraints_differ_and_begin_alike(tmp_path):
+    document = read_document(small_in(tmp_path))
+    few, many = (drawn_variations(document, count, "seed") for count in (5, 40))
+    assert many[:5] == few
+    assert len({each.key for each in many}) == 40
+    assert all(each.values["spot"] != [5, 1, 5] for each in many)
+    assert drawn_variations(document, 5, "other") != few
+
+
+def test_no_more_is_drawn_than_there_is(tmp_path):
+    text = SMALL.replace("range: [1, 64]", "values: [1]")
+    # Three places, two items, one count, eight symmetries.
+    assert len(drawn_variations(read_document(small_in(tmp_path, text)), 1000, "seed")) == 48
