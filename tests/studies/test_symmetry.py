@@ -13,15 +13,7 @@ from beliefnest.world.values import Box
 
 REGISTRY = Registry.load()
 BLOCKS = [name for name in REGISTRY.item_names if REGISTRY.has_block(name)]
-LOPSIDED = (
-    "candle",
-    "sea_pickle",
-    "turtle_egg",
-    "bamboo",
-    "pointed_dripstone",
-    "cake",
-    "sniffer_egg",
-)
+LOPSIDED = ("candle", "sea_pickle", "_egg", "bamboo", "pointed_dripstone", "cake")
 """Stand a little aside in their block, whichever way anything faces."""
 UNIT = Box((0, 0, 0), (0, 0, 0))
 FACING = {"north": (0.0, -1.0), "east": (1.0, 0.0), "south": (0.0, 1.0), "west": (-1.0, 0.0)}
@@ -40,7 +32,9 @@ def space(symmetry, boxes):
     for x0, y0, z0, x1, y1, z1 in boxes:
         (a, _, c), (b, _, d) = placing.point((x0, y0, z0)), placing.point((x1, y1, z1))
         edges = [round(32 * edge) for edge in (*sorted((a, b)), y0, y1, *sorted((c, d)))]
-        x, y, z = (slice(max(0, low), high) for low, high in zip(edges[::2], edges[1::2]))
+        x, y, z = (
+            slice(max(0, low), high) for low, high in zip(edges[::2], edges[1::2], strict=True)
+        )
         filled[x, y, z] = True
     return filled
 

@@ -1,13 +1,15 @@
 """A study as a person asks for it: from what is combined to a folder of results."""
 
+import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Self
 
 from filelock import Timeout
 
-from beliefnest.errors import InputError
+from beliefnest.errors import InputError, ModelError
 from beliefnest.llm.budget import RunLimits
+from beliefnest.llm.resolve import resolve_model
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import read_document
 from beliefnest.scenarios.records import expected_json
@@ -145,12 +147,14 @@ class Study:
                 argument is wrong.
             ScenarioError: A scenario is wrong as it is written.
             UnknownNameError: A model, a backend, or what it needs, is not there.
+            ModelError: A model lacks its key.
         """
         place = StudyFolder.open(folder)
         plan = self.plan()
         part = plan if shard is None else plan.shard(*_checked_shard(shard))
         if not plan.cells and plan.invalid:
             raise InputError(f"no combination makes a scenario; the first: {plan.invalid[0].why}")
+        self._check_models(backend)
         terms = Terms(
             answers=place.answers.absolute(),
             ledger=place.ledger.absolute(),
@@ -177,6 +181,16 @@ class Study:
         place = StudyFolder.open(folder)
         with place.lock():
             return place.take_over([Path(other) for other in others])
+
+    def _check_models(self, backend: str) -> None:
+        """Refuse a model that there is not, or that lacks a key, before anything is played."""
+        for name in self._design.models:
+            try:
+                resolve_model(name, os.environ)
+            except ModelError:
+                # The machines of a cluster may have keys that this one has not.
+                if backend == "loky":
+                    raise
 
     def _plan_json(self, plan: Plan) -> dict[str, Any]:
         design = self._design

@@ -1,0 +1,109 @@
+"""Studies with models behind a server: slow, rate-limited, wrong, down, and what they may spend."""
+
+import threading
+
+import pytest
+from tests.llm.conftest import FakeOpenAI, serving
+from tests.studies.small import small_in
+
+import beliefnest as bn
+from beliefnest.studies.spending import spent_in
+
+LEFT = "```javascript\nawait getItemFromChest(bot, new Vec3(1, 1, 1), {diamond: 1});\n```"
+ANSWER_TOKENS = 150
+PLACES = {"spot": [[1, 1, 1], [5, 1, 1]]}
+
+
+@pytest.fixture
+def server(monkeypatch):
+    with serving() as served:
+        monkeypatch.setenv("VLLM_BASE_URL", served.url)
+        yield served
+
+
+def study(folder, **arguments):
+    return bn.Study(small_in(folder), models=["vllm:m"], **arguments)
+
+
+def test_what_a_model_gets_wrong_is_told_apart(server, tmp_path):
+    server.will(FakeOpenAI.says(LEFT))
+    result = study(tmp_path, variations=PLACES).run(tmp_path / "out", jobs=1)
+    assert [row["outcome"] for row in result.rows] == ["ok", "program_failed"]
+    frame = result.frame()
+    assert list(frame["tokens"]) == [ANSWER_TOKENS] * 2
+    assert list(frame["intended"]) == ["1,1,1", "1,1,1"]
+
+
+def test_no_program_is_no_answer(server, tmp_path):
+    server.will(FakeOpenAI.says("I would rather not."))
+    result = study(tmp_path, attempts=2).run(tmp_path / "out", jobs=1)
+    assert [row["outcome"] for row in result.rows] == ["no_answer"]
+    assert result.rows[0]["tokens"] == 2 * ANSWER_TOKENS
+
+
+def test_rate_limits_are_waited_for(server, tmp_path):
+    server.will(FakeOpenAI.fails(429, headers=[("retry-after", "0")]), FakeOpenAI.says(LEFT))
+    result = study(tmp_path).run(tmp_path / "out", jobs=1)
+    assert [row["outcome"] for row in result.rows] == ["ok"]
+
+
+def test_a_server_that_is_down_fails_its_cells_alone_and_they_are_tried_again(server, tmp_path):
+    server.will(FakeOpenAI.says(LEFT), FakeOpenAI.fails(429, headers=[("retry-after", "3600")]))
+    arguments = {"variations": {"count": [1, 2]}}
+    result = study(tmp_path, **arguments).run(tmp_path / "out", jobs=1)
+    assert [row["outcome"] for row in result.rows] == ["ok", "error"]
+    assert "asks to wait 3600 s" in result.rows[1]["why_not"]
+    assert result.summary().loc[0, ["judged", "right", "error"]].tolist() == [1, 1, 1]
+    server.will(FakeOpenAI.says(LEFT))
+    asked = len(server.requests)
+    result = study(tmp_path, **arguments).run(tmp_path / "out", jobs=1)
+    assert [row["outcome"] for row in result.rows] == ["ok", "ok"]
+    assert len(server.requests) == asked + 1
+
+
+def test_slow_answers_are_awaited_side_by_side(server, tmp_path):
+    """The first request is answered when the second has come, which needs two jobs at once."""
+    second = threading.Event()
+
+    def slow(handler):
+        if len(server.requests) == 1:
+            assert second.wait(120)
+        else:
+            second.set()
+        FakeOpenAI.says(LEFT)(handler)
+
+    server.will(slow)
+    result = study(tmp_path, variations={"count": [1, 2]}).run(tmp_path / "out", jobs=2)
+    assert list(result.frame()["count"]) == [1, 2]
+    assert result.frame()["ok"].all()
+
+
+def test_what_may_be_spent_holds_over_all_jobs_and_runs(server, tmp_path):
+    server.will(FakeOpenAI.says(LEFT))
+    out, counts = tmp_path / "out", {"count": [1, 2, 3, 4, 5, 6]}
+    limited = study(tmp_path, variations=counts, max_tokens=2 * ANSWER_TOKENS)
+    result = limited.run(out, jobs=2, record=True)
+    # Two requests may be under way when the limit is reached.
+    assert len(server.requests) in (2, 3)
+    refused = [row for row in result.rows if row["outcome"] == "error"]
+    assert len(refused) == 6 - len(server.requests)
+    assert all("may use 300; raise the limit" in row["why_not"] for row in refused)
+    # No script was played for them.
+    played = {row["cell"] for row in result.rows} - {row["cell"] for row in refused}
+    assert {file.stem for file in (out / "runs").glob("*.bn")} == played
+    result = study(tmp_path, variations=counts).run(out, jobs=1)
+    assert len(server.requests) == 6
+    assert result.frame()["ok"].all()
+    assert spent_in(out / "spent.jsonl").tokens == 6 * ANSWER_TOKENS
+
+
+def test_two_models_are_compared_on_the_same_variations(server, tmp_path):
+    server.will(FakeOpenAI.says(LEFT))
+    both = bn.Study(small_in(tmp_path), models=["offline", "vllm:m"], variations=PLACES)
+    result = both.run(tmp_path / "out", jobs=1)
+    assert result.frame().groupby("spot")["seed"].nunique().tolist() == [1, 1]
+    (pairs,) = result.differences("model").to_dict("records")
+    assert (pairs["one"], pairs["other"], pairs["pairs"]) == ("offline", "vllm:m", 2)
+    assert (pairs["both"], pairs["only_one"], pairs["difference"]) == (1, 1, 0.5)
+    by_model = result.summary("model").set_index("model")
+    assert by_model["accuracy"].to_dict() == {"offline": 1.0, "vllm:m": 0.5}

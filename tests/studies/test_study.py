@@ -1,0 +1,217 @@
+"""A study in a folder: the same rows whatever happened on the way, and what went wrong in rows."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from tests.profiles import at_night
+from tests.studies.small import SMALL, small_in, study_in
+
+import beliefnest as bn
+from beliefnest.cli.app import run_command_line
+from beliefnest.studies.store import StudyFolder
+
+STUDY = """\
+scenarios: [small.yaml]
+variations:
+  spot: [[1, 1, 1], [5, 1, 1], [5, 1, 5]]
+  count: [1, 2, 3]
+"""
+CELLS = 6
+
+
+def cells_of(folder):
+    return {file.name: file.read_bytes() for file in Path(folder, "cells").glob("*.json")}
+
+
+def tables_of(folder):
+    return [Path(folder, name).read_bytes() for name in ("rows.csv", "rows.parquet", "study.html")]
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A study that one process has run, by the command line; its folder and its file."""
+    folder = tmp_path_factory.mktemp("whole")
+    file = study_in(folder, STUDY)
+    assert run_command_line(["study", str(file), "--out", str(folder / "out"), "--jobs", "1"]) == 0
+    return folder / "out", file
+
+
+def test_one_row_for_each_probe_of_each_cell(whole):
+    frame = bn.StudyResult.read(whole[0]).frame()
+    assert len(frame) == CELLS
+    assert set(frame["spot"]) == {"1,1,1", "5,1,1"}
+    assert list(frame["opened"]) == list(frame["spot"])
+    assert frame["ok"].all()
+    assert set(frame["outcome"]) == {"ok"}
+    assert frame["seed"].nunique() == CELLS
+    assert str(frame["ticks"].dtype) == "int64[pyarrow]"
+
+
+def test_invalid_combinations_are_listed(whole):
+    invalid = bn.StudyResult.read(whole[0]).invalid
+    assert [each["variation"]["count"] for each in invalid] == [1, 2, 3]
+    assert all("'spot[0] + spot[2] < 10' does not hold" in each["why"] for each in invalid)
+
+
+@pytest.mark.parametrize("backend", ["loky", "dask", "ray"])
+def test_the_same_bytes_with_two_jobs(whole, backend, tmp_path):
+    if backend != "loky":
+        pytest.importorskip("distributed" if backend == "dask" else "ray")
+    out, file = tmp_path / "out", whole[1]
+    command = [sys.executable, "-m", "beliefnest", "study", str(file), "--out", str(out)]
+    subprocess.run([*command, "--jobs", "2", "--backend", backend], check=True)
+    assert cells_of(out) == cells_of(whole[0])
+    assert tables_of(out) == tables_of(whole[0])
+
+
+def test_shards_merge(whole, tmp_path):
+    file = str(whole[1])
+    for number in (1, 2):
+        out = str(tmp_path / f"shard-{number}")
+        shard = ["--shard", f"{number}/2", "--jobs", "1"]
+        assert run_command_line(["study", file, "--out", out, *shard]) == 0
+    parts = [cells_of(tmp_path / f"shard-{number}") for number in (1, 2)]
+    assert not parts[0].keys() & parts[1].keys()
+    merged = [f"--merge={tmp_path / 'shard-1'}", f"--merge={tmp_path / 'shard-2'}"]
+    assert run_command_line(["study", file, "--out", str(tmp_path / "all"), *merged]) == 0
+    assert tables_of(tmp_path / "all") == tables_of(whole[0])
+
+
+def test_different_results_of_one_cell_do_not_merge(whole, tmp_path):
+    other = StudyFolder.open(tmp_path / "other")
+    name = sorted(StudyFolder.existing(whole[0]).names())[0]
+    content = StudyFolder.existing(whole[0]).cell(name)
+    other.write_cell(name, {**content, "ticks": 7})
+    with pytest.raises(bn.InputError, match=f"different results of the cell {name}"):
+        StudyFolder.existing(whole[0]).take_over([tmp_path / "other"])
+
+
+def test_a_killed_study_goes_on_to_the_same_rows(whole, tmp_path):
+    chance = random.Random(0)
+    out, file = tmp_path / "out", whole[1]
+    command = [sys.executable, "-m", "beliefnest", "study", str(file), "--out", str(out)]
+    for _ in range(at_night(50, 2)):
+        process = subprocess.Popen(
+            [*command, "--jobs", "2"], stderr=subprocess.PIPE, text=True, start_new_session=True
+        )
+        for _ in range(chance.randint(1, 4)):
+            process.stderr.readline()
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+        for content in cells_of(out).values() if out.exists() else ():
+            assert json.loads(content)["error"] is None
+    subprocess.run([*command, "--jobs", "1"], check=True)
+    assert cells_of(out) == cells_of(whole[0])
+    assert tables_of(out) == tables_of(whole[0])
+
+
+def test_an_interrupted_study_keeps_whole_cells(whole, tmp_path):
+    out, file = tmp_path / "out", whole[1]
+    command = [sys.executable, "-m", "beliefnest", "study", str(file), "--out", str(out)]
+    process = subprocess.Popen(
+        [*command, "--jobs", "1"], stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    while "(1/6)" not in process.stderr.readline():
+        pass
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate()
+    assert process.returncode == 130
+    assert "the same command goes on" in told
+    whole_cells = cells_of(whole[0])
+    kept = cells_of(out)
+    assert 1 <= len(kept) < CELLS
+    assert kept.items() <= whole_cells.items()
+
+
+def test_a_study_that_has_ended_can_become_larger(tmp_path):
+    name = small_in(tmp_path)
+    seen = []
+    for repeats, counts in ((1, [1]), (2, [1]), (2, [1, 2])):
+        study = bn.Study(name, repeats=repeats, variations={"count": counts})
+        told = []
+        result = study.run(tmp_path / "out", jobs=1, on_progress=told.append)
+        seen.append((told[0].done, told[-1].done))
+        assert len(result.frame()) == repeats * len(counts)
+    assert seen == [(0, 1), (1, 2), (2, 4)]
+
+
+def test_a_scenario_that_was_changed_is_played_again(tmp_path):
+    name = small_in(tmp_path)
+    bn.Study(name).run(tmp_path / "out", jobs=1)
+    small_in(tmp_path, SMALL.replace("3.5, 1, 3.5", "4.5, 1, 4.5"))
+    told = []
+    bn.Study(name).run(tmp_path / "out", jobs=1, on_progress=told.append)
+    assert (told[0].done, told[-1].done) == (0, 1)
+
+
+def test_recorded_runs_are_where_the_rows_say(tmp_path):
+    result = bn.Study(small_in(tmp_path)).run(tmp_path / "out", jobs=1, record=True)
+    with bn.Nest.read(tmp_path / "out" / result.rows[0]["run"]) as nest:
+        assert nest["/ann"].state.containers[(1, 1, 1)].items == {"diamond": 1}
+
+
+def test_a_world_that_fails_is_a_row_that_says_why(tmp_path):
+    broken = SMALL + "script: [{agent: ann, program: 'throw new Error(\"no ${item}\")'}]\n"
+    study = bn.Study(small_in(tmp_path, broken), variations={"item": ["bone", "diamond"]})
+    result = study.run(tmp_path / "out", jobs=1)
+    assert [row["outcome"] for row in result.rows] == ["error", "error"]
+    assert "no bone" in result.rows[0]["why_not"]
+    assert result.frame()["ok"].isna().all()
+    assert result.summary().loc[0, "judged"] == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("scenarios: []\n", "study.yaml:1: scenarios: a study without scenarios has no cells"),
+        ("scenarios: [small.yaml]\nrepeats: 0\n", "study.yaml:2: repeats: repeats is 0"),
+        ("scenarios: [small.yaml]\nrepeat: 2\n", "study.yaml:2: repeat: unknown key"),
+        ("scenarios: [small.yaml]\nmodels: offline\n", "study.yaml:2: models: expected 'array'"),
+        ("scenarios: [small.yaml]\nvariations: {spot: 3}\n", "study.yaml:2: variations: expected"),
+        ("scenarios: [small.yaml]\nvariations: {spot: []}\n", "variations of 'spot' are []"),
+        ("scenarios: [small.yaml]\nvariations: {spto: [1]}\n", "there is no parameter 'spto'"),
+        ("scenarios: [small.yaml]\nworld: moon\n", "there is no world 'moon'"),
+        ("scenarios: [small.yaml]\nmodels: [ofline]\n", "did you mean offline?"),
+        ("scenarios: [smal.yaml]\n", "smal.yaml"),
+        ("scenarios: [small.yaml]\ntemplates: [none.txt]\n", "none.txt"),
+        ("- small.yaml\n", "is not a mapping"),
+    ],
+)
+def test_a_wrong_study_is_told_in_one_line(text, told, tmp_path, capsys):
+    file = study_in(tmp_path, text)
+    status = run_command_line(["study", str(file), "--out", str(tmp_path / "out"), "--jobs", "1"])
+    shown = capsys.readouterr().err.splitlines()
+    assert status == 2
+    assert told in shown[-1]
+    assert "Traceback" not in "".join(shown)
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--jobs", "0"], "jobs is 0"),
+        (["--backend", "threads"], "there is no backend 'threads'; there are loky, dask, ray"),
+        (["--shard", "3/2"], "there is no shard 3 of 2"),
+        (["--shard", "half"], "write it as 1/4"),
+        (["--merge", "nowhere"], "there is no study at nowhere"),
+    ],
+)
+def test_wrong_options_are_told_in_one_line(options, told, tmp_path, capsys):
+    command = ["study", str(study_in(tmp_path, STUDY)), "--out", str(tmp_path / "out"), *options]
+    assert run_command_line(command) == 2
+    assert told in capsys.readouterr().err.splitlines()[-1]
+
+
+def test_a_folder_of_something_else_stays_as_it_is(tmp_path, capsys):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "thesis.txt").write_text("mine")
+    file = study_in(tmp_path, STUDY)
+    assert run_command_line(["study", str(file), "--out", str(tmp_path / "out")]) == 2
+    assert "holds no study" in capsys.readouterr().err
+    assert [each.name for each in (tmp_path / "out").iterdir()] == ["thesis.txt"]
