@@ -15,6 +15,7 @@ import pytest
 
 from beliefnest.errors import BranchError, InputError, StoreError
 from beliefnest.timeline.chunks import CHUNK_ENTRIES
+from beliefnest.timeline.codec import encode_snapshot
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.timeline.schema import APPLICATION_ID, SCHEMA_VERSION
@@ -386,7 +387,7 @@ def sound(tmp_path_factory):
         for frame in frames[-50:]:
             journal.append(MAIN, [frame], frame.tick)
         journal.create(PLAN, ForkPoint(MAIN, 5, 5), 5)
-        journal.put_keyframe(MAIN, 0, snapshot(0))
+        journal.put_checkpoint(MAIN, "facts", 0, encode_snapshot(snapshot(0)))
         journal.records.set_run(RUN)
         journal.records.add_program(PROGRAM)
         journal.records.add_prompt(PROMPT)
@@ -400,16 +401,15 @@ def sound(tmp_path_factory):
 def everything(path):
     """All a run file holds, read as a user would."""
     with SqliteJournal.read(path) as reader:
-        nearest = reader.nearest_keyframe(MAIN, 99)
+        nearest = reader.nearest_checkpoint(MAIN, "facts", 99)
         if nearest is None:
-            raise StoreError("there is no keyframe")
-        place, keyframe = nearest
+            raise StoreError("there is no checkpoint")
+        place, checkpoint = nearest
         records = reader.records
         return (
             kept(reader),
             place,
-            keyframe.blocks.tobytes(),
-            keyframe.agents,
+            checkpoint,
             records.run(),
             records.programs(),
             records.prompts(),
@@ -484,25 +484,23 @@ def test_rows_that_were_tampered_with_are_found(sound, tmp_path, harm):
         journal.verify()
 
 
-# --- keyframes and records
+# --- checkpoints and records
 
 
-def test_the_nearest_keyframe_lies_at_or_before(run_file):
+def test_the_nearest_checkpoint_lies_at_or_before(run_file):
     with SqliteJournal.open(run_file) as journal:
-        assert journal.nearest_keyframe(MAIN, 300) is None
+        assert journal.nearest_checkpoint(MAIN, "facts", 300) is None
         for place in (0, 100, 200):
-            journal.put_keyframe(MAIN, place, snapshot(place))
+            journal.put_checkpoint(MAIN, "facts", place, b"%d" % place)
         for asked, place in ((0, 0), (99, 0), (100, 100), (199, 100), (10**6, 200)):
-            found, there = journal.nearest_keyframe(MAIN, asked)
-            assert (found, there.tick) == (place, place)
-            assert np.array_equal(there.blocks, snapshot(place).blocks)
+            assert journal.nearest_checkpoint(MAIN, "facts", asked) == (place, b"%d" % place)
         with pytest.raises(InputError, match="no checkpoint"):
-            journal.put_keyframe(MAIN, 10**6, snapshot(0))
+            journal.put_checkpoint(MAIN, "facts", 10**6, b"")
         with pytest.raises(BranchError):
-            journal.nearest_keyframe(PLAN, 0)
+            journal.nearest_checkpoint(PLAN, "facts", 0)
         journal.delete(MAIN)
         journal.create(MAIN, None, 0)
-        assert journal.nearest_keyframe(MAIN, 0) is None
+        assert journal.nearest_checkpoint(MAIN, "facts", 0) is None
 
 
 def test_records_are_there_after_opening_again(run_file):

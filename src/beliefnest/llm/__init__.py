@@ -1,11 +1,11 @@
 """Language models: one protocol, adapters to providers, and what a run puts around them."""
 
 from beliefnest.llm.asking import (
-    Attempt,
     Check,
     NoUsableProgramError,
     ProgramAnswer,
     Prompt,
+    Round,
     ask_for_program,
 )
 from beliefnest.llm.budget import Budget, RunLimits
@@ -20,7 +20,6 @@ from beliefnest.llm.retrying import RetryPolicy
 __all__ = [
     "Answer",
     "AnswerLimits",
-    "Attempt",
     "Budget",
     "CacheMode",
     "Check",
@@ -33,6 +32,7 @@ __all__ = [
     "ProgramAnswer",
     "Prompt",
     "RetryPolicy",
+    "Round",
     "RunLimits",
     "Sampling",
     "SystemClock",

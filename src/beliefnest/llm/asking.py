@@ -9,11 +9,11 @@ from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 
 __all__ = [
-    "Attempt",
     "Check",
     "NoUsableProgramError",
     "ProgramAnswer",
     "Prompt",
+    "Round",
     "ask_for_program",
 ]
 
@@ -25,7 +25,7 @@ Prompt = str | Callable[[str | None, str | None], str]
 
 
 @dataclass(frozen=True, slots=True)
-class Attempt:
+class Round:
     """One round.
 
     Attributes:
@@ -51,7 +51,7 @@ class ProgramAnswer:
     """
 
     program: str
-    attempts: tuple[Attempt, ...]
+    attempts: tuple[Round, ...]
 
     @property
     def usage(self) -> Usage:
@@ -66,7 +66,7 @@ class NoUsableProgramError(ModelError):
         attempts: All rounds.
     """
 
-    def __init__(self, message: str, attempts: tuple[Attempt, ...]) -> None:
+    def __init__(self, message: str, attempts: tuple[Round, ...]) -> None:
         super().__init__(message)
         self.attempts = attempts
 
@@ -99,12 +99,12 @@ def ask_for_program(
     """
     if attempts < 1:
         raise InputError(f"attempts is {attempts}; it must be at least 1")
-    rounds: list[Attempt] = []
+    rounds: list[Round] = []
     while len(rounds) < attempts:
         messages = _messages(prompt, system, rounds)
         answer = model.answer(messages, sampling or Sampling())
         program, complaint = _judge(answer.text, check)
-        rounds.append(Attempt(messages, answer, program, complaint))
+        rounds.append(Round(messages, answer, program, complaint))
         if program is not None and complaint is None:
             return ProgramAnswer(program, tuple(rounds))
     raise NoUsableProgramError(
@@ -122,7 +122,7 @@ def _judge(text: str, check: Check) -> tuple[str | None, str | None]:
     return program, check(program)
 
 
-def _messages(prompt: Prompt, system: str | None, rounds: list[Attempt]) -> tuple[Message, ...]:
+def _messages(prompt: Prompt, system: str | None, rounds: list[Round]) -> tuple[Message, ...]:
     first = () if system is None else (Message("system", system),)
     last = rounds[-1] if rounds else None
     if callable(prompt):
@@ -134,7 +134,7 @@ def _messages(prompt: Prompt, system: str | None, rounds: list[Attempt]) -> tupl
     return (*last.messages, said, Message("user", _feedback(last)))
 
 
-def _feedback(attempt: Attempt) -> str:
+def _feedback(attempt: Round) -> str:
     fault = "There is a fault in this program" if attempt.program else "There is no program in this"
     return (
         f"{fault}: {attempt.complaint}\n\n"

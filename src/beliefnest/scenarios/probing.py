@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from beliefnest.belief.view import State
-from beliefnest.llm.asking import Attempt, NoUsableProgramError, Prompt, ask_for_program
+from beliefnest.llm.asking import NoUsableProgramError, Prompt, Round, ask_for_program
 from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.face.simulator import Simulator
@@ -46,7 +46,7 @@ class Asking:
 class _Programs:
     """What came of asking for a program."""
 
-    attempts: tuple[Attempt, ...]
+    attempts: tuple[Round, ...]
     trial: Trial | None
     verdicts: tuple[Verdict, ...]
     fault: str = ""

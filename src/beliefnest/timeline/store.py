@@ -30,13 +30,11 @@ from beliefnest.timeline.journal import (
     check_place,
 )
 from beliefnest.timeline.records import Records, path_from, path_to
-from beliefnest.world.frames import Snapshot
 from beliefnest.world.paths import path_text
 from beliefnest.world.values import AgentState
 
 __all__ = ["SqliteJournal"]
 
-_FACTS = "facts"
 """Name of the checkpoints that are snapshots of the timeline's own simulator."""
 
 _OLDER = (OlderFormat(2, FORMAT_2, convert_2),)
@@ -318,21 +316,6 @@ class SqliteJournal:
             return None
         state = checked(found, self.path, f"the state of a body of {key}")[-1]
         return self._decompressed(state)
-
-    def put_keyframe(self, key: TimelineKey, entries: int, snapshot: Snapshot) -> None:
-        """Keep the facts after the first `entries` entries; InputError if there are fewer."""
-        self.put_checkpoint(key, _FACTS, entries, codec.encode_snapshot(snapshot))
-
-    def nearest_keyframe(self, key: TimelineKey, entries: int) -> tuple[int, Snapshot] | None:
-        """The last keyframe of a timeline at or before entry `entries`, with its place.
-
-        None if the timeline itself has none there; its base may.
-
-        Raises:
-            BranchError: There is no timeline of that key.
-        """
-        found = self.nearest_checkpoint(key, _FACTS, entries)
-        return None if found is None else (found[0], codec.decode_snapshot(found[1]))
 
     def verify(self) -> None:
         """Read the whole file; StoreError names the first damage found.

@@ -4,7 +4,7 @@
  * by the same skills called without a sandbox, in turns, from the same snapshot.
  */
 const { Vec3 } = require('vec3')
-const { PROTOCOL, Session } = require('./session')
+const { PROTOCOL, RequestHandler } = require('./requestHandler')
 const { realNow } = require('./time/install')
 const versions = require('./versions')
 
@@ -22,10 +22,10 @@ const PROGRAM = CORNERS.map(corner => `await goToPosition(bot, new Vec3(${corner
  * @returns {Promise<{contained: number, direct: number}[]>} milliseconds the walks took, pair by pair
  */
 async function measureContainment (clock, pairs) {
-  const session = new Session(clock, () => {})
-  await session.hello({ protocol: PROTOCOL, seed: 0, minecraft: versions.minecraft })
-  const { runner } = session
-  const start = await session.perform({ op: 'create_region', region: REGION, seed: '0', ...hall() })
+  const handler = new RequestHandler(clock, () => {})
+  await handler.hello({ protocol: PROTOCOL, seed: 0, minecraft: versions.minecraft })
+  const { runner } = handler
+  const start = await handler.perform({ op: 'create_region', region: REGION, seed: '0', ...hall() })
   const ways = { contained: runner.runProgram, direct: walk }
   const walked = new Set()
   const spent = []
@@ -33,8 +33,8 @@ async function measureContainment (clock, pairs) {
     const times = {}
     // Whoever goes second finds warmer caches.
     for (const name of pair % 2 ? ['contained', 'direct'] : ['direct', 'contained']) {
-      await session.perform({ op: 'apply', region: REGION, ...start, blocks: [] })
-      await session.prepare()
+      await handler.perform({ op: 'apply', region: REGION, ...start, blocks: [] })
+      await handler.prepare()
       runner.runProgram = ways[name]
       const before = realNow()
       const { tick, results } = await runner.run(REGION, { [AGENT]: PROGRAM }, TIMEOUT_TICKS)

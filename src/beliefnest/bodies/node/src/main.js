@@ -24,20 +24,20 @@ function main ([first, second]) {
 /** @param {number} descriptor of the channel; the other one is of the lifeline */
 function serve (clock, descriptor, lifeline) {
   const { Channel } = require('./channel/channel')
-  const { Session } = require('./session')
+  const { RequestHandler } = require('./requestHandler')
 
   new Worker(path.join(__dirname, ...LIFELINE_FILE), { workerData: { descriptor: lifeline } })
     .on('error', fail)
   const stream = new net.Socket({ fd: descriptor, readable: true, writable: true })
-  const session = new Session(clock, message => channel.post(message), message => channel.beat(message))
+  const handler = new RequestHandler(clock, message => channel.post(message), message => channel.beat(message))
   let turn = Promise.resolve()
   const channel = new Channel(stream, request => {
     turn = turn.then(() => answer(request)).catch(fail)
   })
   async function answer (request) {
-    channel.send(await session.answer(request))
+    channel.send(await handler.answer(request))
     if (request.op === 'shutdown') stream.end(() => process.exit(0))
-    else await session.prepare()
+    else await handler.prepare()
   }
   stream.on('end', () => process.exit(0))
   stream.on('error', () => process.exit(1))

@@ -11,7 +11,7 @@ installTime(clock)
 require('../src/prepare').prepare()
 const { before, beforeEach, describe, test } = require('node:test')
 const assert = require('node:assert/strict')
-const { Session } = require('../src/session')
+const { RequestHandler } = require('../src/requestHandler')
 const { agent, BOX, floor } = require('./harness')
 
 const FLOOR = BOX[0][1] + 1
@@ -20,20 +20,20 @@ const repeated = (times, call) => `await Promise.allSettled([${Array(times).fill
 
 describe('forged', () => {
   const frames = []
-  let session
+  let handler
   let regions = 0
   let region
 
   before(async () => {
-    session = new Session(clock, ({ frame }) => { if (frame) frames.push(frame) })
+    handler = new RequestHandler(clock, ({ frame }) => { if (frame) frames.push(frame) })
     await perform({ op: 'hello', protocol: 2, seed: 0, minecraft: '1.20.4' })
   })
   beforeEach(() => { frames.length = 0 })
 
-  const perform = request => session.perform(request)
+  const perform = request => handler.perform(request)
 
   async function world ({ agents, blocks = [], containers = [] }) {
-    const { serv } = session.regions
+    const { serv } = handler.regions
     const states = blocks.map(([x, y, z, name, properties]) => [x, y, z, serv.blocks.state(name, properties)])
     region = `forged${++regions}`
     await perform({ op: 'create_region', region, seed: 'forged', box: BOX, tick: 0, blocks: floor(states), containers, agents, items: {}, hidden: null })
@@ -157,12 +157,12 @@ describe('forged', () => {
 
   test('what has no line but is asked for by packets stays as it is', async () => {
     await world({ agents: { ann: agent([-0.5, FLOOR, 0.5]) }, blocks: [...cell, [2, FLOOR, 0, 'barrel']], containers: [[2, FLOOR, 0, { diamond: 1 }]] })
-    const { bot } = session.regions.get(region).body('ann')
+    const { bot } = handler.regions.get(region).body('ann')
     const write = (name, packet) => bot._client.write(name, { location: bot.entity.position.floored().offset(3, 0, 0), sequence: 0, ...packet })
-    await session.regions.inside(session.regions.get(region), () => {
+    await handler.regions.inside(handler.regions.get(region), () => {
       for (const direction of [0, 1, 2, 3, 4, 5]) write('block_place', { direction, hand: 0, cursorX: 0.5, cursorY: 0.5, cursorZ: 0.5, insideBlock: false })
       for (const status of [0, 2]) write('block_dig', { status, face: 1 })
-      return session.regions.tick(session.regions.get(region))
+      return handler.regions.tick(handler.regions.get(region))
     })
     assert.deepEqual(events('open_container', 'mine_block', 'block_update'), [])
   })
@@ -178,8 +178,8 @@ describe('forged', () => {
 
   test('a wall that somebody builds shuts a chest that is looked into', async () => {
     await world({ agents: { ann: agent([0.5, FLOOR, 0.5]), bob: agent([2.5, FLOOR, 3.5]) }, blocks: [[3, FLOOR, 0, 'chest', { facing: 'west' }]], containers: [[3, FLOOR, 0, { diamond: 1 }]] })
-    const region_ = session.regions.get(region)
-    const { serv } = session.regions
+    const region_ = handler.regions.get(region)
+    const { serv } = handler.regions
     const wall = () => [-1, 0, 1].flatMap(z => [0, 1, 2].map(y => [2, FLOOR + y, z, serv.blocks.state('stone')]))
     const watching = () => { for (const [x, y, z, state] of wall()) serv.blocks.set(region_.toServer([x, y, z]), state) }
     region_.body('ann').bot.once('windowOpen', watching)
@@ -216,16 +216,16 @@ describe('forged', () => {
 
   test('what goes around the border is refused by the server', async () => {
     await world({ agents: { ann: agent([0.5, FLOOR, 0.5]), bob: agent([2.5, FLOOR, 0.5]) } })
-    const { bot } = session.regions.get(region).body('ann')
+    const { bot } = handler.regions.get(region).body('ann')
     for (const message of ['a\u2028b', 'a\u001bb', 'x'.repeat(300), '/w bob a\u2028b']) {
-      await assert.rejects(session.regions.inside(session.regions.get(region), async () => {
+      await assert.rejects(handler.regions.inside(handler.regions.get(region), async () => {
         bot._client.chat(message)
-        await session.regions.tick(session.regions.get(region))
+        await handler.regions.tick(handler.regions.get(region))
       }), /what ann utters must/)
     }
     assert.deepEqual(events('chat'), [])
     for (const event of [{ kind: 'give_item_to_other', detail: { other: 'bob', items: { dirt: 1 } } }, { kind: 'chat', detail: { text: 'x' } }]) {
-      assert.throws(() => session.regions.get(region).report('ann', event), /is for the server to tell/)
+      assert.throws(() => handler.regions.get(region).report('ann', event), /is for the server to tell/)
     }
   })
 

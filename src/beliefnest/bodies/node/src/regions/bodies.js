@@ -131,13 +131,13 @@ class Bodies {
     for (const { player } of resting) player.emit('rest')
     await this.clock.advance(0)
     if (clean) return
-    const hidden = this.serv.hidden(region)
+    const hidden = this.serv.internalState(region)
     await this.replace(region, {})
     this.serv.restoreState(region, hidden)
     await this.clock.advance(0)
   }
 
-  /** The part of what is hidden that is up to bots; see server/plugins/hidden.js. */
+  /** The part of internal state that is up to bots; see server/plugins/internalState.js. */
   keepSpeeds () {
     this.serv.keeps('speeds', {
       save: region => inOrder([...region.bodies]).filter(([, { player }]) => !player.onGround)

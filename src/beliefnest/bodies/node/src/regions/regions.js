@@ -100,7 +100,7 @@ class Regions {
 
   /** @returns {Uint8Array} what goes on in a region and no SNAPSHOT has; empty if nothing does */
   hidden (region) {
-    const parts = this.serv.hidden(region)
+    const parts = this.serv.internalState(region)
     return Object.keys(parts).length === 0 ? new Uint8Array(0) : encode(parts)
   }
 

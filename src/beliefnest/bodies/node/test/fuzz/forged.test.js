@@ -13,7 +13,7 @@ installTime(clock)
 require('../../src/prepare').prepare()
 const { before, describe, test } = require('node:test')
 const assert = require('node:assert/strict')
-const { Session } = require('../../src/session')
+const { RequestHandler } = require('../../src/requestHandler')
 const { kinds } = require('../../src/sandbox/policy/kinds')
 const { agent, BOX, floor } = require('../harness')
 const { generator } = require('./generate')
@@ -79,18 +79,18 @@ const READ = `
 
 describe('forged at random', () => {
   const frames = []
-  let session
+  let handler
 
   before(async () => {
-    session = new Session(clock, ({ frame }) => { if (frame) frames.push(frame) })
+    handler = new RequestHandler(clock, ({ frame }) => { if (frame) frames.push(frame) })
     await perform({ op: 'hello', protocol: 2, seed: 0, minecraft: '1.20.4' })
   })
 
-  const perform = request => session.perform(request)
+  const perform = request => handler.perform(request)
   const snapshot = region => perform({ op: 'snapshot', region })
 
   function create (region, random) {
-    const { serv } = session.regions
+    const { serv } = handler.regions
     const blocks = [[...CHEST, 'chest'], [...HIDDEN, 'barrel'], ...CELL.map(place => [...place, 'bedrock'])]
     const place = () => [random.below(6) + 0.5, FLOOR, random.below(2) + 0.5]
     const agents = Object.fromEntries(AGENTS.map(name => [name, agent(place(), { inventory: { diamond: 3, dirt: 4, stick: 2 } })]))

@@ -13,7 +13,7 @@ installTime(clock)
 require('../../src/prepare').prepare()
 const { before, describe, test } = require('node:test')
 const assert = require('node:assert/strict')
-const { Session } = require('../../src/session')
+const { RequestHandler } = require('../../src/requestHandler')
 const { agent, BOX, floor } = require('../harness')
 const { materials, mayBeMissing, unexplained, worthTable } = require('./balance')
 const { AGENTS, Writer, generator } = require('./generate')
@@ -44,21 +44,21 @@ const plain = ({ blocks, ...rest }) => JSON.parse(JSON.stringify({ ...rest, bloc
 
 describe('random programs', () => {
   const frames = []
-  let session
+  let handler
   let serv
   let worth
   let bystanders
 
   before(async () => {
-    session = new Session(clock, ({ frame }) => { if (frame) frames.push(frame) })
+    handler = new RequestHandler(clock, ({ frame }) => { if (frame) frames.push(frame) })
     await perform({ op: 'hello', protocol: 2, seed: 0, minecraft: '1.20.4' })
-    serv = session.regions.serv
+    serv = handler.regions.serv
     worth = worthTable(serv.registry)
     await create('bystanders', 'bystanders', { sally: START.sally })
     bystanders = plain(await perform({ op: 'snapshot', region: 'bystanders' }))
   })
 
-  const perform = request => session.perform(request)
+  const perform = request => handler.perform(request)
 
   function create (region, seed, places = START) {
     const states = BLOCKS.map(([x, y, z, name, properties]) => [x, y, z, serv.blocks.state(name, properties)])
@@ -158,7 +158,7 @@ describe('random programs', () => {
       for (const { position } of Object.values(last.agents)) {
         assert.ok(position.every((value, axis) => value >= BOXED[0][axis] && value <= BOXED[1][axis] + 1), `somebody is at ${position}`)
       }
-      assert.deepEqual(surroundings(session.regions.get(region)), [], 'around the region')
+      assert.deepEqual(surroundings(handler.regions.get(region)), [], 'around the region')
       await checkMinds(region)
     } catch (error) {
       error.message = `${error.message}\nafter ${timeout} ticks of ${JSON.stringify(programs, null, 1).replaceAll('\\n', '\n')}\nwhich gave ${JSON.stringify(results)}`

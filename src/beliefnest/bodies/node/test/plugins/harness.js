@@ -7,7 +7,7 @@ const clock = new Clock('')
 installTime(clock)
 require('../../src/prepare').prepare()
 const { Vec3 } = require('vec3')
-const { Session } = require('../../src/session')
+const { RequestHandler } = require('../../src/requestHandler')
 const { agent, floor, BOX } = require('../harness')
 const { everything } = require('./everything')
 
@@ -21,9 +21,9 @@ const LIMIT = 2000
  */
 async function inWorld ({ agents = { sally: agent([0.5, FLOOR, 0.5]) }, blocks = [], containers = [], box = BOX }, body) {
   const frames = []
-  const session = new Session(clock, ({ frame }) => frames.push(frame))
-  await session.perform({ op: 'hello', protocol: 2, seed: 0, minecraft: '1.20.4' })
-  const { regions } = session
+  const handler = new RequestHandler(clock, ({ frame }) => frames.push(frame))
+  await handler.perform({ op: 'hello', protocol: 2, seed: 0, minecraft: '1.20.4' })
+  const { regions } = handler
   const { serv } = regions
   const states = blocks.map(([x, y, z, name, properties]) => [x, y, z, serv.blocks.state(name, properties)])
   await regions.create({

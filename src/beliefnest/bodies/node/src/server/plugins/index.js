@@ -6,7 +6,7 @@
  * Whoever owns time calls `serv.tickRegion(within)` once per tick (see ticking.js).
  */
 module.exports = [
-  named('hidden', require('./hidden')),
+  named('internalState', require('./internalState')),
   named('ticking', require('./ticking')),
   named('facts', require('./facts')),
   named('changes', require('./blocks')),

@@ -16,9 +16,9 @@ module.exports.server = (serv) => {
   serv.keeps = (name, part) => { parts.push([name, part]) }
 
   /** @returns {object} rows by part, only parts that have any */
-  serv.hidden = (region) => Object.fromEntries(
+  serv.internalState = (region) => Object.fromEntries(
     parts.map(([name, { save }]) => [name, save(region)]).filter(([, rows]) => rows.length > 0))
 
-  /** Makes what goes on in a region be as `serv.hidden` said. */
+  /** Makes what goes on in a region be as `serv.internalState` said. */
   serv.restoreState = (region, hidden) => parts.forEach(([name, { restore }]) => restore(hidden[name] ?? [], region))
 }

@@ -12,7 +12,7 @@ const versions = require('./versions')
 
 const PROTOCOL = 2
 
-class Session {
+class RequestHandler {
   /**
    * @param {import('./time/clock').Clock} clock
    * @param {(message: object) => void} send
@@ -79,4 +79,4 @@ class Session {
   }
 }
 
-module.exports = { PROTOCOL, Session }
+module.exports = { PROTOCOL, RequestHandler }
