@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import beliefnest as bn
 from beliefnest.errors import ScenarioError, UnknownNameError
 from beliefnest.scenarios.expected import Arrives, Holds, Opens, Stands
 from beliefnest.scenarios.format import schema
@@ -258,3 +259,14 @@ def test_unreadable_files_are_named(tmp_path: Path) -> None:
 def test_the_published_schema_is_that_of_the_types() -> None:
     published = json.loads((ROOT / "docs" / "scenario.schema.json").read_text(encoding="utf-8"))
     assert published == json.loads(json.dumps(schema())), "write it anew with `make schema`"
+
+
+def test_a_condition_may_be_given_as_text() -> None:
+    assert Scenario.load("sally-anne", "3").condition == 3
+    with pytest.raises(bn.ScenarioError, match="give its number"):
+        Scenario.load("sally-anne", condition="three")
+
+
+def test_a_nest_of_a_scenario_is_opened_otherwise() -> None:
+    with pytest.raises(bn.InputError, match=r"bn\.Nest\.open\(scenario\)"):
+        bn.Nest(Scenario.load("sally-anne"))  # type: ignore[arg-type]

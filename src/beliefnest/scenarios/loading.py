@@ -6,7 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from beliefnest.errors import UnknownNameError
+from beliefnest.errors import ScenarioError, UnknownNameError
 from beliefnest.scenarios.build import build_scenario
 from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document, Node, merged, wrapped
@@ -17,6 +17,7 @@ from beliefnest.scenarios.reading import parse_yaml, read_yaml
 __all__ = [
     "Change",
     "builtin_names",
+    "condition_number",
     "condition_numbers",
     "kept_scenario",
     "load_conditions",
@@ -37,6 +38,19 @@ def builtin_names() -> list[str]:
     folder = files("beliefnest.scenarios") / "builtin"
     names = (entry.name for entry in folder.iterdir())
     return sorted(name.removesuffix(".yaml") for name in names if name.endswith(".yaml"))
+
+
+def condition_number(condition: int | str | None) -> int | None:
+    """The number of a condition, which may be given as text.
+
+    Raises:
+        ScenarioError: It is no number.
+    """
+    if condition is None or (isinstance(condition, int) and not isinstance(condition, bool)):
+        return condition
+    if isinstance(condition, str) and condition.strip().isdecimal():
+        return int(condition)
+    raise ScenarioError(f"{condition!r} is no condition; give its number")
 
 
 def load_scenario(

@@ -8,6 +8,7 @@ from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import (
     Change,
+    condition_number,
     kept_scenario,
     load_conditions,
     load_scenario,
@@ -26,21 +27,21 @@ class Scenario(ScenarioContent):
     def load(
         cls,
         name_or_path: str,
-        condition: int | None = None,
+        condition: int | str | None = None,
         parameters: Mapping[str, object] | None = None,
     ) -> Self:
         """A built-in scenario, or one in a file.
 
         Args:
             name_or_path: Name of a built-in scenario, or path of a YAML file.
-            condition: Number of a condition; None: the scenario as written, no overrides.
+            condition: Number of a condition, or its text; None: as written, no overrides.
             parameters: Values of parameters that it declares; the others have their defaults.
 
         Raises:
             UnknownNameError: There is no built-in scenario of that name, and no such file.
             ScenarioError: The file is wrong, or has no such condition.
         """
-        return cls._of(load_scenario(name_or_path, condition, parameters))
+        return cls._of(load_scenario(name_or_path, condition_number(condition), parameters))
 
     @classmethod
     def load_all(cls, name_or_path: str) -> tuple[Self, ...]:
@@ -54,14 +55,17 @@ class Scenario(ScenarioContent):
 
     @classmethod
     def from_mapping(
-        cls, content: Mapping[str, Any], condition: int | None = None, source: str = "scenario"
+        cls,
+        content: Mapping[str, Any],
+        condition: int | str | None = None,
+        source: str = "scenario",
     ) -> Self:
         """A scenario built in code: what a file holds, as dicts, lists and scalars.
 
         Raises:
             ScenarioError: The content is wrong.
         """
-        return cls._of(scenario_from(content, condition, source))
+        return cls._of(scenario_from(content, condition_number(condition), source))
 
     @classmethod
     def varied(

@@ -9,6 +9,7 @@ from beliefnest.belief.entries import InitialBelief
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.scripted import ScriptedBodies
 from beliefnest.bodies.worlds import Worlds, open_world
+from beliefnest.errors import InputError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.script import Progress, play_script
 from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs
@@ -54,6 +55,11 @@ class Nest(Looking, Viewing, Telling):
         initial_beliefs: Iterable[InitialBelief] = (),
         store: str | Path | None = None,
     ) -> None:
+        if not isinstance(world, ScriptedWorld):
+            raise InputError(
+                f"Nest(world) takes a ScriptedWorld, not {type(world).__name__}; "
+                "a scenario is opened by bn.Nest.open(scenario)"
+            )
         setting = Setting(
             name="scripted",
             snapshot=world.snapshot(),
