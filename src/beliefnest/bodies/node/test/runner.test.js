@@ -72,6 +72,12 @@ describe('programs', () => {
     assert.equal(results.sally.error.reason, 'no_way')
   })
 
+  it('are told which name they may have meant', async () => {
+    const { results } = await run({ sally: 'await gotoPositon(bot, bot.entity.position)', anne: 'await frobnicate()' })
+    assert.match(results.sally.error.message, /gotoPositon.* did you mean goToPosition\?/)
+    assert.doesNotMatch(results.anne.error.message, /mean/)
+  })
+
   it('name the skill that failed', async () => {
     const { results } = await run({ sally: '\nawait goToPosition(bot, "there")' })
     assert.equal(results.sally.error.skill, 'goToPosition')

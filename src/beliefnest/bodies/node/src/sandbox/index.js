@@ -59,12 +59,12 @@ async function run (engine, { code, bot, scope = {}, fuel, memory, signal, aim }
   }
   const guest = await engine.open({ fuel, memory }, names)
   const session = new Session(guest, { bot, skills, data, random: () => Math.random(), aim })
-  const report = await observe(session, guest, program, { fuel, memory, signal })
+  const report = await observe(session, guest, program, { fuel, memory, signal, names: names.parameters })
   engine.close(guest)
   return report
 }
 
-async function observe (session, guest, program, { fuel, memory, signal }) {
+async function observe (session, guest, program, { fuel, memory, signal, names }) {
   const abort = () => session.finish({ ok: false, ended: new GuestEnded('aborted', 'the program was ended from outside') })
   signal?.addEventListener('abort', abort, { once: true })
   if (signal?.aborted) abort()
@@ -73,7 +73,7 @@ async function observe (session, guest, program, { fuel, memory, signal }) {
   signal?.removeEventListener('abort', abort)
   return {
     ok: outcome.ok,
-    error: describeOutcome(outcome, program, { fuel, memory }, guest.lastStatement),
+    error: describeOutcome(outcome, program, { fuel, memory }, guest.lastStatement, names),
     lines: program.linesOf(guest.statements),
     log: session.log,
     unfinished: session.unfinished.map(({ what, statement }) => ({ what, line: program.statement(statement)?.line ?? null })),

@@ -1,6 +1,7 @@
 'use strict'
 /** What a run is reported as: for the program's writer, in places of the program's own text. */
 
+const { nearest } = require('./nearest')
 const { cut } = require('./text')
 
 const MAX_MESSAGE = 4000
@@ -10,6 +11,7 @@ const MAX_STACK = 20_000
 const MAX_FRAMES = 100
 const SKILL = /^[\w. ]{1,80}$/
 const NOT_AWAITED = ' (nothing waited for this promise: write await, or catch its error)'
+const UNDEFINED = /^ReferenceError: '?([\w$]{1,80})'? is not defined$/
 const PLACE = /\(?program\.js:(\d+):(\d+)\)?/
 
 /**
@@ -18,19 +20,27 @@ const PLACE = /\(?program\.js:(\d+):(\d+)\)?/
  * @param {{locate: function, callee: function, statement: function}} program
  * @param {{fuel: number, memory: number}} limits
  * @param {number} last number of the statement that ran last, 0 for none
+ * @param {string[]} [names] what the program finds in scope
  * @returns {?{message: string, line: ?number, column: ?number, skill: ?string, kind: string}}
  */
-function describeOutcome ({ ok, error, stray, ended }, program, limits, last) {
+function describeOutcome ({ ok, error, stray, ended }, program, limits, last, names = []) {
   if (ok) return null
   const { message, skill, kind, reason, stack } = ended ? ofEnd(ended, limits) : ofError(error, limits)
   const { place, callee } = placeIn(stack, program)
   const { line, column } = place ?? program.statement(last) ?? { line: null, column: null }
-  return { message: cut(named(message, callee), MAX_MESSAGE) + (stray ? NOT_AWAITED : ''), line, column, skill, kind, ...(reason && { reason }) }
+  return { message: cut(named(message, callee) + nearName(message, names), MAX_MESSAGE) + (stray ? NOT_AWAITED : ''), line, column, skill, kind, ...(reason && { reason }) }
 }
 
 // The interpreter does not say what is not a function.
 function named (message, callee) {
   return message === 'TypeError: not a function' && callee !== null ? `TypeError: ${callee} is not a function` : message
+}
+
+// A name that is not there, if one that is looks like it.
+function nearName (message, names) {
+  const found = UNDEFINED.exec(message)
+  const near = found === null ? null : nearest(found[1], names)
+  return near === null ? '' : `; did you mean ${near}?`
 }
 
 function ofEnd ({ kind, message, guestStack }, limits) {
