@@ -82,7 +82,7 @@ class Sight:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "transparent_blocks", tuple(self.transparent_blocks))
-        self._transparent  # noqa: B018 - a wrong name is to be told here, not at the first look
+        self._transparent  # noqa: B018 - a wrong name is refused here, not at the first look
 
     def geometry(self, blocks: BlockGrid, origin: Position) -> "Geometry":
         """Prepare a grid for many looks.

@@ -154,7 +154,7 @@ class Chunks:
         return count
 
     def agents_after(self, timeline: int, entries: int) -> Mapping[str, AgentState | None]:
-        """What entries told last of each agent that they tell of; the caller sees one state."""
+        """The last state of each agent that some entries name; the caller sees one state."""
         last = self._chunk(timeline, "first <= ? AND compressed ORDER BY first DESC", entries - 1)
         first = 0
         agents: dict[str, AgentState | None] = {}

@@ -327,9 +327,9 @@ class Database:
         )
         if set(found) != expected:
             other = sorted({(str(kind), str(name)) for kind, name, *_ in expected ^ set(found)})
-            told = ", ".join(f"{kind} {name!r}" for kind, name in other[:5])
+            names = ", ".join(f"{kind} {name!r}" for kind, name in other[:5])
             raise StoreError(
-                f"{self.path} is not as this program writes runs ({told} differ); "
+                f"{self.path} is not as this program writes runs ({names} differ); "
                 "restore it from a copy"
             )
 

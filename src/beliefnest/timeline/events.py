@@ -1,4 +1,4 @@
-"""Events as other programs tell them: which details each kind has to have."""
+"""Events as other programs record them: which details each kind has to have."""
 
 from collections.abc import Collection, Mapping
 from types import MappingProxyType

@@ -252,7 +252,7 @@ class Journal(Protocol):
         """How many events the first `entries` entries have; BranchError as above."""
 
     def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
-        """What the first `entries` entries told last of each agent that they tell of.
+        """The last state of each agent that the first `entries` entries name.
 
         Takes the same time however many entries these are. BranchError as above.
         """

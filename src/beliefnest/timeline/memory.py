@@ -104,7 +104,7 @@ class MemoryJournal:
         return found.events[before - 1] if before else 0
 
     def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
-        """What the first `entries` entries told last of each agent that they tell of."""
+        """The last state of each agent that the first `entries` entries name."""
         there, agents = self._entries[self.info(key).key], {}
         for name, numbers in self._found[key].agents.items():
             before = bisect_left(numbers, entries)

@@ -232,7 +232,7 @@ class SqliteJournal:
             return self._chunks.events_until(self._row(key).id, entries)
 
     def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
-        """What the first `entries` entries told last of each agent that they tell of."""
+        """The last state of each agent that the first `entries` entries name."""
         with self._database.unchanging():
             return self._chunks.agents_after(self._row(key).id, entries)
 

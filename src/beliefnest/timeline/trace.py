@@ -1,7 +1,7 @@
 """Histories of other programs: a JSONL file of poses, blocks and events becomes entries.
 
 The first line is the state things begin in, every other line what one tick changed; see
-docs/export.md. All bad lines are found and told together.
+docs/export.md. All bad lines are found and reported together.
 """
 
 import math
@@ -143,7 +143,7 @@ class BadLine:
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """A history told by another program.
+    """A history that another program recorded.
 
     Attributes:
         first: The state it begins in.
@@ -176,14 +176,14 @@ def load_trace(path: Path, registry: Registry) -> Trace:
     except InputError as fault:
         raise InputError(f"{path}: {fault}") from fault
     if trace.bad:
-        told = "; ".join(f"line {bad.line}: {bad.fault}" for bad in trace.bad[:_TOLD])
+        faults = "; ".join(f"line {bad.line}: {bad.fault}" for bad in trace.bad[:_TOLD])
         more = f"; and {len(trace.bad) - _TOLD} more" if len(trace.bad) > _TOLD else ""
-        raise InputError(f"{path} has {len(trace.bad)} bad lines: {told}{more}")
+        raise InputError(f"{path} has {len(trace.bad)} bad lines: {faults}{more}")
     return trace
 
 
 def read_trace(lines: Iterable[bytes], registry: Registry) -> Trace:
-    """The history told by lines of JSON; bad ones are left out and listed.
+    """The history in lines of JSON; bad ones are left out and listed.
 
     Raises:
         InputError: The first line is bad, so that nothing after it can be judged.

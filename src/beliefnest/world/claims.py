@@ -107,8 +107,8 @@ class Claim:
     def plain(self) -> dict[str, Any]:
         """As plain data: `kind`, `place`, and `item`, `agent` or `state`."""
         given = {"item": self.item, "agent": self.agent, "state": self.state}
-        told = {key: value for key, value in given.items() if value is not None}
-        return {"kind": self.kind.value, **told, "place": self.place}
+        stated = {key: value for key, value in given.items() if value is not None}
+        return {"kind": self.kind.value, **stated, "place": self.place}
 
     def check(self, box: Box, agents: Collection[str]) -> None:
         """See that it speaks of what there is.
@@ -193,8 +193,8 @@ def with_claims(
                 f"{claim!r} is no claim; make one with Claim.located, absent, position or block"
             )
         claim.check(box, agents)
-    told = {"claims": tuple(claim.plain() for claim in given)} if given else {}
-    return {**detail, **told}
+    plain = {"claims": tuple(claim.plain() for claim in given)} if given else {}
+    return {**detail, **plain}
 
 
 def _item(name: str) -> str:
@@ -213,9 +213,9 @@ def _stated(text: str) -> str:
     name, _, inner = text.strip().partition("[")
     stated = sorted(part.partition("=")[0].strip() for part in inner.rstrip("]").split(",") if part)
     properties = registry.properties(state)
-    told = ",".join(f"{key}={properties[key]}" for key in stated)
+    written = ",".join(f"{key}={properties[key]}" for key in stated)
     bare = name.removeprefix("minecraft:")
-    return f"{bare}[{told}]" if told else bare
+    return f"{bare}[{written}]" if written else bare
 
 
 def _block_position(place: object) -> Position:

@@ -1,4 +1,4 @@
-"""How large and how far what is told from outside may be: as in Minecraft, or as memory allows.
+"""Bounds of size and distance for what comes from outside: those of Minecraft, or of memory.
 
 Each function says what is wrong, None if nothing is; whoever calls it knows where that stands.
 """
@@ -141,7 +141,7 @@ def snapshot_fault(snapshot: Snapshot, registry: Registry) -> str | None:
 
 
 def _short(value: object) -> str:
-    # Whole numbers beyond what Python writes are told by their size.
+    # Whole numbers beyond what Python writes are shown by their size.
     if isinstance(value, int) and value.bit_length() > 200:
         return f"a number of {value.bit_length()} bits"
     return str(value) if not isinstance(value, Sequence) else f"({', '.join(map(_short, value))})"

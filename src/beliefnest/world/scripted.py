@@ -1,4 +1,4 @@
-"""The world without Minecraft: no physics, exactly the moves it is told.
+"""The world without Minecraft: no physics, exactly the moves that a script makes.
 
 It serves tests, imported traces and studies that need only beliefs. Every act takes one
 tick, unless several are put into one with `tick()`. An impossible act raises WorldError
