@@ -31,6 +31,20 @@ ROOM = {
     "agents": {"ann": {"position": [1.5, 1, 1.5]}, "bob": {"position": [7.5, 1, 7.5]}},
     "static_blocks": ["stone", "bricks", "oak_door"],
 }
+SHUT_DOOR = ROOM["blocks"][2:]
+INTO_THE_DOORWAY = """
+await goToPosition(bot, new Vec3(4, 1, 3), 0)
+await bot.lookAt(new Vec3(4.5, 2.6, 8), true)
+bot.setControlState('forward', true)
+await waitUntil(bot, () => bot.entity.position.z > 4.3)
+bot.setControlState('forward', false)
+await waitTicks(bot, 10)
+"""
+ON_THROUGH_IT = """
+bot.setControlState('forward', true)
+await waitUntil(bot, () => bot.entity.position.z > 5.5)
+bot.setControlState('forward', false)
+"""
 WALK = "await goToPosition(bot, new Vec3({0}, 1, {1}), 1)"
 
 
@@ -77,6 +91,15 @@ def test_in_a_shut_doorway_it_begins_on_the_side_that_is_open_to_the_doorway(fac
     # A door that faces north hangs on the south side of its block, and the other way round.
     panel = 4.9 if facing == "north" else 4.1
     assert only(space(door(facing)), (4.5, 1, panel)) == (4.5, 1, z)
+
+
+def test_who_was_last_seen_in_the_middle_of_a_doorway_that_is_shut_is_moved_unless_seen_there_now():
+    there, place = space(door("north")), (4.5, 1, 4.5)
+    assert there.is_free(place)
+    assert only(there, place) == (4.5, 1, 3.5)
+    assert placed(there, {"ann": AgentState(place)}, {"ann": 3}, ["ann"]) == {}
+    opened = {at: text.replace("open=false", "open=true") for at, text in door("north").items()}
+    assert only(space(opened), place) is None
 
 
 def test_in_a_block_it_begins_at_the_nearest_place_where_it_can_stand():
@@ -191,6 +214,36 @@ def test_a_body_stands_on_a_floor_that_is_unknown_also_after_it_was_resumed(worl
     with bn.Nest.resume(store, worlds=worlds) as nest:
         nest["/ann"].step(20)
         assert nest["/ann"].state.agents["bob"].position == (4.5, 1.0, 6.5)
+
+
+def test_who_went_on_and_shut_the_door_can_walk_where_it_was_last_seen_in_the_doorway(worlds):
+    ajar = [
+        {"block": b["block"].replace("open=false", "open=true"), "at": b["at"]} for b in SHUT_DOOR
+    ]
+    screen = {"block": "bricks", "fill": [[2, 1, 0], [2, 3, 2]]}
+    agents = {"ann": {"position": [4.5, 1, 1.5]}, "bob": {"position": [5.5, 1, 2.5]}}
+    blocks = [*ROOM["blocks"][:2], *ajar, screen]
+    content = {**ROOM, "blocks": blocks, "agents": agents, "static_blocks": ["stone", "bricks"]}
+    with bn.Nest.open(bn.Scenario.from_mapping(content), worlds=worlds) as nest:
+        story = [
+            ("bob", INTO_THE_DOORWAY),
+            ("ann", "await goToPosition(bot, new Vec3(0, 1, 0), 0)"),
+            ("bob", ON_THROUGH_IT + "await closeDoor(bot, new Vec3(4, 1, 4))"),
+            ("ann", "await goToPosition(bot, new Vec3(4, 1, 2), 0)"),
+        ]
+        for agent, program in story:
+            result = nest["/"].run(agent, program)
+            assert result.ok, (program, result)
+        belief = nest["/ann"]
+        assert "open=false" in belief.state.blocks[DOOR]
+        believed = belief.state.agents["bob"]
+        assert not believed.current
+        assert tuple(math.floor(value) for value in believed.position) == DOOR
+        belief.switch("try")
+        assert list(belief.placed) == ["bob"]
+        for goal in [(1, 7), (7, 1)]:
+            result = belief.run("bob", WALK.format(*goal))
+            assert result.ok, (belief.placed, result)
 
 
 def test_a_run_tells_who_was_moved_and_is_replayed(tmp_path, capsys):

@@ -7,10 +7,11 @@ feet; an agent takes up 0.6 by 1.8 by 0.6 blocks. Unknown blocks are in nobody's
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
+from beliefnest.world.doors import is_open
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import BoxBounds, Registry
 from beliefnest.world.values import AgentState, Box, Point, Position
@@ -98,6 +99,12 @@ class BodySpace:
         tops = {box[4] for box in self.hits(room) if y <= box[4] < y + 1}
         return [top for top in sorted(tops) if self.is_free((x + 0.5, top, z + 0.5))]
 
+    def is_doorway(self, place: Point) -> bool:
+        """Whether the feet are in the block of a shut door."""
+        state = self.state(_cell(place))
+        named = state >= 0 and self.registry.name(state).endswith("_door")
+        return named and is_open(self.registry, state) is False
+
     def is_clear(self, place: Point) -> bool:
         """Whether nothing stands or burns beside an agent, in the blocks of its body or below."""
         x, y, z = (math.floor(value) for value in place)
@@ -108,7 +115,10 @@ class BodySpace:
 
 
 def placed(
-    space: BodySpace, agents: Mapping[str, AgentState], seen_at: Mapping[str, int | None]
+    space: BodySpace,
+    agents: Mapping[str, AgentState],
+    seen_at: Mapping[str, int | None],
+    seen_now: Collection[str] = (),
 ) -> Placed:
     """Who cannot be where it is believed to be, and where its body begins instead.
 
@@ -121,6 +131,8 @@ def placed(
         space: The believed blocks.
         agents: The believed agents.
         seen_at: When each was last seen; None: never.
+        seen_now: Who is seen in this tick. One can stand beside the leaf of a shut door, in its
+            block; who was only last seen there was in an open doorway.
     """
     last = {name: -1 if tick is None else tick for name, tick in seen_at.items()}
     moved: dict[str, tuple[Point, Point]] = {}
@@ -129,7 +141,8 @@ def placed(
         agent, tick = agents[name], seen_at[name]
         place = agent.position
         others = [other for other, seen in taken if tick is None or seen != tick]
-        if not _can_be(space, agent) or _is_taken(place, others):
+        shut_in = name not in seen_now and space.is_doorway(place)
+        if shut_in or not _can_be(space, agent) or _is_taken(place, others):
             nearest = _nearest(space, place, [other for other, _ in taken])
             if nearest is not None:
                 moved[name] = (place, nearest)

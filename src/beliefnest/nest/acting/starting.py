@@ -76,7 +76,8 @@ def _begun(snapshot: Snapshot, believed: NodeView, history: History) -> Start:
         basis = believed.agents[name].basis
         seen = basis is not None and basis.source is not Source.PRIOR
         seen_at[name] = basis.observed_at if basis is not None and seen else None
-    moved = moved_agents(snapshot.agents, placed(space, snapshot.agents, seen_at))
+    seen_now = [name for name in snapshot.agents if believed.agents[name].current]
+    moved = moved_agents(snapshot.agents, placed(space, snapshot.agents, seen_at, seen_now))
     agents: dict[str, AgentState] = {**snapshot.agents, **moved}
     floors = unknown_floors(space, agents)
     filled = _floored(replace(snapshot, agents=agents), believed.blocks, floors, history)
