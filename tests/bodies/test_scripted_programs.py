@@ -95,3 +95,16 @@ def test_the_published_experiments_come_out_as_in_minecraft(name: str) -> None:
         with bn.Nest.open(scenario, world="scripted") as nest:
             outcome = run_scenario(nest, scenario, OfflineModel(), 0, 0.0, lambda *_: None)
         assert outcome.failures == ()
+
+
+def test_a_door_that_is_so_already_is_left_alone():
+    shut = "oak_trapdoor[half=bottom,open=false]"
+    room = {**ROOM, "blocks": [*ROOM["blocks"], {"block": shut, "at": [4, 1, 3]}]}
+    door = "Door(bot, new Vec3(4, 1, 3))\n"
+    program = "".join(f"await {verb}{door}" for verb in ("open", "open", "close", "close"))
+    with bn.Nest.open(bn.Scenario.from_mapping(room), world="scripted") as nest:
+        agent = nest.agents[0]
+        result = nest["/"].run(agent, program)
+        assert result.ok, result
+        used = [each.detail["open"] for each in result.events if each.kind is EventKind.USE_DOOR]
+        assert used == [True, False]

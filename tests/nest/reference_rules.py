@@ -142,8 +142,8 @@ class Rules:
 
     def _perceived(self, event: Event, around: Node, me: str, view: "View | None") -> bool:
         """Whether an event of `around` is perceived (3, 5.2, 5.5)."""
-        if "to" in event.detail and me not in (event.actor, event.detail["to"]):
-            return False
+        if "to" in event.detail:
+            return me in (event.actor, event.detail["to"])
         if event.kind is EventKind.CHAT and (self.options.hearing == "global" or event.actor == me):
             return True
         if view is None or event.kind is EventKind.THINK:

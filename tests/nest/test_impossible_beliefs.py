@@ -198,6 +198,17 @@ def test_the_fork_says_who_was_moved_and_the_belief_stays(worlds, tmp_path):
         assert nest["/ann"].run("bob", WALK.format(1, 1)).ok
 
 
+def test_programs_tried_ahead_in_other_bodies_begin_at_the_same_places(worlds):
+    programs = [WALK.format(*goal) for goal in [(1, 1), (7, 1), (1, 2)]]
+    found = []
+    for processes in (1, 2):
+        with bn.Nest.open(room(agents={"bob": [4.5, 1, 4.9]}), worlds=worlds) as nest:
+            attempts = nest.explore("/ann", "bob", programs, lambda *_: 0.0, processes=processes)
+            found.append([(a.result.ok, a.result.ticks, a.result.placed) for a in attempts])
+    assert found[0] == found[1]
+    assert all(ok and placed for ok, _, placed in found[0])
+
+
 def test_a_body_stands_on_a_floor_that_is_unknown_also_after_it_was_resumed(worlds, tmp_path):
     floor = [{"block": None, "fill": [[3, 0, 5], [5, 0, 7]]}]
     scenario = room(agents={"bob": [4.5, 1, 6.5]}, blocks=floor)

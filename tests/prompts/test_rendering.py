@@ -86,6 +86,15 @@ def test_templates_read_and_do_not_act(expression):
         show("{{ " + expression + " }}", items=[])
 
 
+def test_what_a_template_prints_without_a_filter_has_lines_and_commands_nothing():
+    said = [(1, "anne", "a\x1b[31m\u2028\u202eb\r")]
+    assert show("{% for _, _, text in said %}{{ text }}{% endfor %}", said=said) == (
+        r"a\u001b[31m\u2028\u202eb\u000d"
+    )
+    code = "if (a) {\n\tb('\u00e9\U0001f600')\n}\n"
+    assert show("{{ code }}", code=code) == code
+
+
 def test_templates_may_use_macros_ranges_and_methods_of_plain_values():
     source = "{% macro m(x) %}<{{ x }}>{% endmacro %}{{ m(1) }}{% for k, v in d.items() %}{{ k }}{% endfor %}{{ 'a'.upper() }}{{ range(2) | list }}"  # noqa: E501
     assert show(source, d={"k": 1}) == "<1>kA[0, 1]"

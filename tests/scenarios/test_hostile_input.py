@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import beliefnest as bn
-from beliefnest.errors import BeliefNestError, InputError, ScenarioError, WorldError
+from beliefnest.errors import BeliefNestError, InputError, PathError, ScenarioError, WorldError
 from beliefnest.nest.past.setting import Setting
 from beliefnest.scenarios import Scenario
 from beliefnest.world.frames import Snapshot
@@ -87,6 +87,9 @@ WRONG = {
         4,
         "'__proto__' cannot be the name",
     ),
+    "a mapping as a key": (BASE + "? {a: 1}\n: x", 6, "a key is no text"),
+    "nested lists as a key": (BASE + "places:\n  [1, [2]]: x", 7, "a key is no text"),
+    "a date as a key": (BASE + "places:\n  2020-01-01: x", 7, "a key is no text"),
     "a template with a zero": (BASE + PROBE + 'template: "a\\0"}]', 6, "null byte"),
 }
 
@@ -221,3 +224,30 @@ def test_a_garbled_file_is_read_or_refused_in_one_line(tmp_path_factory, changes
     except BeliefNestError as fault:
         assert "\n" not in str(fault)
         assert "small.yaml" in str(fault)
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        ({"blocks": {(99, 1, 1): 1}}, "(99, 1, 1), which lies outside the box"),
+        ({"blocks": {(1, 1, 1): 10**9}}, "block state 1000000000"),
+        ({"containers": {(1, 1, 99): ({}, True)}}, "(1, 1, 99), which lies outside the box"),
+        ({"containers": {(1, 1, 1): ({"dirt": 10**9}, True)}}, "slots"),
+        ({"agents": {"ann": (float("nan"), 1, 1)}}, "ann in the initial belief '/ann'"),
+    ],
+)
+def test_priors_made_in_code_are_checked_as_those_of_files(said, told):
+    world = ScriptedWorld(BOX, {}, {"ann": (2.5, 1, 2.5)})
+    with pytest.raises(InputError) as fault:
+        bn.Nest(world, initial_beliefs=[bn.InitialBelief(("ann",), **said)])
+    assert told in str(fault.value)
+
+
+def test_a_belief_path_has_an_end():
+    world = ScriptedWorld(BOX, {}, {"ann": (2.5, 1, 2.5), "bob": (4.5, 1, 2.5)})
+    with bn.Nest(world) as nest:
+        assert nest["/ann/ann" * 5000].path == "/ann"
+        with pytest.raises(PathError, match=r"100 beliefs deep; 50 are possible"):
+            nest["/ann/bob" * 50]
+        with pytest.raises(PathError, match=r"51 beliefs deep"):
+            nest["/ann/bob" * 25].child("ann")

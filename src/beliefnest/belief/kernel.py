@@ -264,17 +264,17 @@ def _observe_blocks(
 
 
 @inlined
-def _is_for(facts: Facts, event: int, me: int) -> bool:
-    """Whether an utterance is for an agent to hear: said aloud, or whispered by or to it."""
+def _is_common_ground(senses: Senses, facts: Facts, event: int, me: int) -> bool:
+    """Whether who perceives an utterance credits an agent with hearing it, present or not (5.5)."""
     to = facts.event_to[event]
-    return bool(to == NOBODY or me in (to, facts.event_actor[event]))
+    if to != NOBODY:
+        return bool(me in (to, facts.event_actor[event]))
+    return bool(senses.hearing == HEAR_ALL or facts.event_actor[event] == me)
 
 
 @inlined
 def _hears(senses: Senses, poses: Poses, nodes: Nodes, node: int, speaker: int) -> bool:
-    """Whether the present owner of a node hears somebody else."""
-    if senses.hearing == HEAR_ALL:
-        return True
+    """Whether the present owner of a node hears somebody else who speaks aloud."""
     if senses.hearing == HEAR_SEEN:
         known = nodes.pose[nodes.parent[node], speaker] != UNKNOWN
         return bool(nodes.sees[node, speaker] and known)
@@ -311,7 +311,9 @@ def _perceive_events(
         elif kind == KIND_THINK:
             got = False
         elif kind == KIND_CHAT:
-            got = _is_for(facts, event, me) and _hears(space.senses, poses, nodes, node, actor)
+            got = _is_common_ground(space.senses, facts, event, me) or (
+                facts.event_to[event] == NOBODY and _hears(space.senses, poses, nodes, node, actor)
+            )
         elif kind == KIND_UPDATE:
             cell, eye = _whole(facts.event_cell[event]), _eye(space, poses, _whole(nodes.eye[node]))
             got = _sees_cell(space, nodes, parent, eye, cell)
@@ -330,20 +332,15 @@ def _update_absent(
     first_event: int,
     node: int,
 ) -> None:
-    """An owner that is not present is credited with common ground alone (5.2, 5.5).
-
-    Common ground are its own utterances, and with global hearing all that are for it to hear.
-    """
+    """An owner that is not present is credited with common ground alone (5.2, 5.5)."""
     nodes.current[node, :] = False
     nodes.eye[node] = UNKNOWN
     nodes.watched[node, :] = False
     nodes.meets[node, :] = False
     me = _whole(nodes.agent[node])
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
-        if facts.event_kind[event] == KIND_CHAT and (
-            facts.event_actor[event] == me
-            or (senses.hearing == HEAR_ALL and _is_for(facts, event, me))
-        ):
+        is_chat = facts.event_kind[event] == KIND_CHAT
+        if is_chat and _is_common_ground(senses, facts, event, me):
             heard = changes.perceived[event - first_event, nodes.parent[node]]
             changes.perceived[event - first_event, node] = heard
 

@@ -9,7 +9,7 @@ from beliefnest.bodies import messages
 from beliefnest.bodies.channel import PROTOCOL, Channel
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.node_files import node_command
-from beliefnest.bodies.protocol import ProgramResult, Sink
+from beliefnest.bodies.protocol import ProgramResult, Sense, Sink
 from beliefnest.errors import BodyError, BodyLostError, WorldError
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.values import Box, Event
@@ -63,8 +63,18 @@ class EmbeddedBody:
             self._channel.request("snapshot", region=self._region), self._box
         )
 
-    def run(self, programs: Mapping[str, str], timeout_ticks: int) -> Mapping[str, ProgramResult]:
+    def run(
+        self,
+        programs: Mapping[str, str],
+        timeout_ticks: int,
+        senses: Mapping[str, Sense] | None = None,
+    ) -> Mapping[str, ProgramResult]:
         """Run programs by agent, together, until the last has ended."""
+        if senses:
+            raise WorldError(
+                f"the programs of {', '.join(sorted(senses))} are to read percepts alone, which "
+                "Mineflayer cannot be kept to; open the nest with world='scripted'"
+            )
         for agent in programs:
             if agent not in self._agents:
                 raise WorldError(

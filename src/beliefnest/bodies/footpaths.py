@@ -45,6 +45,13 @@ class Ground:
         held = below == -1 or (below is not None and not self._is_free(below))
         return held and self._passes(cell) and self._passes((x, y + 1, z))
 
+    def may_hold(self, place: Position) -> bool:
+        """Whether there may be a container at a position: there is one, or it is not known."""
+        state = self._state(place)
+        if state is None or state < 0:
+            return state is not None
+        return self._registry.is_container(self._registry.name(state))
+
     def steps(self, cell: Position) -> Iterator[Position]:
         """The cells that one step leads to: aside, up one block, or down up to three."""
         x, y, z = cell

@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from beliefnest.world.frames import Frame, Snapshot
-from beliefnest.world.values import Event, EventKind, Point
+from beliefnest.world.frames import BlockGrid, Frame, Snapshot
+from beliefnest.world.values import AgentState, Event, EventKind, Point
 
 __all__ = [
     "KILLED",
@@ -14,6 +14,8 @@ __all__ = [
     "Body",
     "Fault",
     "ProgramResult",
+    "Sense",
+    "Sensed",
     "Sink",
     "Unfinished",
     "World",
@@ -159,6 +161,23 @@ class ProgramResult:
         return self.error is not None and self.error.kind == KILLED
 
 
+@dataclass(frozen=True)
+class Sensed:
+    """What a program may read of the world.
+
+    Attributes:
+        blocks: Block state ids of the box, -1 is unknown.
+        agents: The agents that it knows to be there now, its own among them.
+    """
+
+    blocks: BlockGrid
+    agents: Mapping[str, AgentState]
+
+
+Sense = Callable[[], Sensed]
+"""What a program may read of the world as of the latest tick that is over."""
+
+
 class Body(Protocol):
     """One simulator's part of a world; its clock stands still between the calls.
 
@@ -182,12 +201,22 @@ class Body(Protocol):
     def snapshot(self) -> Snapshot:
         """All there is in it now."""
 
-    def run(self, programs: Mapping[str, str], timeout_ticks: int) -> Mapping[str, ProgramResult]:
+    def run(
+        self,
+        programs: Mapping[str, str],
+        timeout_ticks: int,
+        senses: Mapping[str, Sense] | None = None,
+    ) -> Mapping[str, ProgramResult]:
         """Run programs by agent, together, until the last has ended.
 
+        Args:
+            programs: Their texts.
+            timeout_ticks: Ticks after which they are stopped.
+            senses: Of agents whose programs may read no more than they are told by this.
+
         Raises:
-            WorldError: An agent is not in this body, or the world runs no programs; nothing
-                was changed.
+            WorldError: An agent is not in this body, or the world cannot run such programs;
+                nothing was changed.
             BodyError: The Minecraft side failed.
         """
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from beliefnest.bodies.protocol import ProgramResult, Sink
+from beliefnest.bodies.protocol import ProgramResult, Sense, Sink
 from beliefnest.errors import WorldError
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.scripted import ScriptedWorld
@@ -42,7 +42,12 @@ class ScriptedBody:
         """All there is in it now."""
         return self.world.snapshot()
 
-    def run(self, programs: Mapping[str, str], timeout_ticks: int) -> Mapping[str, ProgramResult]:
+    def run(
+        self,
+        programs: Mapping[str, str],
+        timeout_ticks: int,
+        senses: Mapping[str, Sense] | None = None,
+    ) -> Mapping[str, ProgramResult]:
         """Run programs by agent, together, until the last has ended; see docs/scripted-world.md."""
         for agent in programs:
             if agent not in self.world.agents:
@@ -50,7 +55,7 @@ class ScriptedBody:
                 raise WorldError(f"{agent} is not there: its pose is not known; there are {there}")
         from beliefnest.bodies.scripted_programs import run_programs
 
-        return run_programs(self.world, programs, timeout_ticks, {})
+        return run_programs(self.world, programs, timeout_ticks, senses or {})
 
     def step(self, ticks: int) -> None:
         """Let ticks pass."""

@@ -7,6 +7,7 @@
   let calls = []
   let log = []
   let done = null
+  let room = 50_000
   let next = 1
   let seen = null
   let grid = null
@@ -78,13 +79,17 @@
   }, 'bot')
 
   const shown = value => (typeof value === 'string' ? value : stringify(value) ?? String(value))
-  const written = level => (...values) => { if (log.length < 1000) log.push(values.map(shown).join(' ').slice(0, 1000)) }
+  function write (...values) {
+    const text = values.map(shown).join(' ').slice(0, room)
+    if (room > 0 && log.length < 1000) log.push(text)
+    room -= text.length
+  }
   const scope = {
     bot,
     Vec3,
     goals: offering({}, 'goals'),
     mcData: offering({}, 'mcData'),
-    console: Object.fromEntries(['log', 'info', 'warn', 'error', 'debug'].map(level => [level, written(level)])),
+    console: Object.fromEntries(['log', 'info', 'warn', 'error', 'debug'].map(level => [level, write])),
     located: (item, place) => ({ kind: 'located', item, place }),
     absent: (item, place) => ({ kind: 'absent', item, place }),
     positionOf: (agent, place) => ({ kind: 'position', agent, place }),

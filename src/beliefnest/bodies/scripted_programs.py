@@ -6,7 +6,7 @@ tick acts in the next ones. Agents act in the order in which their programs are 
 
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from beliefnest.bodies.footpaths import Ground
 from beliefnest.bodies.javascript import JavaScriptProgram
-from beliefnest.bodies.protocol import Aim, Fault, ProgramResult, Unfinished
+from beliefnest.bodies.protocol import Aim, Fault, ProgramResult, Sense, Sensed, Unfinished
 from beliefnest.bodies.scripted_skills import CALLS, SKILLS, Doing, Hand, SkillError
 from beliefnest.errors import BeliefNestError
 from beliefnest.world.frames import BlockGrid, Frame
@@ -22,24 +22,12 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.values import AgentState, Event, Point
 
-__all__ = ["Sensed", "run_programs"]
+__all__ = ["run_programs"]
 
 _USING = frozenset({"getItemFromChest", "depositItemIntoChest", "openDoor", "closeDoor"})
 _MOST_AIMS = 100
+_MOST_GRIDS = 8
 _DOINGS = {**SKILLS, **CALLS}
-
-
-@dataclass(frozen=True)
-class Sensed:
-    """What an agent's program may read of the world.
-
-    Attributes:
-        blocks: Block state ids of the box, -1 is unknown.
-        agents: Agents that are there as far as it knows, itself among them.
-    """
-
-    blocks: BlockGrid
-    agents: Mapping[str, AgentState]
 
 
 @dataclass
@@ -48,7 +36,7 @@ class _Run:
 
     hand: Hand
     program: JavaScriptProgram
-    sense: Callable[[], Sensed]
+    sense: Sense
     doing: dict[int, tuple[str, Doing]] = field(default_factory=dict)
     aims: list[Aim] = field(default_factory=list)
     end_tick: int | None = None
@@ -59,7 +47,7 @@ def run_programs(
     world: ScriptedWorld,
     programs: Mapping[str, str],
     timeout_ticks: int,
-    senses: Mapping[str, Callable[[], Sensed]],
+    senses: Mapping[str, Sense],
 ) -> Mapping[str, ProgramResult]:
     """Run programs by agent until the last has ended.
 
@@ -81,8 +69,11 @@ def run_programs(
         runs = [_begun(world, agent, code, senses, texts) for agent, code in programs.items()]
         while True:
             with world.tick():
-                for run in runs:
-                    _act(run, texts)
+                done = [(run, _act(run)) for run in runs]
+            # What came of the tick can be perceived now that it is over.
+            for run, answers in done:
+                for number, ok, value in answers:
+                    _settle(run, texts, number, ok=ok, value=value)
             for run in runs:
                 if run.end_tick is None and run.program.ended:
                     run.end_tick = world.now
@@ -106,6 +97,8 @@ class _Texts:
 
     def of(self, grid: BlockGrid) -> tuple[str, Ground]:
         """The text of a grid, and where one can stand in it."""
+        if len(self._grids) > _MOST_GRIDS:
+            self._grids.clear()
         known = self._grids.get(id(grid))
         if known is None or known[0] is not grid:
             box = self._world.box
@@ -128,7 +121,7 @@ def _begun(
     world: ScriptedWorld,
     agent: str,
     code: str,
-    senses: Mapping[str, Callable[[], Sensed]],
+    senses: Mapping[str, Sense],
     texts: _Texts,
 ) -> _Run:
     def all_of_it() -> Sensed:
@@ -139,6 +132,7 @@ def _begun(
         agent,
         world,
         known=lambda: texts.of(sense().blocks)[1],
+        others=lambda: sense().agents,
         ground=lambda: texts.of(world.blocks)[1],
     )
     run = _Run(hand, JavaScriptProgram(agent, SKILLS), sense)
@@ -148,18 +142,20 @@ def _begun(
     return run
 
 
-def _act(run: _Run, texts: _Texts) -> None:
-    """Advance what a program's agent does by a tick, and then the program."""
-    for number, (name, doing) in list(run.doing.items()):
+def _act(run: _Run) -> list[tuple[int, bool, object]]:
+    """Advance what a program's agent does by a tick; the calls that end with that: how."""
+    ended: list[tuple[int, bool, object]] = []
+    for number, (name, doing) in run.doing.items():
         # What is said without waiting is said, also if the program has ended by then.
         if run.program.ended and name in SKILLS:
             continue
         try:
             next(doing)
-        except StopIteration as ended:
-            _settle(run, texts, number, ok=True, value=ended.value)
+        except StopIteration as end:
+            ended.append((number, True, end.value))
         except BeliefNestError as error:
-            _settle(run, texts, number, ok=False, value=_told(error))
+            ended.append((number, False, _told(error)))
+    return ended
 
 
 def _settle(run: _Run, texts: _Texts, number: int, *, ok: bool, value: object) -> None:

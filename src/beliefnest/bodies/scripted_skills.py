@@ -13,9 +13,10 @@ from beliefnest.bodies.footpaths import Ground, feet_in, find_way
 from beliefnest.bodies.protocol import NO_WAY
 from beliefnest.errors import BeliefNestError, WorldError
 from beliefnest.world.claims import claims_from_plain
-from beliefnest.world.registry import Registry
+from beliefnest.world.doors import is_open
+from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.scripted import ScriptedWorld
-from beliefnest.world.values import EYE_HEIGHT, Point, Position
+from beliefnest.world.values import EYE_HEIGHT, AgentState, Point, Position
 
 __all__ = ["CALLS", "SKILLS", "Doing", "Hand", "SkillError"]
 
@@ -46,12 +47,14 @@ class Hand:
         name: Who it is.
         world: Where it acts.
         known: The ground as far as the agent may know it, which ways are looked for on.
+        others: The agents that it knows to be there.
         ground: The ground as it is, which carries and stops a body.
     """
 
     name: str
     world: ScriptedWorld
     known: Callable[[], Ground]
+    others: Callable[[], Mapping[str, AgentState]]
     ground: Callable[[], Ground]
 
     @property
@@ -112,8 +115,12 @@ def _use_door(to_open: bool) -> Callable[..., Doing]:
     def use(hand: Hand, position: Any) -> Doing:
         place = _block(position)
         yield from _walk_to_use(hand, place)
+        world = hand.world
+        there = int(world.blocks[world.box.index(place)]) if place in world.box else AIR
+        if is_open(Registry.load(), there) is to_open:
+            return
         yield
-        hand.world.use_door(hand.name, place, open=to_open)
+        world.use_door(hand.name, place, open=to_open)
 
     return use
 
@@ -135,9 +142,10 @@ def _think(hand: Hand, text: Any) -> Doing:
 
 def _give_item(hand: Hand, other: Any, item: Any, count: Any) -> Doing:
     name = _text(other)
-    if name not in hand.world.agents:
-        raise SkillError(f"there is no other agent {name!r}; there are {sorted(hand.world.agents)}")
-    where = hand.world.agents[name].position
+    others = hand.others()
+    if name not in others:
+        raise SkillError(f"{name!r} is no agent that is known to be here; it is {sorted(others)}")
+    where = others[name].position
     block = (math.floor(where[0]), math.floor(where[1]), math.floor(where[2]))
     yield from _walk(hand, where, lambda cell: math.dist(cell, block) <= _NEAR, name, within=_NEAR)
     yield
@@ -178,7 +186,10 @@ CALLS: Mapping[str, Callable[..., Doing]] = {
 
 def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:
     if walks:
-        _check_container(hand, place)
+        if not hand.known().may_hold(place):
+            raise SkillError(
+                f"there is no container at {place}. Give the position of a chest or barrel."
+            )
         yield from _walk_to_use(hand, place)
     yield
     _check_container(hand, place)

@@ -1,6 +1,7 @@
 """`beliefnest run`: every condition by itself, recorded, judged and pictured."""
 
 import json
+import math
 import os
 import sys
 import time
@@ -36,6 +37,11 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
 
 __all__ = ["ModelOptions", "RunOptions", "run_scenarios"]
+
+_MOST_TIMES = 10_000
+"""Of repeats, and of answers to one probe."""
+_HOTTEST = 10.0
+"""More than any provider takes."""
 
 Status = Literal["running", "done", "failed", "interrupted"]
 
@@ -212,9 +218,18 @@ def _loaded(name_or_path: str, conditions: Sequence[int]) -> tuple[Scenario, ...
 
 
 def _check_numbers(options: RunOptions) -> None:
-    for name, number in (("--repeat", options.repeat), ("--attempts", options.asking.attempts)):
-        if number < 1:
-            raise InputError(f"{name} is {number}; it must be at least 1")
+    asking = options.asking
+    for name, number, low, high in (
+        ("--repeat", options.repeat, 1, _MOST_TIMES),
+        ("--attempts", asking.attempts, 1, _MOST_TIMES),
+        ("--max-tokens", asking.limits.tokens, 0, math.inf),
+        ("--max-cost", asking.limits.cost, 0, math.inf),
+        ("--temperature", asking.temperature, 0, _HOTTEST),
+    ):
+        # Not a number lies between no bounds.
+        if number is not None and not low <= number <= high:
+            above = f"at least {low}" if high == math.inf else f"from {low} to {high}"
+            raise InputError(f"{name} is {number}; it must be {above}")
     if not -(2**63) <= options.seed < 2**63 - options.repeat:
         raise InputError(f"--seed is {options.seed}; it must be a number of 64 bits")
     twice = [name for name in options.models if options.models.count(name) > 1]

@@ -11,6 +11,8 @@ from pathlib import Path
 
 from PIL import ImageFont
 
+from beliefnest.world.texts import on_one_line
+
 __all__ = ["ASCENT", "DESCENT", "FAMILIES", "ellipsis", "font", "font_bytes", "text_width", "wrap"]
 
 ASCENT, DESCENT = 0.74, 0.22
@@ -47,9 +49,12 @@ def text_width(text: str, size: float, *, bold: bool = False) -> float:
 
 
 def wrap(text: str, size: float, width: float, *, bold: bool = False) -> list[str]:
-    """A text in lines that are no wider than `width`; a word that is wider is broken."""
+    """A text in lines that are no wider than `width`; a word that is wider is broken.
+
+    What controls or turns text is written out, as wherever texts of others are shown.
+    """
     lines: list[str] = []
-    for word in text.split():
+    for word in on_one_line(text).split():
         longer = f"{lines[-1]} {word}" if lines else word
         if lines and text_width(longer, size, bold=bold) <= width:
             lines[-1] = longer
@@ -64,7 +69,8 @@ def wrap(text: str, size: float, width: float, *, bold: bool = False) -> list[st
 
 
 def ellipsis(text: str, size: float, width: float, *, bold: bool = False) -> str:
-    """A text, or as much of its beginning as there is room for with a sign that more is left."""
+    """A text on one line, or as much of its beginning as there is room for with a sign of more."""
+    text = on_one_line(text)
     if text_width(text, size, bold=bold) <= width:
         return text
     room = width - text_width("\u2026", size, bold=bold)

@@ -5,6 +5,7 @@ from typing import Any
 
 from beliefnest.pictures.lettering import font_bytes
 from beliefnest.pictures.marks import Circle, Drawing, Lines, Mark, Polygon, Rectangle, Text
+from beliefnest.world.texts import on_one_line
 
 __all__ = ["pdf_bytes"]
 
@@ -24,7 +25,7 @@ def pdf_bytes(drawing: Drawing) -> bytes:
     out = io.BytesIO()
     size = (drawing.width, drawing.height)
     canvas = Canvas(out, pagesize=size, invariant=1, pageCompression=1)
-    canvas.setTitle(drawing.title)
+    canvas.setTitle(on_one_line(drawing.title))
     for mark in drawing.marks:
         _draw(canvas, drawing.height, mark)
     canvas.save()

@@ -13,6 +13,7 @@ from beliefnest.belief.entries import AgentBelief, ContainerBelief
 from beliefnest.belief.view import State
 from beliefnest.pictures.palette import Mark
 from beliefnest.world.registry import Registry
+from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import Items, Point, Position
 
 __all__ = [
@@ -285,7 +286,7 @@ def read_scene(
         stores=read_stores(state, level, labels or {}, by_place),
         devices=_devices(cells, (x0, level, z0)),
         items=tuple((item.name, item.position) for _, item in sorted(state.items.items())),
-        places=tuple(sorted((places or {}).items())),
+        places=tuple((on_one_line(name), at) for name, at in sorted((places or {}).items())),
         people=tuple(
             _person(name, agent, state.tick, level, by_place)
             for name, agent in sorted(state.agents.items())
@@ -349,7 +350,7 @@ def read_stores(
             Store(
                 position=place,
                 name=None if text is None else text.partition("[")[0],
-                label=labels.get(place, f"({', '.join(map(str, place))})"),
+                label=on_one_line(labels.get(place, f"({', '.join(map(str, place))})")),
                 items=held.items,
                 complete=held.complete,
                 mark=_store_mark(held, false=false is not None),

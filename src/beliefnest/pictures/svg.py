@@ -4,6 +4,7 @@ from xml.etree import ElementTree
 
 from beliefnest.pictures.lettering import FAMILIES
 from beliefnest.pictures.marks import Circle, Drawing, Lines, Mark, Polygon, Rectangle, Text
+from beliefnest.world.texts import on_one_line
 
 __all__ = ["svg_text"]
 
@@ -34,8 +35,9 @@ def svg_text(drawing: Drawing, *, inline: bool = False) -> str:
         root.set("width", f"{_n(width * _MILLIMETRES)}mm")
         root.set("height", f"{_n(height * _MILLIMETRES)}mm")
     if drawing.title:
-        root.set("aria-label", drawing.title)
-        ElementTree.SubElement(root, "title").text = drawing.title
+        title = _clean(on_one_line(drawing.title))
+        root.set("aria-label", title)
+        ElementTree.SubElement(root, "title").text = title
     for mark in drawing.marks:
         _add(root, mark)
     return ElementTree.tostring(root, encoding="unicode")

@@ -5,12 +5,12 @@ from beliefnest.belief.view import State
 from beliefnest.prompts import actions, text
 from beliefnest.prompts.filterset import filter
 from beliefnest.prompts.view import BranchView
+from beliefnest.world.doors import is_door
 from beliefnest.world.values import TICKS_PER_SECOND, EventKind, Position
 
 __all__ = ["FILTERS", "memory"]
 
 _SWITCHES = ("lever", "_button")
-_DOORS = ("_door", "_trapdoor", "_fence_gate")
 _SAYINGS = frozenset({EventKind.CHAT, EventKind.THINK})
 
 
@@ -97,7 +97,7 @@ def _memory_of_block(state: State, at: Position, basis: Basis) -> str:
 def _stands(block: str) -> str | None:
     """Whether a door is open or a switch on; None for another block, or a door's upper half."""
     name, properties = text.block_name(block), text.block_properties(block)
-    if name.endswith(_DOORS):
+    if is_door(name):
         upper = properties.get("half") == "upper" and "hinge" in properties
         return None if upper else "open" if properties.get("open") == "true" else "shut"
     if name.endswith(_SWITCHES):

@@ -1,6 +1,7 @@
 """From a template and a simulator to the text of a prompt."""
 
 import functools
+import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from types import TracebackType
@@ -22,6 +23,7 @@ from beliefnest.prompts.templates import (
 )
 from beliefnest.prompts.text import nearest
 from beliefnest.prompts.view import BranchView
+from beliefnest.world.texts import escaped
 
 __all__ = ["LAST_CODE", "LAST_ERROR", "NO_CODE", "NO_ERROR", "render"]
 
@@ -30,6 +32,9 @@ NO_ERROR = "No error"
 
 LAST_CODE = "$$LAST_CODE$$"
 LAST_ERROR = "$$LAST_ERROR$$"
+
+_SPACES = re.compile(r"([\n\t])")
+"""What programs and errors of several lines are set with."""
 
 _MARKERS = {LAST_CODE: "{{ last_code }}", LAST_ERROR: "{{ last_error }}"}
 _PLAIN_TYPES = (str, bytes, int, float, list, tuple, dict, set, frozenset)
@@ -118,10 +123,18 @@ class _ReadingEnvironment(ImmutableSandboxedEnvironment):
         )
 
 
+def _printed(value: object) -> object:
+    """What `{{ }}` prints, whoever wrote it: lines stay, what controls text is written out."""
+    if not isinstance(value, str) or (value.isascii() and value.isprintable()):
+        return value
+    return "".join(part if part in "\n\t" else escaped(part) for part in _SPACES.split(value))
+
+
 def _environment(filters: FilterSet) -> jinja2.Environment:
     environment = _ReadingEnvironment(
         undefined=jinja2.StrictUndefined,
         autoescape=False,  # a prompt is plain text, not HTML
+        finalize=_printed,
         keep_trailing_newline=True,
         loader=jinja2.FunctionLoader(_built_in_source),
     )

@@ -169,6 +169,7 @@ class _Builder:
             template=self._template((*path, "template"), entry.template),
             label=entry.label,
             timeout_ticks=entry.timeout_ticks,
+            senses=entry.senses or self._file.senses,
         )
 
     def _expect(self, path: KeyPath, entry: ExpectEntry) -> tuple[Expected, ...]:
@@ -265,6 +266,7 @@ class _Builder:
             label=entry.label or f"step {number + 1}",
             where=self._document.where(path),
             timeout_ticks=entry.timeout_ticks,
+            senses=entry.senses or self._file.senses,
         )
 
     def _perception(self, entry: PerceptionEntry) -> Perception:

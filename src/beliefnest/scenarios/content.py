@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from beliefnest.nest.past.setting import Setting
+from beliefnest.nest.past.setting import Senses, Setting
 from beliefnest.scenarios.expected import Answers, Expectation, Expected
 from beliefnest.world.values import Position
 
@@ -25,6 +25,7 @@ class Probe:
         template: Text of the prompt template; None: the paper's.
         label: A name for tables.
         timeout_ticks: Ticks of 50 ms after which the program has failed.
+        senses: What the program reads.
     """
 
     path: str
@@ -35,6 +36,7 @@ class Probe:
     template: str | None = None
     label: str = ""
     timeout_ticks: int = 1200
+    senses: Senses = "world"
 
     @property
     def questions(self) -> tuple[Answers, ...]:

@@ -174,6 +174,10 @@ class StepEntry(_Entry, frozen=True):
     agent: Annotated[str | None, _note("The agent of a single program.")] = None
     program: Annotated[str | None, _note("JavaScript, the body of an async function.")] = None
     programs: Annotated[dict[str, str], _note("Agent to program.")] = {}
+    senses: Annotated[
+        Literal["world", "percepts"] | None,
+        _note("What programs read: everything, or what their agents perceive or remember."),
+    ] = None
     timeout_ticks: Annotated[
         int,
         msgspec.Meta(
@@ -267,6 +271,10 @@ class ProbeEntry(_Entry, frozen=True):
         _note("`default`, `paper`, or a prompt template file beside the scenario; null: `paper`."),
     ] = None
     expect: Annotated[ExpectEntry | None, _note("How the outcome is judged.")] = None
+    senses: Annotated[
+        Literal["world", "percepts"] | None,
+        _note("What programs read: everything, or what their agents perceive or remember."),
+    ] = None
     timeout_ticks: Annotated[
         int,
         msgspec.Meta(
@@ -314,6 +322,10 @@ class ScenarioFile(_Entry, frozen=True):
     containers: list[ContainerEntry] = []
     places: Annotated[dict[str, Position], _note("What people call places: name to block.")] = {}
     perception: PerceptionEntry = PerceptionEntry()
+    senses: Annotated[
+        Literal["world", "percepts"],
+        _note("What programs read: everything, or what their agents perceive or remember."),
+    ] = "world"
     static_blocks: Annotated[
         list[str | Position],
         _note("Blocks that everybody knows from the start: names, or positions."),

@@ -177,10 +177,10 @@ class _Trials:
         before = simulator.branch
         simulator.switch(branch)
         try:
-            result = simulator.run(probe.agent, program, probe.timeout_ticks)
+            result = simulator.run(probe.agent, program, probe.timeout_ticks, probe.senses)
             if result.killed:
                 # Nothing of it was kept; once more, as it need not have been the program's fault.
-                result = simulator.run(probe.agent, program, probe.timeout_ticks)
+                result = simulator.run(probe.agent, program, probe.timeout_ticks, probe.senses)
             trial = Trial(
                 agent=probe.agent,
                 program=program,

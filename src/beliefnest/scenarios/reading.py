@@ -11,6 +11,7 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.composer import Composer, ComposerError
 from ruamel.yaml.constructor import ConstructorError, RoundTripConstructor
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.nodes import MappingNode, ScalarNode
 
 from beliefnest.errors import ScenarioError
 from beliefnest.files import decode_json, read_regular_text
@@ -21,6 +22,7 @@ __all__ = ["parse_yaml", "read_yaml", "templates_file"]
 _LONGEST = 4 * 2**20
 """Bytes of a scenario file."""
 _MAX_VALUES = 50_000
+_NO_KEY = "a key is no text; put it into quotes"
 _TOO_MUCH = (
     f"holds more than {_MAX_VALUES} values or is nested more than {MAX_DEPTH} deep, "
     "aliases counted in"
@@ -109,6 +111,8 @@ class _Composer(Composer):
             mark = self.parser.peek_event().start_mark
             raise ComposerError(None, None, f"it {_TOO_MUCH}", mark)
         node = super().compose_node(parent, index)
+        if isinstance(parent, MappingNode) and index is None and not isinstance(node, ScalarNode):
+            raise ComposerError(None, None, _NO_KEY, node.start_mark)
         self._depth -= 1
         return node
 
@@ -140,8 +144,10 @@ class _Conversion:
             raise ScenarioError(f"{self._source}:{line}: {_TOO_MUCH}")
         if isinstance(value, CommentedMap):
             lines = value.lc.data or {}
-            if not all(isinstance(_scalar(key), str | int | float | None) for key in value):
-                raise ScenarioError(f"{self._source}:{line}: has a key that is no text")
+            for key in value:
+                if not isinstance(_scalar(key), str | int | float | None):
+                    place = f"{self._source}:{_line(lines, key, line)}"
+                    raise ScenarioError(f"{place}: {_NO_KEY}")
             return Node(
                 {
                     _scalar(key): self.node(child, _line(lines, key, line), depth + 1)

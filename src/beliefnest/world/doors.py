@@ -6,7 +6,7 @@ from beliefnest.errors import WorldError
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 
-__all__ = ["is_door", "used_door"]
+__all__ = ["is_door", "is_open", "used_door"]
 
 _KINDS = ("_door", "_trapdoor", "_fence_gate")
 _BY_POWER = "iron_"
@@ -15,6 +15,11 @@ _BY_POWER = "iron_"
 def is_door(name: str) -> bool:
     """Whether the block of that name opens and shuts: a door, a trapdoor or a fence gate."""
     return name.endswith(_KINDS)
+
+
+def is_open(registry: Registry, state: int) -> bool | None:
+    """Whether a door, trapdoor or gate stands open; None: the block is none."""
+    return registry.properties(state)["open"] == "true" if is_door(registry.name(state)) else None
 
 
 def used_door(
@@ -33,17 +38,18 @@ def used_door(
     """
     text = registry.text(state_at(place))
     name = registry.name(state_at(place))
-    if not is_door(name):
+    stands_open = is_open(registry, state_at(place))
+    if stands_open is None:
         raise WorldError(f"there is no door, trapdoor or gate at {place}, but {text}")
     if name.startswith(_BY_POWER):
         raise WorldError(f"the {name} at {place} is not moved by hand; set_block() changes it")
-    properties = registry.properties(state_at(place))
-    if properties["open"] == str(opens).lower():
+    if stands_open is opens:
         raise WorldError(f"the {name} at {place} is {'open' if opens else 'shut'} already")
     parts = [place]
     if name.endswith("_door"):
         x, y, z = place
-        parts = [place, (x, y + 1, z)] if properties["half"] == "lower" else [(x, y - 1, z), place]
+        lower = registry.properties(state_at(place))["half"] == "lower"
+        parts = [place, (x, y + 1, z)] if lower else [(x, y - 1, z), place]
     return {
         part: _moved(registry, state_at(part), opens)
         for part in parts

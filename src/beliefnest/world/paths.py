@@ -11,12 +11,15 @@ AND_BELOW = "**"
 
 _LONGEST_TOLD = 100
 
+_DEEPEST = 50
+"""Names in a path: each is a state of its own, computed with all before it."""
+
 
 def parse_path(text: str, agents: Collection[str]) -> tuple[str, ...]:
     """Agent names of a path, normalised.
 
     Raises:
-        PathError: The text is no path, or names an agent that there is not.
+        PathError: The text is no path, names an agent that there is not, or is too deep.
     """
     if not isinstance(text, str) or not text.startswith("/"):
         raise PathError(f"{_short(text)} is no belief path; write '/' or '/agent/agent'")
@@ -45,11 +48,18 @@ def parse_pattern(text: str, agents: Collection[str]) -> tuple[str, ...]:
 
 
 def normalised(names: Iterable[str]) -> tuple[str, ...]:
-    """The path with equal neighbours collapsed: an agent knows its own beliefs."""
+    """The path with equal neighbours collapsed: an agent knows its own beliefs.
+
+    Raises:
+        PathError: It is too deep.
+    """
     path: list[str] = []
     for name in names:
         if not path or path[-1] != name:
             path.append(name)
+    if len(path) > _DEEPEST:
+        short = _short(path_text(path))
+        raise PathError(f"{short} is {len(path)} beliefs deep; {_DEEPEST} are possible")
     return tuple(path)
 
 

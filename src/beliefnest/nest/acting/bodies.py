@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from beliefnest.bodies.protocol import Body, World
+from beliefnest.bodies.protocol import Body, Sense, Sensed, World
 from beliefnest.errors import BodyError, BranchError, WorldError
 from beliefnest.nest.acting.frame_recorder import FrameRecorder
 from beliefnest.nest.acting.lives import Lives
@@ -18,6 +18,7 @@ from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.paths import path_text
+from beliefnest.world.values import AgentState
 
 __all__ = ["Bodies"]
 
@@ -150,6 +151,30 @@ class Bodies:
         finally:
             recorder.batched = False
         recorder.keep_up()
+
+    def sense_of(self, path: Path, agent: str) -> Sense:
+        """What an agent of a simulator perceives or remembers, while programs run in its body.
+
+        Beliefs are worked out from what has been recorded so far, as they always are. Where the
+        agent is, and what it has on it, it knows from its own body.
+        """
+        believer = path if path[-1:] == (agent,) else (*path, agent)
+        embodied, recording = self._embodied[path], self._recording
+
+        def sensed() -> Sensed:
+            embodied.recorder.flush(embodied.body.tick)
+            seen = recording.reading(believer)
+            agents = {
+                name: AgentState(
+                    each.position, each.yaw, each.pitch, each.on_ground, each.equipment or {}
+                )
+                for name, each in seen.agents.items()
+                if each.current and each.position is not None
+            }
+            own = embodied.body.snapshot().agents[agent]
+            return Sensed(seen.blocks, {**agents, agent: own})
+
+        return sensed
 
     @contextmanager
     def changing(self, path: Path, unless: type[BaseException] | tuple[()] = ()) -> Iterator[None]:

@@ -18,6 +18,7 @@ from beliefnest.nest.acting.speculation import Speculation, SpeculationStart, sp
 from beliefnest.nest.past.body_state import internal_state_at, note_internal_state, present
 from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
+from beliefnest.nest.past.setting import Senses
 from beliefnest.timeline.journal import FOLLOW, Edit, ForkPoint, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import ProgramRecord
 from beliefnest.world.paths import path_text
@@ -140,6 +141,7 @@ class Engine:
         programs: Mapping[str, str],
         timeout_ticks: int,
         step: int | None = None,
+        senses: Senses = "world",
     ) -> Mapping[str, ProgramResult]:
         """Run programs in a body, record what happens, and note them with their results.
 
@@ -152,22 +154,31 @@ class Engine:
             programs: Their texts by agent.
             timeout_ticks: Ticks after which they are stopped.
             step: Number of the script's step that they are; None: they are none.
+            senses: What they read.
         """
         lives = self.bodies.lives()
         while True:
-            results = lives.call(lambda: self._run(path, programs, timeout_ticks, step))
+            results = lives.call(lambda: self._run(path, programs, timeout_ticks, step, senses))
             killed = any(result.killed for result in results.values())
             if not killed or step is None or not lives.spend():
                 return results
 
     def _run(
-        self, path: Path, programs: Mapping[str, str], timeout_ticks: int, step: int | None
+        self,
+        path: Path,
+        programs: Mapping[str, str],
+        timeout_ticks: int,
+        step: int | None,
+        senses: Senses,
     ) -> Mapping[str, ProgramResult]:
         self.bodies.of(path)
+        limited = {}
+        if senses == "percepts":
+            limited = {agent: self.bodies.sense_of(path, agent) for agent in programs}
         before = self.recording.info(path)
         try:
             with self.bodies.acting(path) as body:
-                results = body.run(programs, timeout_ticks)
+                results = body.run(programs, timeout_ticks, limited)
                 self._note(before, programs, results, timeout_ticks, step)
             placed = placed_in(self.recording, path)
             results = {name: replace(each, placed=placed) for name, each in results.items()}

@@ -52,7 +52,7 @@ def steps_played(journal: Journal, key: TimelineKey, programs: Iterable[ProgramR
 
 
 def _play_step(engine: Engine, number: int, step: Step) -> None:
-    results = engine.run((), step.programs, step.timeout_ticks, number)
+    results = engine.run((), step.programs, step.timeout_ticks, number, step.senses)
     for agent, result in results.items():
         if not result.ok:
             label = f" ({step.label})" if step.label else ""

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from queue import Empty, SimpleQueue
 from threading import Event
 
-from beliefnest.bodies.protocol import Body, ProgramResult, Sink, World
+from beliefnest.bodies.protocol import Body, ProgramResult, Sense, Sink, World
 from beliefnest.errors import BeliefNestError, BodyError, BodyLostError, WorldError
 from beliefnest.nest.acting.lives import Lives
 from beliefnest.world.frames import Frame, Snapshot
@@ -79,7 +79,12 @@ class SpeculatedBody:
         """Raise BodyError: the body is gone."""
         raise _gone()
 
-    def run(self, programs: Mapping[str, str], timeout_ticks: int) -> Mapping[str, ProgramResult]:
+    def run(
+        self,
+        programs: Mapping[str, str],
+        timeout_ticks: int,
+        senses: Mapping[str, Sense] | None = None,
+    ) -> Mapping[str, ProgramResult]:
         """Hand out the frames of the programs, which have run already."""
         self._ran = True
         for frame in self._speculation.frames:

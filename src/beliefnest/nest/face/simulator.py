@@ -13,6 +13,7 @@ from beliefnest.nest.face.past_simulator import ShownSimulator
 from beliefnest.nest.face.recording_model import RecordingModel
 from beliefnest.nest.face.ticks import tick_of, whole
 from beliefnest.nest.face.turns import in_turn
+from beliefnest.nest.past.setting import Senses
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
 from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.texts import is_well_formed
@@ -143,13 +144,17 @@ class Simulator(ShownSimulator):
             raise InputError(f"a description is a text, not {text!r}")
         self._recording.journal.describe(TimelineKey(self._path, name), text)
 
-    def run(self, agent: str, code: str, timeout_ticks: int = 1200) -> ProgramResult:
+    def run(
+        self, agent: str, code: str, timeout_ticks: int = 1200, senses: Senses = "world"
+    ) -> ProgramResult:
         """Run a program as an agent of this simulator, which must be in control mode.
 
         Args:
             agent: Whose bot runs it.
             code: JavaScript: the body of an async function, or one whole async function.
             timeout_ticks: Ticks after which the program is stopped, at most those of a day.
+            senses: `percepts`: it reads no more than its agent perceives or remembers; in the
+                scripted world alone.
 
         Raises:
             InputError: The code is no text, or the ticks are no such number.
@@ -159,11 +164,14 @@ class Simulator(ShownSimulator):
             BodyError: The Minecraft side failed, or died again and again before the program
                 began. If it dies under the program, the result says so (`killed`).
         """
-        return self.run_all({agent: code}, timeout_ticks)[agent]
+        return self.run_all({agent: code}, timeout_ticks, senses)[agent]
 
     @in_turn
     def run_all(
-        self, programs: Mapping[str, str], timeout_ticks: int = 1200
+        self,
+        programs: Mapping[str, str],
+        timeout_ticks: int = 1200,
+        senses: Senses = "world",
     ) -> Mapping[str, ProgramResult]:
         """Run programs of several agents at the same time, tick by tick together.
 
@@ -181,7 +189,9 @@ class Simulator(ShownSimulator):
                     f"the program of {agent} has half of a character in it; write the whole "
                     "character, or an escape such as \\u{1f600}"
                 )
-        return self._engine.run(self._path, programs, _timeout(timeout_ticks))
+        if senses not in ("world", "percepts"):
+            raise InputError(f"senses is {senses!r}; give 'world' or 'percepts'")
+        return self._engine.run(self._path, programs, _timeout(timeout_ticks), None, senses)
 
     def noting(self, model: "Model", **detail: str) -> "Model":
         """A model whose conversation with the caller is kept in the run, request by request.

@@ -2,17 +2,28 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 from beliefnest.belief.entries import InitialBelief
 from beliefnest.errors import InputError, PathError
 from beliefnest.perception.options import Perception
 from beliefnest.world.frames import Snapshot
-from beliefnest.world.limits import agent_name_fault, snapshot_fault
+from beliefnest.world.limits import (
+    agent_name_fault,
+    container_slots,
+    items_fault,
+    point_fault,
+    snapshot_fault,
+)
 from beliefnest.world.paths import parse_path, parse_pattern, path_text
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import Position
+from beliefnest.world.texts import escaped, is_well_formed
+from beliefnest.world.values import Box, Position
 
-__all__ = ["MAIN", "Setting", "Step"]
+__all__ = ["MAIN", "Senses", "Setting", "Step"]
+
+Senses = Literal["world", "percepts"]
+"""What programs read: everything there is, or what their agents perceive or remember."""
 
 MAIN = "main"
 """Name of the real world's first branch."""
@@ -27,12 +38,14 @@ class Step:
         label: What the step is, for progress and messages ("sally puts the diamond away").
         where: Where the step is written, for messages ("sally_anne.yaml:41").
         timeout_ticks: Ticks after which the step has failed.
+        senses: What its programs read: the whole `world`, or their agents' `percepts` alone.
     """
 
     programs: Mapping[str, str]
     label: str = ""
     where: str = ""
     timeout_ticks: int = 1200
+    senses: Senses = "world"
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,9 +81,13 @@ class Setting:
         for place in self.static_blocks:
             if not isinstance(place, str) and place not in self.snapshot.box:
                 raise InputError(f"static_blocks names {place}, which lies outside the box")
-        fault = snapshot_fault(self.snapshot, Registry.load())
+        registry = Registry.load()
+        fault = snapshot_fault(self.snapshot, registry)
         for name in self.absent:
             fault = fault or agent_name_fault(name)
+        for belief in self.initial_beliefs:
+            fault = fault or _belief_fault(belief, self.snapshot.box, registry)
+        fault = fault or self._text_fault()
         if fault:
             raise InputError(f"setting {self.name!r}: {fault}")
         seen: set[tuple[str, ...]] = set()
@@ -85,3 +102,29 @@ class Setting:
             seen.add(belief.path)
             for name in belief.agents:
                 parse_path(path_text((name,)), agents)
+
+    def _text_fault(self) -> str | None:
+        texts = [self.name, *self.labels.values(), *self.places, *self.prompt_labels.values()]
+        for step in self.script:
+            texts += [step.label, step.where, *step.programs.values()]
+        bad = next((text for text in texts if not is_well_formed(text)), None)
+        return None if bad is None else f"half a character is in {escaped(bad[:100])!r}; remove it"
+
+
+def _belief_fault(belief: InitialBelief, box: Box, registry: Registry) -> str | None:
+    """What is wrong with the places and contents of an initial belief."""
+    whose = f"the initial belief {path_text(belief.path)!r}"
+    outside = [place for place in (*belief.containers, *belief.blocks) if place not in box]
+    if outside:
+        return f"{whose} is of {outside[0]}, which lies outside the box"
+    for place, state in belief.blocks.items():
+        if not -1 <= state < registry.states:
+            return f"{whose} has block state {state} at {place}; states go to {registry.states - 1}"
+    for place, (items, _) in belief.containers.items():
+        holder = f"the chest at {place} in {whose}"
+        if fault := items_fault(items, registry, container_slots("chest"), holder):
+            return fault
+    for name, position in belief.agents.items():
+        if fault := point_fault(position):
+            return f"{name} in {whose}: {fault}"
+    return None

@@ -47,6 +47,29 @@ test('a client that does not wait is told that the block is still there', async 
   })
 })
 
+test('what a client sent at two times and comes at one is mined when the time is over', async () => {
+  const location = new Vec3(2, FLOOR, 0)
+  const dig = (bot, status) => bot._client.write('block_dig', { status, location, face: 1 })
+  await inWorld({ blocks: [[2, FLOOR, 0, 'dirt']] }, async world => {
+    const { sally } = world.bots
+    for (const status of [0, 2]) dig(sally, status)
+    await world.ticks(1)
+    assert.equal(sally.blockAt(location).name, 'dirt')
+    // Asking again, or for something else, is no reason to begin anew.
+    for (const status of [1, 0, 2]) dig(sally, status)
+    await world.ticks(sally.digTime(sally.blockAt(location)) / 50)
+    assert.equal(world.block(2, FLOOR, 0).name, 'air')
+    assert.deepEqual(world.events().map(({ kind }) => kind), ['mine_block'])
+  })
+  await inWorld({ blocks: [[2, FLOOR, 0, 'dirt']] }, async world => {
+    for (const status of [0, 2]) dig(world.bots.sally, status)
+    await world.ticks(1)
+    world.serv.blocks.set(world.at(2, FLOOR, 0), world.serv.blocks.state('glass'))
+    await world.ticks(50)
+    assert.equal(world.block(2, FLOOR, 0).name, 'glass')
+  })
+})
+
 const drops = [
   ['grass_block', 'dirt', 1], ['oak_log', 'oak_log', 1], ['oak_slab', 'oak_slab', 1], ['bookshelf', 'book', 3],
   ['glass', null, 0], ['clay', 'clay_ball', 4]

@@ -37,14 +37,26 @@ module.exports.server = (serv) => {
 }
 
 module.exports.player = (player, serv) => {
-  let digging = null
+  // Overdue is what was said to be finished before its time was over, of the server's ticks: it goes on until then.
+  let [digging, overdue] = [null, null]
 
-  player.on('rest', () => { digging = null })
+  player.on('rest', () => { digging = overdue = null })
 
-  player.digTick = () => { if (digging) digging.ticks += 1 }
+  const timeOf = ({ ticks }) => (ticks + 1) * TICK_MS
+
+  player.digTick = () => {
+    for (const dug of [digging, overdue]) if (dug) dug.ticks += 1
+    if (overdue && !canGoOn(overdue)) overdue = null
+    if (overdue && timeOf(overdue) >= serv.digTime(player, overdue.stateId)) {
+      serv.mine(player, overdue.position)
+      overdue = null
+    }
+  }
 
   const canMine = (position) => player.health > 0 && player.canUse(position) &&
     serv.registry.blocks[serv.blocks.at(position).type].diggable && serv.blocks.at(position).name !== 'air'
+
+  const canGoOn = ({ position, stateId }) => canMine(position) && stateId === serv.blocks.at(position).stateId
 
   function start (position) {
     const { stateId } = serv.blocks.at(position)
@@ -55,14 +67,16 @@ module.exports.player = (player, serv) => {
     }
   }
 
-  /** The client has waited as long as it takes; one that has not is told that the block is still there. */
+  /**
+   * The client has waited as long as it takes. What it sent at two times may come at one, from afar or on a busy
+   * machine: then the server goes on by its own ticks, as in the game, and the client is told that the block is still there.
+   */
   function finish (position) {
     const begun = digging
     digging = null
-    if (!begun || !begun.position.equals(position) || !canMine(position)) return
-    if (begun.stateId !== serv.blocks.at(position).stateId) return
-    const passed = (begun.ticks + 1) * TICK_MS
-    if (passed >= serv.digTime(player, begun.stateId) * PATIENCE) serv.mine(player, position)
+    if (!begun?.position.equals(position) || !canGoOn(begun)) return
+    if (timeOf(begun) >= serv.digTime(player, begun.stateId) * PATIENCE) serv.mine(player, position)
+    else overdue ??= begun
   }
 
   function drop (count) {

@@ -1,0 +1,112 @@
+"""Programs that read percepts alone: what their agent cannot perceive changes nothing they read."""
+
+import json
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tests.profiles import at_night
+
+import beliefnest as bn
+
+WALL_X = 4
+ROOM: dict[str, Any] = {
+    "name": "room",
+    "box": [[0, 0, 0], [9, 3, 6]],
+    "agents": {"ann": {"position": [1.5, 1, 3.5]}, "bob": {"position": [7.5, 1, 3.5]}},
+    "static_blocks": ["stone"],
+    "perception": {"hearing": "sight", "containers": "transparent"},
+}
+FLOOR = {"block": "stone", "fill": [[0, 0, 0], [9, 0, 6]]}
+WALL = {"block": "bricks", "fill": [[WALL_X, 1, 0], [WALL_X, 3, 6]]}
+
+# All that a program can read, whatever it is called.
+READ = """
+const told = {}
+for (const key of Object.keys(bot)) {
+  const value = bot[key]
+  const read = key === 'inventory' ? value.items() : value
+  told[key] = typeof value === 'function' ? 'a function' : read
+}
+const blocks = []
+for (let x = 0; x <= 9; x++) for (let y = 0; y <= 3; y++) for (let z = 0; z <= 6; z++) {
+  const block = bot.blockAt(new Vec3(x, y, z))
+  blocks.push(block === null ? null : [block.name, block.position, block.getProperties()])
+}
+console.log(JSON.stringify({told, blocks}))
+"""
+LOOK = f"{{ {READ} }}\nawait goToPosition(bot, new Vec3(2, 1, 2), 0)\n{{ {READ} }}"
+
+
+def read(
+    hidden: list[dict[str, Any]],
+    items: dict[str, int],
+    bob: tuple[float, float, float],
+    senses: str,
+) -> tuple[list[Any], int]:
+    """What Ann's program reads in a room in which this lies behind the wall."""
+    scenario = bn.Scenario.from_mapping(
+        {
+            **ROOM,
+            "blocks": [FLOOR, WALL, *hidden],
+            "containers": [{"at": [8, 1, 5], "items": items}],
+            "agents": {**ROOM["agents"], "bob": {"position": list(bob)}},
+        }
+    )
+    with bn.Nest.open(scenario, world="scripted") as nest:
+        result = nest["/"].run("ann", LOOK, senses=senses)
+        assert result.ok, result.error
+        return [json.loads(line) for line in result.log], result.ticks
+
+
+PLACES = st.tuples(st.integers(5, 9), st.integers(1, 3), st.integers(0, 4))
+
+
+@settings(max_examples=at_night(500, 15), deadline=None)
+@given(
+    blocks=st.dictionaries(PLACES, st.sampled_from(["dirt", "oak_planks", "lever", "glass"])),
+    items=st.dictionaries(st.sampled_from(["apple", "diamond"]), st.integers(1, 3)),
+    bob=st.tuples(st.floats(5.3, 7.6), st.just(1.0), st.floats(5.3, 6.7)),
+)
+def test_what_cannot_be_perceived_changes_no_value_that_is_read(
+    blocks: dict[tuple[int, int, int], str],
+    items: dict[str, int],
+    bob: tuple[float, float, float],
+) -> None:
+    hidden = [{"block": name, "at": list(place)} for place, name in sorted(blocks.items())]
+    plain = read([], {}, (7.5, 1.0, 5.5), "percepts")
+    assert read(hidden, items, bob, "percepts") == plain
+
+
+def test_percepts_are_what_is_perceived() -> None:
+    (first, _), ticks = read([], {}, (7.5, 1.0, 5.5), "percepts")
+    assert first["told"]["players"]["bob"]["entity"] is None
+    assert list(first["told"]["entities"]) == []
+    named = {tuple(each[1]): each[0] for each in first["blocks"] if each is not None}
+    assert named[1, 0, 1] == "stone"
+    assert named[WALL_X, 1, 3] == "bricks"
+    assert (8, 1, 5) not in named
+    assert ticks == 1
+    (whole, _), _ = read([], {}, (7.5, 1.0, 5.5), "world")
+    assert whole["told"]["players"]["bob"]["entity"] is not None
+    assert None not in whole["blocks"]
+
+
+def test_a_body_bumps_into_what_its_agent_does_not_know() -> None:
+    hidden = [{"block": "glass", "at": [2, y, z]} for y in (1, 2, 3) for z in range(7)]
+    scenario = bn.Scenario.from_mapping({**ROOM, "blocks": [FLOOR, *hidden]})
+    with bn.Nest.open(scenario, world="scripted") as nest:
+        code = "await goToPosition(bot, new Vec3(7, 1, 0), 0)"
+        result = nest["/"].run("ann", code, senses="percepts")
+        assert result.error is not None
+        assert result.error.reason == "no_way"
+        assert nest["/"].state.agents["ann"].position[0] < 2
+
+
+def test_minecraft_refuses_what_it_cannot_promise() -> None:
+    with (
+        bn.Nest.open(bn.Scenario.from_mapping({**ROOM, "blocks": [FLOOR]})) as nest,
+        pytest.raises(bn.WorldError, match="percepts"),
+    ):
+        nest["/"].run("ann", "", senses="percepts")
