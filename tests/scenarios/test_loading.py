@@ -11,6 +11,7 @@ from beliefnest.errors import ScenarioError, UnknownNameError
 from beliefnest.scenarios.expected import Arrives, Holds, Opens, Stands
 from beliefnest.scenarios.format import schema
 from beliefnest.scenarios.loading import builtin_names
+from beliefnest.scenarios.reading import parse_yaml
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.registry import Registry
 
@@ -270,3 +271,9 @@ def test_a_condition_may_be_given_as_text() -> None:
 def test_a_nest_of_a_scenario_is_opened_otherwise() -> None:
     with pytest.raises(bn.InputError, match=r"bn\.Nest\.open\(scenario\)"):
         bn.Nest(Scenario.load("sally-anne"))  # type: ignore[arg-type]
+
+
+def test_a_program_that_breaks_flow_yaml_is_told_how_to_be_written() -> None:
+    text = "script:\n  - {agent: a, program: await go(bot, new Vec3(1, 2, 3), {a: 1});}\n"
+    with pytest.raises(bn.ScenarioError, match=r"x\.yaml:2: .*'program: \|'"):
+        parse_yaml(text, "x.yaml")

@@ -23,6 +23,11 @@ _LONGEST = 4 * 2**20
 """Bytes of a scenario file."""
 _MAX_VALUES = 50_000
 _NO_KEY = "a key is no text; put it into quotes"
+_FLOW = ("while parsing a flow mapping", "while parsing a flow sequence")
+_IN_BRACES = (
+    "; inside {...} and [...] a text with commas, colons or quotes breaks it: "
+    "write a program as 'program: |' with its lines below, each key on a line of its own"
+)
 _TOO_MUCH = (
     f"holds more than {_MAX_VALUES} values or is nested more than {MAX_DEPTH} deep, "
     "aliases counted in"
@@ -61,7 +66,8 @@ def parse_yaml(text: str, source: str) -> Document:
         mark = error.problem_mark or error.context_mark
         line = f":{mark.line + 1}" if mark is not None else ""
         problem = " ".join((error.problem or "it cannot be parsed").split())
-        raise ScenarioError(f"{source}{line}: broken YAML: {problem}") from None
+        hint = _IN_BRACES if error.context in _FLOW else ""
+        raise ScenarioError(f"{source}{line}: broken YAML: {problem}{hint}") from None
     except (TypeError, ValueError) as error:
         # The parser builds collections late, where it knows no line any more.
         said = " ".join(str(error).split())
