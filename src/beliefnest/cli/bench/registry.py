@@ -20,6 +20,7 @@ BENCHES: Mapping[str, str] = {
     "stories": "beliefnest.cli.bench.stories",
     "pictures": "beliefnest.cli.bench.pictures",
     "viewer": "beliefnest.cli.bench.viewer",
+    "studies": "beliefnest.cli.bench.studies",
 }
 """Name to the module whose `measure()` it is; loaded when it is run."""
 

@@ -1,8 +1,11 @@
 """What runs on this side of a nest, for the record."""
 
+import functools
 import platform
 import sqlite3
+from collections.abc import Mapping
 from importlib import metadata
+from types import MappingProxyType
 
 from beliefnest.version import VERSION
 
@@ -18,5 +21,11 @@ def own_versions() -> dict[str, str]:
         "python": platform.python_version(),
         "platform": f"{platform.system()} {platform.machine()}",
         "sqlite": sqlite3.sqlite_version,
-        **{name: metadata.version(name) for name in _LIBRARIES},
+        **_library_versions(),
     }
+
+
+@functools.cache
+def _library_versions() -> Mapping[str, str]:
+    """Looked up in files once: studies begin many runs a second."""
+    return MappingProxyType({name: metadata.version(name) for name in _LIBRARIES})

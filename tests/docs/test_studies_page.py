@@ -1,0 +1,32 @@
+"""The page about studies leads from its scenario to its figure, as it says."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from beliefnest.cli.app import run_command_line
+
+PAGE = (Path(__file__).parents[2] / "docs" / "studies.md").read_text(encoding="utf-8")
+EXAMPLES = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+SCENARIO, STUDY = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
+
+
+def test_from_the_scenario_to_the_figure_and_by_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("fetch.yaml").write_text(SCENARIO, encoding="utf-8")
+    Path("study.yaml").write_text(STUDY, encoding="utf-8")
+    names: dict[str, object] = {"__name__": "example"}
+    for example in EXAMPLES:
+        exec(compile(example, "example", "exec"), names)
+        claims = re.findall(r"print\(.*\)  # (.*)", example)
+        assert capsys.readouterr().out.splitlines() == claims
+    assert "<svg" in Path("fetch.svg").read_text(encoding="utf-8")
+    page = Path("fetch.html").read_text(encoding="utf-8")
+    assert "<svg" in page
+    assert not re.search(r'(src|href)="(?!#)', page)
+    # The same cells: nothing is left to play.
+    assert run_command_line(["study", "study.yaml", "--out", "fetch-study", "--jobs", "1"]) == 0
+    assert "(4/4)" in capsys.readouterr().err.splitlines()[-1]
