@@ -51,7 +51,8 @@ turns it into text. All examples are run against one belief, Sally's at tick 240
 (`beliefnest.prompts.example`). Only what is truly unknown prints as `No data`,
 `Cannot be seen`, `Not observed`, `No chats`, `No thought` or `Empty`; an unknown filter,
 variable or agent is an error that names the line. Numbers have at most three decimals.
-Templates read: they cannot call a simulator's methods.
+Templates read: they cannot call a simulator's methods. What one prints without a filter
+has characters that control a terminal or turn the direction of text written out.
 
 `$$LAST_CODE$$` and `$$LAST_ERROR$$` stand for the variables `last_code` and `last_error`,
 the program of the round before and how it failed; without them they print
