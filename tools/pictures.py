@@ -10,6 +10,15 @@ from beliefnest.cli.folder import STORE
 IMAGES = Path(__file__).parents[1] / "docs" / "img"
 CHEST = (-2, -51, -4)
 PATHS = ("/", "/observer", "/sally", "/observer/sally")
+BATTERIES = (
+    "unexpected-contents",
+    "unexpected-transfer",
+    "bake-sale",
+    "birthday-puppy",
+    "lie",
+    "knowledge-access",
+    "double-bluff",
+)
 
 
 def write_pictures(images: Path) -> None:
@@ -25,6 +34,11 @@ def write_pictures(images: Path) -> None:
             nest.figure(PATHS).save(images / "figure.png")
             plot = nest.plot_beliefs(container=CHEST, item="diamond", paths=PATHS)
             plot.save(images / "beliefs-over-time.png")
+        for name in BATTERIES:
+            run = Path(folder, name)
+            if run_command_line(["run", name, "--out", str(run)]) != 0:
+                raise SystemExit(f"{name} is not as expected: mend that first")
+            (images / f"{name}.png").write_bytes((run / "picture.png").read_bytes())
 
 
 if __name__ == "__main__":
