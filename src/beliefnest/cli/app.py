@@ -311,6 +311,23 @@ def study(
 
 
 @app.command()
+def reproduce(
+    copies: Annotated[
+        int, typer.Option(help="Mirrored, turned and renamed copies of each experiment.", min=0)
+    ] = 4,
+    jobs: Annotated[int, typer.Option(help="Played at the same time.")] = 1,
+    page: Annotated[
+        Path | None, typer.Option(help="Write the table to this Markdown file.")
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Play the paper's experiments, as written and varied; print the results beside its claims."""
+    from beliefnest.cli.reproduce import run_reproduction
+
+    return run_reproduction(copies, jobs, page, as_json=json)
+
+
+@app.command()
 def doctor(json: Json = False) -> int:
     """Check Node, the bundle, a world and a model; say what to do about what fails."""
     from beliefnest.cli.doctor import examine

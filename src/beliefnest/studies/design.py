@@ -114,7 +114,7 @@ class Design:
         for constraint in self.constraints:
             held = constraint(values) if callable(constraint) else evaluate(constraint, values)
             if not held:
-                told = constraint if isinstance(constraint, str) else constraint.__name__
+                told = getattr(constraint, "__name__", str(constraint))
                 return ScenarioError(f"the constraint {told!r} does not hold")
         return None
 

@@ -1,0 +1,172 @@
+"""`beliefnest reproduce`: the paper's experiments, as written and varied, beside its claims."""
+
+import json
+import sys
+import tempfile
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from rich import box
+from rich.table import Table
+
+from beliefnest.cli.console import progress_on, stdout
+from beliefnest.errors import InputError
+from beliefnest.studies.running import StudyProgress
+from beliefnest.studies.study import Study
+
+__all__ = ["run_reproduction"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Claim:
+    """What the paper reports of a probe.
+
+    Attributes:
+        scenario: The built-in scenario.
+        condition: Its condition that is the paper's.
+        probe: Label of the probe.
+        section: Of the paper.
+        text: What it says.
+        differs: Where our expectation is another, and why; empty: it is the paper's.
+    """
+
+    scenario: str
+    condition: int
+    probe: str
+    section: str
+    text: str
+    differs: str = ""
+
+
+_SALLY = ("sally-anne", "Example 1: Sally-Anne Task")
+_CLAIMS = (
+    _Claim(_SALLY[0], 1, "prediction", _SALLY[1], "Sally would open the left box"),
+    _Claim(_SALLY[0], 2, "prediction", _SALLY[1], "Sally would open the right box"),
+    _Claim(_SALLY[0], 3, "prediction", _SALLY[1], "Sally would open the left box"),
+    _Claim(
+        "ice-cream-van",
+        1,
+        "third order",
+        "Example 2: Ice Cream Van Task",
+        "what John thinks Mary believes: Mary goes to location B",
+        "Mary goes to A: as the paper says, John does not know that she was told of B, and what "
+        "she was told before is A",
+    ),
+)
+
+
+def run_reproduction(copies: int, jobs: int, page: Path | None, *, as_json: bool) -> int:
+    """Play all, print the table; the status is 0 if all is as expected, 1 if something is not.
+
+    Args:
+        copies: Mirrored, turned and renamed copies of each experiment.
+        jobs: Cells at the same time.
+        page: File to write the table to, as Markdown; None: none.
+        as_json: Whether to print JSON.
+
+    Raises:
+        BeliefNestError: A number is wrong, or a world failed.
+    """
+    names = tuple(dict.fromkeys(claim.scenario for claim in _CLAIMS))
+    written = _played(Study(names), jobs, "as written")
+    varied = _played(Study(names, variations=copies), jobs, "copies") if copies else ([], 0.0)
+    lines = [_line(claim, written[0], varied[0]) for claim in _CLAIMS]
+    rows = [*written[0], *varied[0]]
+    right = sum(row["ok"] is True and row["beliefs_ok"] is not False for row in rows)
+    seconds = written[1] + varied[1]
+    about = f"{right} of {len(rows)} probes as expected, all conditions and copies, {seconds:.0f} s"
+    if page is not None:
+        _write_page(page, lines, about)
+    if as_json:
+        found = {"claims": lines, "rows": len(rows), "right": right, "seconds": round(seconds, 1)}
+        sys.stdout.write(json.dumps(found, indent=2) + "\n")
+    else:
+        _print(lines, about)
+    return 0 if right == len(rows) else 1
+
+
+def _played(study: Study, jobs: int, title: str) -> tuple[list[dict[str, Any]], float]:
+    started = time.perf_counter()
+    with tempfile.TemporaryDirectory() as folder, progress_on(title) as on_progress:
+
+        def told(progress: StudyProgress) -> None:
+            on_progress("playing", progress.done, progress.total)
+
+        result = study.run(Path(folder), jobs, on_progress=told)
+        took = result.folder.seconds()
+        rows = [{**row, "wall_seconds": took[row["cell"]]} for row in result.rows]
+    return rows, time.perf_counter() - started
+
+
+def _line(
+    claim: _Claim, written: Sequence[Mapping[str, Any]], varied: Sequence[Mapping[str, Any]]
+) -> dict[str, Any]:
+    own, copies = ([row for row in rows if _is_of(row, claim)] for rows in (written, varied))
+    (row,) = own
+    place = row["opened"].split(" ")[0] if row["opened"] else row["arrived"]
+    verb = "opens" if row["opened"] else "arrives at"
+    result = f"{row['agent']} {verb} {place}" if place else row["why_not"]
+    return {
+        **asdict(claim),
+        "result": result if row["ok"] else f"{result}: {row['why_not']}",
+        "ok": row["ok"],
+        "as_the_paper": bool(row["ok"]) and not claim.differs,
+        "copies": len(copies),
+        "copies_ok": sum(each["ok"] is True for each in copies),
+        "seconds": row["wall_seconds"],
+        "command": f"beliefnest run {claim.scenario} --condition {claim.condition}",
+    }
+
+
+def _is_of(row: Mapping[str, Any], claim: _Claim) -> bool:
+    own = (claim.scenario, claim.condition, claim.probe)
+    return (row["scenario"], row["condition"], row["probe"]) == own
+
+
+_HEADINGS = (
+    *("experiment", "the paper's claim", "our result", "copies as expected", "run time"),
+    "where we differ",
+)
+
+
+def _cells(line: Mapping[str, Any]) -> tuple[str, ...]:
+    return (
+        f"{line['section']}, condition {line['condition']}",
+        line["text"],
+        line["result"],
+        f"{line['copies_ok']} of {line['copies']}",
+        f"{line['seconds']:.1f} s",
+        line["differs"],
+    )
+
+
+def _print(lines: Sequence[Mapping[str, Any]], about: str) -> None:
+    table = Table(box=box.SIMPLE_HEAVY)
+    for heading in _HEADINGS:
+        table.add_column(heading)
+    for line in lines:
+        table.add_row(*_cells(line))
+    console = stdout()
+    console.print(table)
+    for line in dict.fromkeys(line["command"] for line in lines):
+        console.print(line, highlight=False)
+    console.print(about, highlight=False)
+
+
+def _write_page(page: Path, lines: Sequence[Mapping[str, Any]], about: str) -> None:
+    headings = (*_HEADINGS, "command")
+    rows = [(*_cells(line), f"`{line['command']}`") for line in lines]
+    table = [headings, tuple("---" for _ in headings), *rows]
+    text = "\n".join(f"| {' | '.join(row)} |" for row in table)
+    content = (
+        "# Reproduction\n\nWritten by `beliefnest reproduce --page docs/reproduction.md`, with the "
+        "offline model. Copies are mirrored, turned and renamed.\n\n"
+        f"{text}\n\n{about.rpartition(',')[0]}.\n"
+    )
+    try:
+        page.write_text(content, encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{page} cannot be written: {error.strerror}") from None
