@@ -4,6 +4,9 @@ import heapq
 import math
 from collections.abc import Callable, Iterator, Mapping
 
+import numpy as np
+import numpy.typing as npt
+
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Point, Position
@@ -14,6 +17,7 @@ _DEEPEST_DROP = 3
 _SIDES = ((1, 0), (0, 1), (-1, 0), (0, -1))
 _CORNERS = ((1, 1), (-1, 1), (-1, -1), (1, -1))
 _MOST_CELLS = 100_000
+_MARGIN = 2
 
 
 def feet_in(cell: Position) -> Point:
@@ -33,27 +37,32 @@ class Ground:
     """
 
     def __init__(self, registry: Registry, box: Box, blocks: BlockGrid) -> None:
-        self._registry = registry
-        self._box = box
-        self._blocks = blocks
-        self._free: dict[int, bool] = {-1: True}
+        states, places = np.unique(blocks, return_inverse=True)
+        free_states = [state < 0 or not registry.boxes(state) for state in states.tolist()]
+        free = np.array(free_states, dtype=np.bool_)[places].reshape(blocks.shape)
+        # A margin all around, so that whatever lies a step away has a place; above the box is air.
+        passing, holding = _widened(free), _widened((blocks < 0) | ~free)
+        passing[1:-1, _MARGIN + blocks.shape[1], 1:-1] = True
+        standing = np.zeros_like(passing)
+        standing[:, 1:-1] = holding[:, :-2] & passing[:, 1:-1] & passing[:, 2:]
+        self._passing, self._standing = passing.tobytes(), standing.tobytes()
+        self._corner = (box.low[0] - 1, box.low[1] - _MARGIN, box.low[2] - 1)
+        width, height, depth = passing.shape
+        self._shape = (int(width), int(height), int(depth))
+        self._steps: dict[Position, tuple[Position, ...]] = {}
 
     def stands(self, cell: Position) -> bool:
         """Whether somebody can stand in a cell."""
-        x, y, z = cell
-        below = self._state((x, y - 1, z))
-        held = below == -1 or (below is not None and not self._is_free(below))
-        return held and self._passes(cell) and self._passes((x, y + 1, z))
+        return self._at(self._standing, cell)
 
-    def may_hold(self, place: Position) -> bool:
-        """Whether there may be a container at a position: there is one, or it is not known."""
-        state = self._state(place)
-        if state is None or state < 0:
-            return state is not None
-        return self._registry.is_container(self._registry.name(state))
-
-    def steps(self, cell: Position) -> Iterator[Position]:
+    def steps(self, cell: Position) -> tuple[Position, ...]:
         """The cells that one step leads to: aside, up one block, or down up to three."""
+        found = self._steps.get(cell)
+        if found is None:
+            found = self._steps[cell] = tuple(self._steps_from(cell))
+        return found
+
+    def _steps_from(self, cell: Position) -> Iterator[Position]:
         x, y, z = cell
         for dx, dz in _SIDES:
             aside = (x + dx, y, z + dz)
@@ -80,24 +89,18 @@ class Ground:
                 return
 
     def _passes(self, cell: Position) -> bool:
-        state = self._state(cell)
-        return state is not None and self._is_free(state)
+        return self._at(self._passing, cell)
 
-    def _state(self, cell: Position) -> int | None:
-        """None outside the box; above it is air."""
-        # Asked for a hundred times a search: spelled out.
-        x, y, z = cell
-        (x0, y0, z0), (x1, y1, z1) = self._box.low, self._box.high
-        if not (x0 <= x <= x1 and z0 <= z <= z1 and y0 <= y <= y1 + 1):
-            return None
-        if y > y1:
-            return self._registry.air
-        return int(self._blocks[x - x0, y - y0, z - z0])
+    def _at(self, flags: bytes, cell: Position) -> bool:
+        x, y, z = cell[0] - self._corner[0], cell[1] - self._corner[1], cell[2] - self._corner[2]
+        width, height, depth = self._shape
+        inside = 0 <= x < width and 0 <= y < height and 0 <= z < depth
+        return inside and flags[(x * height + y) * depth + z] != 0
 
-    def _is_free(self, state: int) -> bool:
-        if state not in self._free:
-            self._free[state] = not self._registry.boxes(state)
-        return self._free[state]
+
+def _widened(flags: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    wide: npt.NDArray[np.bool_] = np.pad(flags, ((1, 1), (_MARGIN, _MARGIN), (1, 1)))
+    return wide
 
 
 def find_way(
