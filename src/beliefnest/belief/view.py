@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent
+from beliefnest.world.frames import BlockGrid
 from beliefnest.world.values import Box, DroppedItem, Position
 
 __all__ = ["BlockView", "FixedState", "State"]
@@ -25,6 +26,10 @@ class BlockView(Protocol):
 
     def __len__(self) -> int:
         """Number of positions in the box."""
+
+    @property
+    def grid(self) -> BlockGrid:
+        """Block state ids, shape of the box, -1 where unknown; not to be written to."""
 
     def named(self, names: frozenset[str]) -> dict[Position, str]:
         """Known blocks whose name is one of `names`, in order of position."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import cast, get_args
 
+from beliefnest.belief.plain import belief_json, place_key
 from beliefnest.cli.folder import store_in
-from beliefnest.cli.report import belief_json, place_key
 from beliefnest.errors import InputError
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.past.trace_import import import_trace

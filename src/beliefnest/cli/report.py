@@ -12,7 +12,7 @@ from rich.markup import escape
 from rich.measure import Measurement
 from rich.table import Table
 
-from beliefnest.belief.entries import Basis
+from beliefnest.belief.plain import state_json
 from beliefnest.belief.view import State
 from beliefnest.cli.pictures import container_name, point_text
 from beliefnest.cli.text import printable
@@ -33,81 +33,18 @@ from beliefnest.scenarios.naming import items_text
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome, ProbeOutcome
 from beliefnest.scenarios.records import expectation_json, probe_json, usage_json
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.world.values import Point, Position
+from beliefnest.world.values import Point
 
 __all__ = [
-    "belief_json",
     "cost_text",
     "outcome_json",
     "outcome_table",
-    "place_key",
     "placed_lines",
     "report_json",
-    "state_json",
     "usage_json",
 ]
 
 _WIDEST = 6
-
-
-def state_json(state: State) -> dict[str, object]:
-    """A state as the STATE object of the public surface."""
-    return {
-        "containers": {
-            place_key(place): {
-                "items": dict(sorted(container.items.items())),
-                "complete": container.complete,
-            }
-            for place, container in sorted(state.containers.items())
-        },
-        "agents": {
-            name: {"position": _list(agent.position), "current": agent.current}
-            for name, agent in sorted(state.agents.items())
-        },
-        "chat": [list(line) for line in state.chat],
-        "addressees": list(state.addressees),
-    }
-
-
-def belief_json(state: State) -> dict[str, object]:
-    """All of a state but its blocks: what `state_json` has, and what it rests on."""
-    return {
-        **state_json(state),
-        "containers": {
-            place_key(place): {
-                "items": dict(sorted(container.items.items())),
-                "complete": container.complete,
-                "current": container.current,
-                **_basis_json(container.basis),
-            }
-            for place, container in sorted(state.containers.items())
-        },
-        "agents": {
-            name: {
-                "position": _list(agent.position),
-                "yaw": agent.yaw,
-                "pitch": agent.pitch,
-                "current": agent.current,
-                **_basis_json(agent.basis),
-                "equipment": agent.equipment and dict(sorted(agent.equipment.items())),
-                "inventory": dict(sorted(agent.inventory.items())),
-                "inventory_complete": agent.inventory_complete,
-            }
-            for name, agent in sorted(state.agents.items())
-        },
-        "thoughts": [list(line) for line in state.thoughts],
-    }
-
-
-def place_key(place: Position) -> str:
-    """A block's position as the key of a JSON object."""
-    return ",".join(map(str, place))
-
-
-def _basis_json(basis: Basis | None) -> dict[str, object]:
-    if basis is None:
-        return {"observed_at": None, "source": None}
-    return {"observed_at": basis.observed_at, "source": basis.source.value}
 
 
 def outcome_json(
@@ -361,7 +298,3 @@ def _name(expected: Expected) -> str:
 
 def _marked(text: str, ok: bool | None) -> str:
     return text if ok is not False else f"[bold red]{text}[/bold red]"
-
-
-def _list(point: Point | None) -> list[float] | None:
-    return None if point is None else list(point)

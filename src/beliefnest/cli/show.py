@@ -12,11 +12,12 @@ from rich import box
 from rich.table import Table
 from rich.text import Text
 
+from beliefnest.belief.plain import state_json
 from beliefnest.belief.view import State
 from beliefnest.cli.console import folded, stdout
 from beliefnest.cli.folder import store_in, stores_in
 from beliefnest.cli.pictures import container_name, place_text, titled
-from beliefnest.cli.report import placed_lines, state_json
+from beliefnest.cli.report import placed_lines
 from beliefnest.cli.text import printable
 from beliefnest.errors import InputError
 from beliefnest.nest.explain.told import ToldClaim

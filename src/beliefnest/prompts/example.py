@@ -3,6 +3,8 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from beliefnest.belief.entries import (
     AgentBelief,
     Basis,
@@ -12,6 +14,8 @@ from beliefnest.belief.entries import (
 )
 from beliefnest.belief.view import FixedState
 from beliefnest.errors import PathError, PositionError
+from beliefnest.world.frames import BlockGrid
+from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, EventKind, Position
 
 __all__ = ["ExampleBlocks", "ExampleBranch", "example_branch"]
@@ -62,6 +66,14 @@ class ExampleBlocks:
             for at, block in sorted(self.known.items())
             if block.partition("[")[0] in names
         }
+
+    @property
+    def grid(self) -> BlockGrid:
+        """Block state ids, shape of the box, -1 where unknown."""
+        grid = np.full(self.box.shape, -1, dtype=np.int32)
+        for at, block in self.known.items():
+            grid[self.box.index(at)] = Registry.load().state_id(block)
+        return grid
 
     def current(self, position: Position) -> bool:
         """Whether the block is seen at this tick."""

@@ -1,0 +1,53 @@
+"""Joint steps of three agents in the scripted world, with beliefs of depth 1 as arrays."""
+
+import random
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from beliefnest.cli.bench.figures import Figure
+from beliefnest.env import parallel_env
+
+__all__ = ["measure"]
+
+_STEPS = 600
+_FIRST = 20
+
+Act = Callable[[Any, str, bool], Any]
+"""Given the environment, an agent and whether it is busy, what it does."""
+
+
+def measure() -> Sequence[Figure]:
+    """Agents that walk to one place after the other, and agents that do anything each tick."""
+    chance = random.Random(0)
+
+    def walk(env: Any, agent: str, busy: bool) -> Any:
+        if busy:
+            return env.action("doNothing")
+        place = (chance.randint(-9, 9), -51, chance.randint(-9, 9))
+        return env.action("goToPosition", position=place)
+
+    def anything(env: Any, agent: str, busy: bool) -> Any:
+        return env.action_space(agent).sample()
+
+    return [
+        Figure("joint steps, 3 agents that walk", _rate(walk), "1/s", 500.0, at_least=True),
+        Figure("joint steps, 3 agents that act at random", _rate(anything), "1/s"),
+    ]
+
+
+def _rate(act: Act) -> float:
+    """Joint steps of one tick a second, once all code is compiled."""
+    env = parallel_env("sally-anne", step_ticks=1, max_steps=_FIRST + _STEPS)
+    _, infos = env.reset(seed=0)
+    for number, agent in enumerate(env.agents):
+        env.action_space(agent).seed(number)
+    started = 0.0
+    for step in range(_FIRST + _STEPS):
+        if step == _FIRST:
+            started = time.perf_counter()
+        actions = {agent: act(env, agent, infos[agent]["busy"]) for agent in env.agents}
+        *_, infos = env.step(actions)
+    seconds = time.perf_counter() - started
+    env.close()
+    return _STEPS / seconds

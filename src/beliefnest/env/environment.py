@@ -1,0 +1,331 @@
+"""A scenario as an environment of several agents, by PettingZoo's parallel interface."""
+
+import functools
+import itertools
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, cast
+
+import numpy as np
+from gymnasium import spaces
+from pettingzoo import ParallelEnv
+
+from beliefnest.belief.plain import belief_json
+from beliefnest.belief.view import State
+from beliefnest.bodies.worlds import Worlds, check_world
+from beliefnest.env.acting import Acting, Deed, ProgramActing, SkillActing
+from beliefnest.env.actions import MOST_ITEMS, Call, Calls
+from beliefnest.env.layout import Layout, Phrases
+from beliefnest.errors import InputError, PathError
+from beliefnest.nest.face.nest import Nest
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.world.paths import normalised, parse_path, path_text
+
+__all__ = ["BeliefEnv", "BeliefSpace", "Options"]
+
+_LONGEST_PROGRAM = 10_000
+_LETTERS = frozenset(map(chr, range(32, 127))) | {"\n", "\t"}
+
+Told = dict[str, Any]
+"""What is told about one agent."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """How an environment is; the arguments of `parallel_env`, with the same names."""
+
+    world: str = "scripted"
+    actions: Literal["skills", "programs"] = "skills"
+    observations: Literal["arrays", "dict"] = "arrays"
+    agents: tuple[str, ...] | None = None
+    nested: int | tuple[str, ...] = ()
+    phrases: Phrases | Sequence[str] = ()
+    items: tuple[str, ...] = ()
+    reward: Callable[[Nest, str], float] | None = None
+    ends: Callable[[Nest], bool] | None = None
+    max_steps: int = 100
+    step_ticks: int | None = None
+    timeout_ticks: int = 1200
+    plays_script: bool = False
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        check_world(self.world)
+        if self.actions not in ("skills", "programs"):
+            raise InputError(f"actions is {self.actions!r}; it is 'skills' or 'programs'")
+        if self.observations not in ("arrays", "dict"):
+            raise InputError(f"observations is {self.observations!r}; it is 'arrays' or 'dict'")
+        for name, number in (("max_steps", self.max_steps), ("timeout_ticks", self.timeout_ticks)):
+            if number < 1:
+                raise InputError(f"{name} is {number}; it must be at least 1")
+        if self.step_ticks is not None:
+            if self.step_ticks < 1:
+                raise InputError(f"step_ticks is {self.step_ticks}; it must be at least 1, or None")
+            if self.actions == "programs" or self.world != "scripted":
+                raise InputError(
+                    "step_ticks is for calls of skills in the scripted world; elsewhere a step "
+                    "ends with the last program: leave it out"
+                )
+
+    @property
+    def said(self) -> Phrases:
+        """What can be said, with claims."""
+        if isinstance(self.phrases, Mapping):
+            return self.phrases
+        return dict.fromkeys(self.phrases, ())
+
+
+class BeliefSpace(spaces.Space[dict[str, Any]]):
+    """Beliefs as plain data: the objects of `beliefnest show --json`, with what they rest on."""
+
+    def contains(self, x: Any) -> bool:
+        """Whether it is such an object."""
+        return isinstance(x, dict) and {"containers", "agents", "chat"} <= x.keys()
+
+    def sample(self, mask: Any = None, probability: Any = None) -> dict[str, Any]:
+        """The belief of somebody who knows nothing."""
+        return {"containers": {}, "agents": {}, "chat": [], "addressees": [], "thoughts": []}
+
+    @property
+    def is_np_flattenable(self) -> bool:
+        """False: it has no fixed size."""
+        return False
+
+
+class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no type information
+    """A scenario, acted in by agents that get their own beliefs as observations.
+
+    `beliefnest.env.parallel_env` makes one and tells of its arguments.
+
+    Attributes:
+        possible_agents: Who acts, sorted.
+        agents: Who still acts in this episode.
+        layout: What the numbers in arrays and actions stand for.
+        skills: Names of the skills that an action's `skill` numbers.
+        nest: The nest of this episode; everything of it can be looked at.
+    """
+
+    metadata = {"name": "beliefnest_v0", "render_modes": [], "is_parallelizable": True}  # noqa: RUF012 - as PettingZoo declares it
+    render_mode = None
+
+    def __init__(self, scenario: Scenario, options: Options) -> None:
+        self._scenario, self._options = scenario, options
+        self.layout = Layout.of(scenario.setting, options.said, options.items)
+        self._calls = Calls(self.layout, options.said)
+        self.skills = self._calls.skills
+        self.possible_agents = sorted(options.agents or self.layout.agents)
+        for name in self.possible_agents:
+            if name not in scenario.setting.snapshot.agents:
+                there = ", ".join(sorted(scenario.setting.snapshot.agents))
+                raise PathError(f"{name!r} cannot act from the start; there are {there}")
+        self._nested = _nested(options.nested, self.possible_agents, self.layout.agents)
+        self.agents: list[str] = []
+        self._seed = options.seed - 1
+        self._worlds: Worlds | None = None
+        self._nest: Nest | None = None
+        self._acting: Acting | None = None
+        self._steps = 0
+        self._heard: dict[str, int] = {}
+
+    @property
+    def nest(self) -> Nest:
+        """The nest of this episode.
+
+        Raises:
+            InputError: None has begun.
+        """
+        if self._nest is None:
+            raise InputError("no episode has begun; call reset() first")
+        return self._nest
+
+    @property
+    def unwrapped(self) -> "BeliefEnv":
+        """Itself."""
+        return self
+
+    @functools.cache  # noqa: B019 - the interface wants the same space for an agent each time
+    def observation_space(self, agent: str) -> spaces.Space[Any]:
+        """The space of an agent's observations; the same object each time."""
+        if self._options.observations == "dict":
+            return BeliefSpace()
+        return spaces.Dict(
+            {
+                name: spaces.Box(low, high, shape, cast(Any, dtype))
+                for name, (shape, dtype, low, high) in self.layout.shapes().items()
+            }
+        )
+
+    @functools.cache  # noqa: B019 - as above
+    def action_space(self, agent: str) -> spaces.Space[Any]:
+        """The space of an agent's actions; the same object each time."""
+        if self._options.actions == "programs":
+            return spaces.Text(_LONGEST_PROGRAM, min_length=0, charset=_LETTERS)
+        parts: dict[str, spaces.Space[Any]] = {"skill": spaces.Discrete(len(self.skills))}
+        for part, size in self._calls.parts.items():
+            if part == "position":
+                parts[part] = spaces.MultiDiscrete(np.array(self.layout.box.shape))
+            elif part == "count":
+                parts[part] = spaces.Discrete(MOST_ITEMS, start=1)
+            else:
+                parts[part] = spaces.Discrete(size)
+        return spaces.Dict(parts)
+
+    def action(self, skill: str, **parts: object) -> dict[str, Any]:
+        """An action of the structured space, from names and positions.
+
+        Args:
+            skill: Name of a skill.
+            parts: What it takes: `position`, `container`, `door` as block positions, `item`,
+                `agent`, `phrase` as they are called, `count`.
+
+        Raises:
+            UnknownNameError: There is no such skill, or no such thing.
+            InputError: A part is missing, or of no use to the skill.
+        """
+        return self._calls.action(skill, parts)
+
+    def reset(
+        self, seed: int | None = None, options: Mapping[str, Any] | None = None
+    ) -> tuple[dict[str, Any], dict[str, Told]]:
+        """Begin an episode.
+
+        Args:
+            seed: Drives every random number; None: one more than the last.
+            options: Play no part.
+
+        Raises:
+            BodyError: The world could not be started.
+            ProgramError: The script cannot be played.
+        """
+        self._seed = self._seed + 1 if seed is None else seed
+        self._end_episode()
+        if self._worlds is None:
+            self._worlds = Worlds(0)
+        chosen = self._options
+        nest = Nest.open(self._scenario, chosen.world, None, self._seed, self._worlds)
+        self._nest = nest
+        if chosen.plays_script:
+            nest.play()
+        if chosen.actions == "skills" and chosen.world == "scripted":
+            world = nest.scripted_world
+            self._acting = SkillActing(world, chosen.step_ticks, chosen.timeout_ticks)
+        else:
+            self._acting = ProgramActing(nest, chosen.timeout_ticks)
+        self.agents = list(self.possible_agents)
+        self._steps = 0
+        self._heard = {}
+        return self._told({agent: Deed() for agent in self.agents}, spoken=True)
+
+    def step(
+        self, actions: Mapping[str, Any]
+    ) -> tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Told]]:
+        """Let agents act together; who is given no action begins nothing.
+
+        Raises:
+            InputError: An action is none of the space, or its agent does not act; nothing was done.
+            BodyError: The Minecraft side failed.
+        """
+        if self._acting is None:
+            raise InputError("no episode has begun; call reset() first")
+        for agent in actions:
+            if agent not in self.agents:
+                raise InputError(f"{agent!r} does not act now; agents are {self.agents}")
+        if not self.agents:
+            return {}, {}, {}, {}, {}
+        nothing = "" if self._options.actions == "programs" else Call("doNothing")
+        read = {agent: self._read(actions.get(agent, nothing)) for agent in self.agents}
+        step = self._acting.act(read)
+        self._steps += 1
+        observations, infos = self._told(step.deeds, spoken=step.spoken)
+        nest, reward, ends = self.nest, self._options.reward, self._options.ends
+        rewards = {
+            agent: 0.0 if reward is None else float(reward(nest, agent)) for agent in self.agents
+        }
+        ended = ends is not None and bool(ends(nest))
+        terminations = dict.fromkeys(self.agents, ended)
+        truncations = dict.fromkeys(self.agents, self._steps >= self._options.max_steps)
+        if ended or self._steps >= self._options.max_steps:
+            self.agents = []
+        return observations, rewards, terminations, truncations, infos
+
+    def render(self) -> None:
+        """Nothing; `nest.figure()` draws any belief."""
+
+    def state(self) -> Any:
+        """The real world, in the form of an observation of nobody's."""
+        return self._form(self.nest["/"].state, ())
+
+    def close(self) -> None:
+        """End the episode and the world."""
+        self._end_episode()
+        if self._worlds is not None:
+            self._worlds.__exit__(None, None, None)
+            self._worlds = None
+
+    def _end_episode(self) -> None:
+        if self._nest is not None:
+            self._nest.close()
+        self._nest = self._acting = None
+        self.agents = []
+
+    def _read(self, action: Any) -> Call | str:
+        if isinstance(action, Call):
+            return action
+        if self._options.actions == "programs":
+            if not isinstance(action, str):
+                raise InputError(f"a program is a text, not {type(action).__name__}")
+            return action
+        return self._calls.read(action)
+
+    def _told(
+        self, deeds: Mapping[str, Deed], *, spoken: bool
+    ) -> tuple[dict[str, Any], dict[str, Told]]:
+        """Observations and infos of all agents."""
+        infos: dict[str, Told] = {
+            agent: {"error": deeds[agent].error, "busy": deeds[agent].busy} for agent in self.agents
+        }
+        # The deepest first: a belief brings those above it along.
+        for path in self._nested:
+            agent = path[0]
+            if agent in infos:
+                beliefs = infos[agent].setdefault("beliefs", {})
+                beliefs[path_text(path)] = self._belief(path, spoken=spoken)
+        return {agent: self._belief((agent,), spoken=spoken) for agent in self.agents}, infos
+
+    def _belief(self, path: tuple[str, ...], *, spoken: bool) -> Any:
+        text = path_text(path)
+        state = self.nest[text].state
+        lines: Sequence[tuple[int, str, str]] = ()
+        if spoken:
+            known = self._heard.get(text, 0)
+            self._heard[text] = len(state.chat)
+            lines = state.chat[known:]
+        return self._form(state, lines)
+
+    def _form(self, state: State, lines: Sequence[tuple[int, str, str]]) -> Any:
+        if self._options.observations == "dict":
+            return {"tick": state.tick, **belief_json(state)}
+        return self.layout.arrays(state, lines)
+
+
+def _nested(
+    nested: int | Sequence[str], acting: Sequence[str], agents: Sequence[str]
+) -> tuple[tuple[str, ...], ...]:
+    """The paths of the beliefs to tell in infos, the deepest first."""
+    if isinstance(nested, int):
+        found = {
+            (first, *rest)
+            for first in acting
+            for depth in range(1, nested)
+            for rest in itertools.product(agents, repeat=depth)
+            if normalised((first, *rest)) == (first, *rest)
+        }
+    else:
+        found = {parse_path(path, agents) for path in nested}
+        for path in found:
+            if len(path) < 2 or path[0] not in acting:
+                raise PathError(
+                    f"{path_text(path)!r} is no belief of an acting agent about another's; "
+                    f"name one such as /{acting[0]}/{agents[-1]}"
+                )
+    return tuple(sorted(found, key=lambda path: (-len(path), path)))

@@ -1,0 +1,175 @@
+"""What arrays of observations and actions stand for: the order of everything in a scenario."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.view import State
+from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.nest.past.setting import Setting
+from beliefnest.world.claims import Claim
+from beliefnest.world.doors import is_door
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Box, Position
+
+__all__ = ["Arrays", "Layout", "Phrases"]
+
+Arrays = dict[str, npt.NDArray[Any]]
+"""An observation, or a belief, as arrays by name."""
+
+Phrases = Mapping[str, Sequence[Claim]]
+"""What agents can say, each with the claims that it makes."""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The fixed order of what arrays tell of.
+
+    Attributes:
+        box: The part of space; `blocks` has its shape.
+        agents: Names, sorted.
+        items: Names of items, sorted.
+        containers: Positions, in order.
+        doors: Positions of what opens and shuts, of doors the lower half, in order.
+        phrases: What can be said.
+    """
+
+    box: Box
+    agents: tuple[str, ...]
+    items: tuple[str, ...]
+    containers: tuple[Position, ...]
+    doors: tuple[Position, ...]
+    phrases: tuple[str, ...]
+
+    @classmethod
+    def of(cls, setting: Setting, phrases: Phrases, items: Sequence[str] = ()) -> "Layout":
+        """The layout of what a scenario starts from.
+
+        Args:
+            setting: The start.
+            phrases: What can be said.
+            items: Names of further items, which nobody has and no container holds at the start.
+
+        Raises:
+            UnknownNameError: There is no such item.
+            InputError: A claim speaks of what is not there.
+        """
+        snapshot = setting.snapshot
+        registry = Registry.load()
+        for name in items:
+            registry.item_stack(name)
+        agents = tuple(sorted(snapshot.agents.keys() | setting.absent))
+        for claims in phrases.values():
+            for claim in claims:
+                claim.check(snapshot.box, agents)
+        held = [agent.inventory for agent in snapshot.agents.values()]
+        held += list(snapshot.containers.values())
+        worn = {name for agent in snapshot.agents.values() for name in agent.equipment.values()}
+        return cls(
+            box=snapshot.box,
+            agents=agents,
+            items=tuple(sorted({*items, *worn, *(name for each in held for name in each)})),
+            containers=tuple(sorted(snapshot.containers)),
+            doors=tuple(_doors(setting, registry)),
+            phrases=tuple(phrases),
+        )
+
+    def number(self, kind: str, value: object) -> int:
+        """The number of something in its order.
+
+        Args:
+            kind: `agents`, `items`, `containers`, `doors` or `phrases`.
+            value: What is looked for.
+
+        Raises:
+            UnknownNameError: There is no such thing.
+        """
+        known = getattr(self, kind)
+        if value not in known:
+            there = ", ".join(map(str, known)) or "none"
+            raise UnknownNameError(f"{value!r} is none of the {kind} of the environment: {there}")
+        return int(known.index(value))
+
+    def shapes(self) -> dict[str, tuple[tuple[int, ...], type[np.generic], float, float]]:
+        """By name of an array: shape, type, least and greatest value."""
+        agents, items, containers = len(self.agents), len(self.items), len(self.containers)
+        most = float(np.iinfo(np.int32).max)
+        return {
+            "tick": ((), np.int32, 0, most),
+            "me": ((), np.int32, 0, max(agents - 1, 0)),
+            "agents": ((agents, 5), np.float32, -np.inf, np.inf),
+            "agents_known": ((agents, 2), np.int8, 0, 1),
+            "agents_seen": ((agents,), np.int32, -1, most),
+            "inventories": ((agents, items), np.int32, 0, most),
+            "inventories_complete": ((agents,), np.int8, 0, 1),
+            "containers": ((containers, items), np.int32, 0, most),
+            "containers_known": ((containers, 3), np.int8, 0, 1),
+            "containers_seen": ((containers,), np.int32, -1, most),
+            "blocks": (self.box.shape, np.int32, -1, most),
+            "heard": ((agents, len(self.phrases) + 1), np.int32, 0, most),
+        }
+
+    def arrays(self, state: State, lines: Sequence[tuple[int, str, str]] = ()) -> Arrays:
+        """A belief as arrays; docs/pettingzoo.md tells what is in each.
+
+        Args:
+            state: What is believed.
+            lines: What was heard since the observation before: tick, speaker, text.
+        """
+        found: Arrays = {
+            name: np.zeros(shape, dtype) for name, (shape, dtype, _, _) in self.shapes().items()
+        }
+        found["tick"][...] = state.tick
+        found["me"][...] = 0 if state.owner is None else self.agents.index(state.owner)
+        self._tell_agents(found, state)
+        self._tell_containers(found, state)
+        found["blocks"] = state.blocks.grid.astype(np.int32)
+        for _, speaker, text in lines:
+            column = self.phrases.index(text) if text in self.phrases else len(self.phrases)
+            found["heard"][self.agents.index(speaker), column] += 1
+        return found
+
+    def _tell_agents(self, found: Arrays, state: State) -> None:
+        beliefs = state.agents
+        found["agents_seen"][:] = -1
+        for row, name in enumerate(self.agents):
+            agent = beliefs[name]
+            if agent.position is not None:
+                found["agents"][row] = (*agent.position, agent.yaw, agent.pitch)
+                found["agents_known"][row] = (1, agent.current)
+            if agent.basis is not None:
+                found["agents_seen"][row] = agent.basis.observed_at
+            found["inventories_complete"][row] = agent.inventory_complete
+            self._count(found["inventories"][row], agent.inventory)
+
+    def _tell_containers(self, found: Arrays, state: State) -> None:
+        beliefs = state.containers
+        found["containers_seen"][:] = -1
+        for row, place in enumerate(self.containers):
+            known = beliefs.get(place)
+            if known is not None:
+                found["containers_known"][row] = (1, known.complete, known.current)
+                found["containers_seen"][row] = known.basis.observed_at
+                self._count(found["containers"][row], known.items)
+
+    def _count(self, row: npt.NDArray[Any], items: Mapping[str, int]) -> None:
+        for name, count in items.items():
+            if name not in self.items:
+                raise InputError(
+                    f"there is {name} now, which nobody had at the start; name it in `items` "
+                    "of the environment"
+                )
+            row[self.items.index(name)] = count
+
+
+def _doors(setting: Setting, registry: Registry) -> list[Position]:
+    snapshot = setting.snapshot
+    states = [s for s in np.unique(snapshot.blocks).tolist() if is_door(registry.name(s))]
+    # Of a door the upper half is moved with the lower one.
+    lower = [s for s in states if registry.properties(s).get("half") != "upper"]
+    x, y, z = snapshot.box.low
+    cells = np.argwhere(np.isin(snapshot.blocks, lower)).tolist()
+    return [(x + i, y + j, z + k) for i, j, k in cells]
