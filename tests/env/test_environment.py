@@ -20,6 +20,7 @@ LEFT, RIGHT = (-2, -51, -4), (2, -51, -4)
 FORMS = {
     "whole skills": {},
     "one tick a step": {"step_ticks": 1, "nested": 2, "phrases": ["yes", "no"]},
+    "percepts": {"step_ticks": 3, "senses": "percepts"},
     "plain beliefs": {"observations": "dict", "nested": ["/anne/sally"]},
     "programs": {"actions": "programs"},
 }

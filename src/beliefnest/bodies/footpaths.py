@@ -37,6 +37,7 @@ class Ground:
     """
 
     def __init__(self, registry: Registry, box: Box, blocks: BlockGrid) -> None:
+        self._registry, self._box, self._blocks = registry, box, blocks
         states, places = np.unique(blocks, return_inverse=True)
         free_states = [state < 0 or not registry.boxes(state) for state in states.tolist()]
         free = np.array(free_states, dtype=np.bool_)[places].reshape(blocks.shape)
@@ -54,6 +55,13 @@ class Ground:
     def stands(self, cell: Position) -> bool:
         """Whether somebody can stand in a cell."""
         return self._at(self._standing, cell)
+
+    def may_hold(self, place: Position) -> bool:
+        """Whether there may be a container at a position: there is one, or it is not known."""
+        if place not in self._box:
+            return False
+        state = int(self._blocks[self._box.index(place)])
+        return state < 0 or self._registry.is_container(self._registry.name(state))
 
     def steps(self, cell: Position) -> tuple[Position, ...]:
         """The cells that one step leads to: aside, up one block, or down up to three."""

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from beliefnest.env.environment import BeliefEnv
     from beliefnest.env.layout import Phrases
     from beliefnest.nest.face.nest import Nest
+    from beliefnest.nest.past.setting import Senses
     from beliefnest.scenarios.scenario import Scenario
 
 __all__ = ["parallel_env"]
@@ -31,6 +32,7 @@ def parallel_env(
     step_ticks: int | None = None,
     timeout_ticks: int = 1200,
     plays_script: bool = False,
+    senses: "Senses" = "world",
     seed: int = 0,
 ) -> "BeliefEnv":
     """A scenario as a parallel environment of PettingZoo's.
@@ -55,6 +57,8 @@ def parallel_env(
             lasts until all that was begun has ended. For skills in the scripted world.
         timeout_ticks: Ticks after which what an action began is ended, if `step_ticks` is None.
         plays_script: Whether episodes begin after the scenario's script, not before it.
+        senses: `percepts`: skills look for ways by what their agent knows, and programs read no
+            more than that; `world`: by what is the case. See docs/programs.md.
         seed: Of the first episode that is begun without one.
 
     Raises:
@@ -89,6 +93,7 @@ def parallel_env(
         step_ticks=step_ticks,
         timeout_ticks=timeout_ticks,
         plays_script=plays_script,
+        senses=senses,
         seed=seed,
     )
     return BeliefEnv(scenario, options)

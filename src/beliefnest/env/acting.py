@@ -4,15 +4,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
+
 from beliefnest.bodies.footpaths import Ground
 from beliefnest.bodies.scripted_skills import CALLS, SKILLS, Doing, Hand
 from beliefnest.env.actions import Call
 from beliefnest.errors import BeliefNestError
 from beliefnest.nest.face.nest import Nest
-from beliefnest.world.frames import Frame
+from beliefnest.nest.past.setting import Senses
+from beliefnest.world.frames import BlockGrid, Frame
+from beliefnest.world.paths import path_text
 from beliefnest.world.registry import Registry
-from beliefnest.world.scripted import ScriptedWorld
-from beliefnest.world.values import EventKind
+from beliefnest.world.values import AgentState, EventKind
 
 __all__ = ["Acting", "Deed", "ProgramActing", "SkillActing", "Step"]
 
@@ -56,11 +59,13 @@ class ProgramActing:
     Args:
         nest: The nest.
         timeout_ticks: Ticks after which programs are ended.
+        senses: What programs can read of the world.
     """
 
-    def __init__(self, nest: Nest, timeout_ticks: int) -> None:
+    def __init__(self, nest: Nest, timeout_ticks: int, senses: Senses) -> None:
         self._real = nest["/"]
         self._timeout_ticks = timeout_ticks
+        self._senses = senses
 
     def act(self, actions: Mapping[str, Call | str]) -> Step:
         """Run what is no empty program; one tick passes if there is none.
@@ -76,7 +81,7 @@ class ProgramActing:
         if not programs:
             self._real.step(1)
             return Step({agent: Deed() for agent in actions}, spoken=False)
-        results = self._real.run_all(programs, self._timeout_ticks)
+        results = self._real.run_all(programs, self._timeout_ticks, self._senses)
         errors = {agent: str(each.error or "") for agent, each in results.items()}
         spoken = any(
             event.kind is EventKind.CHAT for each in results.values() for event in each.events
@@ -90,19 +95,22 @@ class SkillActing:
     Agents act in the order of their names. A new action ends what its agent was doing.
 
     Args:
-        world: The real world of the nest.
+        nest: The nest, in the scripted world.
         ticks: How many ticks a step takes; None: until nobody is doing anything.
         timeout_ticks: Ticks after which what goes on is ended, where `ticks` is None.
+        senses: What is known when a way, a container or somebody else is looked for.
     """
 
-    def __init__(self, world: ScriptedWorld, ticks: int | None, timeout_ticks: int) -> None:
+    def __init__(self, nest: Nest, ticks: int | None, timeout_ticks: int, senses: Senses) -> None:
+        world = nest.scripted_world
+        self._nest = nest
         self._world = world
+        self._senses = senses
         self._ticks = ticks
         self._timeout_ticks = timeout_ticks
         self._doing: dict[str, Doing] = {}
         self._spoken = False
-        self._ground = Ground(Registry.load(), world.box, world.blocks)
-        self._grid = world.blocks
+        self._grounds: dict[str, tuple[BlockGrid, Ground]] = {}
         world.listen(self._hear)
 
     def act(self, actions: Mapping[str, Call | str]) -> Step:
@@ -131,7 +139,13 @@ class SkillActing:
 
     def _begin(self, agent: str, call: Call, errors: dict[str, str]) -> None:
         skill = SKILLS.get(call.skill) or CALLS[call.skill]
-        hand = Hand(agent, self._world, self._known_ground, self._known_ground)
+        hand = Hand(
+            agent,
+            self._world,
+            known=lambda: self._known_ground(agent),
+            others=lambda: self._others(agent),
+            ground=self._real_ground,
+        )
         self._doing[agent] = _near(hand, skill(hand, *call.args), call)
         # Up to its first tick nothing is done, and what cannot be done is told.
         self._advance(agent, errors)
@@ -145,11 +159,29 @@ class SkillActing:
             del self._doing[agent]
             errors[agent] = str(error)
 
-    def _known_ground(self) -> Ground:
-        if self._grid is not self._world.blocks:
-            self._grid = self._world.blocks
-            self._ground = Ground(Registry.load(), self._world.box, self._grid)
-        return self._ground
+    def _known_ground(self, agent: str) -> Ground:
+        if self._senses == "world":
+            return self._real_ground()
+        return self._ground(agent, self._nest[path_text((agent,))].state.blocks.grid)
+
+    def _real_ground(self) -> Ground:
+        return self._ground("", self._world.blocks)
+
+    def _ground(self, whose: str, grid: BlockGrid) -> Ground:
+        """The ground of a grid, made anew where that has changed."""
+        known = self._grounds.get(whose)
+        if known is None or not (known[0] is grid or np.array_equal(known[0], grid)):
+            ground = Ground(Registry.load(), self._world.box, grid)
+            known = self._grounds[whose] = (grid, ground)
+        return known[1]
+
+    def _others(self, agent: str) -> Mapping[str, AgentState]:
+        agents = self._world.agents
+        if self._senses == "world":
+            return agents
+        seen = self._nest[path_text((agent,))].state.agents
+        # Who is perceived now is where it is perceived.
+        return {name: each for name, each in agents.items() if seen[name].current or name == agent}
 
     def _hear(self, frame: Frame) -> None:
         if any(event.kind is EventKind.CHAT for event in frame.events):

@@ -18,6 +18,7 @@ from beliefnest.env.actions import MOST_ITEMS, Call, Calls
 from beliefnest.env.layout import Layout, Phrases
 from beliefnest.errors import InputError, PathError
 from beliefnest.nest.face.nest import Nest
+from beliefnest.nest.past.setting import Senses
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.paths import normalised, parse_path, path_text
 
@@ -47,10 +48,13 @@ class Options:
     step_ticks: int | None = None
     timeout_ticks: int = 1200
     plays_script: bool = False
+    senses: Senses = "world"
     seed: int = 0
 
     def __post_init__(self) -> None:
         check_world(self.world)
+        if self.senses not in ("world", "percepts"):
+            raise InputError(f"senses is {self.senses!r}; it is 'world' or 'percepts'")
         if self.actions not in ("skills", "programs"):
             raise InputError(f"actions is {self.actions!r}; it is 'skills' or 'programs'")
         if self.observations not in ("arrays", "dict"):
@@ -207,10 +211,9 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         if chosen.plays_script:
             nest.play()
         if chosen.actions == "skills" and chosen.world == "scripted":
-            world = nest.scripted_world
-            self._acting = SkillActing(world, chosen.step_ticks, chosen.timeout_ticks)
+            self._acting = SkillActing(nest, chosen.step_ticks, chosen.timeout_ticks, chosen.senses)
         else:
-            self._acting = ProgramActing(nest, chosen.timeout_ticks)
+            self._acting = ProgramActing(nest, chosen.timeout_ticks, chosen.senses)
         self.agents = list(self.possible_agents)
         self._steps = 0
         self._heard = {}
