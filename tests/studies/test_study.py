@@ -1,5 +1,6 @@
 """A study in a folder: the same rows whatever happened on the way, and what went wrong in rows."""
 
+import importlib.util
 import json
 import os
 import random
@@ -61,8 +62,9 @@ def test_invalid_combinations_are_listed(whole):
 
 @pytest.mark.parametrize("backend", ["loky", "dask", "ray"])
 def test_the_same_bytes_with_two_jobs(whole, backend, tmp_path):
-    if backend != "loky":
-        pytest.importorskip("distributed" if backend == "dask" else "ray")
+    module = {"loky": "joblib", "dask": "distributed", "ray": "ray"}[backend]
+    if importlib.util.find_spec(module) is None:
+        pytest.skip(f'{module} is not installed: pip install "beliefnest[{backend}]"')
     out, file = tmp_path / "out", whole[1]
     command = [sys.executable, "-m", "beliefnest", "study", str(file), "--out", str(out)]
     subprocess.run([*command, "--jobs", "2", "--backend", backend], check=True)
