@@ -548,3 +548,28 @@ def test_records_follow_their_branch(run_file):
         assert records.next_group() == 3
         assert records.prompts() == ()
         assert records.selected() == {}
+
+
+def files_beside(path):
+    return {each.name for each in path.parent.iterdir()} - {path.name, f"{path.name}-lock"}
+
+
+def test_whoever_looked_leaves_a_whole_file(sound):
+    with SqliteJournal.read(sound) as one:
+        with SqliteJournal.read(sound) as other:
+            assert kept(other) == kept(one)
+        before = kept(one)
+        with SqliteJournal.open(sound):
+            pass
+        assert kept(one) == before
+    assert files_beside(sound) == set()
+
+
+def test_a_reader_that_closes_takes_nothing_from_a_writer(run_file):
+    with SqliteJournal.open(run_file) as writer:
+        SqliteJournal.read(run_file).close()
+        writer.create(PLAN, None, 0)
+        SqliteJournal.read(run_file).close()
+        with SqliteJournal.read(run_file) as reader:
+            assert PLAN in [info.key for info in reader.timelines()]
+    assert files_beside(run_file) == set()

@@ -9,7 +9,7 @@ import os
 import sqlite3
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -244,7 +244,10 @@ class Database:
             self.execute("ROLLBACK")
 
     def close(self) -> None:
-        """Close the file and give up the lock; closing twice is allowed."""
+        """Close the file and give up the lock; closing twice is allowed.
+
+        What SQLite keeps beside an open file is gone when nobody has it open any more.
+        """
         if not self._open:
             return
         self._open = False
@@ -255,6 +258,8 @@ class Database:
         finally:
             if self._lock is not None:
                 self._lock.release()
+        if self._lock is None:
+            _remove_empty_log(self.path)
 
     @contextmanager
     def closed_on_fault(self) -> Iterator[None]:
@@ -348,6 +353,20 @@ class Database:
 def _wal(path: Path) -> Path:
     real = path.resolve()
     return real.with_name(real.name + "-wal")
+
+
+def _remove_empty_log(path: Path) -> None:
+    """Let SQLite remove a write-ahead log without content, unless somebody uses it.
+
+    A connection that only reads makes a log where there is none, and cannot remove it.
+    """
+    log = _wal(path)
+    # One with content is a writer's, or left by one that was killed: looking changes no run.
+    if not log.exists() or log.stat().st_size > 0 or not os.access(path, os.W_OK):
+        return
+    # Somebody else may be at it at this very moment; then it is theirs to remove.
+    with suppress(*_REFUSALS, StoreError), closing(_connected(path, "rw")) as connection:
+        connection.execute("SELECT 1 FROM sqlite_master LIMIT 1").fetchall()
 
 
 def _is_unshareable(fault: StoreError) -> bool:
