@@ -31,10 +31,10 @@ def initial_forest(
     snapshot: Snapshot,
     static_blocks: frozenset[str | Position],
     initial: Sequence[InitialBelief],
-    path: Path,
+    paths: Sequence[Path],
     extra: Sequence[int] = (),
 ) -> Forest:
-    """A forest of the real world, a node and those between, after the first perception.
+    """A forest of the real world, some nodes and those between, after the first perception.
 
     Args:
         context: What all nodes share.
@@ -42,7 +42,7 @@ def initial_forest(
         snapshot: The real world at its first tick.
         static_blocks: Names and positions of blocks that everybody knows from the start.
         initial: Further priors, at any depth.
-        path: The deepest node.
+        paths: The nodes that are wanted.
         extra: Further cells whose basis is to be tracked.
     """
     known = _states_of(context, {name for name in static_blocks if isinstance(name, str)})
@@ -61,8 +61,8 @@ def initial_forest(
     table = NodeTable(context, PoseTable(), extra)
     holdings = HoldingsTable(table, RootFacts(seen_at=snapshot.tick))
     holdings.add(_add_world(table, snapshot))
-    for depth in range(1, len(path) + 1):
-        node = path[:depth]
+    wanted = (path[:depth] for path in paths for depth in range(1, len(path) + 1))
+    for node in dict.fromkeys(wanted):
         holdings.add(_add_prior(table, node, prior, _merged(initial, node), snapshot.tick))
     table.link()
     forest = Forest(events, table, holdings, snapshot.tick)

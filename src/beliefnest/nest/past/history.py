@@ -123,6 +123,8 @@ class History:
         `advance` takes it on.
         """
         self._keep_up(key)
+        if self._journal.info(key).base is None:
+            return self._initial(key, paths)
         first, *others = paths
         forest = self._begun(key, first)
         for path in others:
@@ -262,24 +264,27 @@ class History:
     def _begun(self, key: TimelineKey, path: Path, extra: Sequence[int] = ()) -> Forest:
         """A forest of a node and its ancestors, at a timeline's beginning."""
         base = self._journal.info(key).base
-        log = self._log(key)
         if base is None:
-            setting = self._setting
-            return initial_forest(
-                self.context,
-                log,
-                setting.snapshot,
-                setting.static_blocks,
-                setting.initial_beliefs,
-                path,
-                extra,
-            )
+            return self._initial(key, (path,), extra)
         source = (
             self._walk(base.timeline, path, base.entries, extra)
             if extra
             else self._forest(base.timeline, path, base.entries)
         )
-        return forked_forest(source, log, key.path, path, base.tick, extra)
+        return forked_forest(source, self._log(key), key.path, path, base.tick, extra)
+
+    def _initial(self, key: TimelineKey, paths: Sequence[Path], extra: Sequence[int] = ()) -> Forest:
+        """A forest of some nodes and their ancestors, where the real world begins."""
+        setting = self._setting
+        return initial_forest(
+            self.context,
+            self._log(key),
+            setting.snapshot,
+            setting.static_blocks,
+            setting.initial_beliefs,
+            paths,
+            extra,
+        )
 
     def _log(self, key: TimelineKey) -> EventLog:
         if key not in self._logs:

@@ -7,13 +7,15 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.columns import place_of
+from beliefnest.belief.forest import Forest
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError, PathError
 from beliefnest.nest.explain.parts import Sighting
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
 from beliefnest.nest.face.reader import Reader
 from beliefnest.timeline.journal import TimelineInfo, TimelineKey
-from beliefnest.viewer.page.run import RunData
+from beliefnest.viewer.page.run import About, RunData
+from beliefnest.viewer.page.tracks import Onlooker
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import path_text
 from beliefnest.world.values import EventKind, Position
@@ -43,6 +45,9 @@ _ENTRIES = 6000
 
 _LOOKS = 6000
 """How many looks of agents at each other in a timeline such a page knows, at most."""
+
+_ALL_AROUND = 360.0
+"""Field of view, in degrees, of who sees all around."""
 
 _NODES = 12
 """In how many nodes of a timeline it knows that."""
@@ -105,22 +110,21 @@ def sight_of(reader: Reader, key: TimelineKey, path: Path, tick: int, viewer: st
     return _runs(reader.visible_blocks(key, path, tick, viewer).ravel())
 
 
-def ahead(data: RunData) -> dict[str, Any]:
-    """Explanations, looks and views for all that is recorded, as far as there is room.
+def ahead(reader: Reader, about: About, depth: int) -> dict[str, Any]:
+    """A run's data as it is now, with explanations, looks and views, as far as there is room.
 
     Looks and views are told where they change. Where there are more than there is room for,
     only some ticks are looked at.
     """
-    views = _Views(data.reader)
-    nodes = list(data.nodes())
-    for info in data.reader.timelines():
-        paths = [path for other, path in nodes if other.key == info.key]
-        views.follow(info, paths[:_NODES])
-    return {
-        "explanations": _explanations(data, nodes),
+    views = _Views(reader)
+    data = RunData(reader, about, depth, views.onlooker)
+    told = data.update()
+    reasons = {
+        "explanations": _explanations(data, list(data.nodes())),
         "looks": views.looks,
         "sights": views.sights,
     }
+    return {**told, "ahead": reasons}
 
 
 class _Views:
@@ -130,18 +134,24 @@ class _Views:
         self._reader = reader
         # The same place, seen from the same place in the same surroundings, is seen the same way.
         self._known: dict[Any, Any] = {}
+        self._all_around = reader.setting.perception.field_of_view >= _ALL_AROUND
         self.looks: dict[str, list[Any]] = {}
         self.sights: dict[str, list[Any]] = {}
 
-    def follow(self, info: TimelineInfo, paths: Sequence[Path]) -> None:
-        """Look at some ticks of a timeline."""
-        reader = self._reader
-        forest = reader.walk(info.key, paths)
-        room = _LOOKS // (len(paths) * max(1, len(reader.agents)) ** 2)
+    def onlooker(self, info: TimelineInfo, paths: Sequence[Path]) -> Onlooker:
+        """Who looks at some nodes of a timeline, at some ticks."""
+        reader, some = self._reader, paths[:_NODES]
+        room = _LOOKS // (len(some) * max(1, len(reader.agents)) ** 2)
+        ticks: dict[int, int] = {}
         for tick in _some(range(info.start, info.head + 1), max(4, room)):
-            reader.advance(info.key, forest, reader.entries_until(info.key, tick))
-            for path in paths:
-                self._look_around(info, tick, NodeView(forest, path))
+            ticks.setdefault(reader.entries_until(info.key, tick), tick)
+
+        def look(forest: Forest) -> None:
+            if forest.position in ticks:
+                for path in some:
+                    self._look_around(info, ticks[forest.position], NodeView(forest, path))
+
+        return look
 
     def _look_around(self, info: TimelineInfo, tick: int, reading: NodeView) -> None:
         agents = self._reader.agents
@@ -149,11 +159,11 @@ class _Views:
         cells = sorted(self._reader.history.context.tracked)
         for number, viewer in enumerate(agents):
             name = f"{name_of(info.key, reading.path)} a{number}"
-            here = _standing(reading, viewer)
+            here = self._standing(reading, viewer)
             _add(self.sights, name, tick, self._sight(reading, viewer, (grid, here)))
             for at, other in enumerate(agents):
                 if at != number:
-                    mark = (grid, here, _standing(reading, other))
+                    mark = (grid, here, _place_of(reading, other))
                     _add(
                         self.looks, f"{name} a{at}", tick, self._look(reading, viewer, other, mark)
                     )
@@ -161,6 +171,13 @@ class _Views:
                 place = place_of(self._reader.setting.snapshot.box, cell)
                 look = self._look(reading, viewer, place, (grid, here, cell))
                 _add(self.looks, f"{name} c{cell}", tick, look)
+
+    def _standing(self, reading: NodeView, name: str) -> Any:
+        """What an agent's view depends on; who sees all around may turn as it likes."""
+        agent = reading.agents[name]
+        if agent.position is None or self._all_around:
+            return agent.position
+        return agent.position, agent.yaw, agent.pitch
 
     def _sight(self, reading: NodeView, viewer: str, mark: Any) -> Any:
         if mark[1] is None:
@@ -182,9 +199,8 @@ class _Views:
         return self._known[mark]
 
 
-def _standing(reading: NodeView, name: str) -> Any:
-    agent = reading.agents[name]
-    return None if agent.position is None else (agent.position, agent.yaw, agent.pitch)
+def _place_of(reading: NodeView, name: str) -> Any:
+    return reading.agents[name].position
 
 
 def _add(rows: dict[str, list[Any]], name: str, tick: int, value: Any) -> None:
@@ -200,11 +216,13 @@ def _explanations(
     wanted = sorted(nodes, key=lambda each: (each[1] not in data.about.paths, bool(each[0].base)))
     longest = max((info.entries for info, _ in nodes), default=1)
     left = min(_EXPLANATIONS, _ENTRIES // max(1, longest))
+    infos = {info.key: info for info, _ in wanted}
+    deeds = {key: _deeds(reader, info) for key, info in infos.items()} if left else {}
     for kind in ("c", "a"):
         for info, path in wanted:
             for thing in _things(reader, kind) if path else ():
                 rows = []
-                for tick in _deeds(reader, info)[: max(0, left)]:
+                for tick in deeds.get(info.key, [])[: max(0, left)]:
                     rows.append(explanation_of(reader, info.key, path, tick, thing))
                     left -= 1
                 if rows:

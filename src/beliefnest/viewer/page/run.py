@@ -1,6 +1,6 @@
 """One run as the page's data: everything at first, then what is new."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from itertools import pairwise, product
 from typing import Any
@@ -12,7 +12,7 @@ from beliefnest.timeline.records import ProgramRecord, PromptRecord
 from beliefnest.viewer.page.blocks import BlockPalette
 from beliefnest.viewer.page.poses import PoseBook
 from beliefnest.viewer.page.rows import StandRows, TrackRows, fresh_rows
-from beliefnest.viewer.page.tracks import TrackRecorder
+from beliefnest.viewer.page.tracks import Onlooker, TrackRecorder
 from beliefnest.viewer.page.words import event_text
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import path_text
@@ -21,6 +21,7 @@ from beliefnest.world.values import EventKind, Position
 __all__ = ["About", "RunData", "paths_below"]
 
 Path = tuple[str, ...]
+Onlookers = Callable[[TimelineInfo, Sequence[Path]], Onlooker]
 
 _SPEECH = (EventKind.CHAT, EventKind.THINK)
 
@@ -79,10 +80,14 @@ class RunData:
         reader: Where to read.
         about: What people call it.
         depth: How deep beliefs of the real world are recorded from the start.
+        onlookers: Makes who is shown the first nodes of a timeline while they are recorded.
     """
 
-    def __init__(self, reader: Reader, about: About, depth: int = 2) -> None:
+    def __init__(
+        self, reader: Reader, about: About, depth: int = 2, onlookers: Onlookers | None = None
+    ) -> None:
         self.reader, self.about, self.depth = reader, about, depth
+        self._onlookers = onlookers
         self._palette = BlockPalette(reader.history.context.registry)
         self._lines: dict[TimelineKey, _Line] = {}
         self._sent: dict[str, int] = {}
@@ -148,7 +153,8 @@ class RunData:
         paths = paths_below(self.reader.agents, own, deep if own else self.depth)
         asked = [path for path in self.about.paths if path[: len(own)] == own]
         paths += [path for path in dict.fromkeys(asked) if path not in paths]
-        recorder = TrackRecorder(self.reader, info.key, paths, book)
+        onlooker = None if self._onlookers is None else self._onlookers(info, paths)
+        recorder = TrackRecorder(self.reader, info.key, paths, book, onlooker=onlooker)
         tracks = {track.path: TrackRows(track, self._palette) for track in recorder.tracks}
         stands = [StandRows(stand) for stand in book.stands]
         self._lines[info.key] = _Line(info, book, [recorder], tracks, stands)

@@ -8,7 +8,7 @@ from beliefnest.errors import InputError
 from beliefnest.nest.face.reader import Reader
 from beliefnest.viewer.page.html import page_html
 from beliefnest.viewer.page.reasons import ahead
-from beliefnest.viewer.page.run import About, RunData
+from beliefnest.viewer.page.run import About
 
 __all__ = ["still_page", "write_still_page"]
 
@@ -32,8 +32,7 @@ def still_page(
     title = ""
     for reader, about in runs:
         title = title or about.title
-        data = RunData(reader, about, depth)
-        told.append({**data.update(), "ahead": ahead(data)})
+        told.append(ahead(reader, about, depth))
     return page_html(title, {"runs": told, "first": dict(first or {})}, served=False)
 
 

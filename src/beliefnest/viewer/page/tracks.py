@@ -6,7 +6,7 @@ and whether they are current, are those of the belief room; what is false is wha
 in the timeline's own world, which makes tracks of long runs short.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,13 +14,14 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.entries import Basis
+from beliefnest.belief.forest import Forest
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.face.reader import Reader
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.viewer.page.poses import Pose, PoseBook
 from beliefnest.viewer.page.wrong import WrongThings
 
-__all__ = ["CURRENT", "PLACED", "STALE", "UNKNOWN", "Track", "TrackRecorder"]
+__all__ = ["CURRENT", "PLACED", "STALE", "UNKNOWN", "Onlooker", "Track", "TrackRecorder"]
 
 Path = tuple[str, ...]
 
@@ -28,6 +29,8 @@ UNKNOWN, CURRENT, STALE, PLACED = 0, 1, 2, 3
 """Agents: of unknown pose, as in the timeline's world now, as there at a past tick, elsewhere."""
 
 Row = list[Any]
+Onlooker = Callable[[Forest], None]
+"""Looks at a forest as it is at this entry."""
 
 
 @dataclass
@@ -84,6 +87,7 @@ class TrackRecorder:
         paths: Nodes of it; its own comes first.
         book: Where agents stood in the world of the timeline; filled here if `fills`.
         fills: Whether this recorder is the one that fills the book.
+        onlooker: Is shown the nodes at the beginning and after each entry.
     """
 
     def __init__(
@@ -94,8 +98,10 @@ class TrackRecorder:
         book: PoseBook,
         *,
         fills: bool = True,
+        onlooker: Onlooker | None = None,
     ) -> None:
         self.key = key
+        self._onlooker = onlooker
         self._reader, self._book, self._fills = reader, book, fills
         self._forest = reader.walk(key, paths)
         index = self._forest.table.index
@@ -162,6 +168,8 @@ class TrackRecorder:
                 heard = np.flatnonzero(forest.hearing.of(number, count)[self._events :])
                 self.tracks[at].heard += (heard + self._events).tolist()
             self._events = count
+        if self._onlooker is not None:
+            self._onlooker(forest)
 
     def _note_own_poses(self, tick: int) -> None:
         if not self._fills:
