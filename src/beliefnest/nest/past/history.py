@@ -273,7 +273,9 @@ class History:
         )
         return forked_forest(source, self._log(key), key.path, path, base.tick, extra)
 
-    def _initial(self, key: TimelineKey, paths: Sequence[Path], extra: Sequence[int] = ()) -> Forest:
+    def _initial(
+        self, key: TimelineKey, paths: Sequence[Path], extra: Sequence[int] = ()
+    ) -> Forest:
         """A forest of some nodes and their ancestors, where the real world begins."""
         setting = self._setting
         return initial_forest(

@@ -6,7 +6,7 @@ import {
   Raycaster, Scene, SphereGeometry, TorusGeometry, Vector2, Vector3, WebGLRenderer
 } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
-import { element, refill } from './elements.js'
+import { element } from './elements.js'
 import { apart } from './labels.js'
 import { contentsLabel, signsText } from './things.js'
 
@@ -15,6 +15,8 @@ const EYE = 1.62
 const MOST = 60000
 const TALL = 23
 const LETTER = 6.6
+const SHARPEST = 1.5
+const HURRIED = 0.5
 const CUBE = new BoxGeometry(1, 1, 1)
 const EDGES = new EdgesGeometry(CUBE)
 const BODY = new CapsuleGeometry(0.28, 0.75, 4, 12)
@@ -56,6 +58,10 @@ export class Space {
     this.controls.addEventListener('change', moved)
     this.built = null
     this.marks = []
+    this.hurried = false
+    // What is made for one picture serves the next: a new material costs more than to draw with it.
+    this.materials = new Map()
+    this.tags = new Map()
     this.listen()
   }
 
@@ -85,7 +91,7 @@ export class Space {
   render () {
     const { width, height } = this.element.getBoundingClientRect()
     if (width < 2 || height < 2) return
-    const scale = Math.min(1.5, devicePixelRatio || 1)
+    const scale = Math.min(SHARPEST, devicePixelRatio || 1) * (this.hurried ? HURRIED : 1)
     if (this.size !== `${width} ${height} ${scale}`) {
       this.size = `${width} ${height} ${scale}`
       this.renderer.setPixelRatio(scale)
@@ -108,18 +114,41 @@ export class Space {
   }
 
   buildFigures (scene) {
+    this.dropLines()
     this.figures.clear()
-    refill(this.labels)
     this.marks = []
     for (const each of scene.things.containers) this.addContainer(scene, each)
     for (const each of scene.things.agents) if (each.pose !== null) this.addAgent(scene, each)
     for (const cell of scene.things.wrongBlocks.slice(0, 100)) this.outline(scene.run.place(cell), WRONG)
     for (const [, , x, y, z] of scene.things.items) this.add(CUBE, '#3fa7a7', [x, y + 0.15, z], { size: 0.22 })
     if (scene.ray !== null) this.addRay(scene.ray)
+    this.dropTags()
+  }
+
+  /** A material by what it looks like, made once. */
+  material (name, make) {
+    if (!this.materials.has(name)) this.materials.set(name, make())
+    return this.materials.get(name)
+  }
+
+  /** Lets go of the lines of the last picture, whose points are their own. */
+  dropLines () {
+    for (const each of this.figures.children) if (each.userData.own) each.geometry.dispose()
+  }
+
+  /** Takes away the labels of what is not in the picture any more. */
+  dropTags () {
+    const shown = new Set(this.marks.map(({ made }) => made))
+    for (const [thing, made] of this.tags) {
+      if (shown.has(made)) continue
+      made.remove()
+      this.tags.delete(thing)
+    }
   }
 
   add (geometry, colour, [x, y, z], { ghost = false, size = 1, thing = null } = {}) {
-    const mesh = new Mesh(geometry, new MeshLambertMaterial({ color: colour, transparent: ghost, opacity: ghost ? 0.45 : 1 }))
+    const material = this.material(`${colour} ${ghost}`, () => new MeshLambertMaterial({ color: colour, transparent: ghost, opacity: ghost ? 0.45 : 1 }))
+    const mesh = new Mesh(geometry, material)
     mesh.position.set(x, y, z)
     mesh.scale.setScalar(size)
     mesh.userData.thing = thing
@@ -157,18 +186,24 @@ export class Space {
   }
 
   outline ([x, y, z], colour) {
-    const lines = new LineSegments(EDGES, new LineBasicMaterial({ color: colour, linewidth: 2 }))
+    const lines = new LineSegments(EDGES, this.lines(colour))
     lines.position.set(x + 0.5, y + 0.5, z + 0.5)
     lines.scale.setScalar(1.04)
     this.figures.add(lines)
   }
 
+  lines (colour) {
+    return this.material(`lines ${colour}`, () => new LineBasicMaterial({ color: colour, linewidth: 2 }))
+  }
+
   addRay (ray) {
     const points = (a, b) => new BufferGeometry().setFromPoints([new Vector3(a.x, a.y, a.z), new Vector3(b.x, b.y, b.z)])
-    const free = new Line(points(ray.from, ray.stop), new LineBasicMaterial({ color: ray.seen ? 0x009e73 : WRONG }))
+    const free = new Line(points(ray.from, ray.stop), this.lines(ray.seen ? 0x009e73 : WRONG))
+    free.userData.own = true
     this.figures.add(free)
     if (!ray.seen) {
-      const beyond = new Line(points(ray.stop, ray.to), new LineDashedMaterial({ color: 0x8a8890, dashSize: 0.3, gapSize: 0.2 }))
+      const beyond = new Line(points(ray.stop, ray.to), this.material('dashes', () => new LineDashedMaterial({ color: 0x8a8890, dashSize: 0.3, gapSize: 0.2 })))
+      beyond.userData.own = true
       beyond.computeLineDistances()
       this.figures.add(beyond)
     }
@@ -176,10 +211,21 @@ export class Space {
   }
 
   label (thing, place, text, wrong, look = null) {
-    const made = element('button', { type: 'button', class: `tag${wrong ? ' false' : ''}`, tabindex: '-1', onclick: () => this.choose({ thing, note: null }) }, text)
-    if (look !== null) made.style.borderColor = look.colour
-    this.labels.append(made)
+    const made = this.tag(thing)
+    const classes = `tag${wrong ? ' false' : ''}`
+    if (made.className !== classes) made.className = classes
+    if (made.textContent !== text) made.textContent = text
+    made.style.borderColor = look?.colour ?? ''
     this.marks.push({ made, at: new Vector3(...place), width: 20 + LETTER * text.length })
+  }
+
+  tag (thing) {
+    if (!this.tags.has(thing)) {
+      const made = element('button', { type: 'button', tabindex: '-1', onclick: () => this.choose({ thing, note: null }) })
+      this.labels.append(made)
+      this.tags.set(thing, made)
+    }
+    return this.tags.get(thing)
   }
 
   placeLabels (width, height) {

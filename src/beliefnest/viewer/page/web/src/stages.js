@@ -10,6 +10,7 @@ import { thingsOf } from './things.js'
 const VIEWS = { space: '3D', plan: 'Plan', both: 'Both' }
 const NARROW = 720
 const BARS = 80
+const HURRY_MS = 400
 const VIEW = 42
 const HALF_VIEW = Math.tan(VIEW / 360 * Math.PI)
 
@@ -28,9 +29,30 @@ export class Stages {
       element('label', {}, 'beside ', this.other), element('label', {}, 'sight of ', this.sees), element('label', {}, 'storey ', this.storey))
     this.element = element('section', { class: 'stages', 'aria-label': 'pictures' }, this.bar, element('div', { class: 'pair' }, ...this.stages.map(stage => stage.element)))
     this.aimed = null
+    this.drawnAt = -Infinity
+    this.hurried = false
+  }
+
+  /** Pictures that follow one another quickly are coarse; the last of them is drawn again, sharp. */
+  hurry () {
+    const now = performance.now()
+    this.hurried = now - this.drawnAt < HURRY_MS
+    this.drawnAt = now
+    clearTimeout(this.calming)
+    if (this.hurried) this.calming = setTimeout(() => this.calm(), HURRY_MS)
+  }
+
+  calm () {
+    this.hurried = false
+    this.render()
+  }
+
+  render () {
+    for (const stage of this.stages) if (!stage.element.hidden) stage.render(this.hurried)
   }
 
   draw (scene) {
+    this.hurry()
     const wanted = scene.choice.view ?? (innerWidth < NARROW ? 'plan' : 'space')
     const view = this.webgl && VIEWS[wanted] ? wanted : 'plan'
     this.drawBar(scene, view)
@@ -83,7 +105,8 @@ export class Stages {
   moved () {
     this.turning ??= requestAnimationFrame(() => {
       this.turning = undefined
-      for (const stage of this.stages) if (!stage.element.hidden) stage.space?.render()
+      this.hurry()
+      this.render()
     })
   }
 }
@@ -105,7 +128,16 @@ class Stage {
       element('span', { class: 'path' }, ` ${track.path} `), element('span', { class: 'at' }, `tick ${tick}`))
     this.arrange(view)
     if (view !== 'space') this.plan.draw(scene)
-    if (view !== 'plan') this.space.draw(scene)
+    if (view !== 'plan') {
+      this.space.hurried = this.stages.hurried
+      this.space.draw(scene)
+    }
+  }
+
+  render (hurried) {
+    if (this.space === undefined) return
+    this.space.hurried = hurried
+    this.space.render()
   }
 
   arrange (view) {
