@@ -9,7 +9,9 @@ axis, as all shapes of Minecraft do; tests/world/test_registry.py holds that.
 """
 
 import math
+import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, NamedTuple, TypeVar, cast
 
 import numba
@@ -94,6 +96,21 @@ def compiled(function: F) -> F:
         return cast(F, numba.njit(cache=True, nogil=True, error_model="numpy")(function))
     except RuntimeError:  # raised at once, by the search for a folder; compiling comes later
         return cast(F, numba.njit(nogil=True, error_model="numpy")(function))
+
+
+def is_compiled(function: Callable[..., object]) -> bool:
+    """Whether a kernel of `compiled` can be called without a wait: compiled here, or kept."""
+    kernel: Any = function
+    if not hasattr(kernel, "py_func") or kernel.signatures:
+        return True
+    folder = kernel.stats.cache_path
+    if folder is None:
+        return False
+    source = Path(kernel.py_func.__code__.co_filename)
+    changed = source.stat().st_mtime
+    version = f"py{sys.version_info.major}{sys.version_info.minor}"
+    names = f"{source.stem}.{kernel.py_func.__qualname__}-*.{version}.nbi"
+    return any(kept.stat().st_mtime >= changed for kept in Path(folder).glob(names))
 
 
 def inlined(function: F) -> F:

@@ -2,8 +2,10 @@
 
 import time
 
+from beliefnest.belief import kernel
 from beliefnest.llm.messages import Model
 from beliefnest.nest.face.nest import Nest, Progress
+from beliefnest.perception.rays import is_compiled
 from beliefnest.scenarios.expected import Believes, Judge
 from beliefnest.scenarios.functions import NamedFunction
 from beliefnest.scenarios.judging import found_instead
@@ -45,7 +47,9 @@ def run_scenario(
     nest.play(on_progress)
     ticks = nest.tick
     steps = len(scenario.setting.script)
-    on_progress("working out beliefs (the very first time this compiles code)", steps, steps)
+    # Only then is there a wait to be told of.
+    compiling = "" if is_compiled(kernel.fold) else " (this very first time code is compiled)"
+    on_progress(f"working out beliefs{compiling}", steps, steps)
     reality = nest["/"].state
     beliefs = {path: nest[path].state for path in _paths(scenario)}
     expectations = tuple(

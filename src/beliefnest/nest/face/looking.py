@@ -114,7 +114,8 @@ class Looking:
         Raises:
             PathError: A path is malformed or names an unknown agent.
             PositionError: The container lies outside the box.
-            InputError: There is no path.
+            InputError: There is no path, or never was a container there.
+            UnknownNameError: There is no such item.
         """
         return plot_of_container(self._recording, container, item, paths, self._moment())
 

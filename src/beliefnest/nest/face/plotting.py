@@ -4,6 +4,7 @@ from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
+from beliefnest.belief.columns import cell_of, place_of
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError, PositionError
 from beliefnest.nest.explain.comparison import are_false
@@ -39,19 +40,28 @@ def plot_of_container(
     """The plot of what simulators held of a container, up to a tick of the real world.
 
     Raises:
-        InputError: There is no path.
+        InputError: There is no path, or never was a container there.
         PathError: A path is malformed or names an unknown agent.
         PositionError: The container lies outside the box.
+        UnknownNameError: There is no such item.
     """
     if not paths:
         raise InputError("a plot of no simulator is empty; give belief paths")
     box = recording.setting.snapshot.box
     if container not in box:
         raise PositionError(f"position {container} is outside the box {box.low}..{box.high}")
+    context = recording.history.context
+    if item is not None:
+        context.registry.item_stack(item)
     with recording.turn:
         names = [parse_path(path, recording.agents) for path in paths]
         real = _course(recording, (), container, item)
         courses = {path: _course(recording, path, container, item) for path in names}
+        if cell_of(box, container) not in context.tracked:
+            known = ", ".join(str(place_of(box, cell)) for cell in sorted(context.tracked))
+            raise InputError(
+                f"there is no container at {container}; containers are at {known or 'no place'}"
+            )
         ends = {path: recording.info(path).head if until is None else until for path in names}
         acts = _acts(recording, container, max(ends.values()))
     rows = [

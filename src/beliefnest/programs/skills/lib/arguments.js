@@ -97,7 +97,8 @@ function block ({ bot, fail }, name, value) {
 function items (context, name, value) {
   const entries = value !== null && typeof value === 'object' && !Array.isArray(value) ? Object.entries(value) : []
   if (entries.length === 0) {
-    context.fail(`${name} must say how many of which items, like {diamond: 1}; it is ${show(value)}`)
+    const found = value?.constructor === Object ? 'empty' : show(value)
+    context.fail(`${name} must say how many of which items, like {diamond: 1}; it is ${found}`)
   }
   return entries.map(([key, number]) => [item(context, `each name in ${name}`, key), count(context, `${name}.${key}`, number)])
 }
