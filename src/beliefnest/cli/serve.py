@@ -20,7 +20,7 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.viewer.serving.host import Host, Opened
 
-__all__ = ["ServeOptions", "serve"]
+__all__ = ["ServeOptions", "listening", "serve"]
 
 _PORT = 8642
 
@@ -61,7 +61,7 @@ def serve(options: ServeOptions) -> None:
         raise InputError(
             "serve needs starlette and uvicorn: run `pip install 'beliefnest[serve]'`"
         ) from None
-    with _listening(options) as listener, _running(options) as folder:
+    with listening(options) as listener, _running(options) as folder:
         port = listener.getsockname()[1]
         token = None if _is_loopback(options.address) else secrets.token_urlsafe(24)
         host = Host(lambda: _stores(folder), _open, options.depth)
@@ -80,7 +80,12 @@ def serve(options: ServeOptions) -> None:
 
 
 @contextmanager
-def _listening(options: ServeOptions) -> Iterator[socket.socket]:
+def listening(options: ServeOptions) -> Iterator[socket.socket]:
+    """A socket that takes connections at the address and port that were asked for.
+
+    Raises:
+        InputError: The address cannot be listened on.
+    """
     family = socket.AF_INET6 if ":" in options.address else socket.AF_INET
     with socket.socket(family, socket.SOCK_STREAM) as listener:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -94,6 +99,8 @@ def _listening(options: ServeOptions) -> Iterator[socket.socket]:
                         f"{options.address} port {port} cannot be listened on ({error}); "
                         "choose another with --port"
                     ) from None
+        # Whoever reads where the page is may ask for it at once.
+        listener.listen()
         yield listener
 
 
