@@ -1,7 +1,9 @@
 """Chat models behind a network, through pydantic-ai."""
 
 import math
-from collections.abc import Callable, Coroutine, Sequence
+import warnings
+from collections.abc import Callable, Coroutine, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -84,7 +86,8 @@ class RemoteModel:
         from pydantic_ai.exceptions import AgentRunError, UserError
 
         try:
-            return _run(lambda: self._ask(messages, sampling))
+            with _quiet_about_counts():
+                return _run(lambda: self._ask(messages, sampling))
         except (AgentRunError, UserError) as error:
             _refuse(self, error)
         except BeliefNestError:
@@ -148,6 +151,20 @@ def _require_library() -> None:
             f"models of providers need the extra 'llm' ({error.name} is missing): "
             "pip install 'beliefnest[llm]', or run with --model offline"
         ) from None
+
+
+@contextmanager
+def _quiet_about_counts() -> Iterator[None]:
+    """Without the library's warnings of counts that cannot be: `_usage` guesses them then.
+
+    Where warnings are errors, each would end an answer that is sound.
+    """
+    from pydantic_ai.exceptions import UsageExtractionFailedWarning
+
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Pydantic serializer warnings", UserWarning)
+        warnings.simplefilter("ignore", UsageExtractionFailedWarning)
+        yield
 
 
 def _run(ask: Callable[[], Coroutine[Any, Any, Answer]]) -> Answer:
