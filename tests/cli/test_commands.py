@@ -231,7 +231,7 @@ def test_an_interrupt_ends_everything_and_leaves_a_readable_folder(whole_group: 
     endless = ROOM.replace(
         "await getItemFromChest(bot, new Vec3(3, 1, 3), {apple: 1});",
         "while (true) await bot.waitForTicks(1);",
-    ).replace("    agent: ann\n", "    agent: ann\n    timeout_ticks: 100000000\n")
+    ).replace("    agent: ann\n", "    agent: ann\n    timeout_ticks: 10000000\n")
     command = [sys.executable, "-m", "beliefnest", "run", scenario(endless), "--out", "r"]
     with subprocess.Popen(
         command, stderr=subprocess.PIPE, text=True, start_new_session=True

@@ -82,7 +82,7 @@ def test_what_was_asked_is_shown(
     failed, done = kept
     assert run_command_line(["show", str(failed), "--path", "/ann/bob"]) == 0
     printed = capsys.readouterr().out
-    assert "I cannot [/]\ufffd[31m." in printed
+    assert r"I cannot [/]\u001b[31m." in printed
     assert "no answer left" in printed
     assert run_command_line(["show", str(done), "--path", "/ann/bob", "--json"]) == 0
     (asked,) = json.loads(capsys.readouterr().out)["prompts"]

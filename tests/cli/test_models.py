@@ -204,7 +204,8 @@ def comparable(out: str) -> dict[str, bytes]:
     for file in sorted(Path(out).rglob("result.json")):
         result = json.loads(file.read_text(encoding="utf-8"))
         result.pop("seconds")
-        result.pop("run_dir")
+        for each in (result, *result["probes"]):
+            each.pop("run_dir")
         found[str(file.relative_to(out))] = json.dumps(result).encode()
     for file in sorted(Path(out).rglob("run.bn")):
         with SqliteJournal.read(file) as journal:
@@ -277,7 +278,7 @@ def test_an_interrupted_run_goes_on_where_it_was(
 
     server.will(server.says(GOOD))
     with monkeypatch.context() as patched:
-        patched.setattr("beliefnest.cli.run.draw_scene", interrupt)
+        patched.setattr("beliefnest.cli.run.read_condition", interrupt)
         assert run(scenario="two.yaml") == 130
     assert report()["status"] == "interrupted"
     assert run(scenario="two.yaml") == 0
