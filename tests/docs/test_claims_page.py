@@ -1,4 +1,4 @@
-"""The page about claims shows what its example prints."""
+"""The page about claims shows what its examples print."""
 
 import re
 from pathlib import Path
@@ -8,9 +8,10 @@ import pytest
 PAGE = (Path(__file__).parents[2] / "docs" / "claims.md").read_text(encoding="utf-8")
 
 
-def test_the_example_prints_what_the_page_says(capsys: pytest.CaptureFixture[str]) -> None:
-    (example,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+def test_the_examples_print_what_the_page_says(capsys: pytest.CaptureFixture[str]) -> None:
+    told, read = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
     (shown,) = re.findall(r"```text\n(.*?)```", PAGE, re.DOTALL)
-    exec(compile(example, "example", "exec"), {"__name__": "example"})
-    printed = re.findall(r"print\(.*\)  # (.*)", example)
-    assert capsys.readouterr().out == "".join(f"{line}\n" for line in printed) + shown
+    for example, more in ((told, shown), (read, "")):
+        exec(compile(example, "example", "exec"), {"__name__": "example"})
+        printed = re.findall(r"print\(.*\)  # (.*)", example)
+        assert capsys.readouterr().out == "".join(f"{line}\n" for line in printed) + more

@@ -12,6 +12,7 @@ from beliefnest.llm.budget import Budget, RunLimits
 from beliefnest.llm.cache import CacheMode
 from beliefnest.llm.clock import Clock, SystemClock
 from beliefnest.llm.extract import NoProgramError, extract_program
+from beliefnest.llm.hearsay import ClaimsFromModel, claims_from_model
 from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 from beliefnest.llm.remote import AnswerLimits
 from beliefnest.llm.resolve import Connection, model_names, open_model, resolve_model
@@ -23,6 +24,7 @@ __all__ = [
     "Budget",
     "CacheMode",
     "Check",
+    "ClaimsFromModel",
     "Clock",
     "Connection",
     "Message",
@@ -38,6 +40,7 @@ __all__ = [
     "SystemClock",
     "Usage",
     "ask_for_program",
+    "claims_from_model",
     "extract_program",
     "model_names",
     "open_model",

@@ -48,6 +48,7 @@ class _Detail(msgspec.Struct, forbid_unknown_fields=True):
     destination: Point | msgspec.UnsetType = msgspec.UNSET
     to: str | msgspec.UnsetType = msgspec.UNSET
     claims: list[dict[str, Any]] | msgspec.UnsetType = msgspec.UNSET
+    claims_from: str | msgspec.UnsetType = msgspec.UNSET
 
 
 def event_from(
@@ -85,6 +86,8 @@ def event_from(
         if known is not EventKind.CHAT:
             raise InputError(f"event {kind!r} has the detail 'claims', which only a chat has")
         values["claims"] = tuple(claim.plain() for claim in claims_from_plain(values["claims"]))
+    elif "claims_from" in values:
+        raise InputError(f"event {kind!r} has the detail 'claims_from' without 'claims'")
     for name in (actor, values.get("other"), values.get("to")):
         if name is not None and name not in agents:
             raise InputError(f"event {kind!r} names an unknown agent {name!r}")

@@ -112,7 +112,8 @@ class Event:
         actor: The agent who did it; None for a block update nobody is named for.
         detail: The part a witness sees. By kind: `text` (chat, think), `to` (chat that is
             whispered to one agent; absent where it is said aloud), `claims` (chat that makes
-            some: plain data, see `world.claims`), `position` of a block
+            some: plain data, see `world.claims`), `claims_from` (who read these out of the
+            text; absent where the speaker gave them), `position` of a block
             (mine_block, place_block, use_lever, press_button, use_door, containers,
             block_update), `block` (a block state text), `items` (name -> count),
             `other` (an agent), `powered` (use_lever),

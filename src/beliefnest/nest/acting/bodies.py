@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from beliefnest.bodies.protocol import Body, Sense, Sensed, World
 from beliefnest.errors import BodyError, BranchError, WorldError
 from beliefnest.nest.acting.frame_recorder import FrameRecorder
+from beliefnest.nest.acting.hearsay import ClaimReader, Hearsay
 from beliefnest.nest.acting.lives import Lives
 from beliefnest.nest.acting.speculation import SpeculatedBody, Speculation
 from beliefnest.nest.acting.starting import Start, start_of
@@ -39,16 +40,22 @@ class Bodies:
     Args:
         recording: What they are filled from and recorded in.
         world: Where they live.
+        reader: Who reads claims out of what is said in them; None: nobody.
 
     Attributes:
         world: Where they live.
         others: Further worlds of the kind, for programs that run at the same time.
     """
 
-    def __init__(self, recording: Recording, world: World) -> None:
+    def __init__(
+        self, recording: Recording, world: World, reader: ClaimReader | None = None
+    ) -> None:
         self.world = world
         self.others: list[World] = []
         self._recording = recording
+        self._hearsay = None
+        if reader is not None:
+            self._hearsay = Hearsay(reader, recording.setting, recording.history)
         self._embodied: dict[Path, _Embodied] = {}
         self._bodiless: set[Path] = set()
 
@@ -78,10 +85,14 @@ class Bodies:
 
     def open(self, key: TimelineKey, snapshot: Snapshot) -> None:
         """Make the body of a simulator."""
-        recorder = FrameRecorder(self._recording.journal, self._recording.history, key)
+        recorder = self._recorder(key)
         body = self.world.open_body(path_text(key.path), self.seed_of(key.path), snapshot, recorder)
         self._embodied[key.path] = _Embodied(body, recorder)
         self._recording.journal.records.add_versions(self.world.versions)
+
+    def _recorder(self, key: TimelineKey) -> FrameRecorder:
+        recording = self._recording
+        return FrameRecorder(recording.journal, recording.history, key, self._hearsay)
 
     def seed_of(self, path: Path) -> str:
         """Seed of a simulator's body."""
@@ -229,7 +240,7 @@ class Bodies:
         """Let programs that have run already run as in this simulator's body."""
         recording = self._recording
         self.give_up(path)
-        recorder = FrameRecorder(recording.journal, recording.history, recording.selected[path])
+        recorder = self._recorder(recording.selected[path])
         self._embodied[path] = _Embodied(SpeculatedBody(speculation, recorder), recorder)
         try:
             yield

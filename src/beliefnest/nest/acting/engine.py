@@ -14,6 +14,7 @@ from typing import Concatenate, ParamSpec, Self, TypeVar
 from beliefnest.bodies.protocol import KILLED, Body, Fault, ProgramResult, World
 from beliefnest.errors import BodyLostError, BranchError, TickError
 from beliefnest.nest.acting.bodies import Bodies
+from beliefnest.nest.acting.hearsay import ClaimReader
 from beliefnest.nest.acting.speculation import Speculation, SpeculationStart, speculate
 from beliefnest.nest.past.body_state import internal_state_at, note_internal_state, present
 from beliefnest.nest.past.placing import placed_in
@@ -50,14 +51,17 @@ class Engine:
     Args:
         recording: The nest's timelines.
         world: Where bodies live; a body is made when it is first needed.
+        reader: Who reads claims out of what is said; None: nobody.
 
     Attributes:
         bodies: The bodies of simulators in control mode.
     """
 
-    def __init__(self, recording: Recording, world: World) -> None:
+    def __init__(
+        self, recording: Recording, world: World, reader: ClaimReader | None = None
+    ) -> None:
         self.recording = recording
-        self.bodies = Bodies(recording, world)
+        self.bodies = Bodies(recording, world, reader)
 
     def begin(self) -> Self:
         """Start the real world's timeline and give it its body."""

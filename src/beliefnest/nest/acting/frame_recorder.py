@@ -1,5 +1,6 @@
 """The recorder of one body: appends its frames to the timeline that the body is on."""
 
+from beliefnest.nest.acting.hearsay import Hearsay, has_unread
 from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import Journal, TimelineKey
 from beliefnest.world.frames import Frame
@@ -13,18 +14,30 @@ class FrameRecorder:
     """Takes a body's frames and appends them to the timeline it is on.
 
     Each frame is written at once, but while a call is under way, when `batched` is set.
+
+    Args:
+        journal: Where it appends them.
+        history: What follows the journal.
+        key: The timeline.
+        hearsay: Completes frames in which something is said; None: they are recorded as they are.
     """
 
-    def __init__(self, journal: Journal, history: History, key: TimelineKey) -> None:
+    def __init__(
+        self, journal: Journal, history: History, key: TimelineKey, hearsay: Hearsay | None = None
+    ) -> None:
         self.key = key
         self.batched = False
         self._journal = journal
         self._history = history
+        self._hearsay = hearsay
         self._frames: list[Frame] = []
         self._tick: int | None = None
 
     def __call__(self, frame: Frame) -> None:
         """Take a frame."""
+        if self._hearsay is not None and has_unread(frame):
+            self.flush()
+            frame = self._hearsay.completed(frame, self.key)
         self._tick = frame.tick
         if not frame.is_empty:
             self._frames.append(frame)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from beliefnest.bodies.protocol import Body, World
+from beliefnest.nest.acting.hearsay import recalled
 from beliefnest.nest.acting.starting import start_of
 from beliefnest.nest.past.body_state import internal_state_at
 from beliefnest.nest.past.history import History
@@ -124,9 +125,12 @@ def _run_again(
     moved = placing_frame(recorded.journal, info)
     found: list[Entry] = [] if moved is None else [moved]
 
+    once = {entry.tick: entry for entry in entries if isinstance(entry, Frame)}
+
     def take(frame: Frame) -> None:
         if not frame.is_empty:
-            found.append(frame)
+            # What was read out of words was recorded, and nobody is asked again.
+            found.append(recalled(frame, once.get(frame.tick)))
 
     name = path_text(info.key.path)
     begins = recorded.after(len(found), info.start, world)

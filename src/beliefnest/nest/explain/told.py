@@ -31,6 +31,7 @@ class ToldClaim:
         addressee: To whom it was whispered; None: it was said aloud.
         text: The words it was made with.
         claim: What was claimed.
+        claims_from: Who read it out of the text; None: the speaker said so beside it.
     """
 
     def __init__(
@@ -46,6 +47,7 @@ class ToldClaim:
         self.speaker = str(event.actor)
         self.addressee: str | None = event.detail.get("to")
         self.text: str = event.detail["text"]
+        self.claims_from: str | None = event.detail.get("claims_from")
         self.claim = claim
         self._recording, self._key = recording, key
         self._entry, self._row, self._index = place

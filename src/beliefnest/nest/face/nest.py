@@ -26,6 +26,7 @@ from beliefnest.nest.face.viewing import Viewing
 from beliefnest.nest.past.setting import Setting
 from beliefnest.perception.options import Perception
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
+from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.world.paths import parse_path
 from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.values import Position
@@ -45,6 +46,7 @@ class Nest(Looking, Viewing, Telling):
         static_blocks: Names and positions of blocks that everybody knows from the start.
         initial_beliefs: Further priors, at any depth.
         store: File to record in; None: memory.
+        claims_from: Reads claims out of what is said without any (docs/claims.md); None: nobody.
     """
 
     def __init__(
@@ -54,6 +56,7 @@ class Nest(Looking, Viewing, Telling):
         static_blocks: Iterable[str | Position] = (),
         initial_beliefs: Iterable[InitialBelief] = (),
         store: str | Path | None = None,
+        claims_from: ClaimsFrom | None = None,
     ) -> None:
         if not isinstance(world, ScriptedWorld):
             raise InputError(
@@ -67,7 +70,8 @@ class Nest(Looking, Viewing, Telling):
             static_blocks=frozenset(static_blocks),
             initial_beliefs=tuple(initial_beliefs),
         )
-        self._hold(begun(Start(setting, "scripted", 0), ScriptedBodies(world), store))
+        start = Start(setting, "scripted", 0)
+        self._hold(begun(start, ScriptedBodies(world), store, claims_from))
 
     @classmethod
     def open(
@@ -78,6 +82,7 @@ class Nest(Looking, Viewing, Telling):
         seed: int = 0,
         worlds: Worlds | None = None,
         limits: ProcessLimits | None = None,
+        claims_from: ClaimsFrom | None = None,
     ) -> Self:
         """Open a scenario in a world.
 
@@ -88,6 +93,7 @@ class Nest(Looking, Viewing, Telling):
             seed: Drives every random number.
             worlds: Lends the world, to one nest after the other; None: one is started.
             limits: What the world's process may take, if one is started.
+            claims_from: Reads claims out of what is said without any; None: nobody.
 
         Raises:
             BodyError: The world could not be started.
@@ -97,7 +103,7 @@ class Nest(Looking, Viewing, Telling):
         start = Start.of(scenario, world, seed)
         opened = open_world(world, seed, limits) if worlds is None else worlds.lend(world)
         try:
-            return cls._of(begun(start, opened, store))
+            return cls._of(begun(start, opened, store, claims_from))
         except BaseException:
             opened.close()
             raise
@@ -108,6 +114,7 @@ class Nest(Looking, Viewing, Telling):
         store: str | Path,
         limits: ProcessLimits | None = None,
         worlds: Worlds | None = None,
+        claims_from: ClaimsFrom | None = None,
     ) -> Self:
         """Go on with a recorded run where it was, on every branch, with its seed.
 
@@ -117,12 +124,14 @@ class Nest(Looking, Viewing, Telling):
             store: The run file.
             limits: What the world's process may take.
             worlds: Lends the world, to one nest after the other; None: one is started.
+            claims_from: Reads claims out of what is said from now on; None: nobody. What was
+                read before is recorded.
 
         Raises:
             StoreError: There is no such run, it cannot be read or written, or has another
                 writer.
         """
-        return cls._of(resumed(store, limits, worlds))
+        return cls._of(resumed(store, limits, worlds, claims_from))
 
     @staticmethod
     def read(store: str | Path) -> RecordedNest:

@@ -9,6 +9,7 @@ from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.protocol import World
 from beliefnest.bodies.worlds import LazyWorld, Worlds
 from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.face.hearing_model import reader_of
 from beliefnest.nest.past.recording import Recording, read_recording
 from beliefnest.nest.past.setting import Setting
 from beliefnest.nest.past.setting_codec import encode_start
@@ -16,6 +17,7 @@ from beliefnest.nest.past.versions import own_versions
 from beliefnest.timeline.memory import MemoryJournal
 from beliefnest.timeline.records import RunRecord
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.world.nameable import ClaimsFrom
 
 __all__ = ["HasSetting", "Start", "begun", "resumed"]
 
@@ -82,8 +84,10 @@ class Start:
         )
 
 
-def begun(start: Start, world: World, store: str | Path | None) -> Engine:
-    """Begin a run in a world, in a file or in memory.
+def begun(
+    start: Start, world: World, store: str | Path | None, claims_from: ClaimsFrom | None = None
+) -> Engine:
+    """Begin a run in a world, in a file or in memory; `claims_from` reads what is said in it.
 
     Raises:
         StoreError: The file exists already, or cannot be written.
@@ -92,18 +96,24 @@ def begun(start: Start, world: World, store: str | Path | None) -> Engine:
     if store is None:
         recording = Recording(start.setting, MemoryJournal(), start.seed)
         recording.journal.records.add_versions(own_versions())
-        return Engine(recording, world).begin()
+        return Engine(recording, world, reader_of(claims_from, recording)).begin()
     journal = SqliteJournal.create_file(store)
     try:
         with journal.together():
             journal.records.set_run(start.record(world))
-            return Engine(Recording(start.setting, journal, start.seed), world).begin()
+            recording = Recording(start.setting, journal, start.seed)
+            return Engine(recording, world, reader_of(claims_from, recording)).begin()
     except BaseException:
         journal.close()
         raise
 
 
-def resumed(store: str | Path, limits: ProcessLimits | None, worlds: Worlds | None) -> Engine:
+def resumed(
+    store: str | Path,
+    limits: ProcessLimits | None,
+    worlds: Worlds | None,
+    claims_from: ClaimsFrom | None = None,
+) -> Engine:
     """Go on with a recorded run; the world is started when it is first needed.
 
     Raises:
@@ -114,7 +124,7 @@ def resumed(store: str | Path, limits: ProcessLimits | None, worlds: Worlds | No
         recording, name = read_recording(journal)
         lazy = LazyWorld(name, recording.seed, limits) if worlds is None else worlds.lend(name)
         journal.records.add_versions(own_versions())
-        return Engine(recording, lazy)
+        return Engine(recording, lazy, reader_of(claims_from, recording))
     except BaseException:
         journal.close()
         raise

@@ -9,7 +9,7 @@ from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.records import PromptRecord
 
 if TYPE_CHECKING:  # Models take long to import, and few nests have one.
-    from beliefnest.llm.messages import Answer, Message, Model, Sampling
+    from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 
 __all__ = ["RecordingModel"]
 
@@ -24,15 +24,22 @@ class RecordingModel:
         recording: Where it is noted.
         path: The simulator it is asked from.
         detail: Further facts to note.
+        tick: When it is asked; None: at the simulator's latest tick.
     """
 
     def __init__(
-        self, model: "Model", recording: Recording, path: tuple[str, ...], detail: Mapping[str, str]
+        self,
+        model: "Model",
+        recording: Recording,
+        path: tuple[str, ...],
+        detail: Mapping[str, str],
+        tick: int | None = None,
     ) -> None:
         self._model = model
         self._recording = recording
         self._path = path
         self._detail = detail
+        self._tick = tick
         self._asked = 0
 
     @property
@@ -54,7 +61,7 @@ class RecordingModel:
         asked = PromptRecord(
             path=self._path,
             timeline=info.key,
-            tick=info.head,
+            tick=info.head if self._tick is None else self._tick,
             model=self.name,
             attempt=self._asked,
             messages=tuple((message.role, message.text) for message in messages),
@@ -70,21 +77,24 @@ class RecordingModel:
         try:
             answer = self._model.answer(messages, sampling)
         except ModelError as error:
-            self._note(replace(asked, error=str(error)))
+            usage = getattr(error, "usage", None)
+            failed = replace(asked, error=str(error))
+            self._note(failed if usage is None else _spent(failed, usage))
             raise
-        self._note(
-            replace(
-                asked,
-                answer=answer.text,
-                requests=answer.usage.requests,
-                input_tokens=answer.usage.input_tokens,
-                output_tokens=answer.usage.output_tokens,
-                cost=answer.usage.cost,
-                cached=answer.cached,
-            )
-        )
+        answered = replace(asked, answer=answer.text, cached=answer.cached)
+        self._note(_spent(answered, answer.usage))
         return answer
 
     def _note(self, prompt: PromptRecord) -> None:
         with self._recording.turn:
             self._recording.journal.records.add_prompt(prompt)
+
+
+def _spent(prompt: PromptRecord, usage: "Usage") -> PromptRecord:
+    return replace(
+        prompt,
+        requests=usage.requests,
+        input_tokens=usage.input_tokens,
+        output_tokens=usage.output_tokens,
+        cost=usage.cost,
+    )

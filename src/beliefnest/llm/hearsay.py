@@ -1,0 +1,150 @@
+"""Claims that a model reads out of what somebody said."""
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import msgspec
+
+from beliefnest.errors import BeliefNestError
+from beliefnest.files import decode_json
+from beliefnest.llm.failures import UnusableAnswerError, excerpt
+from beliefnest.llm.messages import Answer, Message, Model, Sampling
+from beliefnest.world.claims import Claim, claims_from_plain
+from beliefnest.world.nameable import Nameable
+from beliefnest.world.values import Position
+
+__all__ = ["ClaimsFromModel", "claims_from_model"]
+
+_FENCED = re.compile(r"\s*```(?:json)?[ \t]*\n(.*)\n[ \t]*```\s*", re.DOTALL)
+_MOST = 8
+"""Claims in one utterance; more is no reading of it."""
+
+_SYSTEM = """\
+You read what somebody in a block world has said, and list what it states as fact about the world.
+
+Answer with one JSON object and nothing else: {"claims": [...]}. Each claim is one of
+{"kind": "located", "item": NAME, "place": [x, y, z]}: that item is in the container there
+{"kind": "absent", "item": NAME, "place": [x, y, z]}: that item is not in the container there
+{"kind": "position", "agent": NAME, "place": [x, y, z]}: that agent is there
+{"kind": "block", "state": "NAME[PROPERTY=VALUE]", "place": [x, y, z]}: the block there is so
+
+Take names and positions from the lists. Whether it is true does not matter. Questions, wishes, \
+orders, plans, guesses and what others are said to think are no claims. Where it is not clear what \
+is meant, claim nothing. If nothing is claimed, answer {"claims": []}.\
+"""
+
+
+class _Found(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    claims: list[dict[str, Any]]
+
+
+def _as_it_is(model: Model) -> Model:
+    return model
+
+
+@dataclass(frozen=True, slots=True)
+class ClaimsFromModel:
+    """Asks a model what a text claims; made by `claims_from_model`.
+
+    Attributes:
+        model: Who is asked.
+        sampling: How its answers are drawn.
+        wrap: Put around the model for each text; what it is given refuses nonsense.
+    """
+
+    model: Model
+    sampling: Sampling = field(default_factory=Sampling)
+    wrap: Callable[[Model], Model] = _as_it_is
+
+    @property
+    def name(self) -> str:
+        """Name of the model."""
+        return self.model.name
+
+    def through(self, wrap: Callable[[Model], Model]) -> "ClaimsFromModel":
+        """The same, asking through what `wrap` puts around the model."""
+        return replace(self, wrap=wrap)
+
+    def __call__(self, text: str, speaker: str, nameable: Nameable) -> tuple[Claim, ...]:
+        """What the text claims.
+
+        Raises:
+            ModelError: The model failed, or answered something else than claims about
+                this world.
+        """
+        model = self.wrap(_Strict(self.model, nameable))
+        question = (
+            Message("system", _SYSTEM),
+            Message("user", _question(text, speaker, nameable)),
+        )
+        return _claims_in(model.answer(question, self.sampling).text, nameable)
+
+
+def claims_from_model(model: Model, sampling: Sampling | None = None) -> ClaimsFromModel:
+    """A hook for `Nest(..., claims_from=...)` that asks a model.
+
+    What it is asked and answers is kept in the run (`nest.prompts()`). Where it fails or
+    answers nonsense, that is kept instead, and the text claims nothing.
+
+    Args:
+        model: As `open_model` gives, with its limits and cache.
+        sampling: How answers are drawn; None: the likeliest.
+    """
+    return ClaimsFromModel(model, sampling or Sampling())
+
+
+@dataclass(frozen=True, slots=True)
+class _Strict:
+    """A model all of whose answers are claims about a world."""
+
+    model: Model
+    nameable: Nameable
+
+    @property
+    def name(self) -> str:
+        return self.model.name
+
+    def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
+        answer = self.model.answer(messages, sampling)
+        try:
+            _claims_in(answer.text, self.nameable)
+        except (BeliefNestError, msgspec.MsgspecError) as fault:
+            raise UnusableAnswerError(
+                f"{self.name} gave no claims: {fault}; it answered: {excerpt(answer.text)}",
+                answer.usage,
+            ) from fault
+        return answer
+
+
+def _claims_in(text: str, nameable: Nameable) -> tuple[Claim, ...]:
+    fenced = _FENCED.fullmatch(text)
+    found = decode_json(text if fenced is None else fenced[1], _Found)
+    if len(found.claims) > _MOST:
+        raise msgspec.ValidationError(f"{len(found.claims)} claims are more than {_MOST}")
+    claims = claims_from_plain(found.claims)
+    for claim in claims:
+        claim.check(nameable.box, nameable.agents)
+    return tuple(dict.fromkeys(claims))
+
+
+def _question(text: str, speaker: str, nameable: Nameable) -> str:
+    def listed(lines: Iterable[str]) -> str:
+        return "\n".join(lines) or "none"
+
+    def at(place: Position) -> str:
+        return f"[{', '.join(map(str, place))}]"
+
+    parts = {
+        "Agents": ", ".join(nameable.agents),
+        "Items": ", ".join(nameable.items) or "none",
+        "Containers": listed(f"{at(p)}: {name}" for p, name in nameable.containers.items()),
+        "Doors and switches": listed(f"{at(p)}: {block}" for p, block in nameable.doors.items()),
+        "Places": listed(f"{at(p)}: {name}" for name, p in nameable.places.items()),
+        "Coordinates": f"from {at(nameable.box.low)} to {at(nameable.box.high)}",
+    }
+    lists = "\n\n".join(f"{title}:\n{body}" for title, body in parts.items())
+    # As JSON, so that nothing that is said can pass for a part of the question.
+    said = msgspec.json.encode(text).decode()
+    return f"{lists}\n\n{speaker} said:\n{said}"

@@ -1,0 +1,147 @@
+"""Claims read out of utterances that carry none, put into frames before these are recorded.
+
+What was found stands in the utterance's event from then on, beside who found it
+(`claims_from`), so that whatever reads or replays a run asks nobody again.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any, Protocol
+
+import numpy as np
+
+from beliefnest.belief.node_view import NodeView
+from beliefnest.nest.past.history import History
+from beliefnest.nest.past.setting import Setting
+from beliefnest.prompts.text import block_name
+from beliefnest.timeline.journal import TimelineKey
+from beliefnest.world.claims import Claim, with_claims
+from beliefnest.world.doors import is_door
+from beliefnest.world.frames import Frame
+from beliefnest.world.nameable import Nameable
+from beliefnest.world.values import Event, EventKind, Position
+
+__all__ = ["ClaimReader", "Hearsay", "has_unread", "recalled"]
+
+Path = tuple[str, ...]
+
+_SWITCHES = ("_button", "lever")
+
+
+class ClaimReader(Protocol):
+    """Who reads claims out of text."""
+
+    @property
+    def name(self) -> str:
+        """What is recorded beside the claims it finds."""
+
+    def read(
+        self, path: Path, tick: int, text: str, speaker: str, nameable: Nameable
+    ) -> Iterable[Claim]:
+        """What a text claims that was uttered in the simulator `path` at a tick."""
+
+
+class Hearsay:
+    """Completes the frames of a nest.
+
+    Args:
+        reader: Who reads the texts.
+        setting: What the nest started from.
+        history: What it has become.
+    """
+
+    def __init__(self, reader: ClaimReader, setting: Setting, history: History) -> None:
+        self._reader = reader
+        self._setting = setting
+        self._history = history
+
+    def completed(self, frame: Frame, key: TimelineKey) -> Frame:
+        """The frame with what its utterances claim, where they do not say so themselves.
+
+        All that happened before it has to be recorded: that decides what can be named.
+
+        Raises:
+            InputError: What the reader gave is no claim, or does not fit the world.
+        """
+        seen = self._history.reading(key, key.path)
+        nameable = _nameable(self._setting, self._history, seen)
+        events = tuple(
+            self._read(event, frame.tick, key, nameable) if _is_unread(event) else event
+            for event in frame.events
+        )
+        return replace(frame, events=events)
+
+    def _read(self, event: Event, tick: int, key: TimelineKey, nameable: Nameable) -> Event:
+        speaker, text = str(event.actor), str(event.detail["text"])
+        claims = tuple(self._reader.read(key.path, tick, text, speaker, nameable))
+        if not claims:
+            return event
+        found = with_claims(event.detail, claims, nameable.box, nameable.agents)
+        return replace(event, detail={**found, "claims_from": self._reader.name})
+
+
+def has_unread(frame: Frame) -> bool:
+    """Whether something was said in a frame of which it is not known what it claims."""
+    return any(map(_is_unread, frame.events))
+
+
+def recalled(frame: Frame, recorded: Frame | None) -> Frame:
+    """A frame that came about again, with what was once read out of the same utterances."""
+    if recorded is None or not has_unread(frame):
+        return frame
+    known = [event for event in recorded.events if "claims_from" in event.detail]
+    events = []
+    for event in frame.events:
+        same = next((k for k in known if _is_unread(event) and _bare(k) == _bare(event)), None)
+        if same is not None:
+            known.remove(same)
+        events.append(event if same is None else same)
+    return replace(frame, events=tuple(events))
+
+
+def _is_unread(event: Event) -> bool:
+    return event.kind is EventKind.CHAT and "claims" not in event.detail
+
+
+def _bare(event: Event) -> tuple[object, ...]:
+    """An utterance without what it claims."""
+    detail: Mapping[str, Any] = event.detail
+    return event.kind, event.actor, detail["text"], detail.get("to")
+
+
+def _nameable(setting: Setting, history: History, seen: NodeView) -> Nameable:
+    start, registry = setting.snapshot, history.context.registry
+    known = {cell: registry.text(state) for cell, state in _fittings(history, seen).items()}
+    containers = {
+        at: setting.labels.get(at, block_name(text))
+        for at, text in known.items()
+        if registry.is_container(block_name(text))
+    }
+    holders: list[Iterable[str]] = [*start.containers.values()]
+    holders += [agent.inventory for agent in start.agents.values()]
+    holders += [content.items for content in seen.containers.values()]
+    holders += [agent.inventory for agent in seen.agents.values()]
+    holders.append(item.name for item in (*start.items.values(), *seen.items.values()))
+    return Nameable(
+        box=start.box,
+        agents=history.context.agents,
+        items=tuple(sorted({name for names in holders for name in names})),
+        containers=containers,
+        doors={at: text for at, text in known.items() if at not in containers},
+        places=dict(setting.places),
+    )
+
+
+def _fittings(history: History, seen: NodeView) -> dict[Position, int]:
+    """The containers, doors and switches of a simulator, as block states."""
+    registry, blocks = history.context.registry, seen.blocks
+    states = []
+    for state in np.unique(blocks):
+        name = registry.name(int(state)) if state >= 0 else ""
+        if name and (registry.is_container(name) or is_door(name) or name.endswith(_SWITCHES)):
+            states.append(state)
+    low = history.context.box.low
+    return {
+        (int(x) + low[0], int(y) + low[1], int(z) + low[2]): int(blocks[x, y, z])
+        for x, y, z in np.argwhere(np.isin(blocks, states))
+    }
