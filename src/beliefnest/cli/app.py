@@ -109,6 +109,10 @@ def run(
         int,
         typer.Option(help="Answers asked for at most; one without a working program is sent back."),
     ] = 3,
+    claims_from: Annotated[
+        str | None,
+        typer.Option(help="A model that reads what is said for claims; nobody if none."),
+    ] = None,
     json: Json = False,
 ) -> int:
     """Play a scenario, follow the beliefs, ask the model, and say whether all is as expected."""
@@ -127,6 +131,7 @@ def run(
             seed=seed,
             as_json=json,
             asking=ModelOptions(cache, answers, limits, attempts, temperature),
+            claims_from=claims_from,
         )
     )
 

@@ -27,6 +27,7 @@ from beliefnest.errors import InputError, ModelError, ScenarioError
 from beliefnest.llm.asking import NoUsableProgramError
 from beliefnest.llm.budget import Budget, RunLimits
 from beliefnest.llm.cache import CacheMode
+from beliefnest.llm.hearsay import claims_from_model
 from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.llm.resolve import Connection, open_model, resolve_model
 from beliefnest.nest.face.nest import Nest
@@ -35,6 +36,7 @@ from beliefnest.scenarios.outcome import Outcome
 from beliefnest.scenarios.running import Asking, run_scenario
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.world.nameable import ClaimsFrom
 
 __all__ = ["ModelOptions", "RunOptions", "run_scenarios"]
 
@@ -79,6 +81,7 @@ class RunOptions:
         seed: Drives every random number; the second repeat has the next one.
         as_json: Whether to print the report as JSON instead of a table.
         asking: How models are asked.
+        claims_from: Name of the model that reads claims out of what is said; None: nobody.
     """
 
     scenario: str
@@ -90,6 +93,7 @@ class RunOptions:
     seed: int
     as_json: bool
     asking: ModelOptions
+    claims_from: str | None = None
 
     @property
     def settings(self) -> dict[str, object]:
@@ -102,7 +106,14 @@ class RunOptions:
             "seed": self.seed,
             "attempts": self.asking.attempts,
             "temperature": self.asking.temperature,
+            **({} if self.claims_from is None else {"claims_from": self.claims_from}),
         }
+
+    @property
+    def named_models(self) -> tuple[str, ...]:
+        """The names of all models that may be asked, each once."""
+        more = () if self.claims_from is None else (self.claims_from,)
+        return tuple(dict.fromkeys((*self.models, *more)))
 
 
 def run_scenarios(options: RunOptions) -> int:
@@ -115,7 +126,7 @@ def run_scenarios(options: RunOptions) -> int:
     scenarios = _scenarios(options)
     check_world(options.world)
     _check_numbers(options)
-    for name in options.models:
+    for name in options.named_models:
         resolve_model(name, os.environ)
     first = scenarios[0]
     settings = options.settings
@@ -162,7 +173,9 @@ class _Run:
             cache_mode=options.asking.cache,
             record=folder.exchanges,
         )
-        self._models = {name: open_model(name, os.environ, connection) for name in options.models}
+        self._models = {
+            name: open_model(name, os.environ, connection) for name in options.named_models
+        }
         self.outcomes: list[Outcome] = []
         self.pictures: list[Condition] = []
         self.results: list[dict[str, Any]] = []
@@ -179,7 +192,8 @@ class _Run:
         place.begin()
         try:
             model = self._models[cell.model]
-            outcome, picture = _run(cell, place, model, self._options, worlds)
+            hook = self._hook(cell.seed)
+            outcome, picture = _run(cell, place, model, hook, self._options, worlds)
         except ModelError as error:
             self.failures.append(
                 {
@@ -198,6 +212,14 @@ class _Run:
         written = place.result()
         assert written is not None
         self.results.append(written)
+
+    def _hook(self, seed: int) -> ClaimsFrom | None:
+        """What reads claims out of what is said, if anything does."""
+        name = self._options.claims_from
+        if name is None:
+            return None
+        temperature = self._options.asking.temperature
+        return claims_from_model(self._models[name], Sampling(temperature, seed))
 
 
 def _scenarios(options: RunOptions) -> tuple[Scenario, ...]:
@@ -238,14 +260,21 @@ def _check_numbers(options: RunOptions) -> None:
 
 
 def _run(
-    cell: Cell, place: ConditionFolder, model: Model, options: RunOptions, worlds: Worlds
+    cell: Cell,
+    place: ConditionFolder,
+    model: Model,
+    claims_from: ClaimsFrom | None,
+    options: RunOptions,
+    worlds: Worlds,
 ) -> tuple[Outcome, Condition]:
     scenario = cell.scenario
     asking = Asking(options.asking.attempts, Sampling(options.asking.temperature, cell.seed))
     started = time.perf_counter()
     with (
         progress_on(cell.title) as on_progress,
-        Nest.open(scenario, options.world, place.store, cell.seed, worlds) as nest,
+        Nest.open(
+            scenario, options.world, place.store, cell.seed, worlds, claims_from=claims_from
+        ) as nest,
     ):
         outcome = run_scenario(nest, scenario, model, cell.seed, started, on_progress, asking)
         for number, probe in enumerate(outcome.probes, start=1):

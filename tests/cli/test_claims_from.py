@@ -1,0 +1,59 @@
+"""`beliefnest run --claims-from`: a model reads what is said in a scenario."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+import beliefnest as bn
+from beliefnest.cli.app import run_command_line
+
+ROOM = """\
+name: room
+box: [[0, 0, 0], [6, 3, 6]]
+blocks:
+  - {block: stone, fill: [[0, 0, 0], [6, 0, 6]]}
+containers:
+  - {label: box, at: [3, 1, 3]}
+agents:
+  ann: {position: [1.5, 1, 1.5]}
+  bob: {position: [2.5, 1, 1.5]}
+perception: {testimony: accept}
+script:
+  - {agent: bob, program: "await say(bot, 'An apple is in the box.')"}
+expectations:
+  - {path: /ann, container: [3, 1, 3], items: {apple: 1}}
+"""
+FOUND = {"claims": [{"kind": "located", "item": "apple", "place": [3, 1, 3]}]}
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("room.yaml").write_text(ROOM, encoding="utf-8")
+    Path("found.json").write_text(json.dumps([json.dumps(FOUND)]), encoding="utf-8")
+
+
+def test_what_a_model_reads_is_believed_and_recorded(capsys: pytest.CaptureFixture[str]) -> None:
+    run = ["run", "room.yaml", "--world", "scripted", "--out"]
+    assert run_command_line([*run, "without"]) == 1
+    assert run_command_line([*run, "with", "--claims-from", "scripted:found.json"]) == 0
+    capsys.readouterr()
+    settings = [
+        json.loads(Path(out, "run.json").read_text())["settings"] for out in ("without", "with")
+    ]
+    assert [each.get("claims_from") for each in settings] == [None, "scripted:found.json"]
+    with bn.Nest.read("with/run/run.bn") as recorded:
+        (told,) = recorded.claims()
+        assert told.claims_from == "scripted:found.json"
+        (asked,) = recorded.prompts()
+        assert asked.detail["speaker"] == "bob"
+        assert "[3, 1, 3]: box" in asked.messages[1][1]
+
+
+def test_a_model_that_is_not_there_is_told_before_anything_is_run(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert run_command_line(["run", "room.yaml", "--claims-from", "openay:x", "--out", "r"]) != 0
+    assert "no model 'openay:x'; did you mean openai" in capsys.readouterr().err
+    assert not Path("r").exists()
