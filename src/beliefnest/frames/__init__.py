@@ -1,0 +1,12 @@
+"""Runs and studies as tables of pandas (the extra `study`); all join on `cell`."""
+
+from beliefnest.frames.tables import (
+    beliefs_df,
+    cells_df,
+    claims_df,
+    events_df,
+    probes_df,
+    requests_df,
+)
+
+__all__ = ["beliefs_df", "cells_df", "claims_df", "events_df", "probes_df", "requests_df"]

@@ -1,0 +1,91 @@
+"""Where tables come from: run files, folders of runs, folders of studies."""
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from beliefnest.errors import InputError
+from beliefnest.files import read_regular_text
+from beliefnest.studies.result import StudyResult
+
+__all__ = ["Recorded", "Source", "cells_of", "study_of"]
+
+Source = str | Path | StudyResult
+"""A run file, the folder of a run, the folder of a study, or a study's result."""
+
+_RUN_FILE = "run.bn"
+_REPORT = "run.json"
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """One cell: a scenario under one condition, played once.
+
+    Attributes:
+        cell: Its id: in a study the name of the cell, in a run's folder the folder of the
+            condition in it, else the name of the run file.
+        about: What it was and what came of it, as plain values; empty where only a run file is.
+        file: The run file; None: nothing was recorded.
+    """
+
+    cell: str
+    about: Mapping[str, Any]
+    file: Path | None
+
+
+def study_of(source: Source) -> StudyResult | None:
+    """The study that a source is; None: it is none."""
+    if isinstance(source, StudyResult):
+        return source
+    return StudyResult.read(source) if (Path(source) / "cells").is_dir() else None
+
+
+def cells_of(source: Source) -> Iterator[Recorded]:
+    """The cells of a source, in order.
+
+    Raises:
+        InputError: There is no run and no study.
+    """
+    study = study_of(source)
+    if study is not None:
+        yield from _cells_of_study(study)
+        return
+    path = Path(source) if not isinstance(source, StudyResult) else source.folder.path
+    if path.is_file():
+        yield Recorded(path.stem, {}, path)
+        return
+    report = _report(path)
+    known = {Path(run["run_dir"]).absolute(): run for run in report.get("runs", [])}
+    files = sorted(path.rglob(_RUN_FILE))
+    if not files:
+        raise InputError(f"there is no run at {path}: no {_RUN_FILE}, and it is no study's folder")
+    for file in files:
+        relative = file.parent.relative_to(path).as_posix()
+        about = known.get(file.parent.absolute(), {})
+        named = {"scenario": report.get("scenario"), **about} if about else {}
+        yield Recorded(relative, named, file)
+
+
+def _cells_of_study(study: StudyResult) -> Iterator[Recorded]:
+    folder = study.folder
+    for planned in study.plan["cells"]:
+        found = folder.cell(planned["name"])
+        if found is None:
+            continue
+        run = found.get("run", "")
+        file = folder.path / run if run else None
+        about = {**planned["key"], "seed": planned["seed"], **found}
+        yield Recorded(planned["name"], about, file)
+
+
+def _report(path: Path) -> dict[str, Any]:
+    file = path / _REPORT
+    if not file.is_file():
+        return {}
+    try:
+        content = json.loads(read_regular_text(file))
+    except (OSError, ValueError) as error:
+        raise InputError(f"{file} cannot be read: {error}") from None
+    return content if isinstance(content, dict) else {}

@@ -1,0 +1,226 @@
+"""What runs and studies hold, as tables of pandas, with ids to join them on."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from beliefnest.belief.plain import belief_json
+from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.frames.sources import Recorded, Source, cells_of
+from beliefnest.nest.face.recorded import RecordedNest
+from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.tables import entry_rows, prompt_row
+from beliefnest.world.frames import Frame
+from beliefnest.world.paths import path_text
+from beliefnest.world.registry import Registry
+
+if TYPE_CHECKING:
+    import pandas
+
+__all__ = ["beliefs_df", "cells_df", "claims_df", "events_df", "probes_df", "requests_df"]
+
+Row = dict[str, Any]
+
+
+def cells_df(source: Source) -> "pandas.DataFrame":
+    """One row for each cell: `cell`, what it was, `ok`, `error`, `ticks`, `probes`, `right`, `run`.
+
+    Args:
+        source: A run file, the folder of a run or a study, or a study's result.
+
+    Raises:
+        InputError: There is no run and no study.
+        UnknownNameError: pandas is not installed.
+    """
+    return _frame((_cell_row(each) for each in cells_of(source)), ["cell"])
+
+
+def probes_df(source: Source) -> "pandas.DataFrame":
+    """One row for each probe: `cell`, `probe` (as requests and branches call it), `ok` and more.
+
+    Arguments and errors as for `cells_df`; a run file alone knows of no probes.
+    """
+    rows = (
+        {
+            "cell": each.cell,
+            "probe": f"probe {number}",
+            **{key: _plain(value) for key, value in probe.items() if key != "run_dir"},
+        }
+        for each in cells_of(source)
+        for number, probe in enumerate(each.about.get("probes", []), start=1)
+    )
+    return _frame(rows, ["cell", "probe"])
+
+
+def requests_df(source: Source) -> "pandas.DataFrame":
+    """One row for each request to a model: `cell`, `request`, `probe`, `messages`, `answer`.
+
+    Arguments and errors as for `cells_df`; of a study, cells that were recorded.
+    """
+    return _frame(_recorded(source, _requests), ["cell", "request"])
+
+
+def events_df(source: Source) -> "pandas.DataFrame":
+    """One row for each event: `cell`, `path`, `branch`, `entry`, `number`, `tick`, `kind`, `actor`.
+
+    The first five tell it from all others. Arguments and errors as for `requests_df`.
+    """
+    return _frame(_recorded(source, _events), ["cell", "path", "branch", "entry", "number"])
+
+
+def claims_df(source: Source, paths: Sequence[str] | None = None) -> "pandas.DataFrame":
+    """One row for each claim in the real world and each belief: whether it was taken up, and why.
+
+    Args:
+        source: As for `requests_df`.
+        paths: Beliefs; None: that of each agent.
+
+    Raises:
+        PathError: A path is malformed or names an unknown agent.
+        InputError: There is no run and no study.
+        UnknownNameError: pandas is not installed.
+    """
+    return _frame(
+        _recorded(source, lambda journal: _claims(journal, paths)), ["cell", "claim", "path"]
+    )
+
+
+def beliefs_df(source: Source, paths: Sequence[str]) -> "pandas.DataFrame":
+    """One row for each container and agent that a belief knows of, at each tick with a change.
+
+    Args:
+        source: As for `requests_df`.
+        paths: Belief paths; `/` is the real world.
+
+    Raises:
+        PathError: A path is malformed or names an unknown agent.
+        InputError: There is no run and no study.
+        UnknownNameError: pandas is not installed.
+    """
+    return _frame(
+        _recorded(source, lambda journal: _beliefs(journal, paths)), ["cell", "path", "tick"]
+    )
+
+
+def _cell_row(recorded: Recorded) -> Row:
+    about = recorded.about
+    probes = about.get("probes", [])
+    usages = [probe["usage"] for probe in probes]
+    variation = about.get("variation", {})
+    kept = ("scenario", "condition", "model", "template", "repeat", "seed", "error", "ticks")
+    return {
+        "cell": recorded.cell,
+        **{key: about.get(key) for key in kept},
+        **{key: _plain(value) for key, value in variation.items()},
+        "probes": len(probes),
+        "right": sum(probe["ok"] is True for probe in probes),
+        "tokens": sum(each["input_tokens"] + each["output_tokens"] for each in usages),
+        "run": None if recorded.file is None else str(recorded.file),
+    }
+
+
+def _recorded(source: Source, rows: Any) -> Iterator[Row]:
+    """The rows of every recorded cell, each read at one moment."""
+    for each in cells_of(source):
+        if each.file is None:
+            continue
+        if not Path(each.file).is_file():
+            raise InputError(f"the run of the cell {each.cell} is not at {each.file} any more")
+        with SqliteJournal.read(each.file) as journal, journal.unchanging():
+            for row in rows(journal):
+                yield {"cell": each.cell, **row}
+
+
+def _requests(journal: SqliteJournal) -> Iterator[Row]:
+    for number, prompt in enumerate(journal.records.prompts(), start=1):
+        _, row = prompt_row(prompt)
+        detail = row.pop("detail")
+        plain = {key: _plain(value) for key, value in row.items()}
+        yield {
+            "request": number,
+            "probe": detail.get("probe"),
+            "task": detail.get("task"),
+            "branch": prompt.branch,
+            **plain,
+        }
+
+
+def _events(journal: SqliteJournal) -> Iterator[Row]:
+    registry = Registry.load()
+    for info in journal.timelines():
+        for number, entry in enumerate(journal.entries(info.key, 0, info.entries)):
+            if isinstance(entry, Frame) and entry.events:
+                for table, row in entry_rows(info.key, number, entry, registry):
+                    if table == "events":
+                        yield {key: _plain(value) for key, value in row.items()}
+
+
+def _claims(journal: SqliteJournal, paths: Sequence[str] | None) -> Iterator[Row]:
+    nest = RecordedNest.of(journal)
+    asked = [path_text((name,)) for name in nest.agents] if paths is None else paths
+    for number, told in enumerate(nest.claims(), start=1):
+        for path in asked:
+            yield {
+                "claim": number,
+                "tick": told.tick,
+                "speaker": told.speaker,
+                "addressee": told.addressee,
+                "text": told.text,
+                **{key: _plain(value) for key, value in _claim(told.claim.plain()).items()},
+                "false": told.false,
+                "lie": told.lie,
+                "path": path,
+                "taken_up": told.taken_up(path),
+                "why": told.why(path),
+            }
+
+
+def _claim(plain: Mapping[str, Any]) -> Row:
+    return {key: plain.get(key) for key in ("kind", "place", "item", "agent", "state")}
+
+
+def _beliefs(journal: SqliteJournal, paths: Sequence[str]) -> Iterator[Row]:
+    nest = RecordedNest.of(journal)
+    for path in paths:
+        for moment in nest.over_time(path):
+            state: Any = belief_json(moment.state)
+            place = {
+                "path": path,
+                "timeline_path": path_text(moment.timeline.path),
+                "timeline_branch": moment.timeline.branch,
+                "tick": moment.tick,
+            }
+            for kind, key in (("container", "containers"), ("agent", "agents")):
+                for subject, held in state[key].items():
+                    yield {**place, "kind": kind, "subject": subject, **_held(held)}
+
+
+def _held(held: Mapping[str, Any]) -> Row:
+    items = held.get("items", held.get("inventory"))
+    return {
+        "items": _plain(items),
+        "complete": held.get("complete", held.get("inventory_complete")),
+        "position": _plain(held.get("position")),
+        "current": held["current"],
+        "observed_at": held["observed_at"],
+        "source": held["source"],
+    }
+
+
+def _plain(value: Any) -> Any:
+    """A value as one cell of a table: structures as JSON."""
+    if isinstance(value, list | dict | tuple):
+        return json.dumps(value, sort_keys=True)
+    return value
+
+
+def _frame(rows: Iterator[Row], ids: Sequence[str]) -> "pandas.DataFrame":
+    try:
+        import pandas
+    except ModuleNotFoundError:
+        raise UnknownNameError('tables need pandas: pip install "beliefnest[study]"') from None
+    found = list(rows)
+    columns = list(dict.fromkeys([*ids, *(key for row in found for key in row)]))
+    # Whole numbers stay whole where some are missing.
+    return pandas.DataFrame.from_records(found, columns=columns).convert_dtypes()

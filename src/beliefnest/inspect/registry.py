@@ -1,0 +1,99 @@
+"""Everything that `inspect` finds under `beliefnest/`: tasks, and our offline model."""
+
+from typing import Any
+
+from inspect_ai import Task, task
+from inspect_ai.model import (
+    ChatMessage,
+    GenerateConfig,
+    ModelAPI,
+    ModelOutput,
+    modelapi,
+)
+from inspect_ai.tool import ToolChoice, ToolInfo
+
+from beliefnest.errors import UnknownNameError
+from beliefnest.inspect.stories import suite_task
+from beliefnest.inspect.tasks import belief_prompt, in_the_belief, scenario_task
+from beliefnest.llm.messages import Message, Sampling
+from beliefnest.llm.offline import OfflineModel
+from beliefnest.scenarios.loading import builtin_names
+
+__all__ = ["belief_prompt", "hi_tom", "in_the_belief", "scenario", "stories"]
+
+
+@task
+def scenario(
+    file: str,
+    conditions: int | list[int] | None = None,
+    variations: int | None = None,
+    world: str = "embedded",
+    seed: int = 0,
+) -> Task:
+    """One's own scenario; arguments as for the built-in ones, and `file`, its path."""
+    return scenario_task(file, conditions=conditions, variations=variations, world=world, seed=seed)
+
+
+@task
+def hi_tom(file: str, stories: int | None = None) -> Task:
+    """The stories of Hi-ToM's form in `file`, the first so many of them."""
+    return suite_task("hi-tom", file, stories)
+
+
+@task
+def stories(file: str, stories: int | None = None) -> Task:
+    """One's own stories, JSON lines in `file`, the first so many of them."""
+    return suite_task("stories", file, stories)
+
+
+def _register(name: str) -> None:
+    """Make a task of a built-in scenario; a hyphen of its name becomes an underline."""
+
+    @task(name=name.replace("-", "_"))
+    def builtin(
+        conditions: int | list[int] | None = None,
+        variations: int | None = None,
+        world: str = "embedded",
+        seed: int = 0,
+    ) -> Task:
+        return scenario_task(
+            name, conditions=conditions, variations=variations, world=world, seed=seed
+        )
+
+
+for _name in builtin_names():
+    _register(_name)
+
+
+@modelapi(name="beliefnest")
+class OfflineAPI(ModelAPI):
+    """`beliefnest/offline`: our own model that needs no network and no key."""
+
+    def __init__(
+        self,
+        model_name: str,
+        base_url: str | None = None,
+        api_key: str | None = None,
+        config: GenerateConfig = GenerateConfig(),  # noqa: B008 - as Inspect's own providers
+        **model_args: Any,
+    ) -> None:
+        super().__init__(model_name, base_url, api_key, [], config)
+        if model_name.rpartition("/")[2] != "offline":
+            raise UnknownNameError(f"there is no model {model_name!r}; there is beliefnest/offline")
+        self._model = OfflineModel()
+
+    async def generate(
+        self,
+        input: list[ChatMessage],
+        tools: list[ToolInfo],
+        tool_choice: ToolChoice,
+        config: GenerateConfig,
+    ) -> ModelOutput:
+        """Answer a conversation; tools play no part."""
+        messages = [
+            Message(each.role, each.text)
+            for each in input
+            if each.role in ("system", "user", "assistant")
+        ]
+        answer = self._model.answer(messages, Sampling())
+        return ModelOutput.from_content("beliefnest/offline", answer.text)

@@ -1,0 +1,121 @@
+"""What a sample stands for: one request of one probe, asked and judged in a nest of its own."""
+
+import threading
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from beliefnest.bodies.worlds import Worlds
+from beliefnest.llm.messages import Answer, Message, Sampling
+from beliefnest.nest.face.nest import Nest
+from beliefnest.scenarios.content import Probe
+from beliefnest.scenarios.expected import Answers, Intends, Opens
+from beliefnest.scenarios.loading import read_document
+from beliefnest.scenarios.outcome import ProbeOutcome
+from beliefnest.scenarios.probing import Asking, run_probe
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.studies.variation import Variation
+from beliefnest.world.values import Position
+
+__all__ = ["Judged", "Stage", "requests_of"]
+
+_ONCE = Asking(attempts=1, keeps_unanswered=True)
+
+
+def requests_of(scenario: Scenario) -> list[Probe]:
+    """The probes of a scenario, one for each single request; those that expect nothing left out."""
+    found = []
+    for probe in scenario.probes:
+        told = tuple(each for each in probe.expect if not isinstance(each, Answers))
+        if told:
+            found.append(replace(probe, expect=told))
+        found += [replace(probe, expect=(question,)) for question in probe.questions]
+    return found
+
+
+@dataclass(frozen=True)
+class Judged:
+    """An answer that was judged.
+
+    Attributes:
+        outcome: What it came to.
+        grounds: What the belief that was asked holds of what is expected, and why, in lines.
+    """
+
+    outcome: ProbeOutcome
+    grounds: tuple[str, ...]
+
+
+@dataclass
+class _Listener:
+    """A model that notes what it is asked, and gives the answer that it was given."""
+
+    text: str
+    name: str = "inspect"
+    asked: list[tuple[Message, ...]] = field(default_factory=list)
+
+    def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
+        """The answer that it was given."""
+        self.asked.append(tuple(messages))
+        return Answer(self.text)
+
+
+class Stage:
+    """Plays scenarios, one at a time, in worlds that stay open; threads wait for each other."""
+
+    def __init__(self) -> None:
+        self._turn = threading.Lock()
+        # The process behind a world ends with the one that started it.
+        self._worlds = Worlds(0)
+
+    def prompt(self, sample: Mapping[str, Any]) -> tuple[Message, ...]:
+        """What a model is asked in a sample.
+
+        Args:
+            sample: The sample's metadata: scenario, condition, variation, world, seed, request.
+
+        Raises:
+            BeliefNestError: The scenario cannot be played.
+        """
+        listener = _Listener("")
+        self._run(sample, listener)
+        return listener.asked[0]
+
+    def judged(self, sample: Mapping[str, Any], answer: str) -> Judged:
+        """What an answer comes to: its program is run in the belief, or its words are judged.
+
+        Raises:
+            BeliefNestError: The scenario cannot be played.
+        """
+        return self._run(sample, _Listener(answer))
+
+    def _run(self, sample: Mapping[str, Any], listener: _Listener) -> Judged:
+        variation, number = Variation(sample["variation"]), sample["request"]
+        scenario = Scenario.varied(
+            read_document(sample["scenario"]),
+            sample["condition"],
+            variation.parameters,
+            variation.scene if variation.changes_scene else None,
+        )
+        probe, seed = requests_of(scenario)[number - 1], sample["seed"]
+        with (
+            self._turn,
+            Nest.open(scenario, sample["world"], None, seed, self._worlds) as nest,
+        ):
+            nest.play()
+            outcome = run_probe(nest, number, probe, listener, seed, _ONCE)
+            return Judged(outcome, tuple(_grounds(nest, probe)))
+
+
+def _grounds(nest: Nest, probe: Probe) -> list[str]:
+    belief = nest[probe.path]
+    places: list[Position] = [each.container for each in probe.expect if isinstance(each, Opens)]
+    for each in probe.expect:
+        if isinstance(each, Intends) and each.is_container:
+            x, y, z = each.place
+            places.append((int(x), int(y), int(z)))
+    return [
+        line
+        for place in dict.fromkeys(places)
+        for line in str(belief.explain(container=place)).splitlines()
+    ]

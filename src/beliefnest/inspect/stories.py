@@ -1,0 +1,120 @@
+"""Tasks of suites: stories in words, questions about who believes what, containers to choose."""
+
+from pathlib import Path
+
+from anyio.to_thread import run_sync
+from inspect_ai import Task
+from inspect_ai.dataset import MemoryDataset, Sample
+from inspect_ai.scorer import (
+    CORRECT,
+    INCORRECT,
+    Score,
+    Scorer,
+    Target,
+    accuracy,
+    grouped,
+    scorer,
+    stderr,
+)
+from inspect_ai.solver import TaskState, generate
+
+from beliefnest.errors import InputError
+from beliefnest.scenarios.questioning import parse_answer
+from beliefnest.scenarios.stories.data import Item, StoryItems, read_items
+from beliefnest.scenarios.stories.explaining import explain_answer
+from beliefnest.scenarios.stories.own import read_own
+from beliefnest.scenarios.stories.playing import PlayedStory
+
+__all__ = ["NOWHERE", "story_answer", "suite_task"]
+
+NOWHERE = "in none of them"
+"""The option that a thing is held to be in no container."""
+
+_READERS = {"hi-tom": read_items, "stories": read_own}
+
+
+def suite_task(suite: str, file: str, limit: int | None) -> Task:
+    """The task of a suite; each question is a sample.
+
+    Args:
+        suite: `hi-tom` or `stories`.
+        file: File of stories, questions and answers, as `beliefnest suite` takes it.
+        limit: Take no more stories than this; None: all.
+
+    Raises:
+        InputError: There is no such file, or it is of another form.
+    """
+    stories = _READERS[suite](Path(file))[:limit]
+    samples = [
+        _sample(suite, file, place, number, asked, item)
+        for place, asked in enumerate(stories)
+        for number, item in enumerate(asked.items)
+    ]
+    if not samples:
+        raise InputError(f"{file} has no questions")
+    return Task(
+        dataset=MemoryDataset(samples, name=suite), solver=generate(), scorer=story_answer()
+    )
+
+
+def _options(asked: StoryItems) -> list[str]:
+    return [*dict.fromkeys(place.container for place in asked.story.places), NOWHERE]
+
+
+def _sample(
+    suite: str, file: str, place: int, number: int, asked: StoryItems, item: Item
+) -> Sample:
+    lines = [line.text for line in asked.story.lines]
+    options = _options(asked)
+    prompt = "\n".join(
+        [
+            "Read the story and answer the question about it.",
+            "",
+            *lines,
+            "",
+            f"Question: {item.question.text}",
+            f"Options: {', '.join(options)}",
+            "",
+            "End with a line of its own: `Answer:` and one of the options.",
+        ]
+    )
+    return Sample(
+        input=prompt,
+        target=item.expected or NOWHERE,
+        choices=None,
+        id=f"{place + 1}-{number + 1}",
+        metadata={
+            "suite": suite,
+            "file": str(Path(file).absolute()),
+            "story": place,
+            "item": number,
+            "order": item.question.order,
+            "options": options,
+        },
+    )
+
+
+@scorer(metrics=[accuracy(), stderr(), grouped(accuracy(), "order", all=False)])
+def story_answer() -> Scorer:
+    """Compare the container with what is expected; tell what the nest holds, and why."""
+
+    async def score(state: TaskState, target: Target) -> Score:
+        answer, _ = parse_answer(state.output.completion, state.metadata["options"])
+        lines = await run_sync(_explanation, dict(state.metadata))
+        return Score(
+            value=CORRECT if answer == target.text else INCORRECT,
+            answer=answer,
+            explanation="\n".join(lines),
+        )
+
+    return score
+
+
+def _explanation(sample: dict[str, object]) -> tuple[str, ...]:
+    """What the nest of the story says to the question, and on what grounds."""
+    stories = _READERS[str(sample["suite"])](Path(str(sample["file"])))
+    asked = stories[int(str(sample["story"]))]
+    item = asked.items[int(str(sample["item"]))]
+    with PlayedStory.play(asked.story, asked=[item.question], knowing=asked.knowing) as played:
+        answer = played.answer(item.question)
+        return explain_answer(played, item.question, answer, item.expected or NOWHERE)

@@ -1,0 +1,147 @@
+"""Tasks of scenarios: samples, what a model is asked, and how its answer is scored."""
+
+import json
+from typing import Any
+
+from anyio.to_thread import run_sync
+from inspect_ai import Task
+from inspect_ai.dataset import MemoryDataset, Sample
+from inspect_ai.model import ChatMessage, ChatMessageSystem, ChatMessageUser
+from inspect_ai.scorer import (
+    CORRECT,
+    INCORRECT,
+    Score,
+    Scorer,
+    Target,
+    accuracy,
+    grouped,
+    scorer,
+    stderr,
+)
+from inspect_ai.solver import Generate, Solver, TaskState, generate, solver
+
+from beliefnest.errors import InputError
+from beliefnest.inspect.stage import Stage, requests_of
+from beliefnest.llm.messages import Message
+from beliefnest.scenarios.loading import read_document
+from beliefnest.scenarios.records import expected_json, probe_json
+from beliefnest.studies.design import Design
+from beliefnest.studies.plan import Cell, plan_cells
+
+__all__ = ["belief_prompt", "in_the_belief", "messages_of", "scenario_task"]
+
+_KEPT = ("intended", "opened", "arrived", "program", "ticks", "error", "log", "replies", "checks")
+
+
+def scenario_task(
+    scenario: str,
+    *,
+    conditions: int | list[int] | None,
+    variations: int | None,
+    world: str,
+    seed: int,
+) -> Task:
+    """The task of a scenario; each request of each probe of each of its cells is a sample.
+
+    Args:
+        scenario: Name of a built-in scenario, or path of a file.
+        conditions: Numbers of conditions; None: all.
+        variations: How many variations are drawn; None: the scenario as written.
+        world: Name of the world.
+        seed: Decides which variations are drawn, and with a cell about its seed.
+
+    Raises:
+        BeliefNestError: There is no such scenario, or an argument is wrong.
+    """
+    design = Design(
+        scenarios=(scenario,),
+        variations={} if variations is None else variations,
+        conditions=(conditions,) if isinstance(conditions, int) else _several(conditions),
+        world=world,
+        seed=seed,
+    )
+    plan = plan_cells(design, {scenario: read_document(scenario)})
+    samples = [sample for cell in plan.cells for sample in _samples(cell, scenario)]
+    if not samples:
+        why = plan.invalid[0].why if plan.invalid else "it has no probes with expectations"
+        raise InputError(f"{scenario} gives no samples: {why}")
+    return Task(
+        dataset=MemoryDataset(samples, name=scenario),
+        solver=[belief_prompt(), generate()],
+        scorer=in_the_belief(),
+    )
+
+
+def _several(numbers: list[int] | None) -> tuple[int, ...] | None:
+    return None if numbers is None else tuple(numbers)
+
+
+def _samples(cell: Cell, scenario: str) -> list[Sample]:
+    key = cell.key
+    found = []
+    for number, probe in enumerate(requests_of(cell.scenario), start=1):
+        expected = expected_json(probe.expect)
+        asks = probe.task if probe.asks_for_program else probe.questions[0].question
+        about: dict[str, Any] = {
+            "scenario": scenario,
+            "condition": key.condition,
+            "case": "as written" if key.condition is None else f"condition {key.condition}",
+            "variation": dict(key.variation),
+            "world": key.setting["world"],
+            "seed": key.seed,
+            "request": number,
+            "label": probe.label,
+            "path": probe.path,
+            "acts_in": probe.acts_in,
+            "agent": probe.agent,
+            "expected": expected,
+        }
+        target = json.dumps(expected, sort_keys=True)
+        name = f"{key.name}-{number}"
+        found.append(Sample(input=asks, target=target, id=name, metadata=about))
+    return found
+
+
+def messages_of(messages: tuple[Message, ...]) -> list[ChatMessage]:
+    """A conversation in Inspect's form."""
+    return [
+        ChatMessageSystem(content=each.text)
+        if each.role == "system"
+        else ChatMessageUser(content=each.text)
+        for each in messages
+    ]
+
+
+@solver
+def belief_prompt() -> Solver:
+    """Put what the believer is asked, rendered from its belief, in place of the messages."""
+    stage = Stage()
+
+    async def solve(state: TaskState, generate: Generate) -> TaskState:
+        messages = await run_sync(stage.prompt, state.metadata)
+        state.messages = messages_of(messages)
+        return state
+
+    return solve
+
+
+@scorer(metrics=[accuracy(), stderr(), grouped(accuracy(), "case", all=False)])
+def in_the_belief() -> Scorer:
+    """Run the answer's program in the belief it is meant for, or judge the answer's words."""
+    stage = Stage()
+
+    async def score(state: TaskState, target: Target) -> Score:
+        judged = await run_sync(stage.judged, state.metadata, state.output.completion)
+        outcome = judged.outcome
+        told = probe_json(outcome, "")
+        lines = [f"{outcome.outcome}: {outcome.why_not}" if outcome.why_not else outcome.outcome]
+        if judged.grounds:
+            lines += ["", f"What {outcome.probe.path} holds, and why:", *judged.grounds]
+        return Score(
+            value=CORRECT if outcome.ok else INCORRECT,
+            answer=outcome.program or state.output.completion,
+            explanation="\n".join(lines),
+            metadata={"outcome": outcome.outcome, **{key: told[key] for key in _KEPT}},
+        )
+
+    return score
