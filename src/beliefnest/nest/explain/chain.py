@@ -144,7 +144,10 @@ def _held_now(
     root, history = place.key.path, recording.history
     cells = cells_of(element, history.context.box)
     held = {}
-    (forest,) = history.steps(place.key, path, place.entries, place.entries, cells)
+    if cells:
+        (forest,) = history.steps(place.key, path, place.entries, place.entries, cells)
+    else:
+        forest = history.shared(place.key, path, place.entries)
     for depth in range(len(root), len(path) + 1):
         node = path[:depth]
         basis, current = _ground_of(recording, place, forest, node, element)

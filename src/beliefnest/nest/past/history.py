@@ -103,6 +103,10 @@ class History:
         count = self._journal.info(key).entries
         return NodeView(self._forest(key, path, count if position is None else position), path)
 
+    def shared(self, key: TimelineKey, path: Path, position: int) -> Forest:
+        """The forest behind `reading`; it goes on with whoever asks next, so read it at once."""
+        return self._forest(key, path, position)
+
     def steps(
         self, key: TimelineKey, path: Path, first: int, last: int, extra: Sequence[int] = ()
     ) -> Iterator[Forest]:
