@@ -4,9 +4,12 @@ import json
 from pathlib import Path
 
 import pytest
+from tests.llm.conftest import FakeOpenAI, fake
 
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
+
+__all__ = ["fake"]
 
 ROOM = """\
 name: room
@@ -49,6 +52,18 @@ def test_what_a_model_reads_is_believed_and_recorded(capsys: pytest.CaptureFixtu
         (asked,) = recorded.prompts()
         assert asked.detail["speaker"] == "bob"
         assert "[3, 1, 3]: box" in asked.messages[1][1]
+
+
+def test_what_reading_takes_counts_as_spent(
+    fake: FakeOpenAI, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("OPENAI_BASE_URL", fake.url)
+    monkeypatch.setenv("OPENAI_API_KEY", "sk-secret")
+    fake.will(fake.says("I see an apple."))
+    run = ["run", "room.yaml", "--world", "scripted", "--claims-from", "openai:gpt-4o-mini"]
+    assert run_command_line([*run, "--out", "r"]) == 1
+    (result,) = json.loads(Path("r", "run.json").read_text())["runs"]
+    assert (result["usage"]["requests"], result["usage"]["input_tokens"]) == (1, 120)
 
 
 def test_a_model_that_is_not_there_is_told_before_anything_is_run(

@@ -108,6 +108,15 @@ BAD = [
     ({"tick": 1, "items": {"1": {"name": "eggg", "count": 1, "position": [1, 1, 1]}}}, "eggg"),
     ({"tick": 1, "events": [{"kind": "dance", "actor": "sally"}]}, "no event 'dance'"),
     ({"tick": 1, "events": [{"kind": "chat"}]}, "no actor"),
+    (
+        {
+            "tick": 1,
+            "events": [
+                {"kind": "chat", "actor": "sally", "detail": {"text": "", "claims_from": "me"}}
+            ],
+        },
+        "'claims_from' without 'claims'",
+    ),
     ({"tick": 1, "events": [{"kind": "chat", "actor": "sally"}]}, "lacks the detail text"),
     ({"tick": 1, "events": [{"kind": "chat", "actor": "bob", "detail": {"text": ""}}]}, "'bob'"),
     (

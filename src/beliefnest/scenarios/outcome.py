@@ -1,7 +1,7 @@
 """What came of a scenario under one condition."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import Fault, ProgramResult
@@ -159,6 +159,7 @@ class Outcome:
         beliefs: Path to belief after the script, for every path the scenario names.
         expectations: One for each of the scenario's.
         probes: One for each of the scenario's.
+        reading: What it took to have what was said read for claims, if a model did that.
     """
 
     scenario: Scenario
@@ -169,6 +170,7 @@ class Outcome:
     beliefs: Mapping[str, State]
     expectations: tuple[ExpectationOutcome, ...]
     probes: tuple[ProbeOutcome, ...]
+    reading: Usage = field(default_factory=Usage)
 
     def __repr__(self) -> str:
         number = self.scenario.condition
@@ -185,8 +187,8 @@ class Outcome:
 
     @property
     def usage(self) -> Usage:
-        """What all answers of the model took."""
-        return sum((probe.usage for probe in self.probes), Usage())
+        """What all answers took."""
+        return sum((probe.usage for probe in self.probes), self.reading)
 
     @property
     def ok(self) -> bool:

@@ -3,7 +3,7 @@
 import time
 
 from beliefnest.belief import kernel
-from beliefnest.llm.messages import Model
+from beliefnest.llm.messages import Model, Usage
 from beliefnest.nest.face.nest import Nest, Progress
 from beliefnest.perception.rays import is_compiled
 from beliefnest.scenarios.expected import Believes, Judge
@@ -70,6 +70,7 @@ def run_scenario(
         beliefs=beliefs,
         expectations=expectations,
         probes=tuple(probes),
+        reading=_reading(nest),
     )
 
 
@@ -86,6 +87,13 @@ def _paths(scenario: Scenario) -> list[str]:
     ]
     paths = {parse_path(path, agents) for path in named}
     return [path_text(path) for path in sorted(paths, key=lambda p: (len(p), p)) if path]
+
+
+def _reading(nest: Nest) -> Usage:
+    """What it took to have what was said read for claims."""
+    asked = [each for each in nest.prompts() if "claims_from" in each.detail]
+    took = [Usage(a.requests, a.input_tokens, a.output_tokens, a.cost) for a in asked]
+    return sum(took, Usage())
 
 
 def _check_functions(scenario: Scenario) -> None:
