@@ -143,7 +143,9 @@ def _parameters(name: str, command: Any) -> Iterator[str]:
     for each in command.params:
         is_argument = each.param_type_name == "argument"
         label = each.name.upper() if is_argument else ", ".join([*each.opts, *each.secondary_opts])
-        default = "" if each.default in (None, (), []) or is_argument else f"`{each.default}`"
+        default = (
+            "" if each.default in (None, (), [], False) or is_argument else f"`{each.default}`"
+        )
         yield f"| `{label}` | {default} | {each.help or ''} |"
 
 
