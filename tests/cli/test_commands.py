@@ -210,10 +210,20 @@ def test_doctor_finds_everything_in_order(capsys: pytest.CaptureFixture[str]) ->
         "Node:",
         "bundle:",
         "sight:",
+        "kernels:",
         "world:",
         "model:",
     ]
     assert all(line.startswith("ok") for line in lines)
+
+
+def test_doctor_compiles_what_the_first_belief_would_wait_for(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert run_command_line(["doctor", "--warm"]) == 0
+    printed = capsys.readouterr()
+    assert "ok    kernels: compiled" in printed.out
+    assert "compiling" in printed.err
 
 
 def test_doctor_says_what_to_do_about_a_missing_bundle(

@@ -333,11 +333,16 @@ def reproduce(
 
 
 @app.command()
-def doctor(json: Json = False) -> int:
+def doctor(
+    warm: Annotated[
+        bool, typer.Option("--warm", help="Compile now what the first belief would wait for.")
+    ] = False,
+    json: Json = False,
+) -> int:
     """Check Node, the bundle, a world and a model; say what to do about what fails."""
     from beliefnest.cli.doctor import examine
 
-    return examine(as_json=json)
+    return examine(as_json=json, warm=warm)
 
 
 @app.command()

@@ -31,8 +31,15 @@ class Finding:
     detail: str
 
 
-def examine(*, as_json: bool) -> int:
-    """Print one line for each check; the exit status says whether all is well."""
+def examine(*, as_json: bool, warm: bool = False) -> int:
+    """Print one line for each check; the exit status says whether all is well.
+
+    Args:
+        as_json: Print one JSON array instead.
+        warm: Compile what is not compiled yet, so that no run waits for it.
+    """
+    if warm:
+        _one_belief()
     found = []
     for name, check in _CHECKS:
         finding = _find(name, check)
@@ -102,6 +109,25 @@ def _sight() -> str:
     return f"the line-of-sight kernel was ready in {time.perf_counter() - started:.1f} s"
 
 
+def _kernels() -> str:
+    from beliefnest.belief import kernel
+    from beliefnest.perception.rays import is_compiled
+
+    if is_compiled(kernel.fold):
+        return "compiled"
+    return "not compiled yet; the first belief will wait for it, or `beliefnest doctor --warm` now"
+
+
+def _one_belief() -> None:
+    from beliefnest.nest.face.nest import Nest
+    from beliefnest.world.scripted import ScriptedWorld
+
+    sys.stderr.write("compiling what beliefs are computed with (once, some 15 to 30 seconds)\n")
+    agents = {"ann": (0.5, 0.0, 0.5), "bob": (2.5, 0.0, 2.5)}
+    with Nest(ScriptedWorld(box=((0, 0, 0), (2, 2, 2)), agents=agents)) as nest:
+        nest["/ann/bob"].state.blocks.named(frozenset({"stone"}))
+
+
 def _world() -> str:
     from beliefnest.nest.face.nest import Nest
     from beliefnest.scenarios.scenario import Scenario
@@ -136,6 +162,7 @@ _CHECKS: tuple[tuple[str, Callable[[], str]], ...] = (
     ("Node", _node),
     ("bundle", _bundle),
     ("sight", _sight),
+    ("kernels", _kernels),
     ("world", _world),
     ("model", _model),
 )
