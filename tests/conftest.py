@@ -18,3 +18,6 @@ settings.register_profile(
     "nightly", max_examples=2000, deadline=None, suppress_health_check=_SLOW_TO_MAKE
 )
 settings.load_profile("nightly" if NIGHTLY else "default")
+
+# Tables are as wide as where there is no terminal, whoever runs the tests.
+os.environ.pop("COLUMNS", None)

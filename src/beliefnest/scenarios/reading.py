@@ -118,7 +118,8 @@ class _Composer(Composer):
             raise ComposerError(None, None, f"it {_TOO_MUCH}", mark)
         node = super().compose_node(parent, index)
         if isinstance(parent, MappingNode) and index is None and not isinstance(node, ScalarNode):
-            raise ComposerError(None, None, _NO_KEY, node.start_mark)
+            context = _FLOW[0] if parent.flow_style else None
+            raise ComposerError(context, None, _NO_KEY, node.start_mark)
         self._depth -= 1
         return node
 
