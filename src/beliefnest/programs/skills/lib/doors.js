@@ -30,14 +30,25 @@ function doorsBy (bot, target, { openDoors }) {
   }).sort((a, b) => length(a) - length(b) || a.x - b.x || a.z - b.z)
 }
 
-async function stepThrough (bot, far, near) {
+async function stepThrough (context, far, near) {
+  const { bot } = context
   const centre = far.offset(0.5, 0, 0.5)
   await bot.lookAt(centre.offset(0, bot.entity.eyeHeight, 0), true)
-  bot.setControlState('forward', true)
-  const arrived = () => bot.entity.position.xzDistanceTo(centre) < near
-  await until(arrived, STEP_TICKS)
-  bot.setControlState('forward', false)
-  return arrived()
+  let arrived = false
+  // Judged step by step: a busy machine takes many steps at once, and who looks after them is far beyond.
+  const stop = context.listen('physicsTick', () => {
+    if (bot.entity.position.xzDistanceTo(centre) >= near) return
+    arrived = true
+    bot.setControlState('forward', false)
+  })
+  try {
+    bot.setControlState('forward', true)
+    await until(() => arrived, STEP_TICKS)
+  } finally {
+    stop()
+    bot.setControlState('forward', false)
+  }
+  return arrived
 }
 
 /** Opens or shuts the door at a position, if it is not so and moves by hand; @returns {Promise<boolean>} whether it is so */
@@ -65,10 +76,10 @@ async function passDoor (context, position, { closeDoors }) {
     const goal = new goals.GoalBlock(near.x, near.y, near.z)
     if (!await isReachable(context, goal)) continue
     await bot.pathfinder.goto(goal)
-    if (!await bring(context, position, true) || !await stepThrough(bot, far, ARRIVED)) continue
+    if (!await bring(context, position, true) || !await stepThrough(context, far, ARRIVED)) continue
     if (closeDoors) {
       // Who still stands in the doorway would be stuck in the door.
-      await stepThrough(bot, far, CLEAR)
+      await stepThrough(context, far, CLEAR)
       await bring(context, position, false)
     }
     return true
