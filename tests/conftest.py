@@ -1,6 +1,7 @@
 """Profiles of the property tests: few examples by default, many at night."""
 
 import os
+import signal
 
 from hypothesis import HealthCheck, settings
 from tests.profiles import NIGHTLY
@@ -21,3 +22,7 @@ settings.load_profile("nightly" if NIGHTLY else "default")
 
 # Tables are as wide as where there is no terminal, whoever runs the tests.
 os.environ.pop("COLUMNS", None)
+
+# Tests interrupt what they start; a shell that starts the tests in the background makes all of
+# them deaf to that.
+signal.signal(signal.SIGINT, signal.default_int_handler)

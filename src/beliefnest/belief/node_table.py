@@ -370,13 +370,19 @@ class NodeTable:
 
     def block_is_current(self, node: int, cell: int) -> bool:
         """Whether a node's block is backed by a perception in the last entry (5.4)."""
-        while node > 0:
-            if not self.is_present(node) or (node, cell) in self.edited_cells:
-                return False
-            if not self.sees_cells(node, (cell,)):
-                return False
+        return cell in self.current_blocks(node, (cell,))
+
+    def current_blocks(self, node: int, cells: Iterable[int]) -> set[int]:
+        """Those of some cells whose block a perception in the last entry backs (5.4)."""
+        left = set(cells)
+        while left and node > 0:
+            if not self.is_present(node):
+                return set()
+            left = self.sees_cells(
+                node, [cell for cell in left if (node, cell) not in self.edited_cells]
+            )
             node = self.parent(node)
-        return self.block(0, cell) >= 0
+        return {cell for cell in left if self.block(0, cell) >= 0}
 
     def below(self, node: int) -> npt.NDArray[np.bool_]:
         """Which nodes lie below a node."""

@@ -173,8 +173,8 @@ def _ground_of(
         return (None, False) if content is None else (content.basis, content.current)
     cell = cell_of(recording.history.context.box, element.where)
     basis = forest.table.bases(forest.table.index[node], [cell])[cell]
-    current = recording.history.block_is_current(place.key, node, place.entries, element.where)
-    return basis, current
+    current = recording.history.current_blocks(place.key, node, place.entries, (cell,))
+    return basis, cell in current
 
 
 def _fact(recording: Recording, place: Place, held: _Held, element: Element) -> Fact:

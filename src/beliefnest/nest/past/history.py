@@ -6,7 +6,7 @@ every few thousand entries it is saved as a checkpoint; further forests, for the
 folded from the checkpoint before, or from the timeline's beginning where there is none.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from beliefnest.belief.columns import Columns, cell_of
@@ -23,7 +23,6 @@ from beliefnest.perception.sight import Sight
 from beliefnest.timeline.journal import Edit, Entry, EntryFilter, ForkPoint, Journal, TimelineKey
 from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import Position
 
 __all__ = ["History", "context_of"]
 
@@ -166,18 +165,16 @@ class History:
         forest = self._walk(key, path, position, cells)
         return forest.table.bases(forest.table.index[path], cells)
 
-    def block_is_current(
-        self, key: TimelineKey, path: Path, position: int, place: Position
-    ) -> bool:
-        """Whether a node's block was backed by a perception in the last of some entries."""
+    def current_blocks(
+        self, key: TimelineKey, path: Path, position: int, cells: Iterable[int]
+    ) -> set[int]:
+        """Those of some cells whose block a perception in the last of some entries backs."""
         base = self._journal.info(key).base
         if position == 0 and base is not None and path != key.path:
             # What agents believed at the fork stays as it was until something happens.
-            return self.block_is_current(base.timeline, path, base.entries, place)
-        forest = self._forest(key, path, position)
-        return forest.table.block_is_current(
-            forest.table.index[path], cell_of(self.context.box, place)
-        )
+            return self.current_blocks(base.timeline, path, base.entries, cells)
+        table = self._forest(key, path, position).table
+        return table.current_blocks(table.index[path], cells)
 
     def forget(self, key: TimelineKey) -> None:
         """Drop what is remembered of a timeline that was deleted or renamed."""

@@ -1,6 +1,6 @@
 """Read-only views of nodes, as users, prompts and pictures get them."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from functools import cached_property
 
@@ -23,7 +23,9 @@ from beliefnest.world.values import Box, DroppedItem, EventKind, Position
 
 __all__ = ["Blocks", "LiveState"]
 
+# Questions about blocks, and cells of a box, from which on all blocks are answered at once.
 _FEW = 4
+_SMALL = 1024
 
 _SPEECH = (EventKind.CHAT, EventKind.THINK)
 
@@ -50,6 +52,7 @@ class Blocks:
         self._position = position
         self._reading = reading
         self._bases: dict[int, Basis | None] = {}
+        self._currents: dict[int, bool] = {}
 
     @property
     def grid(self) -> BlockGrid:
@@ -86,24 +89,38 @@ class Blocks:
 
     def current(self, position: Position) -> bool:
         """Whether the block is backed by a perception in this tick."""
-        self._index(position)
-        path = self._reading.path
-        with self._turn:
-            return self._history.block_is_current(self._key, path, self._position, position)
+        cell = self._cell(position)
+        if cell not in self._currents:
+            cells = self._asked_with(cell, self._currents)
+            with self._turn:
+                found = self._history.current_blocks(
+                    self._key, self._reading.path, self._position, cells
+                )
+            self._currents.update((each, each in found) for each in cells)
+        return self._currents[cell]
 
     def basis(self, position: Position) -> Basis | None:
         """What the block rests on; None where it is unknown."""
-        self._index(position)
-        cell = cell_of(self._history.context.box, position)
+        cell = self._cell(position)
         if cell not in self._bases:
-            # Who asks for a few will ask for all.
-            every = len(self._bases) >= _FEW
-            cells = range(self._history.context.cells) if every else [cell]
+            cells = self._asked_with(cell, self._bases)
             with self._turn:
                 self._bases.update(
                     self._history.block_bases(self._key, self._reading.path, self._position, cells)
                 )
         return self._bases[cell]
+
+    def _asked_with(self, cell: int, known: Collection[int]) -> Sequence[int]:
+        """The cells to find out about along with one.
+
+        Who asks for a few will ask for all, and in a small box all cost little more than one.
+        """
+        every = self._history.context.cells
+        return range(every) if len(known) >= _FEW or every <= _SMALL else [cell]
+
+    def _cell(self, position: Position) -> int:
+        self._index(position)
+        return cell_of(self._history.context.box, position)
 
     def _index(self, position: Position) -> tuple[int, int, int]:
         box = self._history.context.box
