@@ -141,6 +141,18 @@ def test_a_prior_place_is_no_belief_about_where_someone_looks():
     ]
 
 
+@pytest.mark.parametrize(("there", "false"), [(0.4, False), (0.5, True), (3.0, True)])
+def test_a_place_is_false_from_half_a_block_on_wherever_the_head_has_turned(there, false):
+    world, nest = nest_of({"a": WEST, "b": GAP}, CORNER, max_visible_distance=10)
+    world.place_agent("a", (2.5, 0.0, 0.5))
+    world.place_agent("b", (GAP[0] + there, 0.0, GAP[2]), yaw=2.0, pitch=0.5)
+    held = nest["/a"].state.agents["b"]
+    assert not held.current
+    assert held.position == GAP
+    assert [d.kind for d in nest.false_beliefs("/a")] == ["agent"] * false
+    assert "agent" in [d.kind for d in nest.compare("/", "/a", unknown=False)]
+
+
 def test_unknown_paths_and_ticks_are_errors():
     _, nest = corner()
     with pytest.raises(PathError):

@@ -9,6 +9,7 @@ import beliefnest as bn
 from beliefnest.pictures.plot import Act, Band, Row, belief_plot
 
 CHEST = (3, 1, 3)
+PLOT = "beliefnest.nest.face.plotting.belief_plot"
 LONG = ("abcdefghijklmnop", "qrstuvwxyzabcdef")
 
 
@@ -37,8 +38,7 @@ def test_bands_begin_and_end_with_what_was_held_and_are_false_where_they_are(
     nest: bn.Nest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     drawn: list[tuple[list[Row], list[Act]]] = []
-    target = "beliefnest.nest.face.plotting.belief_plot"
-    monkeypatch.setattr(target, lambda rows, acts, _: drawn.append((rows, acts)))
+    monkeypatch.setattr(PLOT, lambda rows, acts, _: drawn.append((rows, acts)))
     nest.plot_beliefs(CHEST, "diamond", ["/", "/sally", "/anne/sally"])
     ((rows, acts),) = drawn
     assert rows[0].bands == (
@@ -59,7 +59,8 @@ def test_nothing_collides_however_many_deeds_and_values(nest: bn.Nest, size: obj
     acts = [Act(t, f"{LONG[t % 2]} takes out") for t in range(0, 90, 4)]
     many = belief_plot([Row("/", bands), Row(path, bands)], acts, "What is believed " * 5)
     plain = nest.plot_beliefs(CHEST, paths=["/", "/sally"])
-    for figure in (many, plain):
+    places = nest.plot_beliefs(agent="sally", paths=["/", "/anne", "/sally/anne"])
+    for figure in (many, plain, places):
         assert faults(figure.drawing(size)) == []  # type: ignore[arg-type]
     assert "sally puts in" in texts(plain.drawing())
 
@@ -78,7 +79,48 @@ def test_wrong_questions_are_errors(nest: bn.Nest) -> None:
         nest.plot_beliefs((99, 0, 0))
     with pytest.raises(bn.PathError):
         nest.plot_beliefs(CHEST, paths=["/bob"])
+    for one_too_many in ({}, {"container": CHEST, "agent": "anne"}):
+        with pytest.raises(bn.InputError, match="a container or an agent"):
+            nest.plot_beliefs(**one_too_many)  # type: ignore[arg-type]
+    with pytest.raises(bn.PathError):
+        nest.plot_beliefs(agent="bob")
     with pytest.raises(bn.InputError, match=r"no container at \(0, 1, 0\); containers are at"):
         nest.plot_beliefs((0, 1, 0))
     with pytest.raises(bn.BeliefNestError, match="did you mean diamond"):
         nest.plot_beliefs(CHEST, "daimond")
+
+
+def test_an_agents_place_is_followed_by_names_and_false_where_it_is(
+    nest: bn.Nest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[list[Row]] = []
+    monkeypatch.setattr(PLOT, lambda rows, *_: drawn.append(rows))
+    nest.plot_beliefs(agent="sally", paths=["/", "/anne"])
+    # Sally walks on behind the wall, in small steps, and comes to stand.
+    world = nest.scripted_world
+    for step in range(1, 6):
+        world.place_agent("sally", (2.5 + step, 1, 7.5))
+    world.step(20)
+    nest.plot_beliefs(agent="sally", paths=["/", "/anne"])
+    before, after = drawn
+    assert before[0].bands == (
+        Band(0, 6, "at (2, 1, 2)", False),
+        Band(6, 11, "at (2, 1, 7)", False),
+    )
+    assert [(band.words, band.false) for band in after[0].bands] == [
+        ("at (2, 1, 2)", False),
+        ("on the way", False),
+        ("at (7, 1, 7)", False),
+    ]
+    # Anne saw her before she was behind the wall.
+    assert after[1].bands == (Band(0, 6, "at (2, 1, 2)", False), Band(6, 36, "at (2, 1, 2)", True))
+
+
+def test_what_an_agent_has_is_followed(nest: bn.Nest, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: list[tuple[list[Row], list[Act]]] = []
+    monkeypatch.setattr(PLOT, lambda rows, acts, _: drawn.append((rows, acts)))
+    nest.plot_beliefs(agent="anne", item="diamond", paths=["/", "/sally"])
+    ((rows, acts),) = drawn
+    assert rows[0].bands == (Band(0, 7, "no diamond", False), Band(7, 11, "1 diamond", False))
+    assert rows[1].bands == (Band(0, 11, "", False),)
+    assert acts == [Act(7, "anne takes")]

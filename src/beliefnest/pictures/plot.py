@@ -79,6 +79,7 @@ def _draw(rows: Sequence[Row], acts: Sequence[Act], title: str, width: float) ->
     marks: list[Drawn] = list(head.marks)
     top = _acts(chart, acts, head.bottom + 3, marks)
     first = top
+    bands: list[Drawn] = []
     for row in rows:
         if beside:
             base = top + _HIGH / 2 + TEXT_SIZE * ASCENT * 0.48
@@ -88,11 +89,14 @@ def _draw(rows: Sequence[Row], acts: Sequence[Act], title: str, width: float) ->
             paragraph(block, row.path, MARGIN, width - 2 * MARGIN, TEXT_SIZE, bold=True)
             marks += block.marks
             top = block.bottom
-        marks += _bands(chart, row, top)
+        bands += _bands(chart, row, top)
         top += _STEP
     lines = tuple(((chart.x(act.tick), first - 1.5), (chart.x(act.tick), top - 4)) for act in acts)
+    marks += [mark for mark in bands if not isinstance(mark, Text)]
     if lines:
         marks.append(Lines(lines, INK, 0.4))
+    # Words stay readable where a line goes through them.
+    marks += [mark for mark in bands if isinstance(mark, Text)]
     bottom = _axis(chart, top - 3, marks)
     bottom = _legend(chart, (MARGIN, bottom + 4), width - 2 * MARGIN, marks)
     return Drawing(width, bottom + MARGIN, tuple(marks), title)
@@ -151,7 +155,8 @@ def _bands(chart: _Chart, row: Row, top: float) -> list[Drawn]:
         words = band.words or MARKS[Mark.UNKNOWN].words
         if inner + text_width(words, TEXT_SIZE) < x1 - 2:
             base = top + _HIGH / 2 + TEXT_SIZE * ASCENT * 0.48
-            marks.append(Text(inner, base, words, TEXT_SIZE, INK, halo=None))
+            halo = chart.fills.get(band.words, PAPER)
+            marks.append(Text(inner, base, words, TEXT_SIZE, INK, halo=halo))
     return marks
 
 

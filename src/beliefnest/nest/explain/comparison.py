@@ -1,12 +1,14 @@
 """Where two simulators differ, and what in a belief is false."""
 
-from collections.abc import Iterable, Iterator
+import itertools
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
+import numpy.typing as npt
 
-from beliefnest.belief.entries import AgentBelief, Source
+from beliefnest.belief.entries import AgentBelief, ContainerBelief, Source
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.parts import Contents
 from beliefnest.nest.past.recording import Recording
@@ -20,11 +22,12 @@ __all__ = [
     "Difference",
     "Differences",
     "Pose",
-    "are_apart",
+    "are_elsewhere",
     "are_false",
     "compare",
     "differences",
     "false_beliefs",
+    "false_things",
     "falsehoods",
     "value_words",
 ]
@@ -32,7 +35,22 @@ __all__ = [
 _MOST = 12
 """Differences that are told of in a terminal; more are counted."""
 
+_APART = 0.5
+"""Blocks from which on somebody is elsewhere."""
+
 Path = tuple[str, ...]
+
+
+class Holds(Protocol):
+    """What is held of containers and agents."""
+
+    @property
+    def containers(self) -> Mapping[Position, ContainerBelief]:
+        """Known containers by position."""
+
+    @property
+    def agents(self) -> Mapping[str, AgentBelief]:
+        """Every agent by name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +179,8 @@ def differences(
         registry: Names of blocks.
         unknown: Whether to tell of what is unknown, or not there, in one of them.
     """
-    for found in _all_differences(a, b, box, registry):
+    every = itertools.chain(_different_blocks(a, b, box, registry), _different_things(a, b))
+    for found in every:
         if unknown or (found.a is not None and found.b is not None):
             yield found
 
@@ -172,14 +191,43 @@ def falsehoods(
     """What a belief holds and reality does not: unknown is not false.
 
     Contents are false if they claim items that are not there, or claim to be complete and
-    miss some.
+    miss some; an agent's place by `are_elsewhere`.
     """
-    for found in _all_differences(real, belief, box, registry):
-        if isinstance(found.b, Contents):
-            if are_false(found.a if isinstance(found.a, Contents) else None, found.b):
-                yield found
-        elif found.b is not None:
+    for found in _different_blocks(real, belief, box, registry):
+        if found.b is not None:
             yield found
+    yield from false_things(real, belief)
+
+
+def false_things(real: Holds, belief: Holds) -> Iterator[Difference]:
+    """`falsehoods` of containers, agents' places and inventories."""
+    return (found for found in _different_things(real, belief) if _is_false(found))
+
+
+def _is_false(thing: Difference) -> bool:
+    match thing.b:
+        case Contents() as held:
+            return are_false(thing.a if isinstance(thing.a, Contents) else None, held)
+        case Pose(position=held):
+            true = thing.a.position if isinstance(thing.a, Pose) else None
+            return true is None or bool(are_elsewhere(np.array(true), np.array(held)))
+    return False
+
+
+def are_elsewhere(
+    real: npt.NDArray[np.float64], held: npt.NDArray[np.float64]
+) -> npt.NDArray[np.bool_]:
+    """Whether places at which agents are believed to be are false: from half a block on.
+
+    Less is a shuffle on the spot. Where somebody looks changes all the time, and nobody who
+    remembers where somebody stands claims to know it.
+
+    Args:
+        real: Feet, shape (..., 3).
+        held: The same, as they are believed to be.
+    """
+    apart: npt.NDArray[np.bool_] = np.linalg.norm(real - held, axis=-1) >= _APART
+    return apart
 
 
 def are_false(real: Contents | None, belief: Contents) -> bool:
@@ -194,13 +242,16 @@ def are_false(real: Contents | None, belief: Contents) -> bool:
     return too_much or (belief.complete and dict(claimed) != dict(true))
 
 
-def _all_differences(
+def _different_blocks(
     a: NodeView, b: NodeView, box: Box, registry: Registry
 ) -> Iterator[Difference]:
     x, y, z = box.low
     for i, j, k in np.argwhere(a.blocks != b.blocks).tolist():
         texts = (_block(grid, (i, j, k), registry) for grid in (a.blocks, b.blocks))
         yield Difference("block", (x + i, y + j, z + k), *texts)
+
+
+def _different_things(a: Holds, b: Holds) -> Iterator[Difference]:
     for place in sorted(a.containers.keys() | b.containers.keys()):
         there = (reading.containers.get(place) for reading in (a, b))
         held = [None if c is None else Contents(dict(c.items), c.complete) for c in there]
@@ -208,7 +259,7 @@ def _all_differences(
             yield Difference("container", place, held[0], held[1])
     for name in a.agents:
         poses = _pose(a.agents[name]), _pose(b.agents[name])
-        if are_apart(*poses):
+        if _differ(*poses):
             yield Difference("agent", name, *poses)
     for name in a.agents:
         owned = [_owned(reading.agents[name]) for reading in (a, b)]
@@ -230,7 +281,7 @@ def _pose(agent: AgentBelief) -> Pose | None:
     return Pose(agent.position, agent.yaw, agent.pitch)
 
 
-def are_apart(a: Pose | None, b: Pose | None) -> bool:
+def _differ(a: Pose | None, b: Pose | None) -> bool:
     """Whether two poses differ; angles that a prior does not tell differ from none."""
     if a is None or b is None:
         return a is not b

@@ -10,7 +10,8 @@ import numpy.typing as npt
 from beliefnest.belief.view import State
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.nest.explain.comparison import Difference, Pose, false_beliefs, value_words
-from beliefnest.nest.face.plotting import plot_of_container
+from beliefnest.nest.face.moment import AtMoment
+from beliefnest.nest.face.plotting import plot_of
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.figure import Figure, figure_of
 from beliefnest.pictures.scene import Scene, Wrong, best_height, read_scene
@@ -49,14 +50,8 @@ class _Node:
         return self.recording.reading(self.names, self.tick).visible_from(agent)
 
 
-class Looking:
+class Looking(AtMoment):
     """Pictures of a nest: live, past, or recorded."""
-
-    _recording: Recording
-
-    def _moment(self) -> int | None:
-        """The tick it shows; None: each simulator's latest."""
-        return None
 
     def figure(
         self,
@@ -99,25 +94,33 @@ class Looking:
         return _scenes(self._recording, wanted, then, against, sight=sight, height=height)
 
     def plot_beliefs(
-        self, container: Position, item: str | None = None, paths: Sequence[str] = ("/",)
+        self,
+        container: Position | None = None,
+        item: str | None = None,
+        paths: Sequence[str] = ("/",),
+        *,
+        agent: str | None = None,
     ) -> Figure:
-        """What simulators held of a container over time: a row for each, a band for each value.
+        """What simulators held of a thing over time: a row for each, a band for each value.
 
         Bands are marked where they are false; above stand the deeds of the real world that
-        mattered.
+        mattered. Followed are a container's contents, an agent's place, or with `agent` and
+        `item`, how much of it the agent has with it.
 
         Args:
-            container: Where it is.
-            item: The item to follow; None: all that is in it.
+            container: Where the container is.
+            item: The item to follow; None: all that is in the container, or the agent's place.
             paths: Belief paths.
+            agent: The agent to follow, in place of a container.
 
         Raises:
-            PathError: A path is malformed or names an unknown agent.
+            PathError: A path is malformed or names an unknown agent, or there is no such agent.
             PositionError: The container lies outside the box.
-            InputError: There is no path, or never was a container there.
+            InputError: There is no path, not either container or agent, or never was a
+                container there.
             UnknownNameError: There is no such item.
         """
-        return plot_of_container(self._recording, container, item, paths, self._moment())
+        return plot_of(self._recording, container, item, agent, paths, self._moment())
 
     def __repr__(self) -> str:
         recording, tick = self._recording, self._moment()
@@ -136,15 +139,10 @@ class Looking:
         return self.figure()._repr_html_()
 
 
-class LookingAtOne:
+class LookingAtOne(AtMoment):
     """Pictures of one simulator."""
 
-    _recording: Recording
     _path: Path
-
-    def _moment(self) -> int | None:
-        """The tick it shows; None: the latest."""
-        return None
 
     def figure(
         self,

@@ -12,7 +12,7 @@ from beliefnest.bodies.worlds import Worlds, open_world
 from beliefnest.errors import InputError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.script import Progress, play_script
-from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs
+from beliefnest.nest.face.comparing import Comparing
 from beliefnest.nest.face.exploration import Attempt, Exploration, Score
 from beliefnest.nest.face.looking import Looking
 from beliefnest.nest.face.opening import HasSetting, Start, begun, resumed
@@ -34,7 +34,7 @@ from beliefnest.world.values import Position
 __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 
 
-class Nest(Looking, Viewing, Telling):
+class Nest(Looking, Viewing, Telling, Comparing):
     """The real world and every belief in it; each node is made on first use.
 
     `Nest(world)` wraps a `ScriptedWorld` and follows what happens in it; `Nest.open` opens a
@@ -230,33 +230,6 @@ class Nest(Looking, Viewing, Telling):
         then = tick_of(tick)
         self._recording.reading((), then)
         return Past(self._recording, then)
-
-    @in_turn
-    def compare(self, a: str, b: str, *, unknown: bool = True) -> list[Difference]:
-        """Where two simulators differ: blocks, containers, agents' poses, inventories.
-
-        Args:
-            a: Belief path of one.
-            b: Belief path of the other.
-            unknown: Whether to tell of what is unknown, or not there, in one of them.
-
-        Raises:
-            PathError: A path is malformed or names an unknown agent.
-        """
-        one, other = parse_path(a, self.agents), parse_path(b, self.agents)
-        return compare(self._recording, one, other, None, unknown=unknown)
-
-    @in_turn
-    def false_beliefs(self, path: str) -> list[Difference]:
-        """What a simulator holds otherwise than reality (`a`) does; unknown is not false.
-
-        Contents are false if they claim items that are not there, or claim to be complete
-        and miss some.
-
-        Raises:
-            PathError: The path is malformed or names an unknown agent.
-        """
-        return false_beliefs(self._recording, parse_path(path, self.agents), None)
 
     def explore(
         self,

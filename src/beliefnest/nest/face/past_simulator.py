@@ -1,17 +1,18 @@
 """What a simulator shows of itself, and simulators as they were; nothing here acts."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.view import State
 from beliefnest.errors import PathError
 from beliefnest.nest.explain.chain import element_of, explain
-from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs
 from beliefnest.nest.explain.explanation import Explanation
+from beliefnest.nest.face.comparing import Comparing
 from beliefnest.nest.face.looking import Looking, LookingAtOne
 from beliefnest.nest.face.telling import Telling
 from beliefnest.nest.face.turns import in_turn
@@ -24,7 +25,7 @@ from beliefnest.world.values import Point, Position
 __all__ = ["Past", "PastSimulator", "ShownSimulator"]
 
 
-class ShownSimulator(LookingAtOne):
+class ShownSimulator(LookingAtOne, ABC):
     """What a simulator shows of itself at one tick, now or in the past."""
 
     def __init__(self, recording: Recording, path: tuple[str, ...]) -> None:
@@ -48,16 +49,15 @@ class ShownSimulator(LookingAtOne):
 
     @property
     def tick(self) -> int:
-        """The tick it shows."""
-        raise NotImplementedError
+        """The tick it shows; in the present the latest of the timeline it is on."""
+        moment = self._moment()
+        return self._recording.info(self._path).head if moment is None else moment
 
     @property
+    @in_turn
     def state(self) -> State:
         """What the simulator holds, read-only."""
-        raise NotImplementedError
-
-    def _reading(self) -> NodeView:
-        raise NotImplementedError
+        return self._recording.state(self._path, self._moment())
 
     def render(self, template: Template | Path | str, **variables: object) -> str:
         """The text of a prompt template, filled from this simulator.
@@ -93,10 +93,7 @@ class ShownSimulator(LookingAtOne):
             PositionError: The position is outside the box.
         """
         element = element_of(self._recording, container, agent, block)
-        return explain(self._recording, self._path, self._explained_tick(), element)
-
-    def _explained_tick(self) -> int | None:
-        raise NotImplementedError
+        return explain(self._recording, self._path, self._moment(), element)
 
     @property
     @in_turn
@@ -107,11 +104,11 @@ class ShownSimulator(LookingAtOne):
         place. Its body begins with them at the nearest place where they can stand; the belief is
         left as it is. Empty in follow mode and where nobody had to be moved.
         """
-        return placed_in(self._recording, self._path, self._explained_tick())
+        return placed_in(self._recording, self._path, self._moment())
 
-    def child(self, agent: str) -> "ShownSimulator":
+    @abstractmethod
+    def child(self, agent: str) -> Self:
         """The simulator of what `agent` believes in this one."""
-        raise NotImplementedError
 
     @in_turn
     def visible_blocks(self, agent: str) -> npt.NDArray[np.bool_]:
@@ -124,7 +121,7 @@ class ShownSimulator(LookingAtOne):
             PathError: There is no such agent.
         """
         self._child_path(agent)
-        return self._reading().visible_from(agent)
+        return self._recording.reading(self._path, self._moment()).visible_from(agent)
 
     def _child_path(self, agent: str) -> tuple[str, ...]:
         agents = self._recording.agents
@@ -140,32 +137,15 @@ class PastSimulator(ShownSimulator):
         super().__init__(recording, path)
         self._tick = tick
 
-    @property
-    def tick(self) -> int:
-        """The past tick."""
-        return self._tick
-
     def child(self, agent: str) -> "PastSimulator":
         """The simulator of what `agent` believed in this one."""
         return PastSimulator(self._recording, self._child_path(agent), self._tick)
-
-    @property
-    @in_turn
-    def state(self) -> State:
-        """What the simulator held, read-only."""
-        return self._recording.state(self._path, self._tick)
-
-    def _reading(self) -> NodeView:
-        return self._recording.reading(self._path, self._tick)
-
-    def _explained_tick(self) -> int:
-        return self._tick
 
     def _moment(self) -> int:
         return self._tick
 
 
-class Past(Looking, Telling):
+class Past(Looking, Telling, Comparing):
     """All simulators at one past tick."""
 
     def __init__(self, recording: Recording, tick: int) -> None:
@@ -178,30 +158,3 @@ class Past(Looking, Telling):
     def __getitem__(self, path: str) -> PastSimulator:
         """The simulator of a belief path as it was."""
         return PastSimulator(self._recording, parse_path(path, self._recording.agents), self._tick)
-
-    @in_turn
-    def compare(self, a: str, b: str, *, unknown: bool = True) -> list[Difference]:
-        """Where two simulators differ: blocks, containers, agents' poses, inventories.
-
-        Args:
-            a: Belief path of one.
-            b: Belief path of the other.
-            unknown: Whether to tell of what is unknown, or not there, in one of them.
-
-        Raises:
-            PathError: A path is malformed or names an unknown agent.
-        """
-        one, other = parse_path(a, self._recording.agents), parse_path(b, self._recording.agents)
-        return compare(self._recording, one, other, self._tick, unknown=unknown)
-
-    @in_turn
-    def false_beliefs(self, path: str) -> list[Difference]:
-        """What a simulator holds otherwise than reality (`a`) does; unknown is not false.
-
-        Contents are false if they claim items that are not there, or claim to be complete
-        and miss some.
-
-        Raises:
-            PathError: The path is malformed or names an unknown agent.
-        """
-        return false_beliefs(self._recording, parse_path(path, self._recording.agents), self._tick)

@@ -1,121 +1,135 @@
-"""What simulators held of a container, tick by tick, for a plot."""
+"""What simulators held of a matter, tick by tick, for a plot."""
 
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
+from typing import TypeVar
 
 from beliefnest.belief.columns import cell_of, place_of
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError, PositionError
-from beliefnest.nest.explain.comparison import are_false
-from beliefnest.nest.explain.parts import Contents
+from beliefnest.nest.face.matters import Contained, Course, Matter, Owned, Whereabouts
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.figure import Figure
 from beliefnest.pictures.plot import Act, Band, Row, belief_plot
-from beliefnest.pictures.words import items_words, place_words
+from beliefnest.pictures.words import place_words
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.values import EventKind, Position
 
-__all__ = ["plot_of_container"]
+__all__ = ["plot_of"]
 
 Path = tuple[str, ...]
-_Course = list[tuple[int, Contents | None]]
-"""From which tick on what was held."""
-
-_ACTS = {
-    EventKind.DEPOSIT_ITEM_INTO_CHEST: "puts in",
-    EventKind.GET_ITEM_FROM_CHEST: "takes out",
-    EventKind.OPEN_CONTAINER: "looks in",
-}
+V = TypeVar("V")
 
 
-def plot_of_container(
+def plot_of(
     recording: Recording,
-    container: Position,
+    container: Position | None,
     item: str | None,
+    agent: str | None,
     paths: Sequence[str],
     until: int | None,
 ) -> Figure:
-    """The plot of what simulators held of a container, up to a tick of the real world.
+    """The plot of what simulators held of a matter, up to a tick of the real world.
 
     Raises:
-        InputError: There is no path, or never was a container there.
-        PathError: A path is malformed or names an unknown agent.
+        InputError: There is no path, not one matter, or never was a container there.
+        PathError: A path is malformed or names an unknown agent, or there is no such agent.
         PositionError: The container lies outside the box.
         UnknownNameError: There is no such item.
     """
     if not paths:
         raise InputError("a plot of no simulator is empty; give belief paths")
-    box = recording.setting.snapshot.box
+    if (container is None) is (agent is None):
+        raise InputError("a plot follows a container or an agent; give one of the two")
+    if item is not None:
+        recording.history.context.registry.item_stack(item)
+    with recording.turn:
+        if container is not None:
+            return _figure(recording, _contained(recording, container, item), paths, until)
+        assert agent is not None
+        parse_path(path_text((agent,)), recording.agents)
+        if item is not None:
+            return _figure(recording, Owned(agent, item), paths, until)
+        return _figure(recording, Whereabouts(agent, _names(recording)), paths, until)
+
+
+def _contained(recording: Recording, container: Position, item: str | None) -> Contained:
+    box, context = recording.setting.snapshot.box, recording.history.context
     if container not in box:
         raise PositionError(f"position {container} is outside the box {box.low}..{box.high}")
-    context = recording.history.context
-    if item is not None:
-        context.registry.item_stack(item)
-    with recording.turn:
-        names = [parse_path(path, recording.agents) for path in paths]
-        real = _course(recording, (), container, item)
-        courses = {path: _course(recording, path, container, item) for path in names}
-        if cell_of(box, container) not in context.tracked:
-            known = ", ".join(str(place_of(box, cell)) for cell in sorted(context.tracked))
-            raise InputError(
-                f"there is no container at {container}; containers are at {known or 'no place'}"
-            )
-        ends = {path: recording.info(path).head if until is None else until for path in names}
-        acts = _acts(recording, container, max(ends.values()))
-    rows = [
-        Row(path_text(path), _bands(courses[path], real, item, ends[path] + 1)) for path in names
-    ]
+    # Where a container was ever placed is known when the last entry has been read.
+    recording.reading(())
+    if cell_of(box, container) not in context.tracked:
+        known = ", ".join(str(place_of(box, cell)) for cell in sorted(context.tracked))
+        raise InputError(
+            f"there is no container at {container}; containers are at {known or 'no place'}"
+        )
     label = recording.setting.labels.get(container, f"container {place_words(container)}")
-    title = f"What is believed of the {label}" + (f" and the {_plain(item)}" if item else "")
-    return belief_plot(rows, acts, title)
+    return Contained(container, item, label)
 
 
-def _course(recording: Recording, path: Path, container: Position, item: str | None) -> _Course:
+def _names(recording: Recording) -> Mapping[Position, str]:
+    """What people call places, and containers where they have no other name."""
+    setting = recording.setting
+    stores = {place: f"the {label}" for place, label in setting.labels.items()}
+    return {**stores, **{place: name for name, place in setting.places.items()}}
+
+
+def _figure(
+    recording: Recording, matter: Matter[V], paths: Sequence[str], until: int | None
+) -> Figure:
+    names = [parse_path(path, recording.agents) for path in paths]
+    real = _course(recording, (), matter)
+    courses = {path: _course(recording, path, matter) for path in names}
+    ends = {path: recording.info(path).head if until is None else until for path in names}
+    acts = _acts(recording, matter, max(ends.values()))
+    rows = [
+        Row(path_text(path), _bands(matter, courses[path], real, ends[path] + 1)) for path in names
+    ]
+    return belief_plot(rows, acts, matter.title)
+
+
+def _course(recording: Recording, path: Path, matter: Matter[V]) -> Course[V]:
     """The changes of what a simulator held, on its timeline and what that was forked from."""
     key = recording.controller(path)
     stretches = [(key, recording.journal.info(key).entries)]
     while (base := recording.journal.info(stretches[0][0]).base) is not None:
         stretches.insert(0, (base.timeline, base.entries))
-    course: _Course = []
+    course: Course[V] = []
     for each, entries in stretches:
-        for tick, value in _stretch(recording, each, path, entries, container):
-            shown = value if item is None or value is None else _only(item, value)
+        for tick, held in _stretch(recording, each, path, entries):
+            value = matter.value(held)
             # What holds at the end of a tick counts.
             while course and course[-1][0] == tick:
                 course.pop()
-            if not course or course[-1][1] != shown:
-                course.append((tick, shown))
+            if not course or course[-1][1] != value:
+                course.append((tick, value))
     return course
 
 
 def _stretch(
-    recording: Recording, key: TimelineKey, path: Path, stop: int, container: Position
-) -> Iterator[tuple[int, Contents | None]]:
-    """What a simulator held after each of the first entries of a timeline."""
+    recording: Recording, key: TimelineKey, path: Path, stop: int
+) -> Iterator[tuple[int, NodeView]]:
+    """A simulator after each of the first entries of a timeline."""
     start = recording.journal.info(key).start
     ticks = [start, *(entry.tick for entry in recording.journal.entries(key, 0, stop))]
     steps = recording.history.steps(key, path, 0, stop)
     for tick, forest in zip(ticks, steps, strict=True):
-        held = NodeView(forest, path).containers.get(container)
-        yield tick, None if held is None else Contents(dict(held.items), held.complete)
+        yield tick, NodeView(forest, path)
 
 
-def _only(item: str, held: Contents) -> Contents:
-    count = held.items.get(item, 0)
-    return Contents({item: count} if count else {}, held.complete)
-
-
-def _bands(course: _Course, real: _Course, item: str | None, end: int) -> tuple[Band, ...]:
+def _bands(matter: Matter[V], course: Course[V], real: Course[V], end: int) -> tuple[Band, ...]:
     """Bands that end wherever the value, or whether it is false, changes."""
     starts = sorted({tick for tick, _ in (*course, *real) if course[0][0] <= tick < end})
     starts = starts or [min(course[0][0], end)]
+    told = matter.words(course)
     bands: list[Band] = []
     for start, stop in pairwise([*starts, max(end, starts[-1] + 1)]):
-        held, true = _at(course, start), _at(real, start)
-        false = held is not None and are_false(true, held)
-        words = _words(held, item)
+        number = _number(course, start)
+        held, true = course[number][1], real[_number(real, start)][1]
+        false, words = held is not None and matter.is_false(true, held), told[number]
         if bands and (bands[-1].words, bands[-1].false) == (words, false):
             bands[-1] = Band(bands[-1].start, stop, words, false)
         else:
@@ -123,32 +137,20 @@ def _bands(course: _Course, real: _Course, item: str | None, end: int) -> tuple[
     return tuple(bands)
 
 
-def _at(course: _Course, tick: int) -> Contents | None:
-    number = bisect_right([start for start, _ in course], tick)
-    return course[number - 1][1] if number else None
+def _number(course: Course[V], tick: int) -> int:
+    """Which value of a course held at a tick; the first one before its start."""
+    return max(0, bisect_right([start for start, _ in course], tick) - 1)
 
 
-def _words(held: Contents | None, item: str | None) -> str:
-    """The value; empty where nothing is known."""
-    if held is None or not (held.items or held.complete):
-        return ""
-    if item is not None and not held.items:
-        return f"no {_plain(item)}"
-    return items_words(held.items, complete=held.complete)
-
-
-def _acts(recording: Recording, container: Position, end: int) -> list[Act]:
-    """Who did what to the container in the real world."""
+def _acts(recording: Recording, matter: Matter[V], end: int) -> list[Act]:
+    """Who did what that mattered in the real world."""
     found: dict[tuple[int, str | None], str] = {}
     for event in recording.reading(()).events():
-        if event.kind not in _ACTS or tuple(event.detail.get("position", ())) != container:
+        deed = matter.act(event)
+        if not deed or event.tick > end:
             continue
         # Whoever puts in or takes out looks in as well.
         key = (event.tick, event.actor)
-        if event.tick <= end and (event.kind is not EventKind.OPEN_CONTAINER or key not in found):
-            found[key] = _ACTS[event.kind]
+        if event.kind is not EventKind.OPEN_CONTAINER or key not in found:
+            found[key] = deed
     return [Act(tick, f"{actor or 'somebody'} {deed}") for (tick, actor), deed in found.items()]
-
-
-def _plain(item: str) -> str:
-    return item.replace("_", " ")

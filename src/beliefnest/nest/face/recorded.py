@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Self
 
+from beliefnest.nest.face.comparing import Comparing
 from beliefnest.nest.face.looking import Looking
 from beliefnest.nest.face.past_simulator import Past, PastSimulator
 from beliefnest.nest.face.telling import Telling
@@ -20,7 +21,7 @@ from beliefnest.world.paths import parse_path
 __all__ = ["RecordedNest"]
 
 
-class RecordedNest(Looking, Viewing, Telling):
+class RecordedNest(Looking, Viewing, Telling, Comparing):
     """Simulators of a run as they were; nothing in it can act.
 
     Args:

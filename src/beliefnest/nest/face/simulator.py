@@ -3,8 +3,6 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Literal
 
-from beliefnest.belief.node_view import NodeView
-from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.bodies.scripted import ScriptedBody
 from beliefnest.errors import BranchError, InputError, PositionError, WorldError
@@ -46,11 +44,6 @@ class Simulator(ShownSimulator):
         """Name of the selected branch; `follow` in follow mode."""
         key = self._recording.selected.get(self._path)
         return FOLLOW if key is None else key.branch
-
-    @property
-    def tick(self) -> int:
-        """The latest tick of the timeline it is on."""
-        return self._recording.info(self._path).head
 
     @property
     @in_turn
@@ -250,18 +243,6 @@ class Simulator(ShownSimulator):
                 if count <= 0:
                     raise InputError(f"{count} {name} cannot be held; give a count above 0")
         self._engine.edit(self._path, states, {p: dict(i) for p, i in (containers or {}).items()})
-
-    @property
-    @in_turn
-    def state(self) -> State:
-        """What the simulator holds, read-only."""
-        return self._recording.state(self._path)
-
-    def _reading(self) -> NodeView:
-        return self._recording.reading(self._path)
-
-    def _explained_tick(self) -> None:
-        return None
 
 
 def _timeout(ticks: int) -> int:

@@ -1,20 +1,14 @@
 """What was claimed in a nest: live, past, or recorded."""
 
 from beliefnest.nest.explain.told import ToldClaim, claims_told
-from beliefnest.nest.past.recording import Recording
+from beliefnest.nest.face.moment import AtMoment
 from beliefnest.world.paths import parse_path
 
 __all__ = ["Telling"]
 
 
-class Telling:
+class Telling(AtMoment):
     """The claims that were made in a nest."""
-
-    _recording: Recording
-
-    def _moment(self) -> int | None:
-        """The tick it shows; None: each simulator's latest."""
-        return None
 
     def claims(self, path: str = "/") -> list[ToldClaim]:
         """Every claim that was made in a simulator, oldest first.

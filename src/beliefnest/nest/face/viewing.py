@@ -2,8 +2,8 @@
 
 from typing import TYPE_CHECKING
 
+from beliefnest.nest.face.moment import AtMoment
 from beliefnest.nest.face.reader import Reader
-from beliefnest.nest.past.recording import Recording
 
 if TYPE_CHECKING:
     from beliefnest.viewer.page.notebook import PageView
@@ -11,10 +11,8 @@ if TYPE_CHECKING:
 __all__ = ["Viewing"]
 
 
-class Viewing:
+class Viewing(AtMoment):
     """What live and recorded nests have in common for viewers."""
-
-    _recording: Recording
 
     @property
     def reader(self) -> Reader:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from beliefnest.belief.forest import Forest
-from beliefnest.nest.explain.comparison import Pose, are_apart, are_false
+from beliefnest.nest.explain.comparison import are_elsewhere, are_false
 from beliefnest.nest.explain.parts import Contents
 
 __all__ = ["WrongThings"]
@@ -79,25 +79,14 @@ class WrongThings:
         table, poses = self._forest.table, self._forest.poses
         pose_id, feet = table.nodes().pose, poses.arrays().feet
         known = pose_id >= 0
-        if len(feet):
-            moved = (feet[pose_id] != feet[pose_id[0]]).any(axis=2)
-        else:
-            moved = np.zeros(pose_id.shape, dtype=np.bool_)
+        if not len(feet):
+            return [() for _ in self._numbers]
+        moved = are_elsewhere(feet[pose_id[0]], feet[pose_id])
         apart = known & (moved | ~known[0])
-        for number, agent in np.argwhere(known & ~apart & (pose_id != pose_id[0])).tolist():
-            pair = (self._pose(int(pose_id[at, agent])) for at in (0, number))
-            apart[number, agent] = are_apart(*pair)
         found: list[list[str]] = [[] for _ in self._numbers]
         for at, agent in np.argwhere(apart[self._numbers]).tolist():
             found[at].append(f"a{agent}")
         return [tuple(things) for things in found]
-
-    def _pose(self, pose_id: int) -> Pose:
-        poses = self._forest.poses
-        place = poses.position(pose_id)
-        if poses.condition(pose_id) is None:
-            return Pose(place, None, None)
-        return Pose(place, *poses.angles(pose_id))
 
     def _inventories(self, number: int) -> Things:
         forest = self._forest

@@ -1,0 +1,238 @@
+"""What a plot of beliefs over time can follow: contents, an agent's place, what an agent has."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import groupby, zip_longest
+from typing import Protocol, TypeVar
+
+import numpy as np
+
+from beliefnest.belief.entries import PerceivedEvent
+from beliefnest.belief.node_view import NodeView
+from beliefnest.nest.explain.comparison import are_elsewhere, are_false
+from beliefnest.nest.explain.parts import Contents
+from beliefnest.pictures.words import items_words, place_words
+from beliefnest.world.values import EventKind, Items, Point, Position
+
+__all__ = ["Contained", "Course", "Matter", "Owned", "Whereabouts"]
+
+V = TypeVar("V")
+Course = list[tuple[int, V | None]]
+"""From which tick on what was held; None: nothing was known."""
+
+_NEAR = 3.0
+"""Blocks from a thing with a name within which somebody is said to be there."""
+_STEP = 1.5
+_PAUSE = 10
+"""Who goes on within so many ticks, by a step of so many blocks, does not stay where it is."""
+
+_ACTS = {
+    EventKind.DEPOSIT_ITEM_INTO_CHEST: "puts in",
+    EventKind.GET_ITEM_FROM_CHEST: "takes out",
+    EventKind.OPEN_CONTAINER: "looks in",
+}
+_DEALS = {
+    EventKind.DEPOSIT_ITEM_INTO_CHEST: "puts away",
+    EventKind.GET_ITEM_FROM_CHEST: "takes",
+    EventKind.GIVE_ITEM_TO_OTHER: "gives",
+    EventKind.RECEIVE_ITEM_FROM_OTHER: "gets",
+}
+
+
+class Matter(Protocol[V]):
+    """What is followed in some simulators."""
+
+    @property
+    def title(self) -> str:
+        """What the plot is about."""
+
+    def value(self, held: NodeView) -> V | None:
+        """What a simulator holds of it; None: nothing."""
+
+    def words(self, course: Course[V]) -> list[str]:
+        """Each value of a course in words; empty: nothing is known."""
+
+    def is_false(self, real: V | None, held: V) -> bool:
+        """Whether reality is otherwise."""
+
+    def act(self, event: PerceivedEvent) -> str:
+        """What somebody did that mattered to it, without who; empty: something else."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contained:
+    """What is in a container: all of it, or one item.
+
+    Attributes:
+        container: Where it is.
+        item: The item; None: all.
+        label: What people call the container.
+    """
+
+    container: Position
+    item: str | None
+    label: str
+
+    @property
+    def title(self) -> str:
+        """What the plot is about."""
+        return f"What is believed of the {self.label}" + _and(self.item)
+
+    def value(self, held: NodeView) -> Contents | None:
+        """What is in it."""
+        found = held.containers.get(self.container)
+        return None if found is None else _only(self.item, found.items, complete=found.complete)
+
+    def words(self, course: Course[Contents]) -> list[str]:
+        """What is in it, in words."""
+        return [_contents_words(held, self.item) for _, held in course]
+
+    def is_false(self, real: Contents | None, held: Contents) -> bool:
+        """As for `false_beliefs`."""
+        return are_false(real, held)
+
+    def act(self, event: PerceivedEvent) -> str:
+        """Putting in, taking out, looking in."""
+        if tuple(event.detail.get("position", ())) != self.container:
+            return ""
+        return _ACTS.get(event.kind, "")
+
+
+@dataclass(frozen=True, slots=True)
+class Owned:
+    """How much of an item an agent has with it.
+
+    Attributes:
+        agent: Who.
+        item: The item.
+    """
+
+    agent: str
+    item: str
+
+    @property
+    def title(self) -> str:
+        """What the plot is about."""
+        return f"What is believed of what {self.agent} has" + _and(self.item)
+
+    def value(self, held: NodeView) -> Contents | None:
+        """What the agent has of it."""
+        agent = held.agents[self.agent]
+        return _only(self.item, agent.inventory, complete=agent.inventory_complete)
+
+    def words(self, course: Course[Contents]) -> list[str]:
+        """What the agent has of it, in words."""
+        return [_contents_words(held, self.item) for _, held in course]
+
+    def is_false(self, real: Contents | None, held: Contents) -> bool:
+        """As for `false_beliefs`."""
+        return are_false(real, held)
+
+    def act(self, event: PerceivedEvent) -> str:
+        """Taking, putting away, giving, getting the item."""
+        mine = event.actor == self.agent and self.item in event.detail.get("items", {})
+        return _DEALS.get(event.kind, "") if mine else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Whereabouts:
+    """Where an agent is.
+
+    Attributes:
+        agent: Who.
+        names: What people call places and containers.
+    """
+
+    agent: str
+    names: Mapping[Position, str]
+
+    @property
+    def title(self) -> str:
+        """What the plot is about."""
+        return f"Where {self.agent} is believed to be"
+
+    def value(self, held: NodeView) -> Point | None:
+        """Its feet."""
+        return held.agents[self.agent].position
+
+    def words(self, course: Course[Point]) -> list[str]:
+        """Places by the names of what is near; who walks is on the way."""
+        runs = [list(run) for _, run in groupby(_stays(course), key=lambda stay: stay[1])]
+        words: list[str] = []
+        for run, after in zip_longest(runs, runs[1:]):
+            told = self._run_words(run[0], None if after is None else after[0])
+            words += [told] * len(run)
+        return words
+
+    def _run_words(
+        self, here: tuple[int, Point | None], after: tuple[int, Point | None] | None
+    ) -> str:
+        """Where it is from a tick on; `after`: where it is next."""
+        tick, place = here
+        if place is None:
+            return ""
+        if (
+            after is not None
+            and after[1] is not None
+            and after[0] - tick < _PAUSE
+            and math.dist(place, after[1]) <= _STEP
+        ):
+            return "on the way"
+        return self._place_words(place)
+
+    def _place_words(self, place: Point) -> str:
+        """The nearest name; without one the block in which the feet are."""
+        away = {
+            name: math.dist(place, (x + 0.5, y, z + 0.5)) for (x, y, z), name in self.names.items()
+        }
+        if away and min(away.values()) <= _NEAR:
+            return f"near {min(away, key=lambda name: (away[name], name))}"
+        x, y, z = (math.floor(value + 1e-6) for value in place)
+        return f"at {place_words((x, y, z))}"
+
+    def is_false(self, real: Point | None, held: Point) -> bool:
+        """As for `false_beliefs`."""
+        return real is None or bool(are_elsewhere(np.array(real), np.array(held)))
+
+    def act(self, event: PerceivedEvent) -> str:
+        """Coming to where it was bound for; a walk is told of when it has ended."""
+        return "arrives" if event.kind is EventKind.MOVE_TO and event.actor == self.agent else ""
+
+
+def _stays(course: Course[Point]) -> Course[Point]:
+    """Each place, or the one before from which it is no more than a shuffle."""
+    stays: Course[Point] = []
+    for tick, place in course:
+        last = stays[-1][1] if stays else None
+        stayed = (
+            place is not None
+            and last is not None
+            and not are_elsewhere(np.array(last), np.array(place))
+        )
+        stays.append((tick, last if stayed else place))
+    return stays
+
+
+def _only(item: str | None, items: Items, *, complete: bool) -> Contents:
+    if item is None:
+        return Contents(dict(items), complete)
+    count = items.get(item, 0)
+    return Contents({item: count} if count else {}, complete)
+
+
+def _contents_words(held: Contents | None, item: str | None) -> str:
+    """The value; empty where nothing is known."""
+    if held is None or not (held.items or held.complete):
+        return ""
+    if item is not None and not held.items:
+        return f"no {_plain(item)}"
+    return items_words(held.items, complete=held.complete)
+
+
+def _and(item: str | None) -> str:
+    return "" if item is None else f" and the {_plain(item)}"
+
+
+def _plain(item: str) -> str:
+    return item.replace("_", " ")
