@@ -1,6 +1,8 @@
 """Figures show what simulators hold, are written in three forms, and nothing in them collides."""
 
 import base64
+import itertools
+import math
 import re
 import zlib
 from collections.abc import Iterator
@@ -11,7 +13,7 @@ from PIL import Image
 from tests.pictures.measuring import faults, texts
 
 import beliefnest as bn
-from beliefnest.pictures.marks import Circle
+from beliefnest.pictures.marks import XY, Bounds, Circle, Lines, Text
 from beliefnest.pictures.palette import MARKS, Mark, agent_looks
 
 NAMES = ("abcdefghijklmnop", "abcdefghijklmnoq", "zzzzzzzzzzzzzzzz")
@@ -51,6 +53,57 @@ def test_a_belief_is_drawn_from_its_own_state_and_marked_against_reality(nest: b
     assert not any("in reality" in text for text in texts(alone) if "(4, 1, 6)" in text)
     same = nest.figure(f"/{bob}", against=f"/{bob}").drawing()
     assert MARKS[Mark.FALSE].words not in texts(same)
+
+
+def test_what_an_agent_is_falsely_believed_to_have_is_said_in_the_margin(nest: bn.Nest) -> None:
+    ann, bob, _ = NAMES
+    prior = bn.InitialBelief((bob,), containers={CHEST: ({}, True)})
+    world = bn.ScriptedWorld(
+        ((0, 0, 0), (11, 4, 11)),
+        {(x, y, 4): "bricks" for x in range(12) for y in (0, 1, 2, 3)},
+        {ann: (2.5, 1, 6.5), bob: (7.5, 1, 7.5)},
+        containers={CHEST: {"apple": 1}},
+    )
+    with bn.Nest(world, static_blocks=["bricks"], initial_beliefs=[prior]) as other:
+        world.withdraw(ann, CHEST, {"apple": 1})
+        world.place_agent(bob, (1.5, 1, 1.5))
+        world.deposit(ann, CHEST, {"apple": 1})
+        said = texts(other[f"/{bob}"].figure().drawing())
+        assert f"{ann}: has 1 apple, more?" in said
+        assert said[said.index(f"{ann}: has 1 apple, more?") + 1] == "in reality: empty"
+        assert f"what {ann} has" in repr(other[f"/{bob}"])
+
+
+@pytest.mark.parametrize("size", [60, "one column", "two columns"])
+def test_a_name_stands_at_its_disc_or_a_line_leads_to_it(nest: bn.Nest, size: object) -> None:
+    for path in ("/", *(f"/{name}" for name in NAMES)):
+        drawing = nest.figure(path).drawing(size)  # type: ignore[arg-type]
+        discs: dict[str, Circle] = {}
+        for circle, badge in itertools.pairwise(drawing.marks):
+            if isinstance(circle, Circle) and circle.role == "icon" and isinstance(badge, Text):
+                # Those on the plan come first; more of them stand in the margin.
+                discs.setdefault(badge.text, circle)
+        ends = [
+            point for m in drawing.marks if isinstance(m, Lines) for s in m.segments for point in s
+        ]
+        for name in NAMES:
+            labels = [m for m in drawing.having("text") if isinstance(m, Text) and m.text == name]
+            disc = discs[agent_looks(NAMES)[name].badge]
+            assert any(
+                _apart(m.bounds, disc) < 6 + disc.radius / 2 or _ends(m.bounds, ends)
+                for m in labels
+            ), name
+
+
+def _apart(bounds: Bounds, circle: Circle) -> float:
+    x0, y0, x1, y1 = bounds
+    x, y = min(max(circle.x, x0), x1), min(max(circle.y, y0), y1)
+    return math.dist((x, y), (circle.x, circle.y)) - circle.radius
+
+
+def _ends(bounds: Bounds, ends: list[XY]) -> bool:
+    x0, y0, x1, y1 = bounds
+    return any(x0 - 1 <= x <= x1 + 1 and y0 - 9 <= y <= y1 + 9 for x, y in ends)
 
 
 def test_an_agent_of_unknown_place_is_named_in_the_margin_and_not_drawn() -> None:

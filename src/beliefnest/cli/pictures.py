@@ -1,14 +1,16 @@
 """From an outcome to the values of a picture."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from beliefnest.belief.view import State
+from beliefnest.nest.explain.comparison import false_things
+from beliefnest.nest.face.looking import wrong_things
 from beliefnest.nest.face.nest import Nest
-from beliefnest.pictures.overview import Card, Condition
+from beliefnest.pictures.overview import Card, Condition, Note
 from beliefnest.pictures.palette import Mark, age_text
-from beliefnest.pictures.scene import Scene, best_height, read_stores
+from beliefnest.pictures.scene import Scene, Wrong, best_height, read_stores
 from beliefnest.scenarios.expected import Arrives, Hears, Stands
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Scenario
@@ -44,7 +46,7 @@ def read_condition(nest: Nest, journal: Journal, outcome: Outcome) -> Condition:
     return Condition(
         title=title,
         about=scenario.condition_description or scenario.description,
-        scene=_with_ghosts(scene, outcome.beliefs, viewers),
+        scene=_with_ghosts(scene, outcome, viewers),
         trails=read_trails(journal, scenario.setting.snapshot, tick),
         cards=tuple(cards),
         story=tuple(step.label for step in scenario.setting.script),
@@ -95,52 +97,63 @@ def _viewers(scenario: Scenario) -> tuple[str, ...]:
     return max(paths, key=len, default=())
 
 
-def _with_ghosts(scene: Scene, beliefs: Mapping[str, State], viewers: Sequence[str]) -> Scene:
+def _wrong_in(state: State, outcome: Outcome) -> list[Wrong]:
+    return wrong_things(false_things(outcome.reality, state)) if state.path else []
+
+
+def _with_ghosts(scene: Scene, outcome: Outcome, viewers: Sequence[str]) -> Scene:
     """With the places at which the first viewer believes the others to be, if they are not."""
-    state = beliefs.get(f"/{viewers[0]}") if viewers else None
+    state = outcome.beliefs.get(f"/{viewers[0]}") if viewers else None
     if state is None:
         return scene
+    wrong = {each.where for each in _wrong_in(state, outcome) if not each.is_owned}
     ghosts = []
     for person in scene.people:
-        held = state.agents[person.name]
-        if person.name not in viewers[1:] or held.position is None or person.position is None:
-            continue
-        if math.dist(held.position, person.position) > 1:
+        held = state.agents[person.name].position
+        if person.name in viewers[1:] and person.name in wrong:
             ghosts.append(
-                replace(
-                    person, position=held.position, mark=Mark.FALSE, believer=viewers[0], above=0
-                )
+                replace(person, position=held, mark=Mark.FALSE, believer=viewers[0], above=0)
             )
     return replace(scene, people=(*scene.people, *ghosts))
 
 
 def _state_card(state: State, outcome: Outcome) -> Card:
     """What a simulator holds of containers, and of what anything is expected of anybody."""
-    stores = read_stores(state, best_height([state]), outcome.scenario.labels, {})
-    notes = _notes(state, outcome)
-    if not stores and not notes:
-        notes = tuple(_place_note(name, state, outcome.scenario) for name in state.agents)
+    wrong = _wrong_in(state, outcome)
+    by_place = {each.where: each for each in wrong if not each.is_owned}
+    stores = read_stores(state, best_height([state]), outcome.scenario.labels, by_place)
+    told = _agents_told(outcome)
+    heard = _heard(state, outcome)
+    if not (stores or told or heard):
+        told = tuple(state.agents)
+    notes = [Note(_place_words(name, state, outcome.scenario), name in by_place) for name in told]
+    notes += [Note(f"{each.where} has {each.held}", false=True) for each in wrong if each.is_owned]
     return Card(
         title=" that ".join(f"{titled(name)} believes" for name in state.path) or "In reality",
         path=path_text(state.path),
         ok=_held(state, outcome),
         stores=stores,
-        notes=notes,
+        notes=(*notes, *heard),
     )
 
 
-def _notes(state: State, outcome: Outcome) -> tuple[str, ...]:
-    """Where agents are and what was said, as far as anything is expected of it anywhere."""
+def _agents_told(outcome: Outcome) -> tuple[str, ...]:
+    """Of whom anything is expected anywhere."""
     contents = [each.expectation.content for each in outcome.expectations]
-    agents = dict.fromkeys(each.agent for each in contents if isinstance(each, Stands))
-    notes = [_place_note(name, state, outcome.scenario) for name in agents]
+    return tuple(dict.fromkeys(each.agent for each in contents if isinstance(each, Stands)))
+
+
+def _heard(state: State, outcome: Outcome) -> list[Note]:
+    """What was said, as far as anything is expected of it anywhere."""
+    contents = [each.expectation.content for each in outcome.expectations]
+    notes = []
     for text in dict.fromkeys(each.text for each in contents if isinstance(each, Hears)):
         heard = any(text in said for _, _, said in state.chat)
-        notes.append(f"{text!r}: {'heard' if heard else 'not heard'}")
-    return tuple(notes)
+        notes.append(Note(f"{text!r}: {'heard' if heard else 'not heard'}"))
+    return notes
 
 
-def _place_note(name: str, state: State, scenario: Scenario) -> str:
+def _place_words(name: str, state: State, scenario: Scenario) -> str:
     agent = state.agents[name]
     if agent.position is None:
         return f"{name}: place not known"
@@ -193,6 +206,6 @@ def _prediction_card(outcome: ProbeOutcome, scenario: Scenario) -> Card:
         path=f"asked of {probe.path}"
         + (f", acted out in {probe.acts_in}" if probe.asks_for_program else ""),
         ok=outcome.ok,
-        notes=(f"\u201c{task}\u201d", f"{deed}{judged}"),
+        notes=(Note(f"\u201c{task}\u201d"), Note(f"{deed}{judged}")),
         prediction=True,
     )

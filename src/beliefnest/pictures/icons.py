@@ -82,10 +82,12 @@ def false_sign(at: XY, radius: float) -> list[Drawn]:
 
 
 def verdict(at: XY, radius: float, *, good: bool) -> list[Drawn]:
-    """A tick on a disc, or the cross of what is false."""
+    """A tick, or a cross, on a disc; what is false has its cross on a diamond."""
     x, y = at
     if not good:
-        return false_sign(at, radius)
+        c = radius * 0.42
+        arms = (((x - c, y - c), (x + c, y + c)), ((x - c, y + c), (x + c, y - c)))
+        return [Circle(x, y, radius, INK), Lines(arms, PAPER, radius * 0.26, "part")]
     points = (
         (x - radius * 0.5, y + radius * 0.05),
         (x - radius * 0.1, y + radius * 0.42),

@@ -129,13 +129,17 @@ def _expected(at: XY, wide: float, high: float) -> list[Drawn]:
     return icons.verdict((at[0] + wide / 2, at[1] + high / 2), high * 0.45, good=True)
 
 
+def _unexpected(at: XY, wide: float, high: float) -> list[Drawn]:
+    return icons.verdict((at[0] + wide / 2, at[1] + high / 2), high * 0.45, good=False)
+
+
 _SIGNS: Mapping[str, tuple[_Sign, str]] = {
     "remembered": (_remembered, MARKS[Mark.STALE].words),
     "false": (_false, MARKS[Mark.FALSE].words),
     "unknown blocks": (_unknown, "not known what stands there"),
     "container": (_container, "not known what is in it; open: known to be empty"),
     "expected": (_expected, "as expected"),
-    "unexpected": (_false, "not as expected"),
+    "unexpected": (_unexpected, "not as expected"),
     "trail": (_trail, "the way an agent has gone"),
     "dropped item": (_dropped, "dropped item"),
 }

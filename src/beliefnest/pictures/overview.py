@@ -1,19 +1,19 @@
 """The picture of a run: for each condition the plan of the world, what is believed, what came."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from beliefnest.pictures import icons
 from beliefnest.pictures.figure import MARGIN, TEXT_SIZE, Figure, columns_for
 from beliefnest.pictures.legend import draw_legend
 from beliefnest.pictures.marks import XY, Drawing, Rectangle
 from beliefnest.pictures.marks import Mark as Drawn
-from beliefnest.pictures.palette import INK, PAPER, QUIET, AgentLook, agent_looks, mix
+from beliefnest.pictures.palette import INK, PAPER, QUIET, AgentLook, Mark, agent_looks, mix
 from beliefnest.pictures.panel import Block, paragraph
 from beliefnest.pictures.plan import draw_plan
 from beliefnest.pictures.scene import Scene, Store
 
-__all__ = ["Card", "Condition", "overview"]
+__all__ = ["Card", "Condition", "Note", "overview"]
 
 _GAP = 12.0
 _LEAST = 148.0
@@ -22,6 +22,19 @@ _BESIDE = 380.0
 """Width, in points, from which on a single condition has its cards beside the plan."""
 _INSET = 5.0
 _BETWEEN = 4.0
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """A line of a card.
+
+    Attributes:
+        text: What it says.
+        false: Whether that is held and is not so.
+    """
+
+    text: str
+    false: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +54,7 @@ class Card:
     path: str
     ok: bool | None
     stores: tuple[Store, ...] = ()
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
     prediction: bool = False
 
 
@@ -124,15 +137,38 @@ def _row(page: _Page, row: Sequence[Condition], top: float, inner: float, column
             paragraph(below, words, left, wide, TEXT_SIZE)
             page.add(below)
         bottom = max(bottom, below.bottom)
-    most = max(len(each.cards) for each in row)
-    for number in range(most):
-        at = [
-            (each.cards[number], left)
-            for each, left in zip(row, lefts, strict=True)
-            if number < len(each.cards)
-        ]
+    for level_cards in _levels([each.cards for each in row]):
+        at = [(card, left) for card, left in zip(level_cards, lefts, strict=True) if card]
         bottom = _cards(page, at, bottom, wide) + _BETWEEN
     return bottom
+
+
+def _levels(columns: Sequence[Sequence[Card]]) -> list[tuple[Card | None, ...]]:
+    """Cards of all conditions by level: those of the same belief or probe are on one."""
+    named = [_named(cards) for cards in columns]
+    order: list[tuple[object, ...]] = []
+    for cards in named:
+        at = 0
+        for name in cards:
+            if name in order:
+                at = order.index(name) + 1
+            else:
+                # After the one that comes before it in its own condition.
+                order.insert(at, name)
+                at += 1
+    # What is predicted stands below all that is believed.
+    order.sort(key=lambda name: bool(name[0]))
+    return [tuple(cards.get(name) for cards in named) for name in order]
+
+
+def _named(cards: Sequence[Card]) -> dict[tuple[object, ...], Card]:
+    """Cards by what they are about; of two that are about the same the second is another one."""
+    found: dict[tuple[object, ...], Card] = {}
+    for card in cards:
+        key = (card.prediction, card.title, card.path)
+        again = sum(name[:3] == key for name in found)
+        found[(*key, again)] = card
+    return found
 
 
 def _beside(page: _Page, condition: Condition, at: XY, inner: float) -> float:
@@ -198,16 +234,30 @@ def _card(card: Card, at: XY, width: float) -> Block:
     for store in card.stores:
         _store(block, store, x, inner)
     for note in card.notes:
-        paragraph(block, note, x, inner, TEXT_SIZE)
+        _note(block, note, x, inner)
     return block
+
+
+def _note(block: Block, note: Note, left: float, width: float) -> None:
+    if not note.false:
+        paragraph(block, note.text, left, width, TEXT_SIZE)
+        return
+    radius = TEXT_SIZE * 0.34
+    at = (left + radius * 1.35, block.bottom + TEXT_SIZE * 0.45)
+    block.marks += icons.false_sign(at, radius)
+    block.kinds.add("false")
+    inset = radius * 3.6
+    paragraph(block, note.text, left + inset, width - inset, TEXT_SIZE)
 
 
 def _store(block: Block, store: Store, left: float, width: float) -> None:
     icon = TEXT_SIZE * 1.2
-    block.marks += icons.container((left + icon / 2, block.bottom + icon / 2), icon, store)
+    false = store.mark is Mark.FALSE
+    # The sign stands before the words, as for all that is false in a card.
+    shown = replace(store, mark=Mark.STALE) if false else store
+    block.marks += icons.container((left + icon / 2, block.bottom + icon / 2), icon, shown)
     block.kinds.add("container")
     top, inset = block.bottom, icon * 1.5
-    words = f"{store.label}: {store.words}"
     block.bottom += (icon - TEXT_SIZE) / 2
-    paragraph(block, words, left + inset, width - inset, TEXT_SIZE)
+    _note(block, Note(f"{store.label}: {store.words}", false), left + inset, width - inset)
     block.bottom = max(block.bottom, top + icon + 1.6)

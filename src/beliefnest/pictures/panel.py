@@ -113,7 +113,12 @@ def _margin(
         paragraph(block, f"and {len(scene.stores) - _MOST} more containers", left, width, size)
     for person in scene.people:
         if person.mark is Mark.FALSE:
-            _person_line(block, person, scene.against, looks, left, width, size)
+            seen = f"seen {age_text(person.age) if person.age else 'now'}"
+            wrong = (seen, person.instead)
+            _person_line(block, looks[person.name], wrong, scene.against, (left, width, size))
+        if person.owned is not None:
+            wrong = (f"has {person.owned.held}", person.owned.instead)
+            _person_line(block, looks[person.name], wrong, scene.against, (left, width, size))
     lost = [person for person in scene.people if person.mark is Mark.UNKNOWN]
     if lost:
         _lost_line(block, lost, looks, left, width, size)
@@ -139,20 +144,28 @@ def _store_line(
 
 def _person_line(
     block: Block,
-    person: Person,
+    look: AgentLook,
+    wrong: tuple[str, str],
     against: str,
-    looks: Mapping[str, AgentLook],
-    left: float,
-    width: float,
-    size: float,
+    line: tuple[float, float, float],
 ) -> None:
+    """A disc, what is held of the agent, and how that is elsewhere.
+
+    Args:
+        block: Where it is drawn.
+        look: The agent's.
+        wrong: What is held; how it is.
+        against: Where it is so.
+        line: Where it begins, how wide it is, size of the text.
+    """
+    left, width, size = line
     radius = size * 0.6
     at = (left + radius, block.bottom + radius)
-    block.marks += icons.agent(at, radius, looks[person.name], None, Mark.STALE)
+    block.marks += icons.agent(at, radius, look, None, Mark.STALE)
     inner, top = left + size * 1.78, block.bottom
-    seen = age_text(person.age) if person.age else "now"
-    paragraph(block, f"{person.name}: seen {seen}", inner, width - size * 1.78, size)
-    _false_line(block, f"{_place_words(against)}: {person.instead}", inner, left + width, size)
+    held, instead = wrong
+    paragraph(block, f"{look.name}: {held}", inner, width - size * 1.78, size)
+    _false_line(block, f"{_place_words(against)}: {instead}", inner, left + width, size)
     block.bottom = max(block.bottom, top + 2 * radius) + 0.8
 
 

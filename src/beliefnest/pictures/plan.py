@@ -1,5 +1,6 @@
 """The plan of a scene: ground, walls, sight, containers, devices, agents, and their names."""
 
+import math
 import zlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -21,6 +22,10 @@ _GROUND = "#f0ece3"
 _GRID = "#e4dfd4"
 _WALL = "#706c6a"
 _HATCH = 4.2
+_LINE = ASCENT + DESCENT
+"""From line to line of a label, to the size of its text."""
+_MANY = 1000
+_TRIES = 4
 _SMALLEST = 3.9
 """Least radius of an agent, in points, at which its letters can be read."""
 _KINDS: Mapping[str, str] = {
@@ -111,6 +116,38 @@ def hatching(bounds: Bounds, number: int, step: float = _HATCH) -> tuple[tuple[X
     return tuple(segments)
 
 
+@dataclass(frozen=True, slots=True)
+class _Label:
+    """A name, and what else stands below it, before it has its place.
+
+    Attributes:
+        icon: What it belongs to.
+        lines: Texts, and whether they are bold.
+        sizes: Of the lines, in points.
+        size: Width and height of all of it.
+    """
+
+    icon: Bounds
+    lines: tuple[tuple[str, bool], ...]
+    sizes: tuple[float, ...]
+    size: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class _Put:
+    """A label that has its place.
+
+    Attributes:
+        label: The label.
+        at: Its left upper corner; None: there is no room for it.
+        beside: Whether that is beside its icon.
+    """
+
+    label: _Label
+    at: XY | None
+    beside: bool
+
+
 class _Sheet:
     """A plan under way."""
 
@@ -132,7 +169,7 @@ class _Sheet:
                 at[1] + down * cell - inset,
             )
         )
-        self._labels: list[tuple[Bounds, tuple[tuple[str, bool], ...]]] = []
+        self._labels: list[_Label] = []
         self.marks: list[Drawn] = []
         self.unnamed: list[str] = []
         self.kinds: set[str] = set()
@@ -314,6 +351,9 @@ class _Sheet:
         look = self._looks[person.name]
         # A false place is a remembered one, unless somebody sees what is not there.
         self.marks += icons.agent(spot, radius, look, yaw, person.mark)
+        if yaw is not None:
+            x, y = spot[0] - math.sin(yaw) * radius * 1.3, spot[1] - math.cos(yaw) * radius * 1.3
+            self._room.avoid((x - radius / 2, y - radius / 2, x + radius / 2, y + radius / 2))
         if person.age or person.mark is Mark.STALE:
             self.kinds.add("remembered")
         if person.mark is Mark.FALSE:
@@ -335,30 +375,79 @@ class _Sheet:
     def _label(self, spot: XY, size: float, lines: tuple[tuple[str, bool], ...]) -> None:
         half = size / 2
         icon = (spot[0] - half, spot[1] - half, spot[0] + half, spot[1] + half)
-        self._labels.append((icon, lines))
+        sizes = (self._size, *(self._size * 0.85 for _ in lines[1:]))
+        width = max(
+            text_width(text, high, bold=bold)
+            for (text, bold), high in zip(lines, sizes, strict=True)
+        )
+        self._labels.append(_Label(icon, lines, sizes, (width, sum(sizes) * _LINE)))
 
     def names(self) -> None:
-        """The names beside their icons, when all icons have their places."""
-        for icon, lines in self._labels:
-            sizes = [
-                self._size if number == 0 else self._size * 0.85 for number in range(len(lines))
-            ]
-            width = max(
-                text_width(text, size, bold=bold)
-                for (text, bold), size in zip(lines, sizes, strict=True)
+        """The names beside their icons, when all icons have their places.
+
+        A name for which there is no room at its icon stands where there is some, with a line
+        that leads to it; those that came off so badly choose before the others in the next try.
+        """
+        best: list[_Put] = []
+        first: list[_Label] = []
+        for number in range(_TRIES):
+            put = self._arranged(first)
+            away = [each.label for each in put if not each.beside]
+            if not number or len(away) < sum(not each.beside for each in best):
+                best = put
+            if not away:
+                break
+            first = [*away, *(label for label in first if label not in away)]
+        for each in best:
+            self._write(each)
+
+    def _arranged(self, first: list[_Label]) -> list[_Put]:
+        """Names with their places; then whoever has the least choice chooses first."""
+        room = self._room.copy()
+        waiting = [*first, *(label for label in self._labels if label not in first)]
+        put: list[_Put] = []
+        while waiting:
+            places = [room.beside(label.icon, *label.size) for label in waiting]
+            chooses = len(put) >= len(first)
+            number = (
+                min(range(len(waiting)), key=lambda n: (len(places[n]) or _MANY, n))
+                if chooses
+                else 0
             )
-            step = ASCENT + DESCENT
-            corner = self._room.beside(icon, width, sum(sizes) * step)
-            if corner is None:
-                self.unnamed.append(" ".join(text for text, _ in lines))
+            label, found = waiting.pop(number), places[number]
+            wide, high = label.size
+            if found:
+                room.take((*found[0], found[0][0] + wide, found[0][1] + high))
+                put.append(_Put(label, found[0], beside=True))
                 continue
-            x, y = corner
-            for (text, bold), size in zip(lines, sizes, strict=True):
-                base = y + ASCENT * size
-                self.marks.append(
-                    Text(x + width / 2, base, text, size, INK, bold, "middle", halo=PAPER)
-                )
-                y += step * size
+            x0, y0, x1, y1 = label.icon
+            spot = room.spot(((x0 + x1) / 2, (y0 + y1) / 2), wide, high)
+            at = None if spot is None else (spot[0] - wide / 2, spot[1] - high / 2)
+            put.append(_Put(label, at, beside=False))
+        return put
+
+    def _write(self, put: _Put) -> None:
+        label = put.label
+        if put.at is None:
+            self.unnamed.append(" ".join(text for text, _ in label.lines))
+            return
+        if not put.beside:
+            self.marks.append(Lines((_between(label.icon, put.at, label.size),), INK, 0.5))
+        x, y = put.at
+        for (text, bold), size in zip(label.lines, label.sizes, strict=True):
+            base, middle = y + ASCENT * size, x + label.size[0] / 2
+            self.marks.append(Text(middle, base, text, size, INK, bold, "middle", halo=PAPER))
+            y += _LINE * size
+
+
+def _between(icon: Bounds, at: XY, size: tuple[float, float]) -> tuple[XY, XY]:
+    """A line from an icon to a label."""
+    x0, y0, x1, y1 = icon
+    end = (
+        min(max((x0 + x1) / 2, at[0]), at[0] + size[0]),
+        min(max((y0 + y1) / 2, at[1]), at[1] + size[1]),
+    )
+    return (min(max(end[0], x0), x1), min(max(end[1], y0), y1)), end
 
 
 def _with_height(name: str, above: int) -> str:

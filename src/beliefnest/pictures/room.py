@@ -7,7 +7,11 @@ from beliefnest.pictures.marks import XY, Bounds
 
 __all__ = ["Room"]
 
-_GAP = 0.6
+_GAP = 1.1
+_BESIDE = 1.2
+"""Between an icon and its label."""
+_FURTHER = 3.0
+_SHIFTS = (0.0, -0.75, 0.75, -0.5, 0.5, -0.25, 0.25)
 
 
 class Room:
@@ -20,10 +24,24 @@ class Room:
     def __init__(self, bounds: Bounds) -> None:
         self._bounds = bounds
         self._taken: list[Bounds] = []
+        self._avoided: list[Bounds] = []
+
+    def copy(self) -> "Room":
+        """The same, to try something in."""
+        copied = Room(self._bounds)
+        copied._taken, copied._avoided = [*self._taken], [*self._avoided]
+        return copied
 
     def take(self, bounds: Bounds) -> None:
         """Let nothing else be where this is."""
         self._taken.append(bounds)
+
+    def avoid(self, bounds: Bounds) -> None:
+        """Let labels be elsewhere if they can."""
+        self._avoided.append(bounds)
+
+    def _troubles(self, bounds: Bounds) -> int:
+        return sum(_touch(bounds, each, 0) for each in self._avoided)
 
     def is_free(self, bounds: Bounds) -> bool:
         """Whether something is inside the area and touches nothing."""
@@ -31,10 +49,7 @@ class Room:
         a0, b0, a1, b1 = self._bounds
         if x0 < a0 or y0 < b0 or x1 > a1 or y1 > b1:
             return False
-        return all(
-            x1 + _GAP <= c0 or c1 + _GAP <= x0 or y1 + _GAP <= d0 or d1 + _GAP <= y0
-            for c0, d0, c1, d1 in self._taken
-        )
+        return not any(_touch(bounds, each, _GAP) for each in self._taken)
 
     def spot(self, at: XY, width: float, height: float) -> XY | None:
         """The nearest middle for something of that size, which is then taken."""
@@ -45,11 +60,11 @@ class Room:
                 return x, y
         return None
 
-    def beside(self, icon: Bounds, width: float, height: float) -> XY | None:
-        """The left upper corner of a label near an icon, which is then taken."""
+    def beside(self, icon: Bounds, width: float, height: float) -> list[XY]:
+        """Where a label can stand at an icon: free left upper corners, the best first."""
         x0, y0, x1, y1 = icon
         middle, level = (x0 + x1) / 2, (y0 + y1) / 2
-        gap = 1.2
+        gap = _BESIDE
         corners = [
             (middle - width / 2, y1 + gap),
             (middle - width / 2, y0 - gap - height),
@@ -63,14 +78,22 @@ class Room:
         # At the edge of the area a label may stand further aside.
         a0, _, a1, _ = self._bounds
         inner = max(a0, min(a1 - width, middle - width / 2))
-        corners += [(inner, y1 + gap), (inner, y0 - gap - height)]
-        for x, y in corners:
-            bounds = (x, y, x + width, y + height)
-            if self.is_free(bounds):
-                self.take(bounds)
-                return x, y
-        found = self.spot((middle, level), width, height)
-        return None if found is None else (found[0] - width / 2, found[1] - height / 2)
+        # Or aside, as long as it touches a side of the icon, or a little further off.
+        half = (width + x1 - x0) / 2 - gap
+        shifted = [inner, *(middle - width / 2 + shift * half for shift in _SHIFTS)]
+        corners += [
+            (x, y)
+            for more in (gap, gap + _FURTHER)
+            for x in shifted
+            for y in (y1 + more, y0 - more - height)
+        ]
+        free = [(x, y) for x, y in corners if self.is_free((x, y, x + width, y + height))]
+        return sorted(free, key=lambda at: self._troubles((*at, at[0] + width, at[1] + height)))
+
+
+def _touch(a: Bounds, b: Bounds, gap: float) -> bool:
+    """Whether less than a gap lies between two."""
+    return a[0] < b[2] + gap and b[0] < a[2] + gap and a[1] < b[3] + gap and b[1] < a[3] + gap
 
 
 def _around(at: XY, step: float) -> Iterator[XY]:

@@ -3,7 +3,7 @@
 import math
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -62,11 +62,15 @@ class Wrong:
 
     Attributes:
         where: Position of a block or container; an agent's name.
+        held: What it holds, in words.
         instead: How the other one has it, in words.
+        is_owned: Whether it is about what the agent has, and not about its place.
     """
 
     where: Position | str
+    held: str
     instead: str
+    is_owned: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,6 +157,7 @@ class Person:
         instead: Where it is elsewhere, if this is false.
         above: Blocks above the storey; below: negative.
         believer: Whose belief has it there, if it is not the simulator's own; empty: nobody's.
+        owned: What is wrong of what it has with it; None: nothing.
     """
 
     name: str
@@ -164,6 +169,7 @@ class Person:
     instead: str
     above: int
     believer: str = ""
+    owned: Wrong | None = None
 
 
 @dataclass(frozen=True)
@@ -265,7 +271,8 @@ def read_scene(
     level = best_height([state]) if height is None else height
     level = min(max(level, state.box.low[1]), state.box.high[1])
     window = _window(state, places or {})
-    by_place = {each.where: each for each in wrong}
+    by_place = {each.where: each for each in wrong if not each.is_owned}
+    owned = {each.where: each for each in wrong if each.is_owned}
     (x0, z0), (x1, z1) = window
     layer = level - state.box.low[1]
     cut = (
@@ -288,7 +295,7 @@ def read_scene(
         items=tuple((item.name, item.position) for _, item in sorted(state.items.items())),
         places=tuple((on_one_line(name), at) for name, at in sorted((places or {}).items())),
         people=tuple(
-            _person(name, agent, state.tick, level, by_place)
+            replace(_person(name, agent, state.tick, level, by_place), owned=owned.get(name))
             for name, agent in sorted(state.agents.items())
         ),
         sights=tuple(

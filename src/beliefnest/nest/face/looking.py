@@ -1,7 +1,6 @@
 """What users see of a nest: figures, plots of beliefs over time, what a notebook shows."""
 
-import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +8,7 @@ import numpy.typing as npt
 
 from beliefnest.belief.view import State
 from beliefnest.errors import BeliefNestError, InputError
-from beliefnest.nest.explain.comparison import Difference, Pose, false_beliefs, value_words
+from beliefnest.nest.explain.comparison import Difference, false_beliefs, value_words
 from beliefnest.nest.face.moment import AtMoment
 from beliefnest.nest.face.plotting import plot_of
 from beliefnest.nest.past.recording import Recording
@@ -19,12 +18,9 @@ from beliefnest.pictures.words import place_words, state_words
 from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.values import Position
 
-__all__ = ["Looking", "LookingAtOne"]
+__all__ = ["Looking", "LookingAtOne", "wrong_things"]
 
 Path = tuple[str, ...]
-
-_APART = 0.5
-"""Blocks by which an agent's place must be wrong to be shown as false."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,23 +225,19 @@ def _wrong(node: _Node, against: Path) -> list[Wrong]:
     if tick is not None:
         tick = min(tick, node.recording.info(against).head)
     found = false_beliefs(node.recording, node.names, node.tick, against, tick)
+    return wrong_things(found)
+
+
+def wrong_things(found: Iterable[Difference]) -> list[Wrong]:
+    """Differences (`a` is taken for true) as drawings know them."""
     return [
-        Wrong(each.where, value_words(each.a))
+        Wrong(each.where, value_words(each.b), value_words(each.a), each.kind == "inventory")
         for each in found
-        if each.kind != "inventory" and _far(each)
     ]
-
-
-def _far(difference: Difference) -> bool:
-    """Whether a pose is false by more than a turn of the head or half a step."""
-    a, b = difference.a, difference.b
-    if isinstance(a, Pose) and isinstance(b, Pose):
-        return math.dist(a.position, b.position) > _APART
-    return True
 
 
 def _named(wrong: Wrong, recording: Recording) -> str:
     """What is false, by the name that people have for it."""
     if isinstance(wrong.where, str):
-        return f"where {wrong.where} is"
+        return f"what {wrong.where} has" if wrong.is_owned else f"where {wrong.where} is"
     return recording.setting.labels.get(wrong.where, place_words(wrong.where))
