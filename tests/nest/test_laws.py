@@ -172,6 +172,13 @@ def test_laziness_it_does_not_matter_when_and_in_what_order_nodes_are_asked_for(
         assert everything(stage.nest[path].state) == late[path], path
 
 
+@given(Stories(forks=True).story, st.lists(st.sampled_from(PATHS), min_size=1))
+def test_laziness_several_nodes_asked_for_at_once_are_what_they_are_one_by_one(story, paths):
+    alone = states(told(story))
+    for path, state in told(story).nest.states(paths).items():
+        assert everything(state) == alone[path], path
+
+
 @given(Stories(max_acts=8).story, st.randoms(use_true_random=False))
 def test_laziness_the_past_equals_what_it_was_live(story, random):
     live: dict[tuple[int, str], dict[str, Any]] = {}

@@ -9,6 +9,7 @@ from beliefnest.errors import InputError, TemplateError
 from beliefnest.prompts import (
     BUILT_IN,
     FilterSet,
+    Renderer,
     Template,
     built_in_template,
     filter,
@@ -43,6 +44,18 @@ def test_an_unknown_variable_may_be_asked_for():
 def test_an_unknown_test_is_refused():
     with pytest.raises(TemplateError, match=r"no test 'defned'.*defined"):
         show("{{ x is defned }}")
+
+
+def test_a_template_that_was_filled_before_is_filled_anew_and_names_its_lines():
+    renderer, branch = Renderer(BUILT_IN), example_branch()
+    template = Template("mine", "a\n{{ 12 // task }}")
+    texts = [renderer.render(template, branch, {"task": number}) for number in (3, 4)]
+    assert texts == ["a\n4", "a\n3"]
+    for _ in range(2):
+        with pytest.raises(TemplateError, match=r"^mine, line 2: .*ZeroDivisionError"):
+            renderer.render(template, branch, {"task": 0})
+    with pytest.raises(TemplateError, match=r"line 2: 'task' is undefined"):
+        renderer.render(template, branch, {})
 
 
 def test_broken_source_names_the_line():

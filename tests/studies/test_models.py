@@ -1,10 +1,13 @@
 """Studies with models behind a server: slow, rate-limited, wrong, down, and what they may spend."""
 
+import signal
+import subprocess
+import sys
 import threading
 
 import pytest
 from tests.llm.conftest import FakeOpenAI, serving
-from tests.studies.small import small_in
+from tests.studies.small import small_in, study_in
 
 import beliefnest as bn
 from beliefnest.studies.spending import spent_in
@@ -59,6 +62,37 @@ def test_a_server_that_is_down_fails_its_cells_alone_and_they_are_tried_again(se
     result = study(tmp_path, **arguments).run(tmp_path / "out", jobs=1)
     assert [row["outcome"] for row in result.rows] == ["ok", "ok"]
     assert len(server.requests) == asked + 1
+
+
+def test_an_interrupted_study_keeps_whole_cells(server, tmp_path):
+    """It is interrupted in its third cell, which waits for an answer."""
+    asked, ended = threading.Event(), threading.Event()
+
+    def never(handler):
+        asked.set()
+        ended.wait(120)
+
+    server.will(never)
+    varied = "scenarios: [small.yaml]\nvariations: {count: [1, 2]}\n"
+    file = study_in(tmp_path, f"{varied}models: [offline, 'vllm:m']\n")
+    command = [sys.executable, "-m", "beliefnest", "study", str(file), "--out"]
+    process = subprocess.Popen(
+        [*command, str(tmp_path / "out"), "--jobs", "1"], stderr=subprocess.PIPE, text=True
+    )
+    assert asked.wait(120)
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate()
+    ended.set()
+    assert process.returncode == 130
+    assert "the same command goes on" in told
+    file.write_text(varied, encoding="utf-8")
+    subprocess.run([*command, str(tmp_path / "whole"), "--jobs", "1"], check=True)
+    kept, whole = (
+        {cell.name: cell.read_bytes() for cell in (tmp_path / each / "cells").iterdir()}
+        for each in ("out", "whole")
+    )
+    assert len(kept) == 2
+    assert kept == whole
 
 
 def test_slow_answers_are_awaited_side_by_side(server, tmp_path):

@@ -113,24 +113,6 @@ def test_a_killed_study_goes_on_to_the_same_rows(whole, tmp_path):
     assert tables_of(out) == tables_of(whole[0])
 
 
-def test_an_interrupted_study_keeps_whole_cells(whole, tmp_path):
-    out, file = tmp_path / "out", whole[1]
-    command = [sys.executable, "-m", "beliefnest", "study", str(file), "--out", str(out)]
-    process = subprocess.Popen(
-        [*command, "--jobs", "1"], stderr=subprocess.PIPE, text=True, start_new_session=True
-    )
-    while "(1/6)" not in process.stderr.readline():
-        pass
-    process.send_signal(signal.SIGINT)
-    _, told = process.communicate()
-    assert process.returncode == 130
-    assert "the same command goes on" in told
-    whole_cells = cells_of(whole[0])
-    kept = cells_of(out)
-    assert 1 <= len(kept) < CELLS
-    assert kept.items() <= whole_cells.items()
-
-
 def test_a_study_that_has_ended_can_become_larger(tmp_path):
     name = small_in(tmp_path)
     seen = []

@@ -2,22 +2,73 @@
 
 import heapq
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import Box, Point, Position
+from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position
 
-__all__ = ["Ground", "feet_in", "find_way"]
+__all__ = ["Goal", "Ground", "InReach", "Near", "feet_in", "find_way"]
 
 _DEEPEST_DROP = 3
 _SIDES = ((1, 0), (0, 1), (-1, 0), (0, -1))
 _CORNERS = ((1, 1), (-1, 1), (-1, -1), (1, -1))
 _MOST_CELLS = 100_000
 _MARGIN = 2
+_MOST_WAYS = 1000
+"""That a ground remembers."""
+
+
+@dataclass(frozen=True, slots=True)
+class Near:
+    """Standing no further from a block than so many blocks.
+
+    Attributes:
+        block: Its position.
+        within: Distance between the block's cell and the one stood in.
+    """
+
+    block: Position
+    within: float
+
+    def is_met(self, cell: Position) -> bool:
+        """Whether a cell is near enough."""
+        return math.dist(cell, self.block) <= self.within
+
+    def steps_left(self, cell: Position) -> float:
+        """How many steps it is to such a cell at least."""
+        return max(0.0, math.dist(cell, self.block) - self.within)
+
+
+@dataclass(frozen=True, slots=True)
+class InReach:
+    """Standing where a hand reaches a block.
+
+    Attributes:
+        block: Its position.
+        reach: Distance between eyes and the block's middle.
+    """
+
+    block: Position
+    reach: float
+
+    def is_met(self, cell: Position) -> bool:
+        """Whether a block can be reached from a cell."""
+        x, y, z = feet_in(cell)
+        middle = (self.block[0] + 0.5, self.block[1] + 0.5, self.block[2] + 0.5)
+        return math.dist((x, y + EYE_HEIGHT, z), middle) <= self.reach
+
+    def steps_left(self, cell: Position) -> float:
+        """How many steps it is to such a cell at least."""
+        return max(0.0, math.dist(cell, self.block) - self.reach)
+
+
+Goal = Near | InReach
+"""Where a way is to lead."""
 
 
 def feet_in(cell: Position) -> Point:
@@ -51,6 +102,7 @@ class Ground:
         width, height, depth = passing.shape
         self._shape = (int(width), int(height), int(depth))
         self._steps: dict[Position, tuple[Position, ...]] = {}
+        self._ways: dict[tuple[Position, Goal], tuple[Position, ...] | None] = {}
 
     def stands(self, cell: Position) -> bool:
         """Whether somebody can stand in a cell."""
@@ -69,6 +121,15 @@ class Ground:
         if found is None:
             found = self._steps[cell] = tuple(self._steps_from(cell))
         return found
+
+    def way(self, start: Position, goal: Goal) -> tuple[Position, ...] | None:
+        """The way that `find_way` finds, looked for once."""
+        wanted = (start, goal)
+        if wanted not in self._ways:
+            if len(self._ways) >= _MOST_WAYS:
+                self._ways.clear()
+            self._ways[wanted] = find_way(self, start, goal)
+        return self._ways[wanted]
 
     def _steps_from(self, cell: Position) -> Iterator[Position]:
         x, y, z = cell
@@ -111,33 +172,27 @@ def _widened(flags: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
     return wide
 
 
-def find_way(
-    ground: Ground,
-    start: Position,
-    arrived: Callable[[Position], bool],
-    distance: Callable[[Position], float],
-) -> list[Position] | None:
+def find_way(ground: Ground, start: Position, goal: Goal) -> tuple[Position, ...] | None:
     """The shortest way on foot; of several the same one each time.
 
     Args:
         ground: Where one can stand.
         start: The cell one stands in.
-        arrived: Whether a cell is where the way is to lead.
-        distance: How many steps it is to there at least.
+        goal: Where the way is to lead.
 
     Returns:
         The cells after `start`, in order; None: there is no way.
     """
     came: dict[Position, Position | None] = {start: None}
     costs: dict[Position, float] = {start: 0.0}
-    waiting: list[tuple[float, int, Position]] = [(distance(start), 0, start)]
+    waiting: list[tuple[float, int, Position]] = [(goal.steps_left(start), 0, start)]
     order = 0
     done: set[Position] = set()
     while waiting and len(done) < _MOST_CELLS:
         _, _, cell = heapq.heappop(waiting)
         if cell in done:
             continue
-        if arrived(cell):
+        if goal.is_met(cell):
             return _traced(came, cell)
         done.add(cell)
         for following in ground.steps(cell):
@@ -145,14 +200,14 @@ def find_way(
             if cost < costs.get(following, math.inf):
                 costs[following], came[following] = cost, cell
                 order += 1
-                heapq.heappush(waiting, (cost + distance(following), order, following))
+                heapq.heappush(waiting, (cost + goal.steps_left(following), order, following))
     return None
 
 
-def _traced(came: Mapping[Position, Position | None], cell: Position) -> list[Position]:
+def _traced(came: Mapping[Position, Position | None], cell: Position) -> tuple[Position, ...]:
     way = []
     at: Position | None = cell
     while at is not None and came[at] is not None:
         way.append(at)
         at = came[at]
-    return way[::-1]
+    return tuple(way[::-1])

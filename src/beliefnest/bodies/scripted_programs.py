@@ -4,21 +4,17 @@ What a program does before its first wait belongs to the first tick. A skill tha
 tick acts in the next ones. Agents act in the order in which their programs are given.
 """
 
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
-from beliefnest.bodies.footpaths import Ground
+from beliefnest.bodies.grounds import Grounds
 from beliefnest.bodies.javascript import JavaScriptProgram
 from beliefnest.bodies.protocol import Aim, Fault, ProgramResult, Sense, Sensed, Unfinished
 from beliefnest.bodies.scripted_skills import CALLS, SKILLS, Doing, Hand, SkillError
 from beliefnest.errors import BeliefNestError
-from beliefnest.world.frames import BlockGrid, Frame
-from beliefnest.world.registry import Registry
+from beliefnest.world.frames import Frame
 from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.values import AgentState, Event, Point
 
@@ -26,7 +22,6 @@ __all__ = ["run_programs"]
 
 _USING = frozenset({"getItemFromChest", "depositItemIntoChest", "openDoor", "closeDoor"})
 _MOST_AIMS = 100
-_MOST_GRIDS = 8
 _DOINGS = {**SKILLS, **CALLS}
 
 
@@ -48,6 +43,7 @@ def run_programs(
     programs: Mapping[str, str],
     timeout_ticks: int,
     senses: Mapping[str, Sense],
+    grounds: Grounds,
 ) -> Mapping[str, ProgramResult]:
     """Run programs by agent until the last has ended.
 
@@ -56,6 +52,7 @@ def run_programs(
         programs: JavaScript by agent.
         timeout_ticks: Ticks after which they are ended.
         senses: By agent, what its program may read now; those left out read what is the case.
+        grounds: What was made of grids of blocks already.
     """
     first = world.now
     happened: list[tuple[int, Event]] = []
@@ -63,17 +60,16 @@ def run_programs(
     def hear(frame: Frame) -> None:
         happened.extend((frame.tick, event) for event in frame.events)
 
-    texts = _Texts(world)
     world.listen(hear)
     try:
-        runs = [_begun(world, agent, code, senses, texts) for agent, code in programs.items()]
+        runs = [_begun(world, agent, code, senses, grounds) for agent, code in programs.items()]
         while True:
             with world.tick():
                 done = [(run, _act(run)) for run in runs]
             # What came of the tick can be perceived now that it is over.
             for run, answers in done:
                 for number, ok, value in answers:
-                    _settle(run, texts, number, ok=ok, value=value)
+                    _settle(run, grounds, number, ok=ok, value=value)
             for run in runs:
                 if run.end_tick is None and run.program.ended:
                     run.end_tick = world.now
@@ -87,42 +83,12 @@ def run_programs(
     return {run.hand.name: _result(run, first, tuple(happened)) for run in runs}
 
 
-class _Texts:
-    """Blocks of a world as texts for programs, made once for each grid."""
-
-    def __init__(self, world: ScriptedWorld) -> None:
-        self._world = world
-        self._registry = Registry.load()
-        self._grids: dict[int, tuple[BlockGrid, str, Ground]] = {}
-
-    def of(self, grid: BlockGrid) -> tuple[str, Ground]:
-        """The text of a grid, and where one can stand in it."""
-        if len(self._grids) > _MOST_GRIDS:
-            self._grids.clear()
-        known = self._grids.get(id(grid))
-        if known is None or known[0] is not grid:
-            box = self._world.box
-            states, places = np.unique(grid, return_inverse=True)
-            palette = [None if s < 0 else self._registry.text(s) for s in states.tolist()]
-            text = json.dumps(
-                {
-                    "low": box.low,
-                    "shape": box.shape,
-                    "palette": palette,
-                    "states": places.reshape(-1).tolist(),
-                }
-            )
-            # The grid is kept with them, so that no other one gets its number.
-            known = self._grids[id(grid)] = (grid, text, Ground(self._registry, box, grid))
-        return known[1], known[2]
-
-
 def _begun(
     world: ScriptedWorld,
     agent: str,
     code: str,
     senses: Mapping[str, Sense],
-    texts: _Texts,
+    grounds: Grounds,
 ) -> _Run:
     def all_of_it() -> Sensed:
         return Sensed(world.blocks, world.agents)
@@ -131,12 +97,12 @@ def _begun(
     hand = Hand(
         agent,
         world,
-        known=lambda: texts.of(sense().blocks)[1],
+        known=lambda: grounds.of(world.box, sense().blocks).ground,
         others=lambda: sense().agents,
-        ground=lambda: texts.of(world.blocks)[1],
+        ground=lambda: grounds.of(world.box, world.blocks).ground,
     )
     run = _Run(hand, JavaScriptProgram(agent, SKILLS), sense)
-    _show(run, texts)
+    _show(run, grounds)
     run.program.start(code)
     _take_calls(run)
     return run
@@ -158,9 +124,9 @@ def _act(run: _Run) -> list[tuple[int, bool, object]]:
     return ended
 
 
-def _settle(run: _Run, texts: _Texts, number: int, *, ok: bool, value: object) -> None:
+def _settle(run: _Run, grounds: Grounds, number: int, *, ok: bool, value: object) -> None:
     del run.doing[number]
-    _show(run, texts)
+    _show(run, grounds)
     run.program.settle(number, ok=ok, value=value)
     _take_calls(run)
 
@@ -190,7 +156,7 @@ def _told(error: Exception) -> dict[str, object]:
     return {"message": message, "reason": reason}
 
 
-def _show(run: _Run, texts: _Texts) -> None:
+def _show(run: _Run, grounds: Grounds) -> None:
     sensed = run.sense()
     me = sensed.agents[run.hand.name]
     told = {
@@ -200,7 +166,7 @@ def _show(run: _Run, texts: _Texts) -> None:
         "health": me.health,
         "food": me.food,
     }
-    run.program.see(told, texts.of(sensed.blocks)[0])
+    run.program.see(told, grounds.of(run.hand.world.box, sensed.blocks).text)
 
 
 def _pose(agent: AgentState) -> dict[str, object]:

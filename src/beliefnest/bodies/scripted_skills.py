@@ -9,14 +9,14 @@ from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from beliefnest.bodies.footpaths import Ground, feet_in, find_way
+from beliefnest.bodies.footpaths import Goal, Ground, InReach, Near, feet_in
 from beliefnest.bodies.protocol import NO_WAY
 from beliefnest.errors import BeliefNestError, WorldError
 from beliefnest.world.claims import claims_from_plain
 from beliefnest.world.doors import is_open
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.scripted import ScriptedWorld
-from beliefnest.world.values import EYE_HEIGHT, AgentState, Point, Position
+from beliefnest.world.values import AgentState, Point, Position
 
 __all__ = ["CALLS", "SKILLS", "Doing", "Hand", "SkillError"]
 
@@ -65,17 +65,13 @@ class Hand:
     @property
     def cell(self) -> Position:
         """The cell it stands in."""
-        x, y, z = self.feet
-        return (math.floor(x), math.floor(y), math.floor(z))
+        return _cell(self.feet)
 
 
 def _go_to_position(hand: Hand, position: Any, dist: Any = 2) -> Doing:
     target = _point("position", position)
     near = _number("dist", dist)
-    block = (math.floor(target[0]), math.floor(target[1]), math.floor(target[2]))
-    moved = yield from _walk(
-        hand, target, lambda cell: math.dist(cell, block) <= near, "the position", within=near
-    )
+    moved = yield from _walk(hand, target, Near(_cell(target), near), "the position")
     if not moved:
         yield
     hand.world.arrive(hand.name, target)
@@ -146,8 +142,7 @@ def _give_item(hand: Hand, other: Any, item: Any, count: Any) -> Doing:
     if name not in others:
         raise SkillError(f"{name!r} is no agent that is known to be here; it is {sorted(others)}")
     where = others[name].position
-    block = (math.floor(where[0]), math.floor(where[1]), math.floor(where[2]))
-    yield from _walk(hand, where, lambda cell: math.dist(cell, block) <= _NEAR, name, within=_NEAR)
+    yield from _walk(hand, where, Near(_cell(where), _NEAR), name)
     yield
     hand.world.give(hand.name, name, _items({_text(item): count}))
 
@@ -193,7 +188,7 @@ def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:
         yield from _walk_to_use(hand, place)
     yield
     _check_container(hand, place)
-    if not _reaches(hand.cell, place):
+    if not InReach(place, _REACH).is_met(hand.cell):
         raise SkillError(f"the container at {place} is too far away to open it; go nearer")
     hand.world.open(hand.name, place)
 
@@ -206,28 +201,15 @@ def _check_container(hand: Hand, place: Position) -> None:
 
 
 def _walk_to_use(hand: Hand, place: Position) -> Doing:
-    yield from _walk(hand, place, lambda cell: _reaches(cell, place), "the block", within=_REACH)
+    yield from _walk(hand, place, InReach(place, _REACH), "the block")
 
 
-def _reaches(cell: Position, place: Position) -> bool:
-    x, y, z = feet_in(cell)
-    middle = (place[0] + 0.5, place[1] + 0.5, place[2] + 0.5)
-    return math.dist((x, y + EYE_HEIGHT, z), middle) <= _REACH
-
-
-def _walk(
-    hand: Hand, target: Point, arrived: Callable[[Position], bool], what: str, *, within: float
-) -> Doing:
+def _walk(hand: Hand, target: Point, goal: Goal, what: str) -> Doing:
     """Walk until a cell is reached that is good enough, one cell a tick; whether it walked."""
-
-    def distance(cell: Position) -> float:
-        block = [math.floor(value) for value in target]
-        return max(0.0, math.dist(cell, block) - within)
-
     moved = False
     bumped: set[Position] = set()
-    while not arrived(hand.cell):
-        way = find_way(hand.known(), hand.cell, arrived, distance)
+    while not goal.is_met(hand.cell):
+        way = hand.known().way(hand.cell, goal)
         if way is None or bumped & set(way):
             far = math.dist(hand.feet, target)
             raise SkillError(
@@ -260,8 +242,11 @@ def _point(name: str, value: Any) -> Point:
 
 
 def _block(value: Any) -> Position:
-    x, y, z = _point("position", value)
-    return (math.floor(x), math.floor(y), math.floor(z))
+    return _cell(_point("position", value))
+
+
+def _cell(point: Point) -> Position:
+    return (math.floor(point[0]), math.floor(point[1]), math.floor(point[2]))
 
 
 def _items(value: Any) -> dict[str, int]:

@@ -2,7 +2,7 @@
 
 from beliefnest.prompts.builtin import BUILT_IN
 from beliefnest.prompts.filterset import FilterSet, PromptFilter, filter
-from beliefnest.prompts.rendering import render
+from beliefnest.prompts.rendering import Renderer, render
 from beliefnest.prompts.templates import Template, built_in_template, load_template
 from beliefnest.prompts.view import BranchView
 
@@ -11,6 +11,7 @@ __all__ = [
     "BranchView",
     "FilterSet",
     "PromptFilter",
+    "Renderer",
     "Template",
     "built_in_template",
     "filter",

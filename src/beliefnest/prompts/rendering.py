@@ -3,6 +3,7 @@
 import functools
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any, NoReturn
@@ -25,7 +26,7 @@ from beliefnest.prompts.text import nearest
 from beliefnest.prompts.view import BranchView
 from beliefnest.world.texts import escaped
 
-__all__ = ["LAST_CODE", "LAST_ERROR", "NO_CODE", "NO_ERROR", "render"]
+__all__ = ["LAST_CODE", "LAST_ERROR", "NO_CODE", "NO_ERROR", "Renderer", "render"]
 
 NO_CODE = "No code was executed"
 NO_ERROR = "No error"
@@ -37,6 +38,9 @@ _SPACES = re.compile(r"([\n\t])")
 """What programs and errors of several lines are set with."""
 
 _MARKERS = {LAST_CODE: "{{ last_code }}", LAST_ERROR: "{{ last_error }}"}
+_MOST_TEMPLATES = 64
+"""That are kept compiled."""
+
 _PLAIN_TYPES = (str, bytes, int, float, list, tuple, dict, set, frozenset)
 
 
@@ -46,7 +50,7 @@ def render(
     variables: Mapping[str, Any],
     filters: FilterSet | None = None,
 ) -> str:
-    """The text of a prompt.
+    """The text of a prompt; `Renderer` compiles a template once that is rendered often.
 
     Args:
         template: A template, the path of a file that holds one, or Jinja2 source.
@@ -61,25 +65,81 @@ def render(
             that does not exist, or a filter failed; the message names the line.
         InputError: An installed filter cannot be used.
     """
-    source = _as_template(template)
-    environment = _environment(_default_filters() if filters is None else filters)
-    values = {
-        **variables,
-        "branch": branch,
-        "last_code": _or_word(variables.get("last_code"), NO_CODE),
-        "last_error": _or_word(variables.get("last_error"), NO_ERROR),
-    }
+    return Renderer(filters).render(template, branch, variables)
+
+
+@dataclass(frozen=True, slots=True)
+class _Compiled:
+    """A template that was parsed and checked, ready to be filled.
+
+    Attributes:
+        name: What messages call it.
+        filename: What traces call it.
+        tree: Its syntax.
+        template: Its code.
+    """
+
+    name: str
+    filename: str
+    tree: nodes.Template
+    template: jinja2.Template
+
+
+class Renderer:
+    """Fills templates, compiling each but once; it may serve one nest after the other.
+
+    Args:
+        filters: Filters by name; None: the built-in and the installed ones.
+    """
+
+    def __init__(self, filters: FilterSet | None = None) -> None:
+        self._filters = filters
+        self._compiled: dict[Template, _Compiled] = {}
+
+    def render(
+        self, template: Template | Path | str, branch: BranchView, variables: Mapping[str, Any]
+    ) -> str:
+        """The text of a prompt; arguments and errors are those of the function `render`."""
+        compiled = self._ready(_as_template(template))
+        values = {
+            **variables,
+            "branch": branch,
+            "last_code": _or_word(variables.get("last_code"), NO_CODE),
+            "last_error": _or_word(variables.get("last_error"), NO_ERROR),
+        }
+        try:
+            return compiled.template.render(values)
+        except Exception as error:
+            line = _line_of(error, compiled.filename)
+            known = {*values, *self._environment.globals}
+            hint = _unknown_variables(compiled.tree, line, known)
+            raise TemplateError(f"{compiled.name}, line {line}: {_words(error)}{hint}") from error
+
+    @functools.cached_property
+    def _environment(self) -> jinja2.Environment:
+        return _environment(_default_filters() if self._filters is None else self._filters)
+
+    def _ready(self, source: Template) -> _Compiled:
+        known = self._compiled.get(source)
+        if known is None:
+            known = _compiled(self._environment, source)
+            if len(self._compiled) >= _MOST_TEMPLATES:
+                del self._compiled[next(iter(self._compiled))]
+            self._compiled[source] = known
+        return known
+
+
+def _compiled(environment: jinja2.Environment, source: Template) -> _Compiled:
     text = _with_markers(source.text)
     tree = _parse(environment, source.name, text)
     filename = f"<template {source.name}>"
     try:
         code = environment.compile(text, name=source.name, filename=filename)
-        compiled = jinja2.Template.from_code(environment, code, environment.globals)
-        return compiled.render(values)
     except Exception as error:
         line = _line_of(error, filename)
-        hint = _unknown_variables(tree, line, {*values, *environment.globals})
-        raise TemplateError(f"{source.name}, line {line}: {_words(error)}{hint}") from error
+        raise TemplateError(f"{source.name}, line {line}: {_words(error)}") from error
+    template = jinja2.Template.from_code(environment, code, environment.globals)
+    return _Compiled(source.name, filename, tree, template)
 
 
 @functools.cache

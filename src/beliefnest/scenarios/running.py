@@ -50,8 +50,8 @@ def run_scenario(
     # Only then is there a wait to be told of.
     compiling = "" if is_compiled(kernel.fold) else " (this very first time code is compiled)"
     on_progress(f"working out beliefs{compiling}", steps, steps)
-    reality = nest["/"].state
-    beliefs = {path: nest[path].state for path in _paths(scenario)}
+    paths = _paths(scenario)
+    states = nest.states(["/", *paths])
     expectations = tuple(
         ExpectationOutcome(each, found_instead(each.content, nest[each.path].state))
         for each in scenario.expectations
@@ -66,8 +66,8 @@ def run_scenario(
         seed=seed,
         ticks=ticks,
         seconds=time.perf_counter() - started,
-        reality=reality,
-        beliefs=beliefs,
+        reality=states["/"],
+        beliefs={path: states[path] for path in paths},
         expectations=expectations,
         probes=tuple(probes),
         reading=_reading(nest),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import msgspec
 from filelock import FileLock
 
 from beliefnest.errors import InputError
@@ -151,7 +152,9 @@ class StudyFolder:
 
 
 def _json(content: Mapping[str, Any]) -> str:
-    return json.dumps(content, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
+    # The library's own encoder takes five times as long where it sets lines.
+    flat = json.dumps(content, sort_keys=True, ensure_ascii=False)
+    return msgspec.json.format(flat, indent=1) + "\n"
 
 
 def _read(file: Path) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from beliefnest.llm.messages import Sampling
 from beliefnest.llm.remote import RemoteModel
 from beliefnest.llm.resolve import Connection, open_model, resolve_model
 from beliefnest.nest.face.nest import Nest
+from beliefnest.prompts import Renderer
 from beliefnest.scenarios.records import expectation_json, probe_json
 from beliefnest.scenarios.running import Asking, run_scenario
 from beliefnest.studies.plan import Cell
@@ -67,6 +68,7 @@ class Worker:
 
     def __init__(self, stack: ExitStack) -> None:
         self._worlds = stack.enter_context(Worlds(0))
+        self._renderer = Renderer()
 
     def play(self, cell: Cell, terms: Terms) -> CellResult:
         """Play a cell; what goes wrong is its result."""
@@ -94,7 +96,9 @@ class Worker:
             store.parent.mkdir(parents=True, exist_ok=True)
             for left in store.parent.glob(f"{key.name}.bn*"):
                 left.unlink()
-        with Nest.open(scenario, key.setting["world"], store, key.seed, self._worlds) as nest:
+        with Nest.open(
+            scenario, key.setting["world"], store, key.seed, self._worlds, renderer=self._renderer
+        ) as nest:
             outcome = run_scenario(nest, scenario, model, key.seed, 0.0, _say_nothing, asking)
         return {
             "error": None,

@@ -60,10 +60,8 @@ class Box:
         return (x1 - x0 + 1, y1 - y0 + 1, z1 - z0 + 1)
 
     def __contains__(self, position: Position) -> bool:
-        return all(
-            low <= value <= high
-            for low, value, high in zip(self.low, position, self.high, strict=True)
-        )
+        (x0, y0, z0), (x, y, z), (x1, y1, z1) = self.low, position, self.high
+        return x0 <= x <= x1 and y0 <= y <= y1 and z0 <= z <= z1
 
     def index(self, position: Position) -> tuple[int, int, int]:
         """Index of a position in a dense array of shape `shape`."""

@@ -6,6 +6,7 @@ from types import TracebackType
 from typing import Self
 
 from beliefnest.belief.entries import InitialBelief
+from beliefnest.belief.view import State
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.scripted import ScriptedBodies
 from beliefnest.bodies.worlds import Worlds, open_world
@@ -25,6 +26,7 @@ from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.face.viewing import Viewing
 from beliefnest.nest.past.setting import Setting
 from beliefnest.perception.options import Perception
+from beliefnest.prompts import Renderer
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
 from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.world.paths import parse_path
@@ -83,6 +85,7 @@ class Nest(Looking, Viewing, Telling, Comparing):
         worlds: Worlds | None = None,
         limits: ProcessLimits | None = None,
         claims_from: ClaimsFrom | None = None,
+        renderer: Renderer | None = None,
     ) -> Self:
         """Open a scenario in a world.
 
@@ -94,6 +97,7 @@ class Nest(Looking, Viewing, Telling, Comparing):
             worlds: Lends the world, to one nest after the other; None: one is started.
             limits: What the world's process may take, if one is started.
             claims_from: Reads claims out of what is said without any; None: nobody.
+            renderer: Fills prompts, for one nest after the other; None: one of its own.
 
         Raises:
             BodyError: The world could not be started.
@@ -103,7 +107,7 @@ class Nest(Looking, Viewing, Telling, Comparing):
         start = Start.of(scenario, world, seed)
         opened = open_world(world, seed, limits) if worlds is None else worlds.lend(world)
         try:
-            return cls._of(begun(start, opened, store, claims_from))
+            return cls._of(begun(start, opened, store, claims_from, renderer))
         except BaseException:
             opened.close()
             raise
@@ -219,6 +223,17 @@ class Nest(Looking, Viewing, Telling, Comparing):
             PathError: The path is malformed or names an unknown agent.
         """
         return Simulator(self._engine, parse_path(path, self.agents))
+
+    @in_turn
+    def states(self, paths: Iterable[str]) -> Mapping[str, State]:
+        """What several simulators hold, read-only, by path as given; quicker than one by one.
+
+        Raises:
+            PathError: A path is malformed or names an unknown agent.
+        """
+        nodes = {path: parse_path(path, self.agents) for path in paths}
+        states = self._recording.states(nodes.values())
+        return {path: states[node] for path, node in nodes.items()}
 
     @in_turn
     def at(self, tick: int) -> Past:

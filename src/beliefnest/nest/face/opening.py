@@ -14,6 +14,7 @@ from beliefnest.nest.past.recording import Recording, read_recording
 from beliefnest.nest.past.setting import Setting
 from beliefnest.nest.past.setting_codec import encode_start
 from beliefnest.nest.past.versions import own_versions
+from beliefnest.prompts import Renderer
 from beliefnest.timeline.memory import MemoryJournal
 from beliefnest.timeline.records import RunRecord
 from beliefnest.timeline.store import SqliteJournal
@@ -85,23 +86,29 @@ class Start:
 
 
 def begun(
-    start: Start, world: World, store: str | Path | None, claims_from: ClaimsFrom | None = None
+    start: Start,
+    world: World,
+    store: str | Path | None,
+    claims_from: ClaimsFrom | None = None,
+    renderer: Renderer | None = None,
 ) -> Engine:
     """Begin a run in a world, in a file or in memory; `claims_from` reads what is said in it.
+
+    Prompts are filled by `renderer`; None: by one of its own.
 
     Raises:
         StoreError: The file exists already, or cannot be written.
         BodyError: The world could not be started.
     """
     if store is None:
-        recording = Recording(start.setting, MemoryJournal(), start.seed)
+        recording = Recording(start.setting, MemoryJournal(), start.seed, renderer)
         recording.journal.records.add_versions(own_versions())
         return Engine(recording, world, reader_of(claims_from, recording)).begin()
     journal = SqliteJournal.create_file(store)
     try:
         with journal.together():
             journal.records.set_run(start.record(world))
-            recording = Recording(start.setting, journal, start.seed)
+            recording = Recording(start.setting, journal, start.seed, renderer)
             return Engine(recording, world, reader_of(claims_from, recording)).begin()
     except BaseException:
         journal.close()

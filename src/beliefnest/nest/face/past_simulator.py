@@ -18,7 +18,7 @@ from beliefnest.nest.face.telling import Telling
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
-from beliefnest.prompts import Template, render
+from beliefnest.prompts import Template
 from beliefnest.world.paths import normalised, parse_path, path_text
 from beliefnest.world.values import Point, Position
 
@@ -70,7 +70,7 @@ class ShownSimulator(LookingAtOne, ABC):
             TemplateError: The template is wrong; the message names its line.
         """
         with self._recording.turn:
-            return render(template, self, variables)
+            return self._recording.renderer.render(template, self, variables)
 
     @in_turn
     def explain(

@@ -149,6 +149,18 @@ class History:
         if count - (0 if head is None else head.position) >= self._pace.lag:
             self._head(key, key.path, count)
 
+    def expect(self, key: TimelineKey, paths: Sequence[Path]) -> None:
+        """Begin with several nodes at once that will be asked for at a timeline's head.
+
+        One after the other, each is folded anew with all above it.
+        """
+        below = [path for path in paths if path != key.path]
+        head = self._heads.get(key) or self._saved(key, self._journal.info(key).entries)
+        if below and (head is None or head.table.count == 1):
+            head = self.walk(key, below)
+        if head is not None:
+            self._heads[key] = head
+
     def close(self) -> None:
         """Leave checkpoints at the heads of timelines, so that who resumes begins there."""
         for key, head in self._heads.items() if self._journal.writable else ():

@@ -4,6 +4,7 @@ Nothing here acts in a world. What acts (`nest/acting`) appends to the journal a
 selection; what reads (states, explanations, recorded runs) needs no more than this.
 """
 
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from copy import copy
 from threading import RLock
@@ -16,6 +17,7 @@ from beliefnest.nest.past.run_log import RunJournal
 from beliefnest.nest.past.setting import MAIN, Setting
 from beliefnest.nest.past.setting_codec import decode_start
 from beliefnest.nest.past.views import Blocks, LiveState
+from beliefnest.prompts import Renderer
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import path_text
@@ -32,17 +34,26 @@ class Recording:
         setting: What the nest started from.
         journal: The timelines, with what ran on them.
         seed: Drives every random number of the nest.
+        renderer: Fills prompts; None: one of its own.
 
     Attributes:
         history: From the journal to any node.
+        renderer: Fills prompts.
         selected: The timeline of every simulator in control mode.
         turn: Held by the thread that is in the nest.
     """
 
-    def __init__(self, setting: Setting, journal: RunJournal, seed: int = 0) -> None:
+    def __init__(
+        self,
+        setting: Setting,
+        journal: RunJournal,
+        seed: int = 0,
+        renderer: Renderer | None = None,
+    ) -> None:
         self.setting = setting
         self.journal = journal
         self.seed = seed
+        self.renderer = Renderer() if renderer is None else renderer
         self.history = History(journal, setting)
         self.selected: dict[Path, TimelineKey] = {(): TimelineKey((), MAIN)}
         self.turn = RLock()
@@ -115,6 +126,16 @@ class Recording:
         key, entries = self._when(path, tick)
         shown = self.journal.info(key).head if tick is None else tick
         return self.state_after(key, path, entries, shown)
+
+    def states(self, paths: Iterable[Path]) -> Mapping[Path, LiveState]:
+        """The views of several nodes' states now, by path."""
+        wanted = list(paths)
+        together: dict[TimelineKey, list[Path]] = {}
+        for path in wanted:
+            together.setdefault(self.controller(path), []).append(path)
+        for key, nodes in together.items():
+            self.history.expect(key, nodes)
+        return {path: self.state(path) for path in wanted}
 
     def state_after(self, key: TimelineKey, path: Path, entries: int, tick: int) -> LiveState:
         """The view of a node's state on a timeline, after some of its entries, as of a tick."""
