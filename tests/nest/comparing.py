@@ -17,6 +17,7 @@ def everything(state: State) -> dict[str, Any]:
         "chat": tuple(state.chat),
         "thoughts": tuple(state.thoughts),
         "addressees": tuple(state.addressees),
+        "signs": dict(state.signs),
     }
 
 
@@ -24,6 +25,7 @@ def values(state: State) -> dict[str, Any]:
     """What a state says of the world, whatever it rests on."""
     return {
         "blocks": {p: state.blocks[p] for p in state.blocks},
+        "signs": dict(state.signs),
         "containers": {p: (c.items, c.complete) for p, c in state.containers.items()},
         "agents": {
             n: (a.position, a.yaw, a.pitch, dict(a.inventory)) for n, a in state.agents.items()

@@ -16,13 +16,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from tests.nest.reference_rules import UNKNOWN, Block, Node, Rules
+from tests.nest.reference_rules import UNKNOWN, Node, Rules, known_block
 from tests.nest.reference_testimony import Ear
 
 import beliefnest as bn
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.world.frames import Frame, Snapshot
-from beliefnest.world.values import EventKind, Items, Position
+from beliefnest.world.values import EventKind, Items, Position, Sign
 
 Path = tuple[str, ...]
 
@@ -91,7 +91,11 @@ class Reference:
         self._selected[path] = branch
 
     def edit(
-        self, path: Path, blocks: Mapping[Position, int], contents: Mapping[Position, Items]
+        self,
+        path: Path,
+        blocks: Mapping[Position, int],
+        contents: Mapping[Position, Items],
+        signs: Mapping[Position, str],
     ) -> None:
         """Change a node by hand; the nodes below it perceive that (6)."""
         tree, control = self.tree(path), path in self._selected
@@ -101,12 +105,16 @@ class Reference:
         for place, state in blocks.items():
             node.blocks.pop(place, None)
             if state != UNKNOWN:
-                node.blocks[place] = Block(state, basis, control)
+                node.blocks[place] = known_block(state, basis, control)
             name = self.rules.container_name(node.blocks.get(place))
             if name is None or name != self.rules.container_name(before.blocks.get(place)):
                 node.drop(place)
             if name is not None and place not in node.containers:
                 node.containers[place] = ContainerBelief({}, control, basis, control)
+        for place, text in signs.items():
+            node.blocks[place] = replace(
+                node.blocks[place], text=text, basis=basis, current=control
+            )
         for place, items in contents.items():
             node.containers[place] = ContainerBelief(dict(items), True, basis, control)
         node.tick = basis.observed_at
@@ -150,16 +158,18 @@ class Reference:
             "chat": said[EventKind.CHAT],
             "thoughts": said[EventKind.THINK],
             "addressees": tuple(e.detail.get("to") for e in node.log if e.kind is EventKind.CHAT),
+            "signs": {
+                place: block.text
+                for place, block in node.blocks.items()
+                if text(block.state).startswith("oak_sign")
+            },
         }
 
     def _reality(self, start: Snapshot) -> Node:
         basis = Basis(start.tick, Source.SEEN)
         return Node(
             start.tick,
-            {
-                p: Block(int(start.blocks[start.box.index(p)]), basis, True)
-                for p in start.box.positions()
-            },
+            {p: known_block(start.block(p), basis, True) for p in start.box.positions()},
             {p: ContainerBelief(dict(i), True, basis, True) for p, i in start.containers.items()},
             {
                 name: AgentBelief(
@@ -184,8 +194,8 @@ class Reference:
         return Ear(self._start.tick, dict.fromkeys(self._start.agents, 0))
 
     @staticmethod
-    def _real_blocks(start: Snapshot) -> dict[Position, int]:
-        return {p: int(start.blocks[start.box.index(p)]) for p in start.box.positions()}
+    def _real_blocks(start: Snapshot) -> dict[Position, int | Sign]:
+        return {p: start.block(p) for p in start.box.positions()}
 
     def _grow(self, tree: Tree, path: Path, depth: int) -> None:
         """Give a node the nodes below it, each with priors and a first perception."""
@@ -203,12 +213,16 @@ class Reference:
         start, registry = self._start, self.rules.registry
         basis = Basis(start.tick, Source.PRIOR)
         states = self._real_blocks(start)
-        known = {p: s for p, s in states.items() if registry.name(s) in self._static}
+        known = {
+            p: told
+            for p, told in states.items()
+            if registry.name(known_block(told, basis, True).state) in self._static
+        }
         nobody = {name: AgentBelief() for name in start.agents}
         node = Node(start.tick, {}, {}, nobody, self._ear(), path)
         special = self._special(path)
         known |= special.blocks
-        node.blocks = {p: Block(s, basis, False) for p, s in known.items() if s != UNKNOWN}
+        node.blocks = {p: known_block(s, basis, False) for p, s in known.items() if s != UNKNOWN}
         for place, block in node.blocks.items():
             if self.rules.container_name(block) is not None:
                 node.containers[place] = ContainerBelief({}, False, basis, current=False)
@@ -255,7 +269,7 @@ class Reference:
         node.news = node.events = frame.events
         node.log += [PerceivedEvent(frame.tick, e.kind, e.actor, e.detail) for e in frame.events]
         for place, state in frame.blocks.items():
-            node.blocks[place] = Block(state, basis, True)
+            node.blocks[place] = known_block(state, basis, True)
         for place, items in frame.containers.items():
             old = node.containers.pop(place, None)
             if items is not None:

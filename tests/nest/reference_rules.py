@@ -11,7 +11,7 @@ from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, Perce
 from beliefnest.perception.sight import Sight
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import Event, EventKind, Items, Point, Position
+from beliefnest.world.values import Event, EventKind, Items, Point, Position, Sign
 
 MOVES = {EventKind.DEPOSIT_ITEM_INTO_CHEST: 1, EventKind.GET_ITEM_FROM_CHEST: -1}
 HANDS = {
@@ -26,11 +26,22 @@ UNKNOWN = -1
 
 @dataclass(frozen=True)
 class Block:
-    """A known block: state id, what it rests on, whether that is a perception of this tick."""
+    """A known block: state id, what it rests on, whether that is a perception of this tick.
+
+    `text` is what is written on it.
+    """
 
     state: int
     basis: Basis
     current: bool
+    text: str = ""
+
+
+def known_block(told: "int | Sign", basis: Basis, current: bool) -> Block:
+    """A block as facts tell it."""
+    if isinstance(told, Sign):
+        return Block(told.state, basis, current, told.text)
+    return Block(told, basis, current)
 
 
 @dataclass

@@ -205,13 +205,14 @@ def _believe_block(registry: Registry, node: "Node", claim: Claim, basis: Basis)
 
     place, text = claim.cell, claim.state or ""
     state, old = registry.state_id(text), node.blocks.get(place)
-    name = registry.name(state)
+    name, written = registry.name(state), ""
     if old is not None and registry.name(old.state) == name:
+        written = old.text
         stated = dict(pair.split("=") for pair in text[len(name) + 1 : -1].split(",") if pair)
         properties = registry.properties(old.state) | stated
         inner = ",".join(f"{key}={value}" for key, value in properties.items())
         state = registry.state_id(f"{name}[{inner}]" if inner else name)
-    node.blocks[place] = Block(state, basis, False)
+    node.blocks[place] = Block(state, basis, False, written)
     old_name = None if old is None else registry.name(old.state)
     if not registry.is_container(name) or old_name not in (None, name):
         node.drop(place)

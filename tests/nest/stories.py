@@ -22,6 +22,7 @@ LOW, HIGH = (0, 0, 0), (7, 3, 7)
 NAMES = ("ann", "bob", "cat")
 REGISTRY = Registry.load()
 CONTAINERS = ((2, 0, 3), (5, 0, 4))
+SIGNS = ((4, 0, 3), (3, 1, 5))
 
 Act = tuple[Any, ...]
 """Name of a method of `ScriptedWorld`, or `tick`, `edit`, `switch` or `in`, and its arguments."""
@@ -41,15 +42,17 @@ class Story:
     )
     initial: tuple[bn.InitialBelief, ...] = ()
     yaws: Mapping[str, float] = field(default_factory=dict)
+    signs: Mapping[Position, str] = field(default_factory=dict)
 
     def world(self) -> bn.ScriptedWorld:
         """The world at the start; everybody owns an apple and two diamonds."""
         world = bn.ScriptedWorld(
             (LOW, HIGH),
-            self.blocks,
+            self.blocks | dict.fromkeys(self.signs, "oak_sign"),
             self.agents,
             inventories={name: {"apple": 1, "diamond": 2} for name in self.agents},
             containers=self.contents,
+            signs=self.signs,
         )
         with world.tick():
             for name, yaw in self.yaws.items():
@@ -95,7 +98,7 @@ class Stage:
                 do_in(self.nest[path].scripted, inner)
             else:
                 do_in(self.world, act)
-        except (bn.WorldError, bn.BranchError):
+        except (bn.WorldError, bn.BranchError, bn.InputError):
             return False
         return True
 
@@ -131,6 +134,7 @@ class Stories:
         priors: Whether there are static blocks and initial beliefs.
         whispers: Whether agents whisper as well.
         claims: Whether they claim something, which hearers may take up.
+        signs: Whether there are signs, and agents write on them.
     """
 
     def __init__(
@@ -144,6 +148,7 @@ class Stories:
         priors: bool = True,
         whispers: bool = True,
         claims: bool = False,
+        signs: bool = False,
     ) -> None:
         self._blocks = st.sampled_from(blocks)
         self._options = options
@@ -153,6 +158,7 @@ class Stories:
         self._priors = priors
         self._whispers = whispers
         self._claims = claims
+        self._signs = signs
 
     @cached_property
     def story(self) -> st.SearchStrategy[Story]:
@@ -162,6 +168,8 @@ class Stories:
             acts = [act] * 6 + [self._edit, self._switch, self._inside, self._inside]
             act = st.one_of(*acts)
         static, priors = [(), ("stone",), ("stone", "chest")], 2
+        if self._signs:
+            static.append(("stone", "oak_sign"))
         if not self._priors:
             static, priors = [()], 0
         initial = st.lists(self._initial, max_size=priors, unique_by=lambda belief: belief.path)
@@ -174,6 +182,7 @@ class Stories:
             static=st.sampled_from(static),
             initial=initial.map(tuple),
             yaws=st.fixed_dictionaries(dict.fromkeys(NAMES, self._yaw)),
+            signs=self._writing if self._signs else st.just({}),
         )
 
     @cached_property
@@ -219,7 +228,14 @@ class Stories:
             told = st.tuples(st.just("say"), who, st.just("so"), claims)
             told |= st.tuples(st.just("whisper"), who, who, st.just("so"), claims)
             speech = st.one_of(speech, told, told, told)
+        signs = []
+        if self._signs:
+            place_of = st.sampled_from(SIGNS)
+            kinds = st.sampled_from(["oak_sign", "oak_sign[rotation=4]", "stone", "air"])
+            write = st.tuples(st.just("write_sign"), who, place_of, self._text)
+            signs = [write, write, st.tuples(st.just("set_block"), place_of, kinds)]
         return st.one_of(
+            *signs,
             *([speech] if self._claims else []),
             place,
             place,
@@ -236,6 +252,9 @@ class Stories:
         place = st.sampled_from(CONTAINERS) | self._cell(range(2))
         item = st.sampled_from(["diamond", "emerald"])
         block = self._blocks | st.sampled_from(["air", "chest", "chest[facing=east]", "barrel"])
+        if self._signs:
+            place |= st.sampled_from(SIGNS)
+            block |= st.sampled_from(["oak_sign", "oak_sign[rotation=4]"])
         return st.one_of(
             st.builds(bn.Claim.located, item, st.sampled_from(CONTAINERS)),
             st.builds(bn.Claim.located, item, place),
@@ -243,6 +262,14 @@ class Stories:
             st.builds(bn.Claim.position, st.sampled_from(NAMES), self._feet),
             st.builds(bn.Claim.block, place, block),
         )
+
+    @cached_property
+    def _text(self) -> st.SearchStrategy[str]:
+        return st.sampled_from(["in", "out", ""])
+
+    @cached_property
+    def _writing(self) -> st.SearchStrategy[dict[Position, str]]:
+        return st.dictionaries(st.sampled_from(SIGNS), self._text, max_size=2)
 
     @cached_property
     def _path(self) -> st.SearchStrategy[str]:
@@ -253,7 +280,8 @@ class Stories:
     def _edit(self) -> st.SearchStrategy[Act]:
         blocks = st.dictionaries(self._cell(range(2)), self._blocks, max_size=1)
         contents = st.dictionaries(st.sampled_from(CONTAINERS), st.just({"apple": 3}), max_size=1)
-        return st.tuples(st.just("edit"), self._path, blocks, contents)
+        signs = self._writing if self._signs else st.just({})
+        return st.tuples(st.just("edit"), self._path, blocks, contents, signs)
 
     @cached_property
     def _switch(self) -> st.SearchStrategy[Act]:

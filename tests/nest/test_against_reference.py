@@ -29,9 +29,9 @@ class Double:
         if name == "switch":
             self._switch(*args)
         elif name == "edit":
-            path, blocks, contents = args
+            path, blocks, contents, signs = args
             states = {place: REGISTRY.state_id(text) for place, text in blocks.items()}
-            self.reference.edit(split(path), states, contents)
+            self.reference.edit(split(path), states, contents, signs)
 
     def _switch(self, text: str, branch: str) -> None:
         path = split(text)
@@ -101,4 +101,19 @@ def test_every_node_with_claims_forks_and_edits(story):
 
 @given(Stories(claims=True, max_acts=12).story)
 def test_every_node_to_depth_four_where_something_is_claimed(story):
+    compare(story, each_tick=False, depth=4)
+
+
+@given(Stories(signs=True, forks=True, max_acts=20).story)
+def test_every_node_where_signs_are_written_on(story):
+    compare(story, each_tick=False)
+
+
+@given(Stories(signs=True, claims=True, forks=True, max_acts=10).story)
+def test_every_node_where_signs_are_written_on_asked_at_every_tick(story):
+    compare(story, each_tick=True, depth=2)
+
+
+@given(Stories(signs=True, max_acts=12).story)
+def test_every_node_to_depth_four_where_signs_are_written_on(story):
     compare(story, each_tick=False, depth=4)

@@ -82,8 +82,8 @@ class Space(NamedTuple):
         starts: int32, rows of each shape (see `perception.rays`).
         boxes: float64 (n, 6), shapes' boxes.
         reaches: uint8 by code, sides a shape reaches out of.
-        codes: uint16 by block state, and at the end that of unknown.
-        holds: bool by block state, and at the end that of unknown: is it a container.
+        codes: uint16 by block number, and at the end that of unknown.
+        holds: bool by block number, and at the end that of unknown: is it a container.
         origin: float64 (3,), added to scenario coordinates to get the grid's.
         senses: What agents can perceive.
         beam, shadows: Room to work in, from `beams.beam_room` and `shadows.no_shadows`.
@@ -145,7 +145,7 @@ class Nodes(NamedTuple):
         equipment: (N, A), pose id of each agent's believed equipment; -1 unknown.
         seen_at: (N, A), tick of the perception that the pose rests on.
         current: (N, A), whether the pose is backed by a perception in this tick.
-        blocks: (N, C), believed block states; -1 unknown. No version has 32768 states.
+        blocks: (N, C), numbers of believed blocks (`BeliefContext.number`); -1 unknown.
         codes: (N, cells with margin), geometry of the blocks.
         geometry: (N,), counts changes of the geometry.
         pending: (N, words), bit set of cells that the parent knows otherwise.

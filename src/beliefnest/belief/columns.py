@@ -1,7 +1,7 @@
 """A stretch of a timeline in columns, as the belief kernel reads it."""
 
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,7 @@ from beliefnest.belief.arrays import (
 from beliefnest.belief.poses import Growing, PoseTable
 from beliefnest.world.claims import ClaimKind, claims_of
 from beliefnest.world.frames import Frame
-from beliefnest.world.values import Box, Event, EventKind, Position
+from beliefnest.world.values import Block, Box, Event, EventKind, Position
 
 __all__ = ["Columns", "cell_of", "place_of"]
 
@@ -49,7 +49,8 @@ class Columns:
     Args:
         box: The part of space covered.
         agents: All agents, in the order in which arrays count them.
-        holds: By block state, and at the end for unknown, whether it is a container.
+        holds: By block number, and at the end for unknown, whether it is a container.
+        number: Number of a block.
         first: Number of the first entry of the stretch.
         first_event: How many events lie before it.
         poses: Where its agents' poses are kept; None: in a table of its own.
@@ -73,12 +74,14 @@ class Columns:
         box: Box,
         agents: Sequence[str],
         holds: npt.NDArray[np.bool_],
+        number: Callable[[Block], int],
         first: int = 0,
         first_event: int = 0,
         poses: PoseTable | None = None,
     ) -> None:
         self._box = box
         self._holds = holds
+        self._number = number
         self.first = first
         self._first_event = first_event
         self.poses = PoseTable() if poses is None else poses
@@ -174,7 +177,8 @@ class Columns:
             pose = UNKNOWN if agent is None else self.poses.add(name, agent)
             self._pose[0].append(self._numbers[name])
             self._pose[1].append(pose)
-        for place, state in frame.blocks.items():
+        for place, block in frame.blocks.items():
+            state = self._number(block)
             cell = cell_of(self._box, place)
             self._block[0].append(cell)
             self._block[1].append(state)

@@ -1,7 +1,7 @@
 """What all nodes of one nest stand on: the box, its agents, and how they perceive."""
 
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -10,12 +10,18 @@ import numpy.typing as npt
 
 from beliefnest.belief.arrays import HEAR_ALL, HEAR_NEAR, HEAR_SEEN, Senses, Space
 from beliefnest.belief.entries import SOURCES, Basis, Source
+from beliefnest.errors import InputError
 from beliefnest.perception.options import Perception, Radius
 from beliefnest.perception.sight import Sight
+from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import Box, EventKind
+from beliefnest.world.signs import block_words, is_sign, plain_state
+from beliefnest.world.values import Block, Box, EventKind, Position, Sign
 
 __all__ = ["BeliefContext"]
+
+_NUMBERS = 2**15 - 1
+"""Numbers of blocks that arrays have room for: states, then signs with texts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +42,7 @@ class BeliefContext:
     registry: Registry
     sight: Sight
     _tracked: dict[int, None] = field(default_factory=dict)
+    _signs: dict[Sign, int] = field(default_factory=dict)
 
     @property
     def tracked(self) -> Collection[int]:
@@ -59,8 +66,8 @@ class BeliefContext:
 
     @cached_property
     def holds(self) -> npt.NDArray[np.bool_]:
-        """By block state, and at the end for unknown, whether it is a container."""
-        holds = np.zeros(self.registry.states + 1, dtype=np.bool_)
+        """By block number, and at the end for unknown, whether it is a container."""
+        holds = np.zeros(_NUMBERS + 1, dtype=np.bool_)
         for name in self.registry.containers:
             ids = self.registry.state_ids(name)
             holds[ids.start : ids.stop] = True
@@ -73,13 +80,18 @@ class BeliefContext:
         from beliefnest.perception import beams, shadows
 
         tables = self.sight.tables()
+        states = self.registry.states
+        codes = np.empty(_NUMBERS + 1, dtype=np.uint16)
+        codes[:states], codes[-1] = tables.codes[:states], tables.codes[-1]
+        for sign, number in self._signs.items():
+            codes[number] = codes[sign.state]
         nx, ny, nz = self.box.shape
         return Space(
             (nx + 2, ny + 2, nz + 2),
             tables.starts,
             tables.boxes,
             tables.reaches,
-            tables.codes,
+            codes,
             self.holds,
             1.0 - np.array(self.box.low, dtype=np.float64),
             self._senses,
@@ -115,10 +127,77 @@ class BeliefContext:
             return Basis(tick, SOURCES[code])
         return Basis(tick, Source.HEARD, EventKind.CHAT, self.agents[code - len(SOURCES)])
 
+    def number(self, block: Block) -> int:
+        """The number by which arrays know a block: its state, or one for a sign and its text.
+
+        Raises:
+            InputError: More different texts were written than can be told apart.
+        """
+        if isinstance(block, int):
+            return block
+        if block not in self._signs:
+            number = self.registry.states + len(self._signs)
+            if number == _NUMBERS:
+                raise InputError(
+                    f"there are more than {len(self._signs)} different texts on signs in this run; "
+                    "no more can be told apart: write fewer"
+                )
+            self._signs[block] = number
+            # Whoever looks has them already.
+            self.space.codes[number] = self.space.codes[block.state]
+        return self._signs[block]
+
+    def block(self, number: int) -> Block:
+        """The block of a number; -1 is unknown."""
+        return number if number < self.registry.states else self.signs[number]
+
+    @cached_property
+    def sign_states(self) -> npt.NDArray[np.int32]:
+        """All block states of signs."""
+        registry = self.registry
+        names = [name for name in registry.block_names if is_sign(name)]
+        return np.array([state for name in names for state in registry.state_ids(name)], np.int32)
+
+    @property
+    def signs(self) -> Mapping[int, Sign]:
+        """The signs with their texts by number."""
+        return {number: sign for sign, number in self._signs.items()}
+
+    def states(self, numbers: BlockGrid) -> BlockGrid:
+        """Block states of numbers, without what is written."""
+        if not self._signs or numbers.max(initial=-1) < self.registry.states:
+            return numbers
+        plain = np.array([sign.state for sign in self._signs], dtype=np.int32)
+        first = self.registry.states
+        return np.where(numbers < first, numbers, plain[np.maximum(numbers - first, 0)])
+
+    def texts(self, numbers: BlockGrid) -> Mapping[Position, str]:
+        """What is written on the signs among the numbers of all blocks, in order of position."""
+        if not self._signs:
+            return {}
+        x, y, z = self.box.low
+        signs = self.signs
+        found = np.argwhere(numbers >= self.registry.states).tolist()
+        return {(x + i, y + j, z + k): signs[int(numbers[i, j, k])].text for i, j, k in found}
+
+    def renumbered(
+        self, numbers: npt.NDArray[np.int16], signs: Sequence[Sign]
+    ) -> npt.NDArray[np.int16]:
+        """Numbers of another context as those of this one; `signs` are the other's, in order."""
+        first, here = self.registry.states, [self.number(sign) for sign in signs]
+        if here == list(range(first, first + len(here))):
+            return numbers
+        table = np.array([*range(first), *here], dtype=np.int16)
+        return np.where(numbers < 0, numbers, table[numbers])
+
+    def block_text(self, number: int) -> str | None:
+        """A block of a number as people read it, with what is written on it; None: unknown."""
+        return block_words(self.registry, self.block(number))
+
     def container_name(self, state: int) -> str | None:
         """Name of the container block of a state; None if it is none, or unknown."""
         return self.registry.name(state) if state >= 0 and self.holds[state] else None
 
     def block_name(self, state: int) -> str | None:
         """Name of the block of a state; None if it is unknown."""
-        return None if state < 0 else self.registry.name(state)
+        return None if state < 0 else self.registry.name(plain_state(self.block(state)))

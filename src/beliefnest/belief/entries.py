@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
-from beliefnest.world.values import EventKind, Items, Point, Position
+from beliefnest.world.values import Block, EventKind, Items, Point, Position
 
 __all__ = [
     "SOURCES",
@@ -117,11 +117,11 @@ class InitialBelief:
             granted that everybody does. Where several speak of the same, the longer path counts,
             and of these the one without `**`.
         containers: Position to (items, complete).
-        blocks: Position to block state id; -1 makes a block unknown.
+        blocks: Position to block; -1 makes one unknown.
         agents: Agent name to believed feet position.
     """
 
     path: tuple[str, ...]
     containers: Mapping[Position, tuple[Items, bool]] = field(default_factory=dict)
-    blocks: Mapping[Position, int] = field(default_factory=dict)
+    blocks: Mapping[Position, Block] = field(default_factory=dict)
     agents: Mapping[str, Point] = field(default_factory=dict)

@@ -19,7 +19,7 @@ from beliefnest.belief.node_table import NodeTable, SavedNode
 from beliefnest.belief.poses import PoseTable, SavedPoses
 from beliefnest.belief.protocols import EventHistory, Reader
 from beliefnest.belief.testimony import Testimony, Verdict
-from beliefnest.world.values import Event, Items
+from beliefnest.world.values import Event, Items, Sign
 
 __all__ = ["Forest", "ForestState", "NodeState"]
 
@@ -40,6 +40,7 @@ class ForestState:
         tracked: int32, cells whose basis is tracked, as native bytes.
         since: Those of them that have been tracked since the beginning.
         poses: The poses that nodes refer to.
+        signs: The signs with texts that blocks of nodes have numbers of, in order of these.
     """
 
     position: int
@@ -49,6 +50,7 @@ class ForestState:
     tracked: bytes
     since: tuple[int, ...]
     poses: SavedPoses
+    signs: tuple[Sign, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +110,9 @@ class Forest:
         tracked = self.table.tracked.tobytes()
         root, poses = self.holdings.root.copy(), self.poses.saved()
         since = tuple(sorted(self.since))
-        return ForestState(self.position, count, self.tick, root, tracked, since, poses), nodes
+        signs = tuple(self.context.signs.values())
+        facts = (self.position, count, self.tick, root, tracked, since, poses, signs)
+        return ForestState(*facts), nodes
 
     @classmethod
     def restored(
@@ -126,8 +130,8 @@ class Forest:
         forest.position, forest.since = state.position, frozenset(state.since)
         forest.columns = forest._nowhere(state.position, state.events, table.poses)
         for number, node in enumerate(nodes):
-            table.restore(node.row, tracked)
-            forest.holdings.restore(node.holdings)
+            table.restore(node.row, tracked, state.signs)
+            forest.holdings.restore(node.holdings, state.signs)
             heard = np.unpackbits(np.frombuffer(node.heard, dtype=np.uint8), count=state.events)
             forest.hearing.set(number, 0, heard.astype(np.bool_))
         table.link()
@@ -213,7 +217,7 @@ class Forest:
 
         Args:
             node: Which.
-            blocks: New block states by cell; -1: unknown.
+            blocks: Numbers of new blocks by cell; -1: unknown.
             contents: New contents by cell, complete.
             tick: Tick after which it is done.
         """
@@ -226,7 +230,9 @@ class Forest:
     def _nowhere(self, position: int, events: int, poses: PoseTable) -> Columns:
         """An empty stretch between two entries."""
         context = self.context
-        return Columns(context.box, context.agents, context.holds, position, events, poses)
+        return Columns(
+            context.box, context.agents, context.holds, context.number, position, events, poses
+        )
 
     def _let_read(self) -> None:
         readers, self._readers = list(self._readers), WeakSet()

@@ -25,7 +25,7 @@ from beliefnest.belief.holdings import (
 )
 from beliefnest.belief.node_table import NodeTable
 from beliefnest.world.frames import Frame
-from beliefnest.world.values import Event, Items
+from beliefnest.world.values import Event, Items, Sign
 
 __all__ = ["HoldingsTable", "RootFacts", "SavedHoldings"]
 
@@ -102,13 +102,15 @@ class HoldingsTable:
         doubtful = dict(sorted(self._doubtful.get(node, {}).items()))
         return SavedHoldings(self._holdings[node], self.last_look(node), doubtful)
 
-    def restore(self, saved: SavedHoldings) -> None:
-        """Add holdings that were saved."""
+    def restore(self, saved: SavedHoldings, signs: Sequence[Sign]) -> None:
+        """Add holdings that were saved, with what was numbered then."""
         node = len(self._holdings)
         self._holdings.append(saved.holdings)
         self._looked[node] = saved.looked
         if saved.doubtful:
-            self._doubtful[node] = dict(saved.doubtful)
+            there = np.array([*saved.doubtful.values()], dtype=np.int16)
+            numbers = self._context.renumbered(there, signs).tolist()
+            self._doubtful[node] = dict(zip(saved.doubtful, numbers, strict=True))
 
     def last_look(self, node: int) -> int:
         """Entry after which a node's owner last perceived what there is; -1: at first."""

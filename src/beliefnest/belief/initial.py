@@ -16,7 +16,7 @@ from beliefnest.belief.holdings_table import HoldingsTable, RootFacts
 from beliefnest.belief.node_table import NodeTable
 from beliefnest.belief.poses import PoseTable
 from beliefnest.belief.protocols import EventHistory
-from beliefnest.world.frames import Snapshot
+from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.paths import AND_BELOW
 from beliefnest.world.values import Position
 
@@ -45,22 +45,23 @@ def initial_forest(
         paths: The nodes that are wanted.
         extra: Further cells whose basis is to be tracked.
     """
+    world = _numbers(context, snapshot)
     known = _states_of(context, {name for name in static_blocks if isinstance(name, str)})
-    prior = np.where(known[snapshot.blocks], snapshot.blocks, UNKNOWN).astype(np.int32)
+    prior = np.where(known[snapshot.blocks], world, UNKNOWN).astype(np.int32)
     for place in static_blocks:
         if not isinstance(place, str):
-            prior[context.box.index(place)] = snapshot.blocks[context.box.index(place)]
+            prior[context.box.index(place)] = world[context.box.index(place)]
     context.track(np.flatnonzero(context.holds[snapshot.blocks.ravel()]).tolist())
     for belief in initial:
         context.track(cell_of(context.box, place) for place in belief.containers)
         context.track(
             cell_of(context.box, place)
-            for place, state in belief.blocks.items()
-            if context.container_name(state)
+            for place, block in belief.blocks.items()
+            if context.container_name(context.number(block))
         )
     table = NodeTable(context, PoseTable(), extra)
     holdings = HoldingsTable(table, RootFacts(seen_at=snapshot.tick))
-    holdings.add(_add_world(table, snapshot))
+    holdings.add(_add_world(table, snapshot, world))
     wanted = (path[:depth] for path in paths for depth in range(1, len(path) + 1))
     for node in dict.fromkeys(wanted):
         holdings.add(_add_prior(table, node, prior, _merged(initial, node), snapshot.tick))
@@ -103,11 +104,21 @@ def _states_of(context: BeliefContext, names: Iterable[str]) -> npt.NDArray[np.b
     return known
 
 
-def _add_world(table: NodeTable, snapshot: Snapshot) -> Holdings:
+def _numbers(context: BeliefContext, snapshot: Snapshot) -> BlockGrid:
+    """Numbers of all blocks of the world."""
+    if not snapshot.signs:
+        return snapshot.blocks
+    numbers = snapshot.blocks.copy()
+    for place in sorted(snapshot.signs):
+        numbers[context.box.index(place)] = context.number(snapshot.block(place))
+    return numbers
+
+
+def _add_world(table: NodeTable, snapshot: Snapshot, blocks: BlockGrid) -> Holdings:
     """Add the real world's node; returns its holdings."""
     context = table.context
     node = table.add((), UNKNOWN)
-    table.set_blocks(node, snapshot.blocks)
+    table.set_blocks(node, blocks)
     basis = Basis(snapshot.tick, Source.SEEN)
     table.set_known_bases(node, basis)
     for name, agent in snapshot.agents.items():
@@ -131,8 +142,8 @@ def _add_prior(
     basis = Basis(tick, Source.PRIOR)
     node = table.add(path, table.index[path[:-1]])
     blocks = prior.copy()
-    for place, state in mine.blocks.items():
-        blocks[context.box.index(place)] = state
+    for place, block in mine.blocks.items():
+        blocks[context.box.index(place)] = context.number(block)
     table.set_blocks(node, blocks)
     for name, position in mine.agents.items():
         pose = table.poses.add_pose(position, 0.0, 0.0)

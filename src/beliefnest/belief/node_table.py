@@ -14,7 +14,7 @@ from beliefnest.belief.entries import Basis
 from beliefnest.belief.poses import Condition, PoseTable
 from beliefnest.perception.codes import mark_intruded
 from beliefnest.world.frames import BlockGrid
-from beliefnest.world.values import Point
+from beliefnest.world.values import Point, Sign
 
 __all__ = ["NodeTable", "SavedNode"]
 
@@ -280,8 +280,10 @@ class NodeTable:
         weighing = {name: self._rows[name][node].tobytes() for name in names}
         return SavedNode(self.path(node), **row, edited_cells=edited, weighing=weighing)
 
-    def restore(self, saved: SavedNode, tracked: npt.NDArray[np.int32]) -> None:
-        """Add a node that was saved, with what was tracked then; `link` has to follow."""
+    def restore(
+        self, saved: SavedNode, tracked: npt.NDArray[np.int32], signs: Sequence[Sign]
+    ) -> None:
+        """Add a node that was saved, with what was tracked, numbered then; `link` has to follow."""
         node = self.add(saved.path, self.index.get(saved.path[:-1], UNKNOWN))
         self.edited_cells |= {(node, cell) for cell in saved.edited_cells}
         spots = {cell: spot for spot, cell in enumerate(self._tracked.tolist())}
@@ -291,6 +293,7 @@ class NodeTable:
             row = self._rows[name]
             values = np.frombuffer(body, dtype=row.dtype)
             if name == "blocks":
+                values = self.context.renumbered(values, signs)
                 self.set_blocks(node, values.reshape(self.context.box.shape))
             elif name in _BY_SPOT:
                 row[node] = _BY_SPOT[name]
@@ -317,11 +320,11 @@ class NodeTable:
         return int(self._rows["agent"][node])
 
     def block(self, node: int, cell: int) -> int:
-        """State of a node's block; -1: unknown."""
+        """Number of a node's block; -1: unknown."""
         return int(self._rows["blocks"][node, cell])
 
     def blocks(self, node: int) -> BlockGrid:
-        """A copy of a node's blocks, of the box's shape."""
+        """A copy of the numbers of a node's blocks, of the box's shape."""
         blocks: BlockGrid = self._rows["blocks"][node].astype(np.int32)
         return blocks.reshape(self.context.box.shape)
 

@@ -42,12 +42,22 @@ class NodeView:
 
     def keep(self) -> None:
         """Read what the forest will not know any more once it goes on."""
-        self.blocks, self.agents, self.containers, self.items  # noqa: B018 - cached when read
+        self.numbers, self.agents, self.containers, self.items  # noqa: B018 - cached when read
 
     @cached_property
     def blocks(self) -> BlockGrid:
         """Believed block states, shape of the box, -1 unknown."""
+        return self._forest.context.states(self.numbers)
+
+    @cached_property
+    def numbers(self) -> BlockGrid:
+        """Numbers of the believed blocks, which tell texts of signs apart (`BeliefContext`)."""
         return self._forest.table.blocks(self._node)
+
+    @cached_property
+    def signs(self) -> Mapping[Position, str]:
+        """Believed texts of signs that are written on, in order of position."""
+        return self._forest.context.texts(self.numbers)
 
     @cached_property
     def geometry(self) -> Geometry:
@@ -122,6 +132,7 @@ class NodeView:
             containers={place: dict(c.items) for place, c in self.containers.items()},
             agents=agents,
             items=dict(self.items),
+            signs=dict(self.signs),
         )
 
     def _agent(self, number: int) -> AgentBelief:

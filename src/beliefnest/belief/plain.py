@@ -25,6 +25,7 @@ def state_json(state: State) -> dict[str, object]:
         },
         "chat": [list(line) for line in state.chat],
         "addressees": list(state.addressees),
+        **_signs(state),
     }
 
 
@@ -56,6 +57,12 @@ def belief_json(state: State) -> dict[str, object]:
         },
         "thoughts": [list(line) for line in state.thoughts],
     }
+
+
+def _signs(state: State) -> dict[str, object]:
+    """What is known to be written on signs; nothing where there are none."""
+    signs = {place_key(place): text for place, text in state.signs.items()}
+    return {"signs": signs} if signs else {}
 
 
 def place_key(place: Position) -> str:

@@ -13,13 +13,14 @@ import numpy.typing as npt
 from beliefnest.belief import kernel
 from beliefnest.belief.arrays import UNKNOWN, Nodes
 from beliefnest.belief.columns import Columns, cell_of
+from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis, Source
 from beliefnest.belief.holdings import NEVER, Content, Holdings, replaced_block
 from beliefnest.belief.holdings_table import HoldingsTable
 from beliefnest.belief.node_table import NodeTable
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
-from beliefnest.world.registry import Registry
-from beliefnest.world.values import Event, EventKind, Items
+from beliefnest.world.signs import plain_state
+from beliefnest.world.values import Event, EventKind, Items, Sign
 
 __all__ = ["Testimony", "Verdict", "believe_absent", "believe_located", "stated"]
 
@@ -215,7 +216,7 @@ class Testimony:
         context = self._context
         cell, text = cell_of(context.box, claim.cell), str(claim.state)
         old = [self._table.block(node, cell) for node in which.tolist()]
-        new = [stated(context.registry, text, state) for state in old]
+        new = [stated(context, text, number) for number in old]
         self._table.tell(which, cell, new, basis)
         for node, before, after in zip(which.tolist(), old, new, strict=True):
             names = context.block_name(before), context.container_name(after)
@@ -227,22 +228,24 @@ class Testimony:
 _BELIEVED = [_CODES[verdict] for verdict in Verdict if verdict.believed]
 
 
-def stated(registry: Registry, text: str, believed: int) -> int:
-    """State of a claimed block; what is not stated of it stays as it is believed.
+def stated(context: BeliefContext, text: str, believed: int) -> int:
+    """Number of a claimed block; what is not stated of it stays as it is believed.
 
     Args:
-        registry: Names of the blocks.
+        context: Names and numbers of the blocks.
         text: A block, `name` or `name[property=value,...]`.
-        believed: The state believed so far; -1: unknown.
+        believed: Number of the block believed so far; -1: unknown.
     """
+    registry, old = context.registry, context.block(believed)
     state = registry.state_id(text)
     name = registry.name(state)
-    if believed < 0 or registry.name(believed) != name:
+    if believed < 0 or context.block_name(believed) != name:
         return state
     told = [pair.split("=") for pair in text[len(name) + 1 : -1].split(",") if pair]
-    properties = registry.properties(believed) | dict(told)
+    properties = registry.properties(plain_state(old)) | dict(told)
     inner = ",".join(f"{key}={value}" for key, value in properties.items())
-    return registry.state_id(f"{name}[{inner}]" if inner else name)
+    state = registry.state_id(f"{name}[{inner}]" if inner else name)
+    return context.number(Sign(state, old.text) if isinstance(old, Sign) else state)
 
 
 def believe_located(holdings: Holdings, cell: int, item: str, basis: Basis) -> None:

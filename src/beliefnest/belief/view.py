@@ -1,7 +1,7 @@
 """The read-only view of one simulator's state that users, prompts and pictures get."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent
@@ -64,6 +64,10 @@ class State(Protocol):
         """Believed blocks."""
 
     @property
+    def signs(self) -> Mapping[Position, str]:
+        """Text of each known sign, in order of position; empty where nothing is written."""
+
+    @property
     def containers(self) -> Mapping[Position, ContainerBelief]:
         """Known containers by position."""
 
@@ -111,6 +115,7 @@ class FixedState:
     chat: Sequence[tuple[int, str, str]]
     thoughts: Sequence[tuple[int, str, str]]
     addressees: Sequence[str | None]
+    signs: Mapping[Position, str] = field(default_factory=dict)
 
     @property
     def owner(self) -> str | None:

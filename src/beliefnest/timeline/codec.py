@@ -66,7 +66,7 @@ class _EditAgents(msgspec.Struct, tag="edit", array_like=True):
     value: _Agents
 
 
-class _SnapshotBody(msgspec.Struct, forbid_unknown_fields=True):
+class _SnapshotBody(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
     tick: int
     low: Position
     high: Position
@@ -74,6 +74,7 @@ class _SnapshotBody(msgspec.Struct, forbid_unknown_fields=True):
     containers: Mapping[Position, Items]
     agents: Mapping[str, AgentState]
     items: Mapping[int, DroppedItem]
+    signs: Mapping[Position, str] = {}
 
 
 def _plain(value: object) -> object:
@@ -195,6 +196,7 @@ def encode_snapshot(snapshot: Snapshot) -> bytes:
             snapshot.containers,
             snapshot.agents,
             snapshot.items,
+            dict(sorted(snapshot.signs.items())),
         )
     )
 
@@ -211,7 +213,9 @@ def decode_snapshot(data: bytes) -> Snapshot:
     if grid is None or min(box.shape) < 1 or grid.size != np.prod(box.shape):
         raise StoreError(f"stored grid of {len(body.blocks)} bytes does not fill {box}")
     blocks = grid.reshape(box.shape).astype(np.int32, copy=False)
-    return Snapshot(body.tick, box, blocks, body.containers, body.agents, body.items)
+    return Snapshot(
+        body.tick, box, blocks, body.containers, body.agents, body.items, signs=body.signs
+    )
 
 
 def _with_tuples(value: Any) -> Any:

@@ -17,6 +17,7 @@ import msgspec
 from beliefnest.errors import InputError, StoreError
 from beliefnest.timeline.journal import Journal, TimelineKey
 from beliefnest.timeline.tables import (
+    IF_ANY,
     TABLES,
     BeliefRow,
     Column,
@@ -113,15 +114,21 @@ def _timeline_rows(
 def _written(
     rows: Iterable[Row], folder: Path, opener: Callable[[Path, str], _Table]
 ) -> dict[str, int]:
-    counts = dict.fromkeys(TABLES, 0)
+    counts = {name: 0 for name in TABLES if name not in IF_ANY}
     with ExitStack() as stack:
-        tables = {}
-        for name in TABLES:
+        tables: dict[str, _Table] = {}
+
+        def begin(name: str) -> None:
             tables[name] = opener(folder, name)
             stack.callback(tables[name].close)
+
+        for name in counts:
+            begin(name)
         for name, values in rows:
+            if name not in tables:
+                begin(name)
             tables[name].write(values)
-            counts[name] += 1
+            counts[name] = counts.get(name, 0) + 1
     return counts
 
 

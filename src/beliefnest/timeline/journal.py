@@ -14,7 +14,7 @@ from typing import Protocol
 from beliefnest.errors import BranchError, InputError, TickError
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import path_text
-from beliefnest.world.values import AgentState, Items, Position
+from beliefnest.world.values import AgentState, Block, Items, Position
 
 __all__ = [
     "FOLLOW",
@@ -47,13 +47,13 @@ class Edit:
     Attributes:
         tick: The tick after which it was made.
         path: Belief path of the edited simulator, normalised.
-        blocks: New block state ids; -1 makes a block unknown.
+        blocks: New blocks; -1 makes one unknown.
         containers: New contents, complete.
     """
 
     tick: int
     path: tuple[str, ...]
-    blocks: Mapping[Position, int] = field(default_factory=dict)
+    blocks: Mapping[Position, Block] = field(default_factory=dict)
     containers: Mapping[Position, Items] = field(default_factory=dict)
 
 

@@ -15,10 +15,12 @@ from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import path_text
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import AgentState, DroppedItem, Items, Position
+from beliefnest.world.signs import plain_state
+from beliefnest.world.values import AgentState, Block, DroppedItem, Items, Position, Sign
 
 __all__ = [
     "FIRST_ENTRY",
+    "IF_ANY",
     "TABLES",
     "BeliefRow",
     "Column",
@@ -108,6 +110,7 @@ TABLES: Mapping[str, Mapping[str, Column]] = MappingProxyType(
             "inventory": "object",
         },
         "blocks": {**_PLACE, **_CELL, "block": "text", "edited": "text"},
+        "signs": {**_PLACE, **_CELL, "text": "text", "edited": "text"},
         "containers": {**_PLACE, **_CELL, "items": "object", "edited": "text"},
         "items": {
             **_PLACE,
@@ -157,6 +160,9 @@ TABLES: Mapping[str, Mapping[str, Column]] = MappingProxyType(
     }
 )
 """Table to column to type, in the order in which they are written."""
+
+IF_ANY = frozenset({"signs"})
+"""Tables that are written only if they have a row."""
 
 FIRST_ENTRY = -1
 """Number under which the first state of a timeline is listed."""
@@ -210,8 +216,11 @@ def snapshot_rows(key: TimelineKey, snapshot: Snapshot, registry: Registry) -> I
     place = _place(key, FIRST_ENTRY, snapshot.tick)
     low = snapshot.box.low
     cells = (
-        ((x + low[0], y + low[1], z + low[2]), int(snapshot.blocks[x, y, z]))
-        for x, y, z in np.argwhere(snapshot.blocks != registry.air).tolist()
+        (place, snapshot.block(place))
+        for place in (
+            (x + low[0], y + low[1], z + low[2])
+            for x, y, z in np.argwhere(snapshot.blocks != registry.air).tolist()
+        )
     )
     yield from _block_rows(place, cells, registry, None)
     yield from _container_rows(place, snapshot.containers.items(), None)
@@ -300,13 +309,17 @@ def _place(key: TimelineKey, number: int, tick: int) -> dict[str, Any]:
 
 def _block_rows(
     place: Mapping[str, Any],
-    cells: Iterable[tuple[Position, int]],
+    cells: Iterable[tuple[Position, Block]],
     registry: Registry,
     edited: str | None,
 ) -> Iterator[Row]:
-    for (x, y, z), state in cells:
+    for (x, y, z), block in cells:
+        state = plain_state(block)
         text = None if state < 0 else registry.text(state)
-        yield "blocks", {**place, "x": x, "y": y, "z": z, "block": text, "edited": edited}
+        row = {**place, "x": x, "y": y, "z": z, "edited": edited}
+        yield "blocks", {**row, "block": text}
+        if isinstance(block, Sign):
+            yield "signs", {**row, "text": block.text}
 
 
 def _container_rows(

@@ -32,9 +32,11 @@ from beliefnest.world.limits import (
     point_fault,
 )
 from beliefnest.world.registry import Registry
+from beliefnest.world.signs import text_of, written
 from beliefnest.world.values import (
     EQUIPMENT_SLOTS,
     AgentState,
+    Block,
     Box,
     DroppedItem,
     Event,
@@ -120,6 +122,7 @@ class _FirstLine(msgspec.Struct, forbid_unknown_fields=True):
     static_blocks: list[str] = []
     fills: list[tuple[Position, Position, str]] = []
     blocks: list[_BlockLine] = []
+    signs: list[_BlockLine] = []
     containers: list[_ContainerLine] = []
     items: dict[int, _ItemLine] = {}
 
@@ -128,6 +131,7 @@ class _TickLine(msgspec.Struct, forbid_unknown_fields=True):
     tick: int
     agents: dict[str, _AgentLine | None] = {}
     blocks: list[_BlockLine] = []
+    signs: list[_BlockLine] = []
     containers: list[_ContainerLine] = []
     items: dict[int, _ItemLine | None] = {}
     events: list[_EventLine] = []
@@ -246,6 +250,7 @@ class _Reader:
         for place, state in self._blocks(line.blocks).items():
             blocks[self._box.index(place)] = state
         self._grid = blocks.copy()
+        signs = self._signs(line.signs, {})
         containers = self._containers(line.containers, {})
         self._agents: dict[str, AgentState | None] = {}
         self._agents = self._changed_agents(line.agents)
@@ -256,6 +261,7 @@ class _Reader:
             {place: items for place, items in containers.items() if items is not None},
             {name: agent for name, agent in self._agents.items() if agent is not None},
             {n: item for n, item in self._entities(line.items).items() if item is not None},
+            signs={place: text_of(block) for place, block in signs.items()},
         )
 
     def frame(self, line: _TickLine) -> Frame:
@@ -268,7 +274,7 @@ class _Reader:
         frame = Frame(
             line.tick,
             agents,
-            blocks,
+            blocks | self._signs(line.signs, blocks),
             self._containers(line.containers, blocks),
             self._entities(line.items),
             tuple(self._event(event, blocks) for event in line.events),
@@ -290,6 +296,19 @@ class _Reader:
             self._index((x, y, z))
             blocks[x, y, z] = self._registry.state_id(text)
         return blocks
+
+    def _signs(
+        self, lines: Iterable[_BlockLine], changed: Mapping[Position, int]
+    ) -> dict[Position, Block]:
+        signs = {}
+        for x, y, z, text in lines:
+            place = (x, y, z)
+            state = changed.get(place, int(self._grid[self._index(place)]))
+            try:
+                signs[place] = written(self._registry, state, text)
+            except InputError as fault:
+                raise InputError(f"the sign at {place}: {fault}") from None
+        return signs
 
     def _containers(
         self, lines: Iterable[_ContainerLine], changed: Mapping[Position, int]

@@ -10,7 +10,16 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.world.values import AgentState, Box, DroppedItem, Event, Items, Position
+from beliefnest.world.values import (
+    AgentState,
+    Block,
+    Box,
+    DroppedItem,
+    Event,
+    Items,
+    Position,
+    Sign,
+)
 
 __all__ = ["BlockGrid", "Frame", "Snapshot"]
 
@@ -28,7 +37,7 @@ class Frame:
     Attributes:
         tick: The tick that ended; frames of one timeline have rising ticks.
         agents: Agents whose state changed, with their new state; None: left the world.
-        blocks: Positions whose block changed, with the new block state id.
+        blocks: Positions whose block changed, or what is written on it, with the new block.
         containers: Containers whose content changed, with all they hold now; None where
             there is no container any more.
         items: Item entities that changed; None: gone.
@@ -37,7 +46,7 @@ class Frame:
 
     tick: int
     agents: Mapping[str, AgentState | None] = field(default_factory=dict)
-    blocks: Mapping[Position, int] = field(default_factory=dict)
+    blocks: Mapping[Position, Block] = field(default_factory=dict)
     containers: Mapping[Position, Items | None] = field(default_factory=dict)
     items: Mapping[int, DroppedItem | None] = field(default_factory=dict)
     events: tuple[Event, ...] = ()
@@ -58,6 +67,8 @@ class Frame:
 class Snapshot:
     """All of one simulator at one tick; the grid is not to be written to.
 
+    `signs` has the texts of those that are written on.
+
     `internal_state` is what goes on in it besides and nobody can perceive, as the speed of who
     falls or the heat of a furnace: bytes that only the simulator's world reads. Empty: nothing is
     under way.
@@ -70,3 +81,9 @@ class Snapshot:
     agents: Mapping[str, AgentState]
     items: Mapping[int, DroppedItem] = field(default_factory=dict)
     internal_state: bytes = b""
+    signs: Mapping[Position, str] = field(default_factory=dict)
+
+    def block(self, place: Position) -> Block:
+        """The block at a position of the box."""
+        state = int(self.blocks[self.box.index(place)])
+        return Sign(state, self.signs[place]) if place in self.signs else state

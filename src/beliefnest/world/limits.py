@@ -7,9 +7,11 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 
+from beliefnest.errors import InputError
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import Box
+from beliefnest.world.signs import written
+from beliefnest.world.values import Box, Position
 
 __all__ = [
     "AGENT_SLOTS",
@@ -128,6 +130,8 @@ def snapshot_fault(snapshot: Snapshot, registry: Registry) -> str | None:
         faults.append(
             items_fault(agent.inventory, registry, AGENT_SLOTS + WORN_SLOTS, f"agent {name}")
         )
+    for place, text in snapshot.signs.items():
+        faults.append(_sign_fault(snapshot, place, text, registry))
     for place, items in snapshot.containers.items():
         if place not in snapshot.box:
             faults.append(f"the container at {place} lies outside the box")
@@ -138,6 +142,16 @@ def snapshot_fault(snapshot: Snapshot, registry: Registry) -> str | None:
                 items_fault(items, registry, container_slots(name), f"the {name} at {place}")
             )
     return next((fault for fault in faults if fault), None)
+
+
+def _sign_fault(snapshot: Snapshot, place: Position, text: str, registry: Registry) -> str | None:
+    if place not in snapshot.box:
+        return f"the sign at {place} lies outside the box"
+    try:
+        written(registry, int(snapshot.blocks[snapshot.box.index(place)]), text)
+    except InputError as fault:
+        return f"the sign at {place}: {fault}"
+    return None
 
 
 def _short(value: object) -> str:

@@ -218,6 +218,11 @@ class Registry:
         return _bare(name) in self._blocks
 
     @property
+    def block_names(self) -> tuple[str, ...]:
+        """Names of all blocks, in the order of their states."""
+        return tuple(self._blocks)
+
+    @property
     def item_names(self) -> tuple[str, ...]:
         """Names of all items, in the game's order."""
         return tuple(self._items)

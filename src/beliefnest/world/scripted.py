@@ -8,7 +8,7 @@ and changes nothing.
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -32,9 +32,11 @@ from beliefnest.world.scripted_parts import (
     rest_of,
     sum_of,
 )
+from beliefnest.world.signs import plain_state, text_of, written
 from beliefnest.world.values import (
     EQUIPMENT_SLOTS,
     AgentState,
+    Block,
     Box,
     DroppedItem,
     Event,
@@ -42,6 +44,7 @@ from beliefnest.world.values import (
     Items,
     Point,
     Position,
+    Sign,
 )
 
 __all__ = ["Listener", "ScriptedWorld"]
@@ -58,6 +61,7 @@ class _Facts:
     containers: dict[Position, dict[str, int]]
     agents: dict[str, AgentState]
     items: dict[int, DroppedItem]
+    signs: dict[Position, str] = field(default_factory=dict)
 
 
 class _Pending:
@@ -65,10 +69,14 @@ class _Pending:
 
     def __init__(self, facts: _Facts) -> None:
         self.saved = _Facts(
-            facts.blocks, dict(facts.containers), dict(facts.agents), dict(facts.items)
+            facts.blocks,
+            dict(facts.containers),
+            dict(facts.agents),
+            dict(facts.items),
+            dict(facts.signs),
         )
         self.old_blocks: dict[Position, int] = {}
-        self.blocks: dict[Position, int] = {}
+        self.blocks: dict[Position, Block] = {}
         self.containers: set[Position] = set()
         self.agents: set[str] = set()
         self.events: list[Event] = []
@@ -85,6 +93,7 @@ class ScriptedWorld:
         containers: Contents by position; where `blocks` has none, a chest is put there.
         equipment: By agent name, slot (`EQUIPMENT_SLOTS`) to item name.
         tick: The first tick.
+        signs: Texts by position, of blocks that are signs.
 
     Raises:
         WorldError: Something lies outside the box, or is no block, item or agent name.
@@ -99,6 +108,7 @@ class ScriptedWorld:
         containers: Mapping[Position, Items] | None = None,
         equipment: Mapping[str, Mapping[str, str]] | None = None,
         tick: int = 0,
+        signs: Mapping[Position, str] | None = None,
     ) -> None:
         self._registry = Registry.load()
         self._box = checked_box(box)
@@ -115,6 +125,8 @@ class ScriptedWorld:
                     raise WorldError(f"the block at {place} is no container; it cannot hold items")
                 self._put(place, "chest")
             self._facts.containers[place] = self._items(items)
+        for position, text in (signs or {}).items():
+            self._write(self._inside(position), text)
         for name, feet in (agents or {}).items():
             self._facts.agents[checked_name(name)] = AgentState(self._feet(feet))
         for name, items in (inventories or {}).items():
@@ -159,6 +171,7 @@ class ScriptedWorld:
             {place: dict(items) for place, items in facts.containers.items()},
             dict(facts.agents),
             dict(facts.items),
+            signs=dict(facts.signs),
         )
 
     def set_state(self, snapshot: Snapshot) -> None:
@@ -171,6 +184,7 @@ class ScriptedWorld:
             {place: dict(items) for place, items in snapshot.containers.items()},
             dict(snapshot.agents),
             dict(snapshot.items),
+            dict(snapshot.signs),
         )
 
     @contextmanager
@@ -228,6 +242,18 @@ class ScriptedWorld:
                 self._change(pending, part, state, None)
             detail = {"position": min(moved), "open": open}
             pending.events.append(Event(EventKind.USE_DOOR, name, detail))
+
+    def write_sign(self, name: str, position: Position, text: str) -> None:
+        """An agent writes on a sign, over what is there; whoever sees the sign sees the text."""
+        with self._act() as pending:
+            self._agent(name)
+            place = self._inside(position)
+            self._write(place, text)
+            block = pending.blocks[place] = self._block(place)
+            detail = {"position": place, "block": self._registry.text(plain_state(block))}
+            pending.events.append(
+                Event(EventKind.BLOCK_UPDATE, name, {**detail, "text": text_of(block)})
+            )
 
     def arrive(self, name: str, destination: Point) -> None:
         """An agent that was on its way somewhere is there; who sees it knows where it was going."""
@@ -351,13 +377,27 @@ class ScriptedWorld:
         self._put(place, self._registry.text(state))
         if self._facts.containers.get(place) is not held:
             pending.containers.add(place)
-        pending.blocks[place] = state
+        pending.blocks[place] = self._block(place)
         detail = {"position": place, "block": self._registry.text(state)}
         pending.events.append(Event(EventKind.BLOCK_UPDATE, actor, detail))
 
     def _state_at(self, place: Position) -> int:
         """Block state at a position; air outside the box."""
         return int(self._facts.blocks[self._box.index(place)]) if place in self._box else AIR
+
+    def _block(self, place: Position) -> Block:
+        """The block at a position, with what is written on it."""
+        state = self._state_at(place)
+        return Sign(state, self._facts.signs[place]) if place in self._facts.signs else state
+
+    def _write(self, place: Position, text: str) -> None:
+        try:
+            block = written(self._registry, self._state_at(place), text)
+        except InputError as fault:
+            raise WorldError(f"nothing is written at {place}: {fault}") from None
+        self._facts.signs.pop(place, None)
+        if isinstance(block, Sign):
+            self._facts.signs[place] = block.text
 
     @contextmanager
     def _act(self) -> Iterator[_Pending]:
@@ -404,6 +444,8 @@ class ScriptedWorld:
         state = self._state(block)
         before = self._registry.name(self._state_at(place))
         name = self._registry.name(state)
+        if before != name:
+            self._facts.signs.pop(place, None)
         self._facts.blocks[self._box.index(place)] = state
         if self._registry.is_container(name):
             if before != name or place not in self._facts.containers:

@@ -9,7 +9,7 @@ of 50 ms.
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any
+from typing import Any, NamedTuple
 
 __all__ = [
     "AGENT_SAMPLE_HEIGHTS",
@@ -18,6 +18,7 @@ __all__ = [
     "EYE_HEIGHT",
     "TICKS_PER_SECOND",
     "AgentState",
+    "Block",
     "Box",
     "DroppedItem",
     "Event",
@@ -25,6 +26,7 @@ __all__ = [
     "Items",
     "Point",
     "Position",
+    "Sign",
 ]
 
 TICKS_PER_SECOND = 20
@@ -44,6 +46,17 @@ Point = tuple[float, float, float]
 
 Items = Mapping[str, int]
 """Item name to count; counts are positive."""
+
+
+class Sign(NamedTuple):
+    """A sign that is written on: its block state id, and the text of its front, never empty."""
+
+    state: int
+    text: str
+
+
+Block = int | Sign
+"""A block state id, or a sign with what is written on it; -1 is unknown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,10 +121,11 @@ class Event:
     Attributes:
         kind: What happened.
         actor: The agent who did it; None for a block update nobody is named for.
-        detail: The part a witness sees. By kind: `text` (chat, think), `to` (chat that is
-            whispered to one agent; absent where it is said aloud), `claims` (chat that makes
-            some: plain data, see `world.claims`), `claims_from` (who read these out of the
-            text; absent where the speaker gave them), `position` of a block
+        detail: The part a witness sees. By kind: `text` (chat, think; block_update: what was
+            written on a sign), `to` (chat that is whispered to one agent; absent where it is
+            said aloud), `claims` (chat that makes some: plain data, see `world.claims`),
+            `claims_from` (who read these out of the text; absent where the speaker gave
+            them), `position` of a block
             (mine_block, place_block, use_lever, press_button, use_door, containers,
             block_update), `block` (a block state text), `items` (name -> count),
             `other` (an agent), `powered` (use_lever),

@@ -23,7 +23,7 @@ from beliefnest.nest.past.setting import Senses
 from beliefnest.timeline.journal import FOLLOW, Edit, ForkPoint, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import ProgramRecord
 from beliefnest.world.paths import path_text
-from beliefnest.world.values import Items, Position
+from beliefnest.world.values import Block, Items, Position
 
 __all__ = ["Engine"]
 
@@ -246,7 +246,7 @@ class Engine:
     def edit(
         self,
         path: Path,
-        blocks: Mapping[Position, int],
+        blocks: Mapping[Position, Block],
         containers: Mapping[Position, Items],
     ) -> None:
         """Record a change by hand; where there is a body, it becomes what is recorded then."""

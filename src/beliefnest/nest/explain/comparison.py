@@ -8,15 +8,14 @@ from typing import Literal, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import AgentBelief, ContainerBelief, Source
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.parts import Contents
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.words import html_table, items_words, place_words, point_words
-from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import path_text
-from beliefnest.world.registry import Registry
-from beliefnest.world.values import Box, Point, Position
+from beliefnest.world.values import Point, Position
 
 __all__ = [
     "Difference",
@@ -140,7 +139,7 @@ def compare(
     """`differences` of two nodes at a tick; None: now."""
     one, other = recording.reading(a, tick), recording.reading(b, tick)
     context = recording.history.context
-    found = differences(one, other, context.box, context.registry, unknown=unknown)
+    found = differences(one, other, context, unknown=unknown)
     return Differences(found, path_text(a), path_text(b))
 
 
@@ -163,37 +162,34 @@ def false_beliefs(
     belief = recording.reading(path, tick)
     real = recording.reading(against, tick if against_tick is None else against_tick)
     context = recording.history.context
-    found = falsehoods(real, belief, context.box, context.registry)
+    found = falsehoods(real, belief, context)
     return Differences(found, path_text(against), path_text(path))
 
 
 def differences(
-    a: NodeView, b: NodeView, box: Box, registry: Registry, *, unknown: bool = True
+    a: NodeView, b: NodeView, context: BeliefContext, *, unknown: bool = True
 ) -> Iterator[Difference]:
     """Where two states differ: blocks, containers, agents, inventories, each in order.
 
     Args:
         a: One state.
         b: The other.
-        box: What both cover.
-        registry: Names of blocks.
+        context: What both stand on.
         unknown: Whether to tell of what is unknown, or not there, in one of them.
     """
-    every = itertools.chain(_different_blocks(a, b, box, registry), _different_things(a, b))
+    every = itertools.chain(_different_blocks(a, b, context), _different_things(a, b))
     for found in every:
         if unknown or (found.a is not None and found.b is not None):
             yield found
 
 
-def falsehoods(
-    real: NodeView, belief: NodeView, box: Box, registry: Registry
-) -> Iterator[Difference]:
+def falsehoods(real: NodeView, belief: NodeView, context: BeliefContext) -> Iterator[Difference]:
     """What a belief holds and reality does not: unknown is not false.
 
     Contents are false if they claim items that are not there, or claim to be complete and
     miss some; an agent's place by `are_elsewhere`.
     """
-    for found in _different_blocks(real, belief, box, registry):
+    for found in _different_blocks(real, belief, context):
         if found.b is not None:
             yield found
     yield from false_things(real, belief)
@@ -242,12 +238,10 @@ def are_false(real: Contents | None, belief: Contents) -> bool:
     return too_much or (belief.complete and dict(claimed) != dict(true))
 
 
-def _different_blocks(
-    a: NodeView, b: NodeView, box: Box, registry: Registry
-) -> Iterator[Difference]:
-    x, y, z = box.low
-    for i, j, k in np.argwhere(a.blocks != b.blocks).tolist():
-        texts = (_block(grid, (i, j, k), registry) for grid in (a.blocks, b.blocks))
+def _different_blocks(a: NodeView, b: NodeView, context: BeliefContext) -> Iterator[Difference]:
+    (x, y, z), words = context.box.low, context.block_text
+    for i, j, k in np.argwhere(a.numbers != b.numbers).tolist():
+        texts = (words(int(view.numbers[i, j, k])) for view in (a, b))
         yield Difference("block", (x + i, y + j, z + k), *texts)
 
 
@@ -265,11 +259,6 @@ def _different_things(a: Holds, b: Holds) -> Iterator[Difference]:
         owned = [_owned(reading.agents[name]) for reading in (a, b)]
         if owned[0] != owned[1]:
             yield Difference("inventory", name, owned[0], owned[1])
-
-
-def _block(grid: BlockGrid, cell: tuple[int, int, int], registry: Registry) -> str | None:
-    state = int(grid[cell])
-    return None if state < 0 else registry.text(state)
 
 
 def _pose(agent: AgentBelief) -> Pose | None:

@@ -11,6 +11,7 @@ from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import Edit, EntryFilter, Journal, TimelineKey
 from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry
+from beliefnest.world.signs import block_words, plain_state
 from beliefnest.world.values import Box
 
 __all__ = [
@@ -81,8 +82,7 @@ def value_in(forest: Forest, path: Path, element: Element) -> Value:
         return None if version < 0 else forest.poses.position(version)
     cell = cell_of(context.box, element.where)
     if element.kind == "block":
-        state = forest.table.block(node, cell)
-        return None if state < 0 else context.registry.text(state)
+        return context.block_text(forest.table.block(node, cell))
     if cell not in forest.holdings.of(node).containers:
         return None
     content = forest.holdings.content(node, cell)
@@ -141,11 +141,12 @@ def _after(entry: Frame | Edit, element: Element, registry: Registry, held: obje
     if element.kind == "container" and element.where in entry.containers:
         items = entry.containers[element.where]
         return None if items is None else dict(items)
-    state = entry.blocks.get(element.where)
-    if state is None:
+    block = entry.blocks.get(element.where)
+    if block is None:
         return held
     if element.kind == "block":
-        return None if state < 0 else registry.text(state)
+        return block_words(registry, block)
+    state = plain_state(block)
     holds = state >= 0 and registry.is_container(registry.name(state))
     return (held or {}) if holds else None
 

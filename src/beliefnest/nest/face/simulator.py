@@ -14,8 +14,9 @@ from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.setting import Senses
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
 from beliefnest.world.scripted import ScriptedWorld
+from beliefnest.world.signs import plain_state, written
 from beliefnest.world.texts import is_well_formed
-from beliefnest.world.values import TICKS_PER_SECOND, Items, Position
+from beliefnest.world.values import TICKS_PER_SECOND, Block, Items, Position
 
 if TYPE_CHECKING:
     from beliefnest.llm.messages import Model
@@ -217,26 +218,33 @@ class Simulator(ShownSimulator):
         self,
         blocks: Mapping[Position, str | None] | None = None,
         containers: Mapping[Position, Items] | None = None,
+        signs: Mapping[Position, str] | None = None,
     ) -> None:
-        """Change blocks or contents by hand; it is recorded as an edit.
+        """Change blocks, contents or texts of signs by hand; it is recorded as an edit.
 
         Args:
             blocks: New block state texts; None makes a block unknown.
             containers: New contents, which are then complete.
+            signs: New texts of signs, those of `blocks` among them; lines are split by line breaks.
 
         Raises:
             PositionError: A position is outside the box.
             UnknownNameError: There is no such block or item.
+            InputError: A block is no known sign, or a text does not fit on one.
         """
         registry = self._recording.history.context.registry
         box = self._recording.setting.snapshot.box
-        for position in (*(blocks or {}), *(containers or {})):
+        for position in (*(blocks or {}), *(containers or {}), *(signs or {})):
             if position not in box:
                 raise PositionError(f"position {position} is outside the box {box.low}..{box.high}")
-        states = {
+        states: dict[Position, Block] = {
             position: -1 if text is None else registry.state_id(text)
             for position, text in (blocks or {}).items()
         }
+        for position, text in (signs or {}).items():
+            there = self._reading().blocks[box.index(position)]
+            state = plain_state(states.get(position, int(there)))
+            states[position] = written(registry, state, text)
         for items in (containers or {}).values():
             for name, count in items.items():
                 registry.item_stack(name)

@@ -67,7 +67,8 @@ class _Stretch:
             if node is None:
                 forest.skip(edit.tick)
             else:
-                blocks = {cell_of(box, place): state for place, state in edit.blocks.items()}
+                known = forest.context.number
+                blocks = {cell_of(box, at): known(block) for at, block in edit.blocks.items()}
                 contents = {cell_of(box, place): items for place, items in edit.containers.items()}
                 forest.edit(node, blocks, contents, edit.tick)
         forest.advance(stop)
@@ -367,4 +368,6 @@ class History:
 
     def _new_stretch(self, first: int, first_event: int) -> _Stretch:
         context = self.context
-        return _Stretch(Columns(context.box, context.agents, context.holds, first, first_event))
+        return _Stretch(
+            Columns(context.box, context.agents, context.holds, context.number, first, first_event)
+        )

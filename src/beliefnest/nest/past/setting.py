@@ -17,6 +17,7 @@ from beliefnest.world.limits import (
 )
 from beliefnest.world.paths import parse_path, parse_pattern, path_text
 from beliefnest.world.registry import Registry
+from beliefnest.world.signs import plain_state
 from beliefnest.world.texts import escaped, is_well_formed
 from beliefnest.world.values import Box, Position
 
@@ -117,7 +118,8 @@ def _belief_fault(belief: InitialBelief, box: Box, registry: Registry) -> str | 
     outside = [place for place in (*belief.containers, *belief.blocks) if place not in box]
     if outside:
         return f"{whose} is of {outside[0]}, which lies outside the box"
-    for place, state in belief.blocks.items():
+    for place, block in belief.blocks.items():
+        state = plain_state(block)
         if not -1 <= state < registry.states:
             return f"{whose} has block state {state} at {place}; states go to {registry.states - 1}"
     for place, (items, _) in belief.containers.items():

@@ -30,7 +30,7 @@ _SMALL = 1024
 _SPEECH = (EventKind.CHAT, EventKind.THINK)
 
 _PARTS = (
-    *("path", "tick", "box", "blocks", "containers", "agents", "items"),
+    *("path", "tick", "box", "blocks", "signs", "containers", "agents", "items"),
     *("events", "chat", "thoughts", "addressees"),
 )
 
@@ -86,6 +86,14 @@ class Blocks:
             (x + i, y + j, z + k): registry.text(int(self.grid[i, j, k]))
             for i, j, k in np.argwhere(np.isin(self.grid, states)).tolist()
         }
+
+    def signs(self) -> dict[Position, str]:
+        """Text of each known sign, in order of position; empty where nothing is written."""
+        texts, states = self._reading.signs, self._history.context.sign_states
+        x, y, z = self._history.context.box.low
+        found = np.argwhere(np.isin(self.grid, states)).tolist()
+        places = ((x + i, y + j, z + k) for i, j, k in found)
+        return {place: texts.get(place, "") for place in places}
 
     def current(self, position: Position) -> bool:
         """Whether the block is backed by a perception in this tick."""
@@ -184,6 +192,12 @@ class LiveState:
     def blocks(self) -> BlockView:
         """Believed blocks."""
         return self._blocks
+
+    @cached_property
+    def signs(self) -> Mapping[Position, str]:
+        """Text of each known sign, in order of position; empty where nothing is written."""
+        with self._turn:
+            return self._blocks.signs()
 
     @cached_property
     def containers(self) -> Mapping[Position, ContainerBelief]:

@@ -3,7 +3,9 @@
 import zlib
 from typing import Any
 
-from beliefnest.world.registry import Registry
+from beliefnest.belief.context import BeliefContext
+from beliefnest.world.signs import plain_state, sign_words
+from beliefnest.world.values import Sign
 
 __all__ = ["BlockPalette"]
 
@@ -82,19 +84,19 @@ _DYES = {
 
 
 class BlockPalette:
-    """Numbers block states in the order in which they are met.
+    """Numbers blocks in the order in which they are met.
 
     Attributes:
         entries: By number: text, name, colour, boxes in 1/32 of a block, and what it is.
     """
 
-    def __init__(self, registry: Registry) -> None:
-        self._registry = registry
+    def __init__(self, context: BeliefContext) -> None:
+        self._context = context
         self._numbers: dict[int, int] = {}
         self.entries: list[dict[str, Any]] = []
 
     def number(self, state: int) -> int:
-        """Number of a state; -1 for unknown."""
+        """Number here of a block that arrays know by `state`; -1 for unknown."""
         if state < 0:
             return -1
         if state not in self._numbers:
@@ -102,8 +104,9 @@ class BlockPalette:
             self.entries.append(self._entry(state))
         return self._numbers[state]
 
-    def _entry(self, state: int) -> dict[str, Any]:
-        registry = self._registry
+    def _entry(self, number: int) -> dict[str, Any]:
+        registry, block = self._context.registry, self._context.block(number)
+        state = plain_state(block)
         name = registry.name(state)
         boxes = [[round(32 * edge) for edge in box] for box in registry.boxes(state)]
         if not boxes and not name.endswith("air"):
@@ -118,6 +121,7 @@ class BlockPalette:
             "container": registry.is_container(name),
             "glassy": bool(registry.default_transparent[state]),
             "open": registry.properties(state).get("open"),
+            **({"says": sign_words(block.text)} if isinstance(block, Sign) else {}),
         }
 
 

@@ -88,7 +88,7 @@ class RunData:
     ) -> None:
         self.reader, self.about, self.depth = reader, about, depth
         self._onlookers = onlookers
-        self._palette = BlockPalette(reader.history.context.registry)
+        self._palette = BlockPalette(reader.history.context)
         self._lines: dict[TimelineKey, _Line] = {}
         self._sent: dict[str, int] = {}
         self._begun = False
