@@ -14,10 +14,10 @@ from beliefnest.timeline.export import FORMATS, export
 from beliefnest.timeline.journal import Edit, ForkPoint, TimelineKey
 from beliefnest.timeline.memory import MemoryJournal
 from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
-from beliefnest.timeline.tables import TABLES, BeliefRow, program_row, prompt_row, run_row
+from beliefnest.timeline.tables import IF_ANY, TABLES, BeliefRow, program_row, prompt_row, run_row
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import AgentState, Box, DroppedItem, Event, EventKind
+from beliefnest.world.values import AgentState, Box, DroppedItem, Event, EventKind, Sign
 
 DOCS = Path(__file__).parents[2] / "docs" / "export.md"
 MAIN = TimelineKey((), "main")
@@ -71,7 +71,11 @@ def journal(registry):
     entries = [
         Frame(3, {"sally": pose}, items={7: DroppedItem("egg", 2, (1.0, 2.0, 3.5))}),
         Frame(
-            5, blocks={(1, 2, 3): registry.state_id("lever[face=wall,facing=north,powered=true]")}
+            5,
+            blocks={
+                (1, 2, 3): registry.state_id("lever[face=wall,facing=north,powered=true]"),
+                (1, 2, 4): Sign(registry.state_id("oak_sign"), "way\nout"),
+            },
         ),
         Edit(5, ("sally", "anne"), {(1, 2, 3): -1}, {(4, 5, 6): {"egg": 1}}),
         Frame(6, {"sally": None}, {}, {(4, 5, 6): None}, {7: None}, (talk, update)),
@@ -175,7 +179,16 @@ def test_blocks_and_edits(written):
     assert written["blocks"] == [
         {**place(-1, 0), "x": 6, "y": 0, "z": 0, "block": "stone", "edited": None},
         {**place(1, 5), **cell, "block": lever, "edited": None},
+        {
+            **place(1, 5),
+            **(cell | {"z": 4}),
+            "block": "oak_sign[rotation=0,waterlogged=false]",
+            "edited": None,
+        },
         {**place(2, 5), **cell, "block": None, "edited": "/sally/anne"},
+    ]
+    assert written["signs"] == [
+        {**place(1, 5), **(cell | {"z": 4}), "text": "way\nout", "edited": None}
     ]
 
 
@@ -233,7 +246,9 @@ def test_the_run_its_programs_and_its_prompts(written):
 
 def test_chosen_timelines_alone(journal, registry, tmp_path):
     counts = export(journal, "jsonl", tmp_path / "out", registry=registry, timelines=[PLAN])
-    assert counts == {**dict.fromkeys(TABLES, 0), "timelines": 1}
+    always = [name for name in TABLES if name not in IF_ANY]
+    assert counts == {**dict.fromkeys(always, 0), "timelines": 1}
+    assert not (tmp_path / "out" / "signs.jsonl").exists()
 
 
 def test_nothing_is_written_when_it_fails(journal, registry, tmp_path):

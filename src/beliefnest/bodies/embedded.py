@@ -251,6 +251,7 @@ def _difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
         if before.agents.get(name) != agent:
             agents[name] = messages.agent_message(agent)
     return {
+        **messages.signs_message(after.signs),
         "blocks": [
             [low[0] + i, low[1] + j, low[2] + k, int(after.blocks[i, j, k])] for i, j, k in places
         ],

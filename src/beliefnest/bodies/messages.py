@@ -13,11 +13,13 @@ from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.values import (
     AgentState,
+    Block,
     Box,
     DroppedItem,
     Event,
     Items,
     Position,
+    Sign,
 )
 
 __all__ = [
@@ -26,6 +28,7 @@ __all__ = [
     "frame_of",
     "items_message",
     "results_of",
+    "signs_message",
     "snapshot_message",
     "snapshot_of",
 ]
@@ -35,7 +38,7 @@ class _Frame(msgspec.Struct, frozen=True):
     region: str
     tick: int
     agents: dict[str, AgentState | None] = {}
-    blocks: list[tuple[int, int, int, int]] = []
+    blocks: list[list[int | str]] = []
     containers: list[tuple[int, int, int, dict[str, int] | None]] = []
     items: dict[int, DroppedItem | None] = {}
     events: list[Event] = []
@@ -48,6 +51,7 @@ class _Snapshot(msgspec.Struct, frozen=True):
     agents: dict[str, AgentState]
     items: dict[int, DroppedItem] = {}
     hidden: bytes = b""
+    signs: list[tuple[int, int, int, str]] = []
 
 
 class _Result(msgspec.Struct, frozen=True):
@@ -70,7 +74,7 @@ def frame_of(message: Mapping[str, Any]) -> tuple[str, Frame]:
     return got.region, Frame(
         got.tick,
         dict(sorted(got.agents.items())),
-        {(x, y, z): state for x, y, z, state in sorted(got.blocks)},
+        dict(sorted(map(_block, got.blocks))),
         dict(sorted(((x, y, z), items) for x, y, z, items in got.containers)),
         dict(sorted(got.items.items())),
         tuple(map(_frozen, got.events)),
@@ -94,6 +98,7 @@ def snapshot_of(message: Mapping[str, Any], box: Box) -> Snapshot:
         dict(sorted(got.agents.items())),
         dict(sorted(got.items.items())),
         got.hidden,
+        {(x, y, z): text for x, y, z, text in sorted(got.signs)},
     )
 
 
@@ -107,7 +112,13 @@ def snapshot_message(snapshot: Snapshot) -> dict[str, Any]:
         "agents": {name: agent_message(agent) for name, agent in snapshot.agents.items()},
         "items": items_message(snapshot.items),
         "hidden": snapshot.internal_state,
+        **signs_message(snapshot.signs),
     }
+
+
+def signs_message(signs: Mapping[Position, str]) -> dict[str, Any]:
+    """What is written on signs, as a further part of a message; nothing if nothing is."""
+    return {"signs": [[*place, text] for place, text in sorted(signs.items())]} if signs else {}
 
 
 def items_message(items: Mapping[int, DroppedItem]) -> dict[str, Any]:
@@ -149,6 +160,16 @@ def results_of(
         )
         for agent, r in got.items()
     }
+
+
+def _block(row: list[int | str]) -> tuple[Position, Block]:
+    """Position and block of a row x, y, z, state, with the text of a sign that has one."""
+    match row:
+        case [int(x), int(y), int(z), int(state)]:
+            return (x, y, z), state
+        case [int(x), int(y), int(z), int(state), str(text)]:
+            return (x, y, z), Sign(state, text)
+    raise BodyError(f"Node sent a block that is not of the agreed form: {row}")
 
 
 def _frozen(event: Event) -> Event:

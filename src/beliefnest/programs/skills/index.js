@@ -24,6 +24,8 @@ const SKILLS = [
   require('./pressButton'),
   require('./openDoor'),
   require('./closeDoor'),
+  require('./writeSign'),
+  require('./readSign'),
   require('./giveItemToOther'),
   require('./receiveItemFromOther'),
   require('./givePlacedItemBack'),

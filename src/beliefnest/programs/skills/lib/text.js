@@ -1,7 +1,9 @@
 'use strict'
-/** What an agent can utter at once: say, whisper, think, or call a gesture. */
+/** What an agent can utter at once: say, whisper, think, or call a gesture; and what it can write on a sign. */
 
 const LONGEST = 256
+const SIGN_LINES = 4
+const SIGN_LINE = 45
 // C0 and C1 controls (line breaks and ESC among them) and the two separators of lines that are none.
 const CONTROLS = /[\u0000-\u001f\u007f-\u009f\u2028\u2029]/ // eslint-disable-line no-control-regex -- these are what is looked for
 
@@ -18,4 +20,17 @@ function flawOf (text, longest = LONGEST) {
   return `must be one line without control characters; character ${found.index + 1} is U+${code}. Say lines one after the other`
 }
 
-module.exports = { LONGEST, flawOf }
+/** @returns {string | null} what a text would have to be instead for a sign; null if it can be written */
+function signFlawOf (text) {
+  const lines = text.split('\n')
+  if (lines.length > SIGN_LINES) return `must have at most ${SIGN_LINES} lines; it has ${lines.length}. Use another sign`
+  const long = lines.findIndex(line => line.length > SIGN_LINE)
+  if (long >= 0) return `must have lines of at most ${SIGN_LINE} characters; line ${long + 1} has ${lines[long].length}. Break it with \\n`
+  for (const line of lines) {
+    const flaw = flawOf(line)
+    if (flaw !== null) return flaw
+  }
+  return null
+}
+
+module.exports = { LONGEST, flawOf, signFlawOf }

@@ -2,7 +2,7 @@
 /** Makes parts of the active region as asked, changing only what differs. */
 const { isDeepStrictEqual } = require('node:util')
 const { BadRequest } = require('../channel/errors')
-const { itemStates } = require('./facts')
+const { itemStates, signStates } = require('./facts')
 
 /** @param {Array} blocks [x, y, z, state] */
 function applyBlocks (serv, region, blocks) {
@@ -23,6 +23,17 @@ function applyContainers (serv, region, containers) {
     } else if (serv.containers.get(position) !== null) {
       throw new BadRequest(`a container stands at (${x}, ${y}, ${z}), which was to have none; change its block`)
     }
+  }
+}
+
+/** @param {Array} signs [x, y, z, text] of all that are written on */
+function applySigns (serv, region, signs) {
+  const wanted = new Map(signs.map(([x, y, z, text]) => [[x, y, z].join(), text]))
+  for (const [x, y, z] of signStates(serv, region)) {
+    if (!wanted.has([x, y, z].join())) serv.signs.set(region.toServer([x, y, z]), '')
+  }
+  for (const [x, y, z, text] of signs) {
+    orBadRequest(() => serv.signs.set(region.toServer([x, y, z]), text), `sign at (${x}, ${y}, ${z}): `)
   }
 }
 
@@ -50,4 +61,4 @@ function orBadRequest (action, where = '') {
   }
 }
 
-module.exports = { applyBlocks, applyContainers, applyItems, orBadRequest }
+module.exports = { applyBlocks, applyContainers, applyItems, applySigns, orBadRequest }

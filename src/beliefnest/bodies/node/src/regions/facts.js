@@ -41,6 +41,12 @@ function containerStates (serv, region) {
     [...region.toScenario(position), sorted(serv.containers.get(position))])
 }
 
+/** @returns {Array} [x, y, z, text] of all signs in the box that are written on */
+function signStates (serv, region) {
+  return serv.signs.positions(position => region.contains(position)).map(position =>
+    [...region.toScenario(position), serv.signs.get(position)])
+}
+
 /** @returns {object} agents of the active region by name */
 function agentStates (serv, region) {
   return Object.fromEntries(serv.players.map(player => [player.agent, agentState(region, player)]))
@@ -63,4 +69,4 @@ function settleItems (serv, region) {
   }
 }
 
-module.exports = { agentState, agentStates, changedContainers, containerStates, itemStates, settleItems }
+module.exports = { agentState, agentStates, changedContainers, containerStates, itemStates, settleItems, signStates }

@@ -1,6 +1,7 @@
 'use strict'
 /** Collects what changes in a region during a tick, and makes frames of it. */
 const { Claims } = require('./claims')
+const { stateAt } = require('./columns')
 const { agentStates, changedContainers, itemStates } = require('./facts')
 
 // Details of events that say where something is.
@@ -47,6 +48,22 @@ class Recorder {
     })
   }
 
+  /** The text of a sign became another one. */
+  signChanged ({ position, text, player }) {
+    const state = stateAt(this.serv, position)
+    const place = this.region.toScenario(position)
+    this.blocks.set(place.join(), [...place, state])
+    this.event({
+      kind: 'block_update', actor: player?.username ?? null, detail: { position: place, block: this.serv.blocks.text(state), text }
+    })
+  }
+
+  /** A row of a block that changed, with what is written on it. */
+  row ([x, y, z, state]) {
+    const text = this.serv.signs.get(this.region.toServer([x, y, z]))
+    return text === '' ? [x, y, z, state] : [x, y, z, state, text]
+  }
+
   /** Lets go of claims that were told and never said: nothing of a call or branch is left to the next. */
   forgetClaims () {
     this.claims = new Claims(this.region)
@@ -67,7 +84,7 @@ class Recorder {
       region: this.region.name,
       tick: this.region.tick,
       agents: this.changes('agents', agentStates(this.serv, this.region)),
-      blocks: [...this.blocks.values()],
+      blocks: [...this.blocks.values()].map(block => this.row(block)),
       containers: changedContainers(this.serv, this.region),
       items: this.changes('items', itemStates(this.serv, this.region)),
       events: this.events

@@ -5,8 +5,8 @@ const { Allotment } = require('./allotment')
 const { Bodies } = require('./bodies')
 const { Box } = require('./box')
 const { buildColumns, dropColumns, readStates } = require('./columns')
-const { applyBlocks, applyContainers, applyItems } = require('./changes')
-const { agentStates, containerStates, itemStates, settleItems } = require('./facts')
+const { applyBlocks, applyContainers, applyItems, applySigns } = require('./changes')
+const { agentStates, containerStates, itemStates, settleItems, signStates } = require('./facts')
 const { Recorder } = require('./recorder')
 const { Region, TICK_MS } = require('./region')
 const { BadRequest } = require('../channel/errors')
@@ -28,6 +28,7 @@ class Regions {
     this.bodies.keepSpeeds()
     this.byName = new Map()
     serv.blocks.on('change', ({ position, after }) => serv.region.recorder.blockChanged(position, after))
+    serv.signs.on('change', change => serv.region.recorder.signChanged(change))
     serv.facts.on('event', event => serv.region.recorder.serverEvent(event))
   }
 
@@ -53,7 +54,7 @@ class Regions {
   }
 
   /** @returns {Promise<object>} SNAPSHOT of the new region, once every bot stands in it */
-  async create ({ region: name, seed, box: corners, tick, blocks, containers, agents, items, hidden, known = Object.keys(agents) }) {
+  async create ({ region: name, seed, box: corners, tick, blocks, containers, agents, items, hidden, signs = [], known = Object.keys(agents) }) {
     if (this.byName.has(name)) throw new BadRequest(`there already is a region ${name}`)
     const box = new Box(...corners)
     requireHeight(this.serv, box)
@@ -65,6 +66,7 @@ class Regions {
       await this.inside(region, async () => {
         buildColumns(this.serv, region, states)
         applyContainers(this.serv, region, containers)
+        applySigns(this.serv, region, signs)
         await this.bodies.add(region, agents)
         applyItems(this.serv, region, items)
         await this.restoreState(region, hidden)
@@ -77,11 +79,12 @@ class Regions {
   }
 
   /** @returns {Promise<object>} SNAPSHOT of the region once it is as asked */
-  async apply ({ region: name, blocks, containers, agents, items, tick, hidden }) {
+  async apply ({ region: name, blocks, containers, agents, items, tick, hidden, signs = [] }) {
     const region = this.get(name)
     await this.inside(region, async () => {
       applyBlocks(this.serv, region, blocks)
       applyContainers(this.serv, region, containers)
+      applySigns(this.serv, region, signs)
       await this.bodies.apply(region, agents)
       region.tick = tick
       applyItems(this.serv, region, items)
@@ -167,6 +170,7 @@ class Regions {
         tick: region.tick,
         blocks: new Uint8Array(states.buffer, states.byteOffset, states.byteLength),
         containers: containerStates(this.serv, region),
+        signs: signStates(this.serv, region),
         agents: agentStates(this.serv, region),
         items: itemStates(this.serv, region),
         hidden: this.hidden(region)

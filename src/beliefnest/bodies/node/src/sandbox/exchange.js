@@ -121,7 +121,9 @@ class Exchange {
   blockToGuest (block) {
     const { x, y, z } = block.position
     if (!this.states.has(block.stateId)) this.states.set(block.stateId, block)
-    return { $: 'b', s: block.stateId, c: [x, y, z], l: [block.light ?? 0, block.skyLight ?? 0] }
+    const wire = { $: 'b', s: block.stateId, c: [x, y, z], l: [block.light ?? 0, block.skyLight ?? 0] }
+    const text = frontText(block)
+    return text === '' ? wire : { ...wire, t: text }
   }
 
   /** @returns {object} a block of that state that was handed over */
@@ -199,6 +201,12 @@ class Exchange {
     }
     return { $: 'o', o: Object.entries(value).map(([key, item]) => [key, this.toGuest(item, `${where}.${key}`, depth + 1)]) }
   }
+}
+
+/** @returns {string} what is written on the front of a sign, without empty lines at the end; empty for any other block */
+function frontText (block) {
+  if (!block.entity || !block.name.endsWith('_sign')) return ''
+  return block.getSignText()[0].replace(/\n+$/, '')
 }
 
 function isTagged (wire, tag) {

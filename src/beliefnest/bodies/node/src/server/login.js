@@ -44,6 +44,7 @@ module.exports.player = (player, serv) => {
   player.sendWorld = columns => {
     sendLogin(player, serv)
     for (const [x, z] of columns) player.sendColumn(x, z)
+    player.sendSigns()
     player._client.write('spawn_position', { location: serv.region.spawnPoint, angle: 0 })
     player._client.write('update_time', { age: [0, 0], time: [0, NOON] })
     player._client.write('held_item_slot', { slot: player.heldItemSlot })

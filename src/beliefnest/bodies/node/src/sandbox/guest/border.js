@@ -111,7 +111,7 @@ module.exports = function defineBorder (env) {
     n: ({ v }) => Number(v),
     v: ({ c }) => env.vector(decode(c[0]), decode(c[1]), decode(c[2])),
     h: decodeHandle,
-    b: ({ s, c, l }) => env.makeBlock(blockState(s), c[0], c[1], c[2], l[0], l[1]),
+    b: ({ s, c, l, t }) => env.makeBlock(blockState(s), c[0], c[1], c[2], l[0], l[1], t),
     i: ({ d }) => env.makeItem(decode(d)),
     e: decodeError,
     p: ({ id }) => new Promise((resolve, reject) => promises.set(id, { resolve, reject })),

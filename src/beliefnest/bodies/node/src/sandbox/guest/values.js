@@ -5,6 +5,7 @@
  */
 module.exports = function defineValues (env) {
   const notes = env.own(new WeakMap())
+  const texts = env.own(new WeakMap())
 
   function described (tag, name) {
     return class {
@@ -25,6 +26,8 @@ module.exports = function defineValues (env) {
   class Block {
     getProperties () { return { ...this._properties } }
 
+    getSignText () { return [texts.get(this) ?? '', ''] }
+
     canHarvest (heldItemType) {
       if (!this.harvestTools) return true
       return heldItemType != null && Object.hasOwn(this.harvestTools, heldItemType)
@@ -33,9 +36,10 @@ module.exports = function defineValues (env) {
 
   class Item {}
 
-  function makeBlock (state, x, y, z, light, skyLight) {
+  function makeBlock (state, x, y, z, light, skyLight, text) {
     const block = Object.assign(new Block(), state, { position: env.vector(x, y, z), light, skyLight })
     notes.set(block, { $: 'b', c: [x, y, z] })
+    if (text !== undefined) texts.set(block, text)
     return Object.freeze(block)
   }
 

@@ -43,6 +43,7 @@ const events = {
   itemDrop: [entity],
   blockUpdate: [t.maybe(t.block), t.maybe(t.block)],
   blockBreakProgressEnd: [t.maybe(t.block)],
+  signOpen: [t.maybe(t.block)],
   diggingCompleted: [t.block],
   diggingAborted: [t.block],
   windowOpen: [window],

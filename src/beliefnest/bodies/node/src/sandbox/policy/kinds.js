@@ -10,7 +10,7 @@ const t = require('./types')
 
 const COST = { call: 10_000, message: 200_000, section: 5000, ray: 20_000, recipes: 50_000 }
 // What is perceived and recorded for ever costs as much as a message, whichever way it is said.
-const skillCosts = { think: COST.message, say: COST.message, whisper: COST.message, emote: COST.message }
+const skillCosts = { think: COST.message, say: COST.message, whisper: COST.message, emote: COST.message, writeSign: COST.message }
 const SECTION = 16
 const ofSearch = ([{ maxDistance }]) => COST.section * (2 * Math.ceil(maxDistance / SECTION) + 1) ** 3
 
@@ -49,6 +49,7 @@ const bot = {
     stopDigging: [[], t.nothing],
     placeBlock: [[t.block, t.vector], t.later(t.nothing)],
     activateBlock: [[t.block, t.maybe(t.vector), t.maybe(t.vector)], t.later(t.nothing)],
+    updateSign: [[t.block, t.signText], t.nothing, COST.message],
     activateEntity: [[entity], t.later(t.nothing)],
     activateItem: [[t.maybe(t.boolean)], t.nothing],
     deactivateItem: [[], t.nothing],

@@ -7,7 +7,7 @@
 
 const { RefusedError, describeWire, isTagged, itemToGuest, vectorToGuest } = require('../exchange')
 const { buildGoal, buildMovements } = require('../constructions')
-const { flawOf } = require('../../../../../programs/skills/lib/text')
+const { flawOf, signFlawOf } = require('../../../../../programs/skills/lib/text')
 
 const MAX_DISTANCE = 128
 const MAX_BLOCKS = 10_000
@@ -130,6 +130,15 @@ const chatText = {
   }
 }
 
+const signText = {
+  toHost: (x, wire, where) => {
+    const written = x.text(wire, where)
+    const flaw = signFlawOf(written)
+    if (flaw !== null) throw new RefusedError(`${where} ${flaw}`)
+    return written
+  }
+}
+
 const playerName = {
   toHost: (x, wire, where) => {
     const name = x.text(wire, where)
@@ -197,5 +206,5 @@ const search = {
 
 module.exports = {
   plain, nothing, boolean, number, text, vector, block, item, goal, movements, within, whole, count, ticks, slot, choice,
-  live, maybe, list, dictionary, record, either, later, chatText, playerName, entityFilter, search, stateOf
+  live, maybe, list, dictionary, record, either, later, chatText, signText, playerName, entityFilter, search, stateOf
 }

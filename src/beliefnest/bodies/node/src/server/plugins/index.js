@@ -26,6 +26,7 @@ module.exports = [
   named('crafting', require('./crafting')),
   named('levers', require('./levers')),
   named('doors', require('./doors')),
+  named('signs', require('./signs')),
   named('power', require('./power')),
   named('placement', require('./placement')),
   named('digging', require('./digging')),

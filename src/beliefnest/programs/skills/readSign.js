@@ -1,0 +1,14 @@
+'use strict'
+const { read } = require('./lib/signs')
+
+module.exports = {
+  name: 'readSign',
+  signature: 'readSign(bot, position)',
+  description: 'Look at the sign, without going there, and get what is written on it, lines split by \\n; empty if nothing is.',
+  parameters: [
+    { name: 'bot', type: 'Bot', description: 'your own bot' },
+    { name: 'position', type: 'Vec3', description: 'position of the sign' }
+  ],
+  example: 'const text = await readSign(bot, new Vec3(4, -51, -3))',
+  run: (context, position) => read(context, position)
+}
