@@ -242,7 +242,7 @@ class Simulator(ShownSimulator):
             for position, text in (blocks or {}).items()
         }
         for position, text in (signs or {}).items():
-            there = self._reading().blocks[box.index(position)]
+            there = self._recording.reading(self._path).blocks[box.index(position)]
             state = plain_state(states.get(position, int(there)))
             states[position] = written(registry, state, text)
         for items in (containers or {}).values():

@@ -1,0 +1,139 @@
+"""What is written on signs is believed as their blocks are."""
+
+import pytest
+
+import beliefnest as bn
+from beliefnest.belief.entries import Source
+from beliefnest.nest.past.setting import Setting
+from beliefnest.world.frames import Snapshot
+from beliefnest.world.values import EventKind
+
+SIGN = (5, 1, 5)
+WALL = {(7, y, z): "stone" for y in (1, 2, 3) for z in range(11)}
+
+
+@pytest.fixture
+def world():
+    return bn.ScriptedWorld(
+        ((0, 0, 0), (10, 4, 10)),
+        {SIGN: "oak_sign", **WALL},
+        {"sally": (1.5, 1, 5.5), "anne": (2.5, 1, 7.5)},
+        signs={SIGN: "food"},
+    )
+
+
+@pytest.fixture
+def nest(world):
+    with bn.Nest(world) as opened:
+        yield opened
+
+
+def test_whoever_sees_a_sign_believes_its_text_and_who_does_not_remembers(world, nest):
+    assert nest["/sally/anne"].state.signs == {SIGN: "food"}
+    world.place_agent("sally", (9.5, 1, 5.5))
+    world.write_sign("anne", SIGN, "tools\nno food\n")
+    assert nest["/anne"].state.signs == {SIGN: "tools\nno food"}
+    assert nest["/sally"].state.signs == {SIGN: "food"}
+    assert nest["/anne/sally"].state.signs == {SIGN: "food"}
+    assert nest["/sally/anne"].state.signs == {SIGN: "food"}
+    assert not nest["/sally"].state.blocks.current(SIGN)
+    assert nest.at(1)["/anne"].state.signs == {SIGN: "food"}
+    (update,) = nest["/anne"].state.events
+    assert (update.kind, update.actor, update.detail["text"]) == (
+        EventKind.BLOCK_UPDATE,
+        "anne",
+        "tools\nno food",
+    )
+    assert nest["/sally"].state.events == ()
+    (false,) = nest.false_beliefs("/sally")[:1]
+    assert (false.where, false.b) == (
+        SIGN,
+        'oak_sign[rotation=0,waterlogged=false] that says "food"',
+    )
+    assert "tools / no food" in str(false.a)
+    said = str(nest["/sally"].explain(block=SIGN))
+    assert 'says "food"' in said
+    assert "tick 1" in said or "tick 0" in said
+
+
+def test_a_sign_never_seen_is_unknown_and_a_blank_one_is_blank(world):
+    world.place_agent("sally", (9.5, 1, 5.5))
+    with bn.Nest(world) as nest:
+        assert nest["/sally"].state.signs == {}
+        world.write_sign("anne", SIGN, "")
+        assert nest["/anne"].state.signs == {SIGN: ""}
+        world.set_block(SIGN, "stone")
+        assert nest["/anne"].state.signs == {}
+        world.set_block(SIGN, "oak_sign")
+        assert nest["/anne"].state.signs == {SIGN: ""}
+
+
+def test_a_fork_stands_with_the_text_that_is_believed(world, nest):
+    world.place_agent("sally", (9.5, 1, 5.5))
+    world.write_sign("anne", SIGN, "tools")
+    belief = nest["/sally"]
+    belief.switch("try")
+    assert belief.scripted.snapshot().signs == {SIGN: "food"}
+    belief.scripted.write_sign("sally", SIGN, "mine")
+    assert belief.state.signs == {SIGN: "mine"}
+    assert nest["/"].state.signs == {SIGN: "tools"}
+
+
+def test_a_text_is_edited_by_hand_and_everything_is_kept(world, tmp_path):
+    with bn.Nest(world, store=tmp_path / "run.bn") as nest:
+        world.write_sign("anne", SIGN, "one")
+        nest["/sally"].edit(signs={SIGN: "two"})
+        nest["/anne"].edit(blocks={SIGN: None, (5, 1, 6): "oak_wall_sign"}, signs={(5, 1, 6): "x"})
+        for wrong, fault in (
+            ({(0, 1, 0): "x"}, "air, which is no sign"),
+            ({SIGN: "x" * 46}, "a line of 46 characters"),
+            ({SIGN: "1\n2\n3\n4\n5"}, "a text of 5 lines"),
+            ({SIGN: "\x1b"}, "control characters"),
+        ):
+            with pytest.raises(bn.InputError, match=fault):
+                nest["/"].edit(signs=wrong)
+        check_edited(nest)
+    with bn.Nest.resume(tmp_path / "run.bn") as again:
+        check_edited(again)
+        assert again.at(0)["/sally"].state.signs == {SIGN: "food"}
+
+
+def check_edited(nest):
+    assert nest["/"].state.signs == {SIGN: "one"}
+    assert nest["/sally"].state.signs == {SIGN: "two"}
+    assert nest["/anne"].state.signs == {(5, 1, 6): "x"}
+    assert nest["/sally"].state.blocks.basis(SIGN).source is Source.EDITED
+
+
+def test_what_cannot_be_written_changes_nothing(world, nest):
+    for place, text, fault in (
+        ((0, 1, 0), "x", "air, which is no sign"),
+        ((99, 1, 0), "x", "outside the box"),
+        (SIGN, "a\u2028b", "u2028"),
+    ):
+        with pytest.raises(bn.WorldError, match=fault):
+            world.write_sign("sally", place, text)
+    assert (world.now, nest["/"].state.signs) == (0, {SIGN: "food"})
+    with pytest.raises(bn.WorldError, match="which is no sign"):
+        bn.ScriptedWorld(((0, 0, 0), (1, 1, 1)), signs={(0, 0, 0): "x"})
+
+
+def test_a_told_block_keeps_what_is_believed_to_be_written(world):
+    with bn.Nest(world, bn.Perception(testimony="accept")) as nest:
+        world.place_agent("sally", (9.5, 1, 5.5))
+        world.say("anne", "It was turned.", claims=[bn.Claim.block(SIGN, "oak_sign[rotation=4]")])
+        assert nest["/sally"].state.signs == {SIGN: "food"}
+        assert nest["/sally"].state.blocks[SIGN] == "oak_sign[rotation=4,waterlogged=false]"
+
+
+def test_snapshots_of_other_makers_are_checked(world):
+    snapshot = world.snapshot()
+    good = {
+        "tick": 0,
+        "box": snapshot.box,
+        "blocks": snapshot.blocks,
+        "containers": {},
+        "agents": {},
+    }
+    with pytest.raises(bn.InputError, match="the sign at"):
+        Setting("x", Snapshot(**good, signs={(0, 0, 0): "x"}))
