@@ -184,8 +184,8 @@ class Engine:
             with self.bodies.acting(path) as body:
                 results = body.run(programs, timeout_ticks, limited)
                 self._note(before, programs, results, timeout_ticks, step)
-            placed = placed_in(self.recording, path)
-            results = {name: replace(each, placed=placed) for name, each in results.items()}
+            if placed := placed_in(self.recording, path):
+                results = {name: replace(each, placed=placed) for name, each in results.items()}
         except BodyLostError as lost:
             message = (
                 f"nothing of the program is kept, {path_text(path)} is at tick {before.head} as "

@@ -10,6 +10,9 @@ __all__ = ["tick_of", "whole"]
 
 def whole(value: object) -> int | None:
     """A whole number of any kind, NumPy's too, as an int; None if the value is none."""
+    # The exact type first: a check against a protocol takes 15 microseconds.
+    if type(value) is int:
+        return value
     if isinstance(value, bool) or not isinstance(value, SupportsIndex):
         return None
     return index(value)

@@ -39,6 +39,8 @@ def placed_in(
 
     Empty in follow mode, in the real world, and at ticks before the fork.
     """
+    if not path:
+        return {}
     journal = recording.journal
     key = recording.controller(path)
     if tick is not None:
