@@ -21,7 +21,7 @@ const GUEST_NAMES = ['Vec3', 'goals', 'Movements', 'located', 'absent', 'positio
 function createSandbox (options = {}, alive = () => {}) {
   const engine = new Engine(alive)
   const defaults = { ...DEFAULTS, ...options }
-  const warm = async (scope) => { await engine.templateOf(namesOf(scope)) }
+  const warm = async (scope) => { await engine.templateOf(namesOf(splitScope(scope))) }
   return { run: (request) => run(engine, { ...defaults, ...request }), warm, prepare: () => engine.prepare() }
 }
 
@@ -48,7 +48,7 @@ function createSandbox (options = {}, alive = () => {}) {
 async function run (engine, { code, bot, scope = {}, fuel, memory, signal, aim }) {
   if (!(fuel > 0 && fuel <= MAX_FUEL)) throw new RangeError(`the fuel must be between 1 and ${MAX_FUEL}, found ${fuel}`)
   const { skills, data } = splitScope(scope)
-  const names = namesOf(scope)
+  const names = namesOf({ skills, data })
   let program
   try {
     program = prepareProgram(code, names.parameters)
@@ -82,8 +82,7 @@ async function observe (session, guest, program, { fuel, memory, signal, names }
 }
 
 /** @returns {import('./engine').Scope} */
-function namesOf (scope) {
-  const { skills, data } = splitScope(scope)
+function namesOf ({ skills, data }) {
   const names = Object.keys(skills)
   return { parameters: ['bot', ...GUEST_NAMES, ...(data ? ['mcData'] : []), ...names], skills: names, data: data !== null }
 }

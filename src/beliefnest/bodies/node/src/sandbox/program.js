@@ -56,9 +56,13 @@ function prepareProgram (given, parameters) {
   const prefix = `(function (${[marker, ...parameters].join(', ')}) { return (async function () {`
   const edited = new Insertions(code, edits)
   const text = `${prefix}${edited.text}\n${entryCall(tree)}})() })`
-  const executed = new Lines(text, /\n/g)
+  let executed = null
   const position = (offset) => lines.place(offset)
-  const original = (line, column) => edited.original(executed.offset(line, column) - prefix.length)
+  // Only errors are looked for in the text that runs.
+  const original = (line, column) => {
+    executed ??= new Lines(text, /\n/g)
+    return edited.original(executed.offset(line, column) - prefix.length)
+  }
   return {
     text,
     marks: statements.length + 1,
