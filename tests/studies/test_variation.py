@@ -1,12 +1,18 @@
 """Parameters, and copies of scenes: everything moves and is renamed, or it is refused."""
 
+import json
+from pathlib import Path
+
 import pytest
+from jsonschema import Draft202012Validator
+from ruamel.yaml import YAML
 from tests.studies.small import SMALL, small_in
 
 import beliefnest as bn
 from beliefnest.errors import InputError, ScenarioError
+from beliefnest.scenarios.document import plain
 from beliefnest.scenarios.expressions import evaluate
-from beliefnest.scenarios.loading import read_document
+from beliefnest.scenarios.loading import builtin_names, read_document
 from beliefnest.studies.drawing import drawn_variations
 from beliefnest.studies.javascript import Rewriting, rewritten
 from beliefnest.studies.variation import Variation
@@ -51,6 +57,62 @@ def test_what_is_wrong_with_parameters_is_told_with_its_line(tmp_path, old, new,
 def test_an_undeclared_parameter_is_refused(tmp_path):
     with pytest.raises(ScenarioError, match="no parameter 'spto'; declared are spot, item, count"):
         bn.Scenario.load(small_in(tmp_path), parameters={"spto": 1})
+
+
+FAR = """
+conditions:
+  1: {description: As declared.}
+  2: {parameters: {spot: {default: [5, 1, 1]}}, constraints: ["spot[0] > 3"]}
+"""
+
+
+def test_a_condition_has_defaults_and_constraints_of_its_own(tmp_path):
+    file = small_in(tmp_path, SMALL + FAR)
+    places = [
+        list(bn.Scenario.load(file, number).setting.snapshot.containers) for number in (1, 2, None)
+    ]
+    assert places == [[(1, 1, 1)], [(5, 1, 1)], [(1, 1, 1)]]
+    kept = bn.Scenario.load(file, 2, parameters={"count": 3})
+    assert kept.setting.snapshot.containers == {(5, 1, 1): {"diamond": 3}}
+    assert bn.Scenario.kept(kept.text, {}, 2, "kept").probes == kept.probes
+    with pytest.raises(ScenarioError, match=r"'spot\[0\] > 3' does not hold for spot \[1, 1, 5\]"):
+        bn.Scenario.load(file, 2, parameters={"spot": [1, 1, 5]})
+    plan = bn.Study(file, variations={"spot": [[1, 1, 5], [5, 1, 1]]}).plan()
+    assert [(each.condition, each.variation["spot"]) for each in plan.invalid] == [(2, [1, 1, 5])]
+
+
+def test_a_condition_declares_no_parameter(tmp_path):
+    file = small_in(tmp_path, SMALL + FAR.replace("{spot:", "{sopt:"))
+    with pytest.raises(ScenarioError, match=r"conditions\[2\]\.parameters\.sopt: is not declared"):
+        bn.Scenario.load(file, 2)
+
+
+def problems(content):
+    """What an editor finds wrong in a scenario file."""
+    file = Path(__file__).parents[2] / "docs" / "scenario.schema.json"
+    schema = json.loads(file.read_text(encoding="utf-8"))
+    # JSON's keys are texts.
+    return list(Draft202012Validator(schema).iter_errors(json.loads(json.dumps(content))))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "count"),
+    [
+        ("", "", 0),
+        ("[0, 0, 0], [6, 3, 6]", '[0, "${spot[1] - 1}", 0], "${far}"', 0),
+        ("[3.5, 1, 3.5]}", '["${x}", 1, 3.5], yaw: "${turn}", health: "${well}"}', 0),
+        ('at: "${spot}"', "at: spot", 2),
+        ("[3.5, 1, 3.5]", '"at ${spot}"', 1),
+        ("range: [1, 64]", 'range: "${spot}"', 1),
+    ],
+)
+def test_editors_admit_holes_where_anything_but_text_is_asked_for(old, new, count):
+    assert len(problems(YAML(typ="safe").load(SMALL.replace(old, new)))) == count
+
+
+def test_editors_find_nothing_wrong_in_the_built_in_scenarios():
+    for name in builtin_names():
+        assert problems(plain(read_document(name).root)) == [], name
 
 
 @pytest.mark.parametrize(

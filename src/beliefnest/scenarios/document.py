@@ -4,7 +4,7 @@ A `Node` is a value together with its line, so that a fault in merged and checke
 can still be reported where it was written.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -13,7 +13,7 @@ from typing import Any
 from beliefnest.errors import BeliefNestError, ScenarioError
 from beliefnest.scenarios.format import LABELLED
 
-__all__ = ["MAX_DEPTH", "Document", "KeyPath", "Node", "merged", "plain", "wrapped"]
+__all__ = ["MAX_DEPTH", "Document", "KeyPath", "Node", "merged", "plain", "under", "wrapped"]
 
 MAX_DEPTH = 40
 """Lists and mappings inside each other."""
@@ -145,6 +145,20 @@ def merged(document: Document, condition: int) -> Document:
             _check_labels(document, ("conditions", condition, key), base[key], change)
     root = _merge(Node(base, document.root.line), override)
     return replace(document, root=root)
+
+
+def under(document: Document, condition: int | None, keys: Iterable[str]) -> Document:
+    """The document with what a condition says of some keys merged in, and all else as written."""
+    conditions = document.root.value.get("conditions")
+    if conditions is None or not isinstance(conditions.value, dict):
+        return document
+    written = conditions.value.get(condition)
+    if written is None or not isinstance(written.value, dict):
+        return document
+    root = dict(document.root.value)
+    for key in written.value.keys() & set(keys):
+        root[key] = _merge(root[key], written.value[key]) if key in root else written.value[key]
+    return replace(document, root=Node(root, document.root.line))
 
 
 def _check_labels(document: Document, path: KeyPath, entries: Node, change: Node) -> None:

@@ -351,8 +351,61 @@ LABELLED = ("script", "probes", "expectations")
 """Lists whose entries a condition may change one by one, by label."""
 
 
+_HOLE = {
+    "description": "What a parameter stands for, or an expression of parameters.",
+    "type": "string",
+    "pattern": r"^\$\{[^{}]*\}$",
+}
+_AS_WRITTEN = ("ParameterEntry",)
+"""Definitions in which `${...}` stands for nothing."""
+_DECLARING = ("parameters", "constraints", "conditions")
+"""Keys that are written as they are."""
+
+
 def schema() -> dict[str, Any]:
-    """The JSON schema of a scenario file, descriptions included."""
+    """The JSON schema of a scenario file for editors, descriptions included.
+
+    Anything that is no text may also be `${...}`, which a parameter's value takes the place of.
+    """
+    published = _form()
+    definitions = {
+        name: entry if name in _AS_WRITTEN else _with_holes(entry)
+        for name, entry in published["$defs"].items()
+    }
+    return {**published, "$defs": {**definitions, "Hole": _HOLE}}
+
+
+def _with_holes(entry: dict[str, Any]) -> dict[str, Any]:
+    """An object's definition whose properties may be holes, and what is in them."""
+    properties = {
+        key: value if key in _DECLARING else _or_hole(value)
+        for key, value in entry.get("properties", {}).items()
+    }
+    return {**entry, "properties": properties}
+
+
+def _or_hole(value: dict[str, Any]) -> dict[str, Any]:
+    told: dict[str, Any] = {k: value[k] for k in ("description", "default") if k in value}
+    bare = {key: part for key, part in value.items() if key not in told}
+    forms = [_holes_inside(form) for form in bare.get("anyOf", [bare] if bare else [])]
+    if forms and all(form.get("type") != "string" for form in forms):
+        forms.append({"$ref": "#/$defs/Hole"})
+    return {**told, **({"anyOf": forms} if len(forms) > 1 else bare)}
+
+
+def _holes_inside(form: dict[str, Any]) -> dict[str, Any]:
+    """A list or a mapping whose values may be holes; any other form as it is."""
+    inner = dict(form)
+    for key in ("items", "additionalProperties"):
+        if isinstance(inner.get(key), dict):
+            inner[key] = _or_hole(inner[key])
+    if "prefixItems" in inner:
+        inner["prefixItems"] = [_or_hole(each) for each in inner["prefixItems"]]
+    return inner
+
+
+def _form() -> dict[str, Any]:
+    """The JSON schema of a scenario file whose parameters have their values in place."""
     published: dict[str, Any] = msgspec.json.schema(ScenarioFile)
     definitions = published["$defs"]
     overriding = {
@@ -395,7 +448,7 @@ def allowed_values(path: Iterable[str | int]) -> list[str]:
 
 def _places(path: Iterable[str | int]) -> list[dict[str, Any]]:
     """What the schema says of a place of a scenario file, one entry for each form it may have."""
-    definitions = schema()["$defs"]
+    definitions = _form()["$defs"]
     found = [definitions["ScenarioFile"]]
     for key in path:
         inner = [_inside(definition, key) for definition in found]

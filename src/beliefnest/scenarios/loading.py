@@ -131,7 +131,7 @@ def scenario_in(
     Raises:
         ScenarioError: Something is wrong with it, or it has no such condition or parameter.
     """
-    filled = with_parameters(document, parameters or {})
+    filled = with_parameters(document, parameters or {}, condition)
     written = check_form(filled)
     chosen = filled if condition is None else merged(filled, condition)
     if change is None:

@@ -14,7 +14,7 @@ from typing import Any
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.scenarios.document import Document, KeyPath, Node, plain, wrapped
+from beliefnest.scenarios.document import Document, KeyPath, Node, plain, under, wrapped
 from beliefnest.scenarios.expressions import evaluate, names_in
 from beliefnest.scenarios.format import ParameterEntry
 
@@ -24,6 +24,8 @@ _HOLE = re.compile(r"\$\{([^{}]*)\}")
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,63}", re.ASCII)
 _PROGRAMS = ("program", "programs")
 """Keys below which `${...}` may be JavaScript's own."""
+_KEYS = ("parameters", "constraints")
+"""Keys that say what parameters there are."""
 
 
 def choices(declared: ParameterEntry) -> list[Any] | None:
@@ -40,17 +42,22 @@ def choices(declared: ParameterEntry) -> list[Any] | None:
     return [low + number * step for number in range(int((high - low) / step + 1e-9) + 1)]
 
 
-def declared_in(document: Document) -> dict[str, ParameterEntry]:
-    """The parameters that a document declares.
+def declared_in(document: Document, condition: int | None = None) -> dict[str, ParameterEntry]:
+    """The parameters that a document declares, as a condition says; None: as written.
 
     Raises:
-        ScenarioError: A declaration is not of the right form.
+        ScenarioError: A declaration is not of the right form, or a condition makes a new one.
     """
-    node = document.root.value.get("parameters")
+    node = under(document, condition, _KEYS).root.value.get("parameters")
     if node is None:
         return {}
     if not isinstance(node.value, dict):
         raise document.fault(("parameters",), "must be a mapping from name to declaration")
+    written = document.root.value.get("parameters")
+    for name in node.value:
+        if condition is not None and (written is None or name not in written.value):
+            path = ("conditions", condition, "parameters", str(name))
+            raise document.fault(path, "is not declared; declare it under the file's parameters")
     return {name: _declared(document, name, entry) for name, entry in node.value.items()}
 
 
@@ -74,12 +81,17 @@ def _declared(document: Document, name: object, entry: Node) -> ParameterEntry:
     return found
 
 
-def broken_constraint(document: Document, values: Mapping[str, object]) -> str | None:
+def broken_constraint(
+    document: Document, values: Mapping[str, object], condition: int | None = None
+) -> str | None:
     """The first of a document's constraints that values do not keep; None: they keep all.
+
+    A condition may have constraints of its own in their place.
 
     Raises:
         ScenarioError: A constraint is no expression, or cannot be computed.
     """
+    document = under(document, condition, _KEYS)
     node = document.root.value.get("constraints")
     for number, entry in enumerate(node.value if node is not None else ()):
         if not isinstance(entry.value, str):
@@ -90,18 +102,21 @@ def broken_constraint(document: Document, values: Mapping[str, object]) -> str |
     return None
 
 
-def with_parameters(document: Document, given: Mapping[str, object]) -> Document:
+def with_parameters(
+    document: Document, given: Mapping[str, object], condition: int | None = None
+) -> Document:
     """A document with its parameters' values in place; declarations and constraints are left out.
 
     Args:
         document: As written.
         given: Name to value; parameters that are not given have their defaults.
+        condition: Number of the condition whose defaults and constraints count; None: as written.
 
     Raises:
         ScenarioError: A parameter is not declared, a constraint is broken, or `${...}` is not
             understood.
     """
-    declared = declared_in(document)
+    declared = declared_in(document, condition)
     unknown = [name for name in given if name not in declared]
     if unknown:
         known = ", ".join(declared) or "none"
@@ -109,18 +124,24 @@ def with_parameters(document: Document, given: Mapping[str, object]) -> Document
     if not declared:
         return document
     values = {name: given.get(name, entry.default) for name, entry in declared.items()}
-    broken = broken_constraint(document, values)
+    broken = broken_constraint(document, values, condition)
     if broken is not None:
         chosen = ", ".join(f"{name} {json.dumps(value)}" for name, value in values.items())
         raise document.fault(("constraints",), f"{broken!r} does not hold for {chosen}")
-    kept = {
-        key: node
-        for key, node in document.root.value.items()
-        if key not in ("parameters", "constraints")
-    }
-    filling = _Filling(document, values)
-    root = filling.node(Node(kept, document.root.line), ())
+    root = _Filling(document, values).node(_without_declarations(document.root), ())
     return replace(document, root=root)
+
+
+def _without_declarations(root: Node) -> Node:
+    kept = {key: node for key, node in root.value.items() if key not in _KEYS}
+    conditions = kept.get("conditions")
+    if conditions is not None and isinstance(conditions.value, dict):
+        others = {
+            number: _without_declarations(each) if isinstance(each.value, dict) else each
+            for number, each in conditions.value.items()
+        }
+        kept["conditions"] = Node(others, conditions.line)
+    return Node(kept, root.line)
 
 
 class _Filling:

@@ -102,13 +102,15 @@ class Design:
             "temperature": self.temperature,
         }
 
-    def broken_constraint(self, document: Document, variation: Variation) -> BeliefNestError | None:
+    def broken_constraint(
+        self, document: Document, condition: int | None, variation: Variation
+    ) -> BeliefNestError | None:
         """What says that a variation does not keep a constraint of the study; None: it does.
 
         Raises:
             InputError: A constraint cannot be computed.
         """
-        declared = declared_in(document)
+        declared = declared_in(document, condition)
         defaults = {name: entry.default for name, entry in declared.items()}
         values = {**dict.fromkeys(CHANGES), **defaults, **variation.values}
         for constraint in self.constraints:

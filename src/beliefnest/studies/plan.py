@@ -175,7 +175,7 @@ def _conditions(design: Design, document: Document) -> Sequence[int | None]:
 def _scenario(
     design: Design, document: Document, condition: int | None, variation: Variation
 ) -> Scenario:
-    broken = design.broken_constraint(document, variation)
+    broken = design.broken_constraint(document, condition, variation)
     if broken is not None:
         raise broken
     return Scenario.varied(
