@@ -10,6 +10,7 @@ __all__ = [
     "BodyLostError",
     "BranchError",
     "InputError",
+    "MissingExtraError",
     "ModelError",
     "PathError",
     "PositionError",
@@ -51,6 +52,19 @@ class TickError(BeliefNestError):
 
 class UnknownNameError(BeliefNestError):
     """A block, item, agent, scenario, world, filter or model of that name does not exist."""
+
+
+class MissingExtraError(UnknownNameError):
+    """A package that an extra installs is not there; the message gives the command.
+
+    Args:
+        what: What needs it, as a beginning of a sentence.
+        extra: Name of the extra.
+        instead: What else can be done.
+    """
+
+    def __init__(self, what: str, extra: str, instead: str = "") -> None:
+        super().__init__(f'{what}: pip install "beliefnest[{extra}]"{instead}')
 
 
 class ScenarioError(BeliefNestError):

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Literal
 
-from beliefnest.errors import UnknownNameError
+from beliefnest.errors import MissingExtraError
 
 if TYPE_CHECKING:
     from beliefnest.env.environment import BeliefEnv
@@ -62,7 +62,8 @@ def parallel_env(
         seed: Of the first episode that is begun without one.
 
     Raises:
-        UnknownNameError: PettingZoo is not installed, or there is no such scenario, world or item.
+        MissingExtraError: PettingZoo is not installed.
+        UnknownNameError: There is no such scenario, world or item.
         ScenarioError: The scenario is wrong.
         PathError: There is no such agent or belief.
         InputError: An argument is of no use.
@@ -72,9 +73,7 @@ def parallel_env(
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in ("pettingzoo", "gymnasium"):
             raise
-        raise UnknownNameError(
-            f'environments need {error.name}: pip install "beliefnest[pettingzoo]"'
-        ) from None
+        raise MissingExtraError(f"environments need {error.name}", "pettingzoo") from None
     from beliefnest.scenarios.scenario import Scenario
 
     if isinstance(scenario, str):

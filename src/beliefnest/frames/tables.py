@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from beliefnest.belief.plain import belief_json
-from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.frames.sources import Recorded, Source, cells_of
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.timeline.store import SqliteJournal
@@ -31,7 +31,7 @@ def cells_df(source: Source) -> "pandas.DataFrame":
 
     Raises:
         InputError: There is no run and no study.
-        UnknownNameError: pandas is not installed.
+        MissingExtraError: pandas is not installed.
     """
     return _frame((_cell_row(each) for each in cells_of(source)), ["cell"])
 
@@ -79,7 +79,7 @@ def claims_df(source: Source, paths: Sequence[str] | None = None) -> "pandas.Dat
     Raises:
         PathError: A path is malformed or names an unknown agent.
         InputError: There is no run and no study.
-        UnknownNameError: pandas is not installed.
+        MissingExtraError: pandas is not installed.
     """
     return _frame(
         _recorded(source, lambda journal: _claims(journal, paths)), ["cell", "claim", "path"]
@@ -96,7 +96,7 @@ def beliefs_df(source: Source, paths: Sequence[str]) -> "pandas.DataFrame":
     Raises:
         PathError: A path is malformed or names an unknown agent.
         InputError: There is no run and no study.
-        UnknownNameError: pandas is not installed.
+        MissingExtraError: pandas is not installed.
     """
     return _frame(
         _recorded(source, lambda journal: _beliefs(journal, paths)), ["cell", "path", "tick"]
@@ -219,7 +219,7 @@ def _frame(rows: Iterator[Row], ids: Sequence[str]) -> "pandas.DataFrame":
     try:
         import pandas
     except ModuleNotFoundError:
-        raise UnknownNameError('tables need pandas: pip install "beliefnest[study]"') from None
+        raise MissingExtraError("tables need pandas", "study") from None
     found = list(rows)
     columns = list(dict.fromkeys([*ids, *(key for row in found for key in row)]))
     # Whole numbers stay whole where some are missing.

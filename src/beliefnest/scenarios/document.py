@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from beliefnest.errors import BeliefNestError, ScenarioError
+from beliefnest.errors import BeliefNestError, MissingExtraError, ScenarioError
 from beliefnest.scenarios.format import LABELLED
 
 __all__ = ["MAX_DEPTH", "Document", "KeyPath", "Node", "merged", "plain", "under", "wrapped"]
@@ -72,7 +72,7 @@ class Document:
         """Name file, line and key in every error of the package raised inside."""
         try:
             yield
-        except ScenarioError:
+        except (ScenarioError, MissingExtraError):
             raise
         except BeliefNestError as error:
             raise self.fault(path, str(error)) from error

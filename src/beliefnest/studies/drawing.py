@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.errors import BeliefNestError, InputError, MissingExtraError
 from beliefnest.scenarios.document import Document, plain
 from beliefnest.scenarios.loading import condition_numbers
 from beliefnest.scenarios.parameters import broken_constraint, choices, declared_in
@@ -130,6 +130,8 @@ def _is_possible(document: Document, symmetry: str) -> bool:
     try:
         for condition in condition_numbers(document):
             Scenario.varied(document, condition, None, scene)
+    except MissingExtraError:
+        raise
     except BeliefNestError:
         return False
     return True

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.errors import InputError, MissingExtraError
 
 __all__ = ["Rewriting", "rewritten"]
 
@@ -65,9 +65,8 @@ def _tree(source: bytes) -> _Node:
         import tree_sitter_javascript
         from tree_sitter import Language, Parser
     except ModuleNotFoundError:
-        raise UnknownNameError(
-            "mirrored, turned and renamed copies need a parser of JavaScript: "
-            'pip install "beliefnest[study]"'
+        raise MissingExtraError(
+            "mirrored, turned and renamed copies need a parser of JavaScript", "study"
         ) from None
     root = Parser(Language(tree_sitter_javascript.language())).parse(source).root_node
     for node in _nodes(root):

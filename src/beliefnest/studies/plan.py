@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from beliefnest.errors import BeliefNestError
+from beliefnest.errors import BeliefNestError, MissingExtraError
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import condition_numbers
 from beliefnest.scenarios.scenario import Scenario
@@ -146,6 +146,8 @@ def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan:
             for condition in conditions:
                 try:
                     scenario = _scenario(design, document, condition, variation)
+                except MissingExtraError:
+                    raise
                 except BeliefNestError as error:
                     invalid.append(Invalid(name, condition, variation.values, str(error)))
                     continue

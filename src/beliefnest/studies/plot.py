@@ -4,7 +4,7 @@ import io
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from beliefnest.errors import UnknownNameError
+from beliefnest.errors import MissingExtraError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,14 +23,12 @@ def plot_accuracy(groups: Sequence[Mapping[str, Any]], by: Sequence[str]) -> "Fi
         by: The columns they are told apart by: the first along the axis, the others by colour.
 
     Raises:
-        UnknownNameError: matplotlib is not installed.
+        MissingExtraError: matplotlib is not installed.
     """
     try:
         from matplotlib.figure import Figure
     except ModuleNotFoundError:
-        raise UnknownNameError(
-            'figures of studies need matplotlib: pip install "beliefnest[plot]"'
-        ) from None
+        raise MissingExtraError("figures of studies need matplotlib", "plot") from None
     judged = [group for group in groups if group["accuracy"] is not None]
     along = list(dict.fromkeys(_told(group[by[0]]) for group in judged))
     colours = list(dict.fromkeys(_legend(group, by) for group in judged))

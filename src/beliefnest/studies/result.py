@@ -6,7 +6,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.studies.counting import count_rows, paired_rows
 from beliefnest.studies.rows import COLUMNS, study_rows, variation_columns
 from beliefnest.studies.store import StudyFolder
@@ -68,7 +68,7 @@ class StudyResult:
         not the same twice, are in `seconds`.
 
         Raises:
-            UnknownNameError: pandas is not installed.
+            MissingExtraError: pandas is not installed.
         """
         return _frame(self.rows, ["scenario", "condition", *variation_columns(self._plan)])
 
@@ -82,7 +82,7 @@ class StudyResult:
 
         Raises:
             InputError: There is no such column.
-            UnknownNameError: pandas is not installed.
+            MissingExtraError: pandas is not installed.
         """
         names = self._columns(by)
         return _pandas().DataFrame.from_records(count_rows(self.rows, names))
@@ -102,7 +102,7 @@ class StudyResult:
 
         Raises:
             InputError: There is no such column.
-            UnknownNameError: pandas is not installed.
+            MissingExtraError: pandas is not installed.
         """
         self._columns(between)
         found = [
@@ -137,7 +137,7 @@ class StudyResult:
 
         Raises:
             InputError: There is no such column.
-            UnknownNameError: matplotlib is not installed.
+            MissingExtraError: matplotlib is not installed.
         """
         from beliefnest.studies.plot import plot_accuracy
 
@@ -207,7 +207,5 @@ def _pandas() -> Any:
         import pandas
         import pyarrow  # noqa: F401  # what the columns are kept in
     except ModuleNotFoundError as error:
-        raise UnknownNameError(
-            f'tables of studies need {error.name}: pip install "beliefnest[study]"'
-        ) from None
+        raise MissingExtraError(f"tables of studies need {error.name}", "study") from None
     return pandas

@@ -5,7 +5,7 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 
-from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.errors import InputError, MissingExtraError, UnknownNameError
 from beliefnest.llm.messages import Usage
 from beliefnest.studies.plan import Cell
 from beliefnest.studies.spending import spent_in
@@ -62,7 +62,8 @@ def run_cells(
 
     Raises:
         InputError: `jobs` is no count.
-        UnknownNameError: There is no such backend, or it is not installed.
+        UnknownNameError: There is no such backend.
+        MissingExtraError: It is not installed.
     """
     if not isinstance(jobs, int) or jobs < 1:
         raise InputError(f"jobs is {jobs!r}; it must be at least 1")
@@ -128,9 +129,7 @@ def _parallel(cells: Sequence[Cell], terms: Terms, jobs: int, backend: str) -> _
     try:
         from joblib import Parallel, delayed, parallel_config
     except ModuleNotFoundError:
-        raise UnknownNameError(
-            'several jobs need joblib: pip install "beliefnest[study]", or use one job'
-        ) from None
+        raise MissingExtraError("several jobs need joblib", "study", ", or use one job") from None
     # Cells take long enough to be given out one by one.
     form = "list" if backend == "ray" else "generator_unordered"
     with _engine(backend, jobs), parallel_config(backend=backend, n_jobs=jobs):
@@ -159,9 +158,7 @@ def _engine(backend: str, jobs: int) -> Iterator[None]:
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in ("dask", "distributed", "ray"):
             raise
-        raise UnknownNameError(
-            f'the backend {backend!r} is not installed: pip install "beliefnest[{backend}]"'
-        ) from None
+        raise MissingExtraError(f"the backend {backend!r} is not installed", backend) from None
 
 
 def _enter_dask(stack: ExitStack, jobs: int) -> None:

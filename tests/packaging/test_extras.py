@@ -1,0 +1,51 @@
+"""What needs an extra says so, with the command that installs it."""
+
+import importlib
+import sys
+
+import pytest
+from tests.studies.small import small_in
+
+import beliefnest as bn
+import beliefnest.frames
+from beliefnest.env import parallel_env
+from beliefnest.errors import MissingExtraError
+
+
+def tasks_of_inspect(study, folder):
+    importlib.import_module("beliefnest.inspect")
+
+
+def mirrored(study, folder):
+    bn.Study("sally-anne", variations={"symmetry": ["mirrored"]}).plan()
+
+
+def drawn(study, folder):
+    bn.Study("sally-anne", variations=2).plan()
+
+
+@pytest.mark.parametrize(
+    ("package", "extra", "use"),
+    [
+        ("pandas", "study", lambda study, folder: study.run(folder / "s").frame()),
+        ("pyarrow", "study", lambda study, folder: study.run(folder / "s").summary()),
+        ("pandas", "study", lambda study, folder: beliefnest.frames.cells_df(folder / "s")),
+        ("joblib", "study", lambda study, folder: study.run(folder / "new", 2)),
+        ("tree_sitter_javascript", "study", mirrored),
+        ("tree_sitter_javascript", "study", drawn),
+        ("matplotlib.figure", "plot", lambda study, folder: study.run(folder / "s").plot()),
+        ("distributed", "dask", lambda study, folder: study.run(folder / "new", 2, "dask")),
+        ("ray.util.joblib", "ray", lambda study, folder: study.run(folder / "new", 2, "ray")),
+        ("pettingzoo", "pettingzoo", lambda study, folder: parallel_env("sally-anne")),
+        ("inspect_ai", "inspect", tasks_of_inspect),
+    ],
+)
+def test_what_is_missing_is_told_with_its_command(tmp_path, monkeypatch, package, extra, use):
+    study = bn.Study(small_in(tmp_path), world="scripted")
+    study.run(tmp_path / "s", jobs=1)
+    for name in list(sys.modules):
+        if name.startswith(("beliefnest.inspect", "beliefnest.env.")):
+            monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(MissingExtraError, match=rf'pip install "beliefnest\[{extra}\]"'):
+        use(study, tmp_path)
