@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from beliefnest.belief.entries import InitialBelief
     from beliefnest.bodies.limits import ProcessLimits
     from beliefnest.bodies.protocol import ProgramResult
+    from beliefnest.episodes.episode import Episode
+    from beliefnest.episodes.task import Task
+    from beliefnest.episodes.view import AgentView
     from beliefnest.errors import (
         BeliefNestError,
         BodyError,
@@ -45,6 +48,7 @@ if TYPE_CHECKING:
 __version__ = VERSION
 
 __all__ = [
+    "AgentView",
     "Attempt",
     "BeliefNestError",
     "BodyError",
@@ -53,6 +57,7 @@ __all__ = [
     "ClaimKind",
     "Contents",
     "Difference",
+    "Episode",
     "Explanation",
     "InitialBelief",
     "InputError",
@@ -73,6 +78,7 @@ __all__ = [
     "StoreError",
     "Study",
     "StudyResult",
+    "Task",
     "TemplateError",
     "TickError",
     "UnknownNameError",
@@ -81,11 +87,13 @@ __all__ = [
 ]
 
 _HOMES = {
+    "AgentView": "beliefnest.episodes.view",
     "Attempt": "beliefnest.nest.face.exploration",
     "Claim": "beliefnest.world.claims",
     "ClaimKind": "beliefnest.world.claims",
     "Contents": "beliefnest.nest.explain.parts",
     "Difference": "beliefnest.nest.explain.comparison",
+    "Episode": "beliefnest.episodes.episode",
     "Explanation": "beliefnest.nest.explain.explanation",
     "InitialBelief": "beliefnest.belief.entries",
     "Nest": "beliefnest.nest.face.nest",
@@ -99,6 +107,7 @@ _HOMES = {
     "Simulator": "beliefnest.nest.face.simulator",
     "Study": "beliefnest.studies.study",
     "StudyResult": "beliefnest.studies.result",
+    "Task": "beliefnest.episodes.task",
 }
 
 

@@ -165,6 +165,7 @@ def forked_forest(
     path: Path,
     tick: int,
     extra: Sequence[int] = (),
+    further: Sequence[Path] = (),
 ) -> Forest:
     """A forest that begins with what nodes of another hold: `root`, `path` and those between.
 
@@ -178,15 +179,17 @@ def forked_forest(
         path: The deepest node.
         tick: Tick of the fork.
         extra: Further cells whose basis is to be tracked; the source tracks them too.
+        further: More nodes below `root`, each after its parent.
     """
     source.table.track()
     first, agents = source.table.index[root], range(len(source.context.agents))
     vitals = {agent: source.holdings.vitals(first, agent) for agent in agents}
     table = NodeTable(source.context, PoseTable(), extra)
     holdings = HoldingsTable(table, RootFacts(vitals=vitals))
-    for depth in range(len(root), len(path) + 1):
-        old = source.table.index[path[:depth]]
-        is_root = depth == len(root)
+    chain = [path[:depth] for depth in range(len(root), len(path) + 1)]
+    for wanted in dict.fromkeys((*chain, *further)):
+        old = source.table.index[wanted]
+        is_root = wanted == root
         table.copy_node(source.table, old, is_root=is_root, recorded=False)
         holdings.add(_forked_holdings(source.holdings, old, agents, is_root=is_root))
     table.link()

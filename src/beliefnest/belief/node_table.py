@@ -173,6 +173,11 @@ class NodeTable:
             self._rows["parent"][node] = self.index[path[:-1]]
         return node
 
+    def see_now(self, tick: int) -> None:
+        """Note that what is current of agents' poses is so at a tick."""
+        current, seen_at = self._rows["current"][: self.count], self._rows["seen_at"]
+        seen_at[: self.count][current] = tick
+
     def path(self, node: int) -> Path:
         """Path of a node."""
         return next(path for path, number in self.index.items() if number == node)

@@ -316,6 +316,51 @@ def study(
 
 
 @app.command()
+def play(
+    task: Annotated[str, typer.Argument(help="A built-in task, or a task file.")],
+    agent: Annotated[
+        list[str] | None,
+        typer.Option(help="Who plays an agent, as anne=search:1; can be repeated."),
+    ] = None,
+    set: Annotated[
+        list[str] | None,
+        typer.Option(help="Size of a built-in task, as agents=3; can be repeated."),
+    ] = None,
+    rounds: Annotated[int | None, typer.Option(help="Most rounds.", min=0)] = None,
+    seed: Annotated[int, typer.Option(help="Which instance; drives every random number.")] = 0,
+    world: Annotated[str, typer.Option(help="Where it plays.")] = "scripted",
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for what is recorded; an interrupted episode goes on in it."),
+    ] = None,
+    max_ticks: Annotated[int | None, typer.Option(help="Most ticks.", min=1)] = None,
+    max_tokens: Annotated[int | None, typer.Option(help="Most tokens of models.", min=1)] = None,
+    max_cost: Annotated[float | None, typer.Option(help="Most US dollars.", min=0)] = None,
+    patience: Annotated[
+        float | None, typer.Option(help="Seconds after which a policy has lost its round.")
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Let agents act round after round, each by what it believes; say whether they succeed."""
+    from beliefnest.cli.play import PlayOptions, play_task
+    from beliefnest.episodes.episode import Budget
+
+    options = PlayOptions(
+        task=task,
+        agents=tuple(agent or ()),
+        parameters=tuple(set or ()),
+        rounds=rounds,
+        seed=seed,
+        world=world,
+        out=out,
+        budget=Budget(max_ticks, max_tokens, max_cost),
+        patience_s=patience,
+        as_json=json,
+    )
+    return play_task(options)
+
+
+@app.command()
 def reproduce(
     copies: Annotated[
         int, typer.Option(help="Mirrored, turned and renamed copies of each experiment.", min=0)

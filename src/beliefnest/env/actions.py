@@ -1,15 +1,14 @@
-"""Actions: calls of skills in a structured space, and their texts as programs."""
+"""Actions: calls of skills in a structured space."""
 
-import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from beliefnest.env.layout import Layout, Phrases
 from beliefnest.errors import InputError, UnknownNameError
-from beliefnest.world.values import Point, Position
+from beliefnest.programs.calls import Call
+from beliefnest.world.values import Position
 
 __all__ = ["MOST_ITEMS", "Call", "Calls"]
 
@@ -38,39 +37,6 @@ _KINDS = {
     "phrase": "phrases",
 }
 """By part of an action, what in the layout it numbers."""
-
-
-@dataclass(frozen=True, slots=True)
-class Call:
-    """A skill with its arguments, as plain values.
-
-    Attributes:
-        skill: Its name.
-        args: Positions as tuples, items as mappings, claims as plain data.
-    """
-
-    skill: str
-    args: tuple[Any, ...] = ()
-
-    @property
-    def is_nothing(self) -> bool:
-        """Whether it begins nothing, so that what goes on goes on."""
-        return self.skill == "doNothing"
-
-    @property
-    def program(self) -> str:
-        """The same as an agent's program; empty if it begins nothing."""
-        if self.is_nothing:
-            return ""
-        if self.skill == "openContainer":
-            place = _code(self.args[0])
-            return (
-                f"await goToPosition(bot, {place}, 2)\n"
-                f"const container = await bot.openContainer(bot.blockAt({place}))\n"
-                "container.close()"
-            )
-        args = ", ".join(["bot", *map(_code, self.args)])
-        return f"await {self.skill}({args})"
 
 
 class Calls:
@@ -187,11 +153,3 @@ def _index(value: Any) -> int:
     if number < 0:
         raise IndexError(f"{number} is below 0")
     return number
-
-
-def _code(value: Any) -> str:
-    """A value in a program."""
-    if isinstance(value, tuple):
-        point: Point = value
-        return f"new Vec3({', '.join(map(str, point))})"
-    return json.dumps(value)

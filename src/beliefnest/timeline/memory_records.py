@@ -21,11 +21,13 @@ class MemoryRecords:
         self._ever = 0
         self._prompts: list[PromptRecord] = []
         self._versions: dict[str, str] = {}
+        self._states: dict[str, bytes] = {}
 
     @contextmanager
     def together(self) -> Iterator[None]:
         """Take back what was noted inside if it raises."""
         selected, versions = self._selected.copy(), self._versions.copy()
+        states = self._states.copy()
         programs, prompts = self._programs.copy(), self._prompts.copy()
         ever = self._ever
         try:
@@ -33,8 +35,16 @@ class MemoryRecords:
         except BaseException:
             self._selected, self._versions = selected, versions
             self._programs, self._prompts = programs, prompts
-            self._ever = ever
+            self._ever, self._states = ever, states
             raise
+
+    def put_state(self, name: str, value: bytes) -> None:
+        """Keep bytes under a name, in place of what was there."""
+        self._states[name] = value
+
+    def state(self, name: str) -> bytes | None:
+        """The bytes last put under a name; None if there are none."""
+        return self._states.get(name)
 
     def select(self, path: Path, branch: str) -> None:
         """Note which branch a simulator is on."""

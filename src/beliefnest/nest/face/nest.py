@@ -1,6 +1,7 @@
 """The nest: the real world and all beliefs in it."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -24,6 +25,7 @@ from beliefnest.nest.face.telling import Telling
 from beliefnest.nest.face.ticks import tick_of
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.face.viewing import Viewing
+from beliefnest.nest.past.over_time import each_tick
 from beliefnest.nest.past.setting import Setting
 from beliefnest.perception.options import Perception
 from beliefnest.prompts import Renderer
@@ -293,6 +295,43 @@ class Nest(Looking, Viewing, Telling, Comparing):
             name=name,
             processes=processes,
         ).attempts()
+
+    @contextmanager
+    def together(self) -> Iterator[None]:
+        """Keep all that happens in the real world inside as a whole, or nothing of it."""
+        with self._recording.turn, self._engine.bodies.changing(()):
+            yield
+
+    @in_turn
+    def keep(self, name: str, value: bytes) -> None:
+        """Keep bytes in the run under a name, in place of what was there."""
+        self._recording.journal.records.put_state(f"kept {name}", value)
+
+    @in_turn
+    def kept(self, name: str) -> bytes | None:
+        """The bytes last kept under a name; None if there are none."""
+        return self._recording.journal.records.state(f"kept {name}")
+
+    def each_tick(
+        self, paths: Sequence[str], after: int, until: int
+    ) -> Iterator[tuple[int, Mapping[str, State]]]:
+        """Several simulators at each tick of the real world's timeline with something new.
+
+        All of them follow; read their states before asking for the next tick.
+
+        Args:
+            paths: Belief paths.
+            after: Ticks up to this one are passed over.
+            until: The last tick.
+
+        Raises:
+            PathError: A path is malformed or names an unknown agent.
+        """
+        parsed = {path: parse_path(path, self.agents) for path in paths}
+        with self._recording.turn:
+            wanted = list(dict.fromkeys(parsed.values()))
+            for tick, states in each_tick(self._recording, wanted, after, until):
+                yield tick, {path: states[names] for path, names in parsed.items()}
 
     def play(self, on_progress: Progress | None = None) -> None:
         """Play the scenario's script in the real world, from the first step not played there.

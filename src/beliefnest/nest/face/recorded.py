@@ -106,6 +106,15 @@ class RecordedNest(Looking, Viewing, Telling, Comparing):
         self._recording.journal.info(key)
         self._recording.selected[names] = key
 
+    def branch(self, path: str) -> str:
+        """Name of the branch that a simulator is read on; `follow` in follow mode."""
+        key = self._recording.selected.get(parse_path(path, self._recording.agents))
+        return FOLLOW if key is None else key.branch
+
+    def kept(self, name: str) -> bytes | None:
+        """The bytes that `Nest.keep` kept under a name; None if there are none."""
+        return self._recording.journal.records.state(f"kept {name}")
+
     def head(self, path: str) -> int:
         """The latest tick of the timeline that a simulator is on."""
         return self._recording.info(parse_path(path, self._recording.agents)).head

@@ -7,6 +7,7 @@ from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.bodies.scripted import ScriptedBody
 from beliefnest.errors import BranchError, InputError, PositionError, WorldError
 from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.acting.imagination import Imagination, nodes_below
 from beliefnest.nest.face.past_simulator import ShownSimulator
 from beliefnest.nest.face.recording_model import RecordingModel
 from beliefnest.nest.face.ticks import tick_of, whole
@@ -251,6 +252,25 @@ class Simulator(ShownSimulator):
                 if count <= 0:
                     raise InputError(f"{count} {name} cannot be held; give a count above 0")
         self._engine.edit(self._path, states, {p: dict(i) for p, i in (containers or {}).items()})
+
+    @in_turn
+    def imagine(self, depth: int = 1) -> Imagination:
+        """What it holds now as a world of its own, to try courses in; nothing is recorded.
+
+        It is scripted, whatever the real world is: see docs/scripted-world.md.
+
+        Args:
+            depth: How deep below it beliefs are followed.
+
+        Raises:
+            InputError: The depth is below 0.
+        """
+        if depth < 0:
+            raise InputError(f"depth is {depth}; give 0 or more")
+        info = self._recording.info(self._path)
+        for path in nodes_below(self._path, depth, self._recording.agents):
+            forest = self._recording.history.shared(info.key, path, info.entries)
+        return Imagination.of(forest, self._path, depth, info.head)
 
 
 def _timeout(ticks: int) -> int:

@@ -1,18 +1,22 @@
 """One simulator over time, on every timeline that it has or can follow."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.view import State
 from beliefnest.nest.past.recording import Recording
+from beliefnest.nest.past.views import Blocks, LiveState
 from beliefnest.timeline.journal import Journal, TimelineInfo, TimelineKey
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Position
 
-__all__ = ["Moment", "over_time"]
+__all__ = ["Moment", "each_tick", "over_time"]
+
+Path = tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +54,43 @@ def over_time(recording: Recording, path: tuple[str, ...]) -> Iterator[Moment]:
             state = recording.state_after(info.key, path, entries, tick)
             yield Moment(info.key, tick, state, _changed(before, grid, box, registry))
             before = grid
+
+
+def each_tick(
+    recording: Recording, paths: Sequence[Path], after: int, until: int
+) -> Iterator[tuple[int, Mapping[Path, State]]]:
+    """Several simulators below the real world, at each tick at which something happened.
+
+    Args:
+        recording: Where the real world is on the timeline that is looked at.
+        paths: The simulators; read their states before asking for the next tick.
+        after: Ticks up to this one are passed over.
+        until: The last tick.
+    """
+    stages: list[tuple[TimelineKey, int]] = []
+    info = recording.info(())
+    stop = info.entries
+    while True:
+        stages.append((info.key, stop))
+        if info.base is None or info.start <= after:
+            break
+        stop, info = info.base.entries, recording.journal.info(info.base.timeline)
+    for key, last in reversed(stages):
+        forest = recording.history.walk(key, paths)
+        first = recording.journal.entries_until(key, after)
+        if first > forest.position:
+            recording.history.advance(key, forest, first)
+        for position in range(forest.position + 1, last + 1):
+            recording.history.advance(key, forest, position)
+            if not after < forest.tick <= until:
+                continue
+            states = {}
+            for path in paths:
+                reading = NodeView(forest, path)
+                blocks = Blocks(recording.history, key, position, reading, recording.turn)
+                box = recording.setting.snapshot.box
+                states[path] = LiveState(reading, blocks, box, forest.tick, recording.turn)
+            yield forest.tick, states
 
 
 def _places(journal: Journal, info: TimelineInfo) -> dict[int, int]:

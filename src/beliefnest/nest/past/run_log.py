@@ -14,6 +14,12 @@ Path = tuple[str, ...]
 class RunLog(Protocol):
     """Notes of a run; they follow the timelines of its journal that are renamed or deleted."""
 
+    def put_state(self, name: str, value: bytes) -> None:
+        """Keep bytes under a name, in place of what was there."""
+
+    def state(self, name: str) -> bytes | None:
+        """The bytes last put under a name; None if there are none."""
+
     def select(self, path: Path, branch: str) -> None:
         """Note which branch a simulator is on."""
 

@@ -1,0 +1,150 @@
+"""`beliefnest play`: a task played round after round by policies."""
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich import box
+from rich.table import Table
+
+from beliefnest.bodies.worlds import check_world
+from beliefnest.cli.console import folded, progress_on, stdout
+from beliefnest.episodes.episode import Budget, Episode
+from beliefnest.episodes.task import Task
+from beliefnest.errors import InputError
+
+__all__ = ["PlayOptions", "play_task"]
+
+
+@dataclass(frozen=True, slots=True)
+class PlayOptions:
+    """What was asked for on the command line.
+
+    Attributes:
+        task: Name of a built-in task, or a file.
+        agents: `NAME=POLICY`, each.
+        parameters: `NAME=NUMBER`, each: the size of a built-in task.
+        rounds: Most rounds; None: as many as the task has.
+        seed: Which instance, and what drives every random number.
+        world: Where it is played.
+        out: Folder for what is recorded; an interrupted episode goes on in it.
+        budget: What it may take.
+        patience_s: Seconds after which a policy has lost its round.
+        as_json: Whether to print one JSON object instead of a table.
+    """
+
+    task: str
+    agents: tuple[str, ...]
+    parameters: tuple[str, ...]
+    rounds: int | None
+    seed: int
+    world: str
+    out: Path | None
+    budget: Budget
+    patience_s: float | None
+    as_json: bool
+
+
+def play_task(options: PlayOptions) -> int:
+    """Play, record, and print; the exit status says whether the goal was reached.
+
+    Raises:
+        BeliefNestError: The input is wrong, or a world failed.
+    """
+    check_world(options.world)
+    policies = _pairs(options.agents, "--agent", "NAME=POLICY")
+    numbers = _pairs(options.parameters, "--set", "NAME=NUMBER")
+    for name, value in numbers.items():
+        if not value.isdecimal():
+            raise InputError(f"--set {name}={value}: give a whole number")
+    parameters = {name: int(value) for name, value in numbers.items()}
+    task = Task.load(options.task, options.seed, **parameters)
+    with _episode(task, policies, options) as episode, progress_on(task.name) as on_progress:
+        limit = task.form.rounds if options.rounds is None else options.rounds
+        while episode.rounds < limit and not episode.is_over:
+            on_progress(f"round {episode.rounds + 1}", episode.rounds, limit)
+            episode.play(1)
+        on_progress("over", limit, limit)
+        report = _report(episode)
+    if options.as_json:
+        sys.stdout.write(json.dumps(report, indent=2) + "\n")
+    else:
+        _print(report)
+    return 0 if report["success"] else 1
+
+
+def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> Episode:
+    store = None
+    if options.out is not None:
+        options.out.mkdir(parents=True, exist_ok=True)
+        store = options.out / "run.bn"
+        if store.exists():
+            return Episode.resume(store, policies, patience_s=options.patience_s)
+    return Episode(
+        task,
+        policies,
+        world=options.world,
+        store=store,
+        seed=options.seed,
+        budget=options.budget,
+        patience_s=options.patience_s,
+    )
+
+
+def _pairs(given: Sequence[str], option: str, form: str) -> dict[str, str]:
+    pairs = {}
+    for text in given:
+        name, equals, value = text.partition("=")
+        if not equals or not name or not value:
+            raise InputError(f"{option} is {text!r}; write {form}")
+        pairs[name] = value
+    return pairs
+
+
+def _report(episode: Episode) -> dict[str, Any]:
+    measures = episode.measures.row()
+    return {
+        "task": episode.task.name,
+        "world": episode.world,
+        "success": episode.success,
+        "goal": [{"condition": text, "tick": tick} for text, tick in episode.conditions],
+        "measures": measures,
+        "rounds": [
+            {
+                "agents": {
+                    agent: {
+                        "program": decision.program,
+                        "fault": decision.fault,
+                        "ended": part.ended[agent].how if agent in part.ended else "none",
+                    }
+                    for agent, decision in part.decisions.items()
+                }
+            }
+            for part in episode.parts
+        ],
+    }
+
+
+def _print(report: Mapping[str, Any]) -> None:
+    table = Table(title=report["task"], title_justify="left", box=box.SIMPLE_HEAVY)
+    for heading in ("round", "agent", "program", "ended"):
+        table.add_column(heading, justify="right" if heading == "round" else "left")
+    for number, part in enumerate(report["rounds"], start=1):
+        for agent, told in part["agents"].items():
+            shown = told["program"] or (f"none: {told['fault']}" if told["fault"] else "")
+            table.add_row(str(number), agent, shown, told["ended"])
+    console = stdout()
+    console.print(folded(table))
+    for condition in report["goal"]:
+        when = "never" if condition["tick"] is None else f"at tick {condition['tick']}"
+        console.print(f"{condition['condition']}: {when}", markup=False, highlight=False)
+    measures = report["measures"]
+    verdict = "reached" if report["success"] else "not reached"
+    console.print(
+        f"goal {verdict} after {measures['ticks']} ticks, {measures['rounds']} rounds, "
+        f"{measures['messages']} messages",
+        highlight=False,
+    )

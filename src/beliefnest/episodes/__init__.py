@@ -1,0 +1,1 @@
+"""Episodes: agents that live by what they believe, round after round."""

@@ -1,0 +1,548 @@
+"""An episode: a task played round after round, recorded, gone on with, replayed, branched."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import msgspec
+
+from beliefnest.belief.view import State
+from beliefnest.bodies.protocol import NO_WAY, Fault, ProgramResult
+from beliefnest.episodes.goals import Look, Progress, looking_at
+from beliefnest.episodes.measures import Measures, measured
+from beliefnest.episodes.policies import resolve_policy
+from beliefnest.episodes.rounds import Asker, Decision, Part, Replayed, Spent, slots_of
+from beliefnest.episodes.task import Task
+from beliefnest.episodes.view import AgentView, Brief, Ended, Policy
+from beliefnest.errors import BeliefNestError, InputError, StoreError
+from beliefnest.nest.face.nest import Nest
+from beliefnest.nest.past.setting import MAIN
+from beliefnest.world.paths import path_text
+
+__all__ = ["Budget", "Episode", "Moment"]
+
+_TASK, _DECISIONS = "episode", "episode decisions"
+
+
+class Budget(msgspec.Struct, frozen=True, omit_defaults=True):
+    """What an episode may take; None: as much as it needs.
+
+    Attributes:
+        ticks: Ticks of the world.
+        tokens: Sent to models and received.
+        cost: US dollars.
+    """
+
+    ticks: int | None = None
+    tokens: int | None = None
+    cost: float | None = None
+
+
+class _Kept(msgspec.Struct, frozen=True):
+    """What a run keeps of its episode at the beginning."""
+
+    task: dict[str, Any]
+    seed: int
+    task_seed: int | None
+    start: int
+    budget: Budget
+
+
+class _Branch(msgspec.Struct, frozen=True):
+    """What a run keeps of an episode's branch: policies in words, and what was decided."""
+
+    policies: dict[str, str]
+    parts: list[Part]
+
+
+class Episode:
+    """A task that is played by policies, one for each agent.
+
+    Nothing is started before it is first played or looked at. It is played in the scripted world
+    unless another one is named. Close it, or use it in a `with` block.
+
+    Args:
+        task: What is played.
+        policies: By agent, as on the command line or any object with `act`; who is left out is
+            played by the task's own policy, a player by `search` of the task's order.
+        world: Where it is played.
+        store: File to record in; None: memory.
+        seed: Drives every random number.
+        budget: What it may take.
+        patience_s: Seconds after which a policy has lost its round; None: it is waited for.
+
+    Raises:
+        InputError: There is a policy for nobody.
+        UnknownNameError: There is no such policy.
+    """
+
+    def __init__(
+        self,
+        task: Task,
+        policies: Mapping[str, "str | Policy"] | None = None,
+        *,
+        world: str = "scripted",
+        store: str | Path | None = None,
+        seed: int = 0,
+        budget: Budget | None = None,
+        patience_s: float | None = None,
+    ) -> None:
+        self.task = task
+        self.seed = seed
+        self._names, self._policies = _chosen(task, policies or {})
+        self._world, self._store = world, store
+        self._budget = budget or Budget()
+        self._patience_s = patience_s
+        self._asker = Asker(self._policies, patience_s)
+        self._branch = MAIN
+        self._nest: Nest | None = None
+        self._owns_nest = True
+        self._start = 0
+        self._parts: list[Part] = []
+        self._watched = 0
+        self._progress: dict[str, Progress] = {}
+
+    @classmethod
+    def resume(
+        cls,
+        store: str | Path,
+        policies: Mapping[str, "str | Policy"] | None = None,
+        *,
+        patience_s: float | None = None,
+    ) -> Self:
+        """Go on with a recorded episode where it was, on the branch it was on.
+
+        Args:
+            store: The run file.
+            policies: By agent; those who are left out are played as before.
+            patience_s: As for the class.
+
+        Raises:
+            StoreError: There is no such run, or no episode in it.
+            InputError: A policy of before was an object, which no file holds.
+        """
+        nest = Nest.resume(store)
+        try:
+            kept, branches = _kept(nest)
+            branch = nest["/"].branch
+            known = branches[branch]
+            given = {**known.policies, **(policies or {})}
+            task = Task.from_mapping(kept.task, kept.task_seed)
+            episode = cls(
+                task,
+                given,
+                store=store,
+                seed=kept.seed,
+                budget=kept.budget,
+                patience_s=patience_s,
+            )
+            episode._take(nest, branch, kept.start, known.parts)
+        except BaseException:
+            nest.close()
+            raise
+        return episode
+
+    @classmethod
+    def replay(cls, recorded: str | Path, store: str | Path | None = None) -> Self:
+        """Play what was decided in a recorded episode once more, without asking anybody.
+
+        Args:
+            recorded: Its run file.
+            store: File to record the replay in; None: memory.
+
+        Raises:
+            StoreError: There is no such run, or no episode in it.
+        """
+        nest = Nest.read(recorded)
+        with nest:
+            kept, branches = _kept(nest)
+            branch = branches[nest.branch("/")]
+        policies = {
+            agent: Replayed([p.decisions[agent] for p in branch.parts if agent in p.decisions])
+            for agent in branch.policies
+        }
+        task = Task.from_mapping(kept.task, kept.task_seed)
+        episode = cls(task, policies, store=store, seed=kept.seed, budget=kept.budget)
+        # It is the same episode, and is recorded as it was.
+        episode._names = dict(branch.policies)
+        return episode
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the world and close the store; forks end with what they were forked from."""
+        if self._nest is not None and self._owns_nest:
+            self._nest.close()
+        self._nest = None
+
+    @property
+    def nest(self) -> Nest:
+        """The nest that it is played in, on its branch; opened when it is first asked for."""
+        nest = self._opened()
+        if nest["/"].branch != self._branch:
+            nest["/"].switch(self._branch)
+        return nest
+
+    @property
+    def world(self) -> str:
+        """Name of the world that it is played in."""
+        return self._world
+
+    @property
+    def branch(self) -> str:
+        """The branch of the real world that it is played on."""
+        return self._branch
+
+    @property
+    def policies(self) -> Mapping[str, str]:
+        """By agent, who plays it, in words."""
+        return dict(self._names)
+
+    @property
+    def rounds(self) -> int:
+        """Rounds played."""
+        return -(-len(self._parts) // len(self._slots))
+
+    @property
+    def ticks(self) -> int:
+        """Ticks since the first round began; until success, if there was one."""
+        goal = self._progress.get("")
+        if goal is not None and goal.reached is not None:
+            return goal.reached - self._start
+        return 0 if self._nest is None else self.nest.tick - self._start
+
+    @property
+    def is_over(self) -> bool:
+        """Whether there is nothing more to play."""
+        if self._nest is None:
+            return False
+        progress = self._watch()
+        if progress.reached is not None or progress.violated is not None:
+            return True
+        return self.rounds >= self.task.form.rounds or self._is_spent()
+
+    @property
+    def success(self) -> bool:
+        """Whether the task's goal was reached."""
+        return self._nest is not None and self._watch().succeeded(over=self.is_over)
+
+    @property
+    def messages(self) -> int:
+        """Utterances of players since the first round began."""
+        return self.measures.messages
+
+    @property
+    def conditions(self) -> Sequence[tuple[str, int | None]]:
+        """The goal's conditions in words, each with the tick at which it came true first."""
+        self._opened()
+        return self._watch().came_true()
+
+    @property
+    def measures(self) -> Measures:
+        """What it came to, as one row."""
+        return measured(self)
+
+    @property
+    def spent(self) -> Spent:
+        """What policies have spent on models."""
+        total = Spent()
+        for part in self._parts:
+            for each in part.decisions.values():
+                total += each.spent
+        return total
+
+    @property
+    def parts(self) -> Sequence[Part]:
+        """What was decided in each part of each round, and how it ended."""
+        return tuple(self._parts)
+
+    @property
+    def start(self) -> int:
+        """The tick at which the first round began."""
+        return self._start
+
+    def play(self, rounds: int | None = None) -> Self:
+        """Play until the task's goal is reached or cannot be any more, or rounds are over.
+
+        Args:
+            rounds: Most rounds to play now; None: as many as the task has.
+
+        Raises:
+            InputError: The number of rounds is below 0.
+            BodyError: The Minecraft side failed.
+        """
+        if rounds is not None and rounds < 0:
+            raise InputError(f"{rounds} rounds cannot be played; give 0 or more")
+        self._opened()
+        self._finish_part()
+        last = self.task.form.rounds if rounds is None else self.rounds + rounds
+        while not self.is_over and (self.rounds < last or len(self._parts) % len(self._slots)):
+            self._decide()
+            self._finish_part()
+        return self
+
+    def at(self, round: int) -> "Moment":
+        """The beginning of a round that was played.
+
+        Raises:
+            InputError: There is no such round.
+        """
+        if not 0 <= round <= len(self._parts) // len(self._slots):
+            raise InputError(f"round {round} was not played; there are {self.rounds}")
+        return Moment(self, round)
+
+    def forked(self, round: int, policies: Mapping[str, "str | Policy"]) -> "Episode":
+        """See `Moment.fork`."""
+        nest = self.nest
+        tick = self._start + round * self._brief.whole_round
+        taken = {info.key.branch for info in nest["/"].branches()}
+        number = next(n for n in range(1, len(taken) + 2) if f"fork {n}" not in taken)
+        given: dict[str, str | Policy] = dict(self._policies)
+        for agent, policy in policies.items():
+            given[agent] = policy
+        fork = Episode(
+            self.task,
+            given,
+            seed=self.seed,
+            budget=self._budget,
+            patience_s=self._patience_s,
+        )
+        fork._names = {**self._names, **{a: _name_of(p) for a, p in policies.items()}}
+        nest["/"].switch(f"fork {number}", at=tick)
+        before = self._parts[: round * len(self._slots)]
+        fork._take(nest, f"fork {number}", self._start, list(before))
+        fork._owns_nest = False
+        fork._keep()
+        return fork
+
+    @property
+    def _slots(self) -> tuple[tuple[str, ...], ...]:
+        return slots_of(self.task.agents, turns=self.task.form.play == "turns")
+
+    @property
+    def _brief(self) -> Brief:
+        task = self.task
+        return Brief(
+            task=task.name,
+            description=task.form.description,
+            goals={agent: task.goal_of(agent) for agent in task.agents},
+            talk=tuple(task.form.talk),
+            rounds=task.form.rounds,
+            round_ticks=task.form.round_ticks,
+            turns=task.form.play == "turns",
+            places=task.scenario.setting.places,
+            seed=self.seed,
+        )
+
+    def _opened(self) -> Nest:
+        if self._nest is None:
+            nest = Nest.open(self.task.scenario, self._world, self._store, self.seed)
+            try:
+                nest.play()
+                _look_around(nest)
+                kept = _Kept(self.task.plain(), self.seed, self.task.seed, nest.tick, self._budget)
+                nest.keep(_TASK, msgspec.json.encode(kept))
+                self._take(nest, nest["/"].branch, nest.tick, [])
+                self._keep()
+            except BaseException:
+                self._nest = None
+                nest.close()
+                raise
+        return self._nest or self._opened()
+
+    def _take(self, nest: Nest, branch: str, start: int, parts: list[Part]) -> None:
+        self._nest, self._branch, self._start = nest, branch, start
+        self._parts = parts
+        self._watched = start - 1
+        goals = {"": self.task.goal, **{a: self.task.goal_of(a) for a in self.task.agents}}
+        self._progress = {name: Progress.begun(goal) for name, goal in goals.items()}
+
+    def _keep(self) -> None:
+        nest = self._opened()
+        kept = nest.kept(_DECISIONS)
+        branches = {} if kept is None else msgspec.json.decode(kept, type=dict[str, _Branch])
+        branches[self._branch] = _Branch(self._names, self._parts)
+        nest.keep(_DECISIONS, msgspec.json.encode(branches))
+
+    def _decide(self) -> None:
+        """Ask for a part's programs, and keep them before they are run."""
+        slot = self._slots[len(self._parts) % len(self._slots)]
+        self._parts.append(Part({agent: self._asker.ask(self._view(agent)) for agent in slot}))
+        self._keep()
+
+    def _finish_part(self) -> None:
+        """Do what was decided last, if it is not done yet, up to the end of its ticks."""
+        nest = self.nest
+        ticks = self.task.form.round_ticks
+        end = self._start + len(self._parts) * ticks
+        if not self._parts or nest.tick >= end:
+            return
+        part = self._parts[-1]
+        programs = {a: d.program for a, d in part.decisions.items() if d.program}
+        with nest.together():
+            results: Mapping[str, ProgramResult] = {}
+            if programs:
+                results = nest["/"].run_all(programs, ticks, senses="percepts")
+            if nest.tick < end:
+                nest["/"].step(end - nest.tick)
+            _look_around(nest)
+            ended = {
+                agent: _ended(each, results.get(agent)) for agent, each in part.decisions.items()
+            }
+            self._parts[-1] = Part(part.decisions, ended)
+            self._keep()
+
+    def _is_spent(self) -> bool:
+        budget, spent = self._budget, self.spent
+        ticks = budget.ticks is not None and self.nest.tick - self._start >= budget.ticks
+        tokens = budget.tokens is not None and spent.tokens >= budget.tokens
+        cost = budget.cost is not None and spent.cost is not None and spent.cost >= budget.cost
+        return ticks or tokens or cost
+
+    def _watch(self) -> Progress:
+        """How far the task's goal has come by now."""
+        nest = self.nest
+        if self._watched < nest.tick:
+            if self._watched < self._start:
+                self._feed(self._start, nest.at(self._start))
+                self._watched = self._start
+            paths = self._goal_paths()
+            for tick, states in nest.each_tick(paths, self._watched, nest.tick):
+                self._feed(tick, states)
+            self._watched = nest.tick
+        return self._progress[""]
+
+    def _goal_paths(self) -> list[str]:
+        named = {path for each in self._progress.values() for path in each.goal.paths}
+        return sorted({"/", *map(path_text, named)})
+
+    def _feed(self, tick: int, states: Any) -> None:
+        found: dict[tuple[str, ...], State] = {}
+        for path in self._goal_paths():
+            held = states[path]
+            found[tuple(name for name in path.split("/") if name)] = getattr(held, "state", held)
+        look: Look = looking_at(found)
+        said = 0 if tick == self._start else self._said_at(tick, found[()])
+        for each in self._progress.values():
+            each.feed(tick, look, said)
+
+    def _said_at(self, tick: int, reality: State) -> int:
+        players = self.task.players
+        return sum(1 for when, who, _ in reality.chat if when == tick and who in players)
+
+    def _view(self, agent: str) -> AgentView:
+        nest = self.nest
+        policy = self._policies[agent]
+        # An upper bound may see everything; nobody else can.
+        path = "/" if getattr(policy, "sees_all", False) else path_text((agent,))
+        own = nest[path]
+        return AgentView(
+            agent,
+            self._brief,
+            len(self._parts) // len(self._slots),
+            self._ended(agent),
+            nest.at(nest.tick)[path],
+            own.imagine,
+            own.noting,
+        )
+
+    def _ended(self, agent: str) -> Ended:
+        return next((p.ended[agent] for p in reversed(self._parts) if agent in p.ended), Ended())
+
+
+def _look_around(nest: Nest) -> None:
+    """Let everybody perceive what there is now.
+
+    When something was last seen is otherwise noted at ticks at which something happened, be it
+    where nobody sees it: from that an agent could tell that something did.
+    """
+    nest["/"].edit()
+
+
+class Moment:
+    """The beginning of a round of an episode.
+
+    Attributes:
+        episode: The episode.
+        round: The round, from 0.
+    """
+
+    def __init__(self, episode: Episode, round: int) -> None:
+        self.episode = episode
+        self.round = round
+
+    def fork(self, **policies: "str | Policy") -> Episode:
+        """The same episode from here on, on a branch of its own, with other policies.
+
+        Args:
+            policies: By agent; the others are played as before.
+
+        Raises:
+            InputError: There is a policy for nobody.
+            UnknownNameError: There is no such policy.
+        """
+        return self.episode.forked(self.round, policies)
+
+
+def _ended(decision: Decision, result: ProgramResult | None) -> Ended:
+    """How a program ended, without what its agent could not perceive.
+
+    What a skill says of the world may rest on what the agent does not see: it learns only that the
+    skill did not work. Ways are looked for on ground that it knows.
+    """
+    if decision.fault:
+        return Ended("", "lost", "no program came in time, so nothing was done")
+    fault = None if result is None else result.error
+    if fault is None:
+        return Ended(decision.program, "ok" if decision.program else "none")
+    if fault.kind == "timeout":
+        return Ended(decision.program, "cut", "the round was over before the program was")
+    if fault.reason == NO_WAY:
+        return Ended(decision.program, "no_way", str(fault))
+    if fault.skill is not None:
+        told = Fault(f"{fault.skill} did not work", line=fault.line)
+        return Ended(decision.program, "failed", str(told))
+    return Ended(decision.program, "failed", str(fault))
+
+
+def _chosen(
+    task: Task, policies: Mapping[str, "str | Policy"]
+) -> tuple[dict[str, str], dict[str, Policy]]:
+    for agent in policies:
+        if agent not in task.agents:
+            raise InputError(f"{agent!r} is none of the agents: {', '.join(task.agents)}")
+    names: dict[str, str] = {}
+    chosen: dict[str, Policy] = {}
+    for agent in task.agents:
+        own = task.form.policies.get(agent, f"search:{task.order}")
+        given = policies.get(agent, own)
+        names[agent] = _name_of(given)
+        chosen[agent] = resolve_policy(given) if isinstance(given, str) else given
+    return names, chosen
+
+
+def _name_of(policy: "str | Policy") -> str:
+    return policy if isinstance(policy, str) else f"object:{type(policy).__name__}"
+
+
+def _kept(nest: Any) -> tuple[_Kept, dict[str, _Branch]]:
+    kept, decided = nest.kept(_TASK), nest.kept(_DECISIONS)
+    if kept is None or decided is None:
+        raise StoreError("there is no episode in this run; it was made by another command")
+    try:
+        return (
+            msgspec.json.decode(kept, type=_Kept),
+            msgspec.json.decode(decided, type=dict[str, _Branch]),
+        )
+    except msgspec.MsgspecError as fault:
+        raise BeliefNestError(f"the episode in this run cannot be read: {fault}") from None

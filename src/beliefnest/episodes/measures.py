@@ -1,0 +1,134 @@
+"""Measures of an episode, as one row of a table."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Protocol
+
+from beliefnest.episodes.rounds import Part, Spent
+from beliefnest.episodes.task import Task
+from beliefnest.nest.face.nest import Nest
+
+__all__ = ["Measures", "measured"]
+
+
+@dataclass(frozen=True, slots=True)
+class Measures:
+    """What an episode came to.
+
+    Attributes:
+        task: Name of the task.
+        task_seed: Which instance; None: none.
+        order: The order of Theory of Mind that it needs.
+        seed: What the episode was played with.
+        policies: Who played whom, in words.
+        success: Whether the goal was reached.
+        ticks: Ticks from the first round to success or the end.
+        rounds: Rounds played.
+        messages: Utterances of players.
+        claims: Claims of players.
+        false_claims: Those that were not so in reality when they were made.
+        lies: Those that their speaker did not believe.
+        taken_up: Times a hearer took up a claim of a player.
+        lost_rounds: Times a policy gave no program, or failed.
+        failed_programs: Programs that failed, other than by being cut.
+        false_beliefs: Things that players and others hold wrongly in the end, each belief counted.
+        requests: Requests to models.
+        tokens: Sent to models and received.
+        cost: US dollars; None where a price is not known.
+    """
+
+    task: str
+    task_seed: int | None
+    order: int
+    seed: int
+    policies: str
+    success: bool
+    ticks: int
+    rounds: int
+    messages: int
+    claims: int
+    false_claims: int
+    lies: int
+    taken_up: int
+    lost_rounds: int
+    failed_programs: int
+    false_beliefs: int
+    requests: int
+    tokens: int
+    cost: float | None
+
+    def row(self) -> dict[str, Any]:
+        """As a row of a table."""
+        return asdict(self)
+
+
+class Played(Protocol):
+    """What is measured of an episode."""
+
+    task: Task
+    seed: int
+
+    @property
+    def nest(self) -> Nest:
+        """Where it is played."""
+
+    @property
+    def start(self) -> int:
+        """The tick at which the first round began."""
+
+    @property
+    def parts(self) -> Sequence[Part]:
+        """What was decided and how it ended."""
+
+    @property
+    def policies(self) -> Mapping[str, str]:
+        """Who plays whom, in words."""
+
+    @property
+    def success(self) -> bool:
+        """Whether the goal was reached."""
+
+    @property
+    def ticks(self) -> int:
+        """Ticks until success or now."""
+
+    @property
+    def rounds(self) -> int:
+        """Rounds played."""
+
+    @property
+    def spent(self) -> Spent:
+        """What policies have spent on models."""
+
+
+def measured(episode: Played) -> Measures:
+    """What an episode has come to by now."""
+    nest, task = episode.nest, episode.task
+    players, start = set(task.players), episode.start
+    said = [line for line in nest["/"].state.chat if line[0] > start and line[1] in players]
+    claims = [each for each in nest.claims() if each.tick > start and each.speaker in players]
+    taken = sum(
+        each.taken_up(f"/{name}") for each in claims for name in nest.agents if name != each.speaker
+    )
+    ended = [each for part in episode.parts for each in part.ended.values()]
+    return Measures(
+        task=task.name,
+        task_seed=task.seed,
+        order=task.order,
+        seed=episode.seed,
+        policies=",".join(f"{name}={policy}" for name, policy in episode.policies.items()),
+        success=episode.success,
+        ticks=episode.ticks,
+        rounds=episode.rounds,
+        messages=len(said),
+        claims=len(claims),
+        false_claims=sum(each.false for each in claims),
+        lies=sum(each.lie for each in claims),
+        taken_up=taken,
+        lost_rounds=sum(bool(d.fault) for p in episode.parts for d in p.decisions.values()),
+        failed_programs=sum(each.how in ("failed", "no_way") for each in ended),
+        false_beliefs=sum(len(nest.false_beliefs(f"/{name}")) for name in nest.agents),
+        requests=episode.spent.requests,
+        tokens=episode.spent.tokens,
+        cost=episode.spent.cost,
+    )

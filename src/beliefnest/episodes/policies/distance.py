@@ -1,0 +1,143 @@
+"""How far a goal is off: the estimate by which planners compare what they imagine.
+
+Distances have no unit: a whole number for each deed that is still to be done at least, and
+fractions for the ways to it.
+"""
+
+import math
+from collections.abc import Iterable
+
+from beliefnest.episodes.goals import (
+    AgentAt,
+    BlockIs,
+    BlocksAlike,
+    Condition,
+    Fact,
+    Goal,
+    ItemsIn,
+    ItemsWith,
+)
+from beliefnest.nest.acting.imagination import Imagination
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Items, Point, Position
+
+__all__ = ["MindFacts", "distance", "held", "is_visible"]
+
+Path = tuple[str, ...]
+
+_PER_BLOCK = 0.01
+_UNKNOWN = 6.0
+_FAR = 80.0
+
+
+class MindFacts:
+    """The facts of an imagination at its latest tick.
+
+    Args:
+        mind: The imagination.
+        path: Agents below its root; `()` is what is the case in it.
+    """
+
+    def __init__(self, mind: Imagination, path: Path = ()) -> None:
+        self._mind = mind
+        self._view = mind.view(path)
+
+    def items_in(self, place: Position) -> Items:
+        """Items known to be in a container."""
+        known = self._view.containers.get(place)
+        return {} if known is None else known.items
+
+    def items_of(self, agent: str) -> Items:
+        """Items that an agent is known to have."""
+        return self._view.agents[agent].inventory
+
+    def feet_of(self, agent: str) -> Point | None:
+        """Where an agent stands."""
+        return self._view.agents[agent].position
+
+    def block(self, place: Position) -> str | None:
+        """Block state text."""
+        state = int(self._view.blocks[self._mind.world.box.index(place)])
+        return None if state < 0 else Registry.load().text(state)
+
+    @property
+    def containers(self) -> Iterable[Position]:
+        """Known containers, in order."""
+        return self._view.containers
+
+    @property
+    def agents(self) -> Iterable[str]:
+        """All agents."""
+        return self._view.agents
+
+
+def is_visible(condition: Condition, mind: Imagination) -> bool:
+    """Whether a mind reaches as deep as a condition."""
+    return mind.knows(condition.path)
+
+
+def held(condition: Condition, mind: Imagination) -> bool:
+    """Whether a condition that is visible holds in a mind."""
+    return condition.fact.holds(MindFacts(mind, condition.path))
+
+
+def distance(goal: Goal, mind: Imagination) -> float:
+    """How far what is to be reached is off in a mind; 0: it is reached as far as one can see."""
+    facts = MindFacts(mind)
+    return sum(_off(each, mind, facts) for each in goal.reach)
+
+
+def _off(condition: Condition, mind: Imagination, facts: MindFacts) -> float:
+    if condition.path:
+        # Whoever does not look that deep cannot tell, and takes it for open whatever is done.
+        return 0.0 if is_visible(condition, mind) and held(condition, mind) else 1.0
+    return 0.0 if condition.fact.holds(facts) else _still_to_do(condition.fact, facts)
+
+
+def _still_to_do(fact: Fact, facts: MindFacts) -> float:
+    match fact:
+        case ItemsWith(agent=agent, item=item):
+            return _to_agent(facts, agent, item)
+        case ItemsIn(place=place, item=item, count=count):
+            missing = count - facts.items_in(place).get(item, 0)
+            return missing * _to_container(facts, place, item)
+        case AgentAt(agent=agent):
+            feet = facts.feet_of(agent)
+            return 1.0 + (_FAR if feet is None else fact.distance(feet)) * _PER_BLOCK
+        case BlocksAlike():
+            return 1.0 if fact.wanted(facts) is not None else 1.5
+        case BlockIs():
+            return 1.0
+
+
+def _to_agent(facts: MindFacts, agent: str, item: str) -> float:
+    feet = facts.feet_of(agent)
+    ways = [_UNKNOWN]
+    for place in facts.containers:
+        if facts.items_in(place).get(item, 0):
+            ways.append(2.0 + _way(feet, place))
+    for other in facts.agents:
+        if other != agent and facts.items_of(other).get(item, 0):
+            ways.append(1.5 + _between(facts.feet_of(other), feet))
+    return min(ways)
+
+
+def _to_container(facts: MindFacts, goal: Position, item: str) -> float:
+    ways = [_UNKNOWN]
+    for agent in facts.agents:
+        if facts.items_of(agent).get(item, 0):
+            ways.append(1.0 + _way(facts.feet_of(agent), goal))
+    middle = (goal[0] + 0.5, float(goal[1]), goal[2] + 0.5)
+    for place in facts.containers:
+        if place != goal and facts.items_in(place).get(item, 0):
+            ways.append(2.0 + _way(middle, place))
+    return min(ways)
+
+
+def _way(feet: Point | None, place: Position) -> float:
+    middle = (place[0] + 0.5, float(place[1]), place[2] + 0.5)
+    return _between(feet, middle)
+
+
+def _between(one: Point | None, other: Point | None) -> float:
+    return _PER_BLOCK * (_FAR if one is None or other is None else math.dist(one, other))

@@ -1,0 +1,364 @@
+"""A planner without a language model, of any order of Theory of Mind.
+
+It tries courses of calls on forks of the agent's own belief. Of order 0 it reckons with nobody
+else's doing. Of order k the others act meanwhile as planners of order k - 1 would in what the agent
+believes that they believe; conditions on beliefs are seen down to k beliefs below its own.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from beliefnest.episodes.goals import Goal
+from beliefnest.episodes.policies.candidates import (
+    calls_of,
+    claims_of_mind,
+    is_news,
+    items_of,
+    said,
+)
+from beliefnest.episodes.policies.distance import distance, held, is_visible
+from beliefnest.episodes.view import AgentView, Brief
+from beliefnest.nest.acting.imagination import Imagination, Performer
+from beliefnest.programs.calls import Call, program_of
+
+__all__ = ["Bounds", "Omniscient", "Plan", "Planner", "Search"]
+
+Score = tuple[float, ...]
+"""Compared from left to right; less is better."""
+
+_REACHED, _OPEN, _VIOLATED = 0.0, 1.0, 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """How much a planner looks at.
+
+    Attributes:
+        beam: Courses that are gone on with at each depth.
+        depth: Calls of a course.
+        horizon: Ticks that are imagined at most.
+        changes: How often another is taken to change its mind in a course.
+    """
+
+    beam: int = 3
+    depth: int = 3
+    horizon: int = 160
+    changes: int = 3
+
+    def lower(self) -> "Bounds":
+        """Bounds of a planner that is only imagined."""
+        return Bounds(max(1, self.beam - 1), self.depth, self.horizon, max(1, self.changes - 1))
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What a planner came to.
+
+    Attributes:
+        calls: What to do, in order.
+        score: How good that is.
+    """
+
+    calls: tuple[Call, ...]
+    score: Score
+
+
+@dataclass
+class _Course:
+    """What another agent is taken to be at.
+
+    Attributes:
+        performer: Its calls.
+        read: How much of what happened it had perceived when it decided on them.
+        changes: How often it may change its mind yet.
+    """
+
+    performer: Performer
+    read: int
+    changes: int
+
+    def again(self) -> "_Course":
+        return _Course(self.performer.again(), self.read, self.changes)
+
+
+@dataclass
+class _Node:
+    """A course of calls, and where it leads.
+
+    Attributes:
+        mind: What is imagined after the calls.
+        others: What the others are at then.
+        elapsed: Ticks since the beginning.
+        calls: The calls.
+        reached: The tick at which the goal was reached; None: it is not.
+        violated: The tick at which what must not be was the case; None: never.
+    """
+
+    mind: Imagination
+    others: dict[str, _Course]
+    elapsed: int = 0
+    calls: tuple[Call, ...] = ()
+    reached: int | None = None
+    violated: int | None = None
+    score: Score = field(default=())
+
+    def fork(self) -> "_Node":
+        return _Node(
+            self.mind.fork(),
+            {name: each.again() for name, each in self.others.items()},
+            self.elapsed,
+            self.calls,
+            self.reached,
+            self.violated,
+        )
+
+
+class Planner:
+    """Plans for agents of one task.
+
+    Args:
+        brief: What everybody knows of the task.
+
+    Attributes:
+        tried: How many branches were tried so far.
+    """
+
+    def __init__(self, brief: Brief) -> None:
+        self._brief = brief
+        self.tried = 0
+
+    def plan(self, mind: Imagination, agent: str, order: int, ticks: int, bounds: Bounds) -> Plan:
+        """The best course that is found; of equals the first and shortest.
+
+        Args:
+            mind: What the agent believes; it is left as it is.
+            agent: Who plans.
+            order: Its order of Theory of Mind.
+            ticks: How many are left.
+            bounds: How much is looked at.
+        """
+        return _Planning(self, self._brief, agent, order, min(ticks, bounds.horizon), bounds).best(
+            mind
+        )
+
+
+class _Planning:
+    """One plan in the making."""
+
+    def __init__(
+        self,
+        planner: Planner,
+        brief: Brief,
+        agent: str,
+        order: int,
+        horizon: int,
+        bounds: Bounds,
+    ) -> None:
+        self._planner, self._brief = planner, brief
+        self._agent, self._order = agent, order
+        self._horizon, self._bounds = horizon, bounds
+        self._goal: Goal = brief.goals[agent]
+        self._conflict = any(goal != self._goal for goal in brief.goals.values())
+        self._speaks = agent in brief.talk and order > 0
+
+    def best(self, mind: Imagination) -> Plan:
+        first = _Node(mind.fork(), {})
+        first.others = {
+            name: _Course(Performer(self._guess(mind, name, 0)), 0, self._bounds.changes)
+            for name in self._imagined(mind)
+        }
+        self._value(first)
+        best, beam = first, [first]
+        for _ in range(self._bounds.depth):
+            if best.score[0] == _REACHED and not best.calls:
+                break
+            found = [each for node in beam for each in self._expanded(node)]
+            found.sort(key=lambda node: node.score)
+            beam = found[: self._bounds.beam]
+            if not beam:
+                break
+            if beam[0].score < best.score:
+                best = beam[0]
+        if not best.calls and best.score[0] == _OPEN:
+            return Plan(self._exploring(first), best.score)
+        return Plan(best.calls, best.score)
+
+    def _imagined(self, mind: Imagination) -> list[str]:
+        """The others whose doing is reckoned with."""
+        if self._order == 0:
+            return []
+        return [name for name in sorted(mind.world.agents) if name != self._agent]
+
+    def _guess(self, mind: Imagination, other: str, elapsed: int) -> tuple[Call, ...]:
+        """What another is taken to do, planning in what it is believed to believe."""
+        below = mind.below(other, self._order - 1)
+        left = self._horizon - elapsed
+        return self._planner.plan(below, other, self._order - 1, left, self._bounds.lower()).calls
+
+    def _expanded(self, node: _Node) -> list[_Node]:
+        """The node with each of the calls that can be done next."""
+        if node.reached is not None or node.violated is not None or node.elapsed >= self._horizon:
+            return []
+        found = []
+        for call in self._calls(node.mind):
+            following = node.fork()
+            mine = Performer([call])
+            self._act(following, mine)
+            if mine.failed:
+                continue
+            following.calls = (*node.calls, call)
+            self._value(following)
+            found.append(following)
+        return found
+
+    def _calls(self, mind: Imagination) -> list[Call]:
+        goals = list(self._brief.goals.values())
+        calls = calls_of(mind, self._agent, [self._goal])
+        if self._speaks:
+            told = claims_of_mind(mind, goals, lies=self._conflict)
+            calls += [said(claim) for claim in told if is_news(mind, claim, self._agent)]
+        return calls
+
+    def _act(self, node: _Node, mine: Performer) -> None:
+        """Let everybody act until the agent has done its calls."""
+        while not mine.is_done and node.elapsed < self._horizon:
+            if not self._pass(node, mine):
+                break
+
+    def _value(self, node: _Node) -> None:
+        """Score a node by where it leads if the agent does nothing more."""
+        self._planner.tried += 1
+        end = node
+        if node.others and node.reached is None and node.violated is None:
+            end = node.fork()
+            while end.elapsed < self._horizon and end.reached is None and end.violated is None:
+                if not self._pass(end, None):
+                    break
+        node.score = self._score(end)
+
+    def _score(self, end: _Node) -> Score:
+        messages = sum(call.skill in ("say", "whisper") for call in end.calls)
+        cost = 2.0 * messages + 0.5 * len(end.calls)
+        if end.violated is not None:
+            return (_VIOLATED, -end.violated, cost)
+        if end.reached is not None:
+            return (_REACHED, end.reached + cost)
+        if not self._goal.reach:
+            return (_REACHED, cost)
+        return (_OPEN, round(distance(self._goal, end.mind), 6), cost)
+
+    def _pass(self, node: _Node, mine: Performer | None) -> bool:
+        """Let time pass up to the end of a round; whether anybody does anything."""
+        self._change_minds(node)
+        performers = {name: each.performer for name, each in node.others.items()}
+        if mine is not None:
+            performers[self._agent] = mine
+        performers = dict(sorted(performers.items()))
+        if all(each.is_done for each in performers.values()):
+            return False
+        ticks = self._brief.round_ticks - node.elapsed % self._brief.round_ticks
+        ticks = min(ticks, self._horizon - node.elapsed)
+
+        def ends() -> bool:
+            over = all(each.is_done for each in performers.values())
+            return over or (mine is not None and mine.is_done)
+
+        node.elapsed += node.mind.play(performers, ticks, ends)
+        self._judge(node)
+        return True
+
+    def _judge(self, node: _Node) -> None:
+        mind, goal = node.mind, self._goal
+        if node.violated is None and any(
+            is_visible(each, mind) and held(each, mind) for each in goal.never
+        ):
+            node.violated = node.elapsed
+        if (
+            node.reached is None
+            and node.violated is None
+            and goal.reach
+            and all(is_visible(each, mind) and held(each, mind) for each in goal.reach)
+        ):
+            node.reached = node.elapsed
+
+    def _change_minds(self, node: _Node) -> None:
+        """Let the others plan anew who are done or have learnt of something."""
+        happened = node.mind.happened
+        for name, course in node.others.items():
+            news = any(
+                event.actor != name and _is_notable(event.kind)
+                for _, event in happened[course.read :]
+            )
+            done = course.performer.is_done and len(happened) > course.read
+            if course.changes and (news or done or course.performer.failed):
+                course.performer = Performer(self._guess(node.mind, name, node.elapsed))
+                course.changes -= 1
+                course.read = len(happened)
+
+    def _exploring(self, node: _Node) -> tuple[Call, ...]:
+        """A look into the nearest container that may hold what is wanted, if that is nowhere."""
+        world, mind = node.mind.world, node.mind
+        me = world.agents.get(self._agent)
+        known = mind.view().containers
+        wanted = [
+            item
+            for item in items_of([self._goal])
+            if not any(content.items.get(item, 0) for content in known.values())
+            and not any(each.inventory.get(item, 0) for each in world.agents.values())
+        ]
+        if me is None or not wanted:
+            return ()
+        unknown = [place for place, content in known.items() if not content.complete]
+        for place in sorted(unknown, key=lambda at: (_apart(me.position, at), at)):
+            call = Call("openContainer", (place,))
+            trial, mine = mind.fork(), Performer([call])
+            trial.play({self._agent: mine}, self._horizon, lambda: mine.is_done)  # noqa: B023
+            if not mine.failed:
+                return (call,)
+        return ()
+
+
+@dataclass(frozen=True)
+class Search:
+    """Plans by trying, as deep in others' minds as its order.
+
+    Attributes:
+        order: Order of Theory of Mind.
+        bounds: How much it looks at.
+    """
+
+    order: int
+    bounds: Bounds = Bounds()
+
+    def act(self, view: AgentView) -> str:
+        """The calls of its plan, as a program."""
+        mind = view.imagine(self.order)
+        planner = Planner(view.brief)
+        plan = planner.plan(mind, view.agent, self.order, view.ticks_left, self.bounds)
+        return program_of(plan.calls)
+
+
+@dataclass(frozen=True)
+class Omniscient:
+    """The same, knowing what is the case and what the others really believe: an upper bound.
+
+    Attributes:
+        order: Order of Theory of Mind.
+        bounds: How much it looks at.
+    """
+
+    order: int = 2
+    bounds: Bounds = Bounds()
+    sees_all: bool = True
+
+    def act(self, view: AgentView) -> str:
+        """The calls of its plan, as a program."""
+        return Search(self.order, self.bounds).act(view)
+
+
+def _is_notable(kind: object) -> bool:
+    return kind not in ("move_to", "think", "block_update")
+
+
+def _apart(feet: Sequence[float], place: Sequence[int]) -> float:
+    return float(sum((a - b) ** 2 for a, b in zip(feet, place, strict=True)))

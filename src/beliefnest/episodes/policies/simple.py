@@ -1,0 +1,56 @@
+"""Policies that plan nothing: programs written before, and chance."""
+
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, said
+from beliefnest.episodes.view import AgentView
+
+__all__ = ["Program", "Random", "Scripted"]
+
+
+@dataclass(frozen=True)
+class Scripted:
+    """Programs written before, one for each round; after the last it does nothing.
+
+    Attributes:
+        programs: Their texts.
+    """
+
+    programs: Sequence[str]
+
+    def act(self, view: AgentView) -> str:
+        """The program of the round."""
+        return self.programs[view.round] if view.round < len(self.programs) else ""
+
+
+@dataclass(frozen=True)
+class Program:
+    """One program, begun in the first round and again as long as it is cut.
+
+    Attributes:
+        text: The program.
+    """
+
+    text: str
+
+    def act(self, view: AgentView) -> str:
+        """The program, until it has ended by itself."""
+        return self.text if view.round == 0 or view.last.how == "cut" else ""
+
+
+@dataclass(frozen=True)
+class Random:
+    """Any deed or true claim that bears on the agent's goals, or nothing, each as likely."""
+
+    def act(self, view: AgentView) -> str:
+        """A call drawn by the episode's seed, the agent and the round."""
+        mind = view.imagine(0)
+        goals = list(view.brief.goals.values())
+        calls = calls_of(mind, view.agent, goals)
+        if view.may_speak:
+            calls += [said(claim) for claim in claims_of_mind(mind, goals, lies=False)]
+        chance = random.Random(f"{view.brief.seed} {view.agent} {view.round}")
+        number = chance.randrange(len(calls) + 1)
+        return calls[number].program if number < len(calls) else ""

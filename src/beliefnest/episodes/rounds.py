@@ -1,0 +1,152 @@
+"""Asking policies: one that fails or is slow costs its own round and nothing else."""
+
+import threading
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import msgspec
+
+from beliefnest.episodes.view import AgentView, Ended, Policy
+from beliefnest.world.texts import is_well_formed
+
+__all__ = ["Asker", "Decision", "Part", "Replayed", "Spent", "slots_of"]
+
+_LONGEST = 100_000
+"""Characters of a program."""
+
+
+class Spent(msgspec.Struct, frozen=True):
+    """What a policy has spent on models.
+
+    Attributes:
+        requests: Requests that reached a provider.
+        tokens: Sent and received.
+        cost: US dollars; None where a price is not known.
+    """
+
+    requests: int = 0
+    tokens: int = 0
+    cost: float | None = 0.0
+
+    def __add__(self, other: "Spent") -> "Spent":
+        unknown = self.cost is None or other.cost is None
+        cost = None if unknown else (self.cost or 0.0) + (other.cost or 0.0)
+        return Spent(self.requests + other.requests, self.tokens + other.tokens, cost)
+
+    def __sub__(self, other: "Spent") -> "Spent":
+        unknown = self.cost is None or other.cost is None
+        cost = None if unknown else (self.cost or 0.0) - (other.cost or 0.0)
+        return Spent(self.requests - other.requests, self.tokens - other.tokens, cost)
+
+
+class Decision(msgspec.Struct, frozen=True):
+    """What a policy decided for a round.
+
+    Attributes:
+        program: The program; empty: nothing.
+        fault: Why there is none; empty: it is as the policy wanted.
+        spent: What that took.
+    """
+
+    program: str = ""
+    fault: str = ""
+    spent: Spent = Spent()
+
+
+class Part(msgspec.Struct, frozen=True):
+    """What was decided by who acts together, and how that ended.
+
+    Attributes:
+        decisions: By agent.
+        ended: By agent; empty until it is done.
+    """
+
+    decisions: dict[str, Decision]
+    ended: dict[str, Ended] = {}
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """Decides what was decided before, round by round."""
+
+    decisions: Sequence[Decision]
+
+    def act(self, view: AgentView) -> str:
+        """The program of the round."""
+        return self.decisions[view.round].program
+
+
+@dataclass
+class _Answer:
+    decision: Decision | None = None
+
+
+class Asker:
+    """Asks the policies of one episode.
+
+    Args:
+        policies: By agent.
+        patience_s: Seconds after which a policy has lost its round; None: it is waited for.
+    """
+
+    def __init__(self, policies: Mapping[str, Policy], patience_s: float | None) -> None:
+        self._policies = policies
+        self._patience_s = patience_s
+        self._waiting: dict[str, threading.Thread] = {}
+
+    def ask(self, view: AgentView) -> Decision:
+        """The program of a round; who does not give one in time gives none."""
+        agent = view.agent
+        policy = self._policies[agent]
+        if isinstance(policy, Replayed):
+            return policy.decisions[view.round]
+        if self._patience_s is None:
+            return _decided(policy, view)
+        thread = self._waiting.get(agent)
+        if thread is not None and thread.is_alive():
+            return Decision(fault="it is still at an earlier round")
+        answer = _Answer()
+
+        def decide() -> None:
+            answer.decision = _decided(policy, view)
+
+        # Who never comes back does not keep the process from ending.
+        thread = threading.Thread(target=decide, name=f"policy of {agent}", daemon=True)
+        self._waiting[agent] = thread
+        thread.start()
+        thread.join(self._patience_s)
+        if answer.decision is None:
+            return Decision(fault=f"it took more than {self._patience_s:g} s")
+        return answer.decision
+
+
+def slots_of(agents: tuple[str, ...], *, turns: bool) -> tuple[tuple[str, ...], ...]:
+    """Who acts together, in the order of a round's parts."""
+    return tuple((agent,) for agent in agents) if turns else (agents,)
+
+
+def _decided(policy: Policy, view: AgentView) -> Decision:
+    before = _spent(policy)
+    try:
+        program: object = policy.act(view)
+    except Exception as error:  # noqa: BLE001 - a policy may be anybody's, and raise anything
+        fault = f"{type(error).__name__}: {error}"
+        return Decision(fault=fault[:1000], spent=_spent(policy) - before)
+    spent = _spent(policy) - before
+    fault = ""
+    if program is None:
+        program = ""
+    if not isinstance(program, str):
+        fault = f"it gave no text, but {type(program).__name__}"
+    elif len(program) > _LONGEST:
+        fault = f"it gave {len(program)} characters; a program has at most {_LONGEST}"
+    elif not is_well_formed(program):
+        fault = "its program has half of a character in it"
+    if fault or not isinstance(program, str):
+        return Decision(fault=fault, spent=spent)
+    return Decision(program=program if program.strip() else "", spent=spent)
+
+
+def _spent(policy: Policy) -> Spent:
+    spent = getattr(policy, "spent", None)
+    return spent if isinstance(spent, Spent) else Spent()

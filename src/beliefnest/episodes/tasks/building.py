@@ -1,0 +1,50 @@
+"""Parts that built-in tasks have in common: halls with a floor, walls, chests."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+__all__ = ["FLOOR", "WALL", "WINDOW", "belief", "chest", "floor", "hall", "wall"]
+
+FLOOR, WALL, WINDOW = "smooth_stone", "stone_bricks", "glass"
+
+Position = tuple[int, int, int]
+
+
+def floor(width: int, depth: int) -> dict[str, Any]:
+    """The floor of a hall, at y = 0."""
+    return {"block": FLOOR, "fill": [[0, 0, 0], [width, 0, depth]]}
+
+
+def wall(low: Position, high: Position, block: str = WALL) -> dict[str, Any]:
+    """Blocks between two corners."""
+    return {"block": block, "fill": [list(low), list(high)]}
+
+
+def chest(at: Position, items: Mapping[str, int] | None = None, label: str = "") -> dict[str, Any]:
+    """A chest with what is in it."""
+    return {"at": list(at), "items": dict(items or {}), "label": label}
+
+
+def belief(
+    path: str, contents: Mapping[Position, Mapping[str, int]], *, complete: bool = True
+) -> dict[str, Any]:
+    """An initial belief about contents of containers; `complete`: there is nothing else in them."""
+    return {
+        "path": path,
+        "containers": [
+            {"at": list(place), "items": dict(items), "complete": complete}
+            for place, items in sorted(contents.items())
+        ],
+    }
+
+
+def hall(width: int, depth: int, blocks: Iterable[Mapping[str, Any]] = ()) -> dict[str, Any]:
+    """A scenario's box and blocks: a hall with a floor that everybody knows.
+
+    Feet stand at y = 1; x goes from 0 to `width`, z from 0 to `depth`.
+    """
+    return {
+        "box": [[0, 0, 0], [width, 3, depth]],
+        "blocks": [floor(width, depth), *map(dict, blocks)],
+        "static_blocks": [FLOOR, WALL, WINDOW],
+    }

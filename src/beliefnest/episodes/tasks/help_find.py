@@ -1,0 +1,81 @@
+"""Help somebody with a false belief (Buttelmann, Carpenter and Tomasello 2009, as talk).
+
+Sally wants a thing that was moved while she was away, and has not the time to look into every
+chest. Anne stands behind glass: she saw it moved, and can do nothing but speak. Who does not
+reckon with what Sally believes sees no need to say anything.
+"""
+
+import random
+from typing import Any
+
+from beliefnest.episodes.tasks.building import belief, chest, hall, wall
+
+PARAMETERS = {"chests": (4, 2, 8), "reach": (16, 16, 24), "agents": (2, 2, 4)}
+
+_ITEMS = ("diamond", "emerald", "apple", "compass")
+_ONLOOKERS = ("ben", "cleo")
+
+
+def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dict[str, Any]:
+    """An instance.
+
+    Args:
+        chance: Draws sides, places and the thing.
+        chests: How many chests there are.
+        reach: Blocks from the middle of the hall to its ends.
+        agents: Sally, Anne, and people behind glass who know what Sally knows.
+    """
+    width, item = 2 * reach, chance.choice(_ITEMS)
+    sides = [("west", 1), ("east", width - 1)]
+    chance.shuffle(sides)
+    places = _places(chance, chests, sides)
+    before, now = places[0], places[1]
+    onlookers = _ONLOOKERS[: agents - 2]
+    booths = {name: 4 + 4 * number for number, name in enumerate(("anne", *onlookers))}
+    glass = [wall((x - 1, 1, 10), (x + 1, 2, 12), "glass") for x in booths.values()] + [
+        {"block": "air", "fill": [[x, 1, 11], [x, 2, 11]]} for x in booths.values()
+    ]
+    contents = {place: ({item: 1} if place == now else {}) for place in places}
+    jitter = chance.randint(-1, 1)
+    return {
+        "description": (
+            f"Sally wants the {item}. It was moved while she was away; Anne saw that. Anne cannot "
+            "leave her booth, but Sally hears her."
+        ),
+        "order": 1,
+        "scenario": {
+            "name": "help-find",
+            **hall(width, 12, glass),
+            "containers": [chest(place, contents[place]) for place in places],
+            "agents": {
+                "sally": {"position": [reach + jitter + 0.5, 1, 5.5], "facing": "north"},
+                **{
+                    name: {"position": [x + 0.5, 1, 11.5], "facing": "north"}
+                    for name, x in booths.items()
+                },
+            },
+            "perception": {"max_visible_distance": 64, "testimony": "accept"},
+            "initial_beliefs": [
+                belief("/**", {before: {item: 1}}, complete=False),
+                belief("/anne", contents),
+            ],
+        },
+        "goal": {"reach": [{"agent": "sally", "items": {item: 1}}]},
+        "players": ["anne"],
+        "policies": {"sally": "search:0", **dict.fromkeys(onlookers, "search:0")},
+        "talk": ["anne", *onlookers],
+        "round_ticks": 5,
+        "rounds": -(-(reach + 14) // 5),
+    }
+
+
+def _places(
+    chance: random.Random, chests: int, sides: list[tuple[str, int]]
+) -> list[tuple[int, int, int]]:
+    """Places of chests; the first at one end of the hall, the second at the other."""
+    rows = {name: chance.sample(range(1, 9), 8) for name, _ in sides}
+    places = []
+    for number in range(chests):
+        name, x = sides[number % 2]
+        places.append((x, 1, rows[name].pop()))
+    return places

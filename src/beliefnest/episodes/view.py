@@ -1,0 +1,244 @@
+"""What a policy is given: its agent's own belief, what lies below it, and its task."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal, Protocol
+
+from beliefnest.belief.view import FixedState, State
+from beliefnest.episodes.goals import Goal
+from beliefnest.errors import PathError
+from beliefnest.nest.acting.imagination import Imagination
+from beliefnest.nest.face.past_simulator import ShownSimulator
+from beliefnest.world.values import Position
+
+if TYPE_CHECKING:
+    from beliefnest.llm.messages import Model
+
+__all__ = ["AgentView", "Brief", "Ended", "Policy", "Told"]
+
+HowEnded = Literal["none", "ok", "cut", "no_way", "failed", "lost"]
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """How an agent's latest program ended, as the agent itself could tell.
+
+    Attributes:
+        program: Its text; empty if there was none.
+        how: `ok`; `cut` at the round's end; `no_way` on foot as far as the agent knows; `failed`;
+            `lost`: there was none, since the policy gave none in time; `none`: nothing was to do.
+        message: What went wrong, in words; empty if nothing did.
+    """
+
+    program: str = ""
+    how: HowEnded = "none"
+    message: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Brief:
+    """What everybody knows of the task.
+
+    Attributes:
+        task: Its name.
+        description: What it is about, in words.
+        goals: What each agent is after.
+        talk: Who may speak.
+        rounds: How many there are.
+        round_ticks: Ticks after which programs are cut.
+        turns: Whether agents act one after the other in a round, each for `round_ticks`.
+        places: What people call places.
+        seed: Drives the random numbers of policies.
+    """
+
+    task: str
+    description: str
+    goals: Mapping[str, Goal]
+    talk: tuple[str, ...]
+    rounds: int
+    round_ticks: int
+    turns: bool
+    places: Mapping[str, Position]
+    seed: int
+
+    @property
+    def whole_round(self) -> int:
+        """Ticks from one round to the next."""
+        return self.round_ticks * (len(self.goals) if self.turns else 1)
+
+
+class AgentView:
+    """What an agent knows at the beginning of a round; it reaches its belief and nothing above it.
+
+    Args:
+        agent: Whose.
+        brief: The task.
+        round: The round that begins, from 0.
+        last: How the agent's latest program ended.
+        own: The simulator of the agent's belief.
+        imagine: Gives that as a world of its own, down to a depth.
+        noting: Lets requests to a model be kept in the run.
+
+    Attributes:
+        agent: Whose view it is.
+        brief: The task.
+        round: The round that begins, from 0.
+        last: How the agent's latest program ended.
+    """
+
+    def __init__(
+        self,
+        agent: str,
+        brief: Brief,
+        round: int,
+        last: Ended,
+        own: ShownSimulator,
+        imagine: Callable[[int], Imagination],
+        noting: "Callable[[Model], Model]",
+    ) -> None:
+        self.agent = agent
+        self.brief = brief
+        self.round = round
+        self.last = last
+        self._own = own
+        self._imagine = imagine
+        self._noting = noting
+
+    @property
+    def tick(self) -> int:
+        """The tick at which the round begins."""
+        return self._own.tick
+
+    @property
+    def ticks_left(self) -> int:
+        """Ticks until the end of the last round."""
+        return (self.brief.rounds - self.round) * self.brief.whole_round
+
+    @property
+    def goal(self) -> Goal:
+        """What the agent is after."""
+        return self.brief.goals[self.agent]
+
+    @property
+    def may_speak(self) -> bool:
+        """Whether what it says is heard."""
+        return self.agent in self.brief.talk
+
+    @property
+    def state(self) -> State:
+        """What the agent believes."""
+        return _settled(self._own.state)
+
+    def about(self, *agents: str) -> State:
+        """What it believes that another believes, and so on: `about("bob", "anne")`.
+
+        Raises:
+            PathError: There is no such agent.
+        """
+        simulator = self._own
+        for agent in agents:
+            if agent not in self._own.state.agents:
+                raise PathError(f"there is no agent {agent!r} in {sorted(self._own.state.agents)}")
+            simulator = simulator.child(agent)
+        return _settled(simulator.state)
+
+    def imagine(self, depth: int = 1) -> Imagination:
+        """Its belief as a world of its own, to try courses in; nothing of it is recorded.
+
+        Args:
+            depth: How deep below it beliefs are followed.
+        """
+        return self._imagine(depth)
+
+    def render(self, template: str, **variables: object) -> str:
+        """The text of a prompt template, filled from its belief.
+
+        Raises:
+            TemplateError: The template is wrong.
+        """
+        return self._own.render(template, view=Told.of(self), **variables)
+
+    def noting(self, model: "Model") -> "Model":
+        """A model whose conversation is kept in the run."""
+        return self._noting(model)
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What templates are told besides the belief.
+
+    Attributes:
+        agent: Whose view it is.
+        goal: What it is after, in words.
+        goals: What everybody is after, in words.
+        description: What the task is about.
+        may_speak: Whether what it says is heard.
+        round: The round, from 1.
+        rounds: How many there are.
+        round_ticks: Ticks after which programs are cut.
+        last: How its latest program ended.
+    """
+
+    agent: str
+    goal: str
+    goals: Mapping[str, str]
+    description: str
+    may_speak: bool
+    round: int
+    rounds: int
+    round_ticks: int
+    last: Ended
+
+    @classmethod
+    def of(cls, view: AgentView) -> "Told":
+        """What a view tells."""
+        brief = view.brief
+        return cls(
+            view.agent,
+            str(view.goal),
+            {name: str(goal) for name, goal in brief.goals.items()},
+            brief.description,
+            view.may_speak,
+            view.round + 1,
+            brief.rounds,
+            brief.round_ticks,
+            view.last,
+        )
+
+
+def _settled(state: State) -> State:
+    """A state in which who is seen was seen just now.
+
+    It is noted at ticks at which something happened, be it where nobody sees it: from that an
+    agent could tell that something did.
+    """
+    agents = {
+        name: replace(each, basis=replace(each.basis, observed_at=state.tick))
+        if each.current and each.basis is not None
+        else each
+        for name, each in state.agents.items()
+    }
+    return FixedState(
+        path=state.path,
+        tick=state.tick,
+        box=state.box,
+        blocks=state.blocks,
+        containers=state.containers,
+        agents=agents,
+        items=state.items,
+        events=state.events,
+        chat=state.chat,
+        thoughts=state.thoughts,
+        addressees=state.addressees,
+    )
+
+
+class Policy(Protocol):
+    """Who decides what an agent does."""
+
+    def act(self, view: AgentView) -> str:
+        """The agent's program for the round; empty: it does nothing.
+
+        Args:
+            view: What the agent knows.
+        """

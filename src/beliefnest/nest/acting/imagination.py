@@ -1,0 +1,289 @@
+"""Imagination: a belief as a world of its own, tried out in this process and recorded nowhere.
+
+It is what a branch of a belief would be in the scripted world (semantics, section 6): what the
+believer believes is the case there, and what it believes others to believe follows as it follows
+anything. A fork takes well under a millisecond, so that a planner can try hundreds of courses.
+Of whatever lies above the believer nothing is in it.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from beliefnest.belief.columns import Columns
+from beliefnest.belief.entries import PerceivedEvent
+from beliefnest.belief.forest import Forest
+from beliefnest.belief.initial import forked_forest
+from beliefnest.belief.node_view import NodeView
+from beliefnest.bodies.footpaths import Ground
+from beliefnest.bodies.scripted_skills import CALLS, SKILLS, Doing, Hand
+from beliefnest.errors import BeliefNestError, PathError
+from beliefnest.programs.calls import Call
+from beliefnest.world.frames import BlockGrid, Frame
+from beliefnest.world.paths import normalised, path_text
+from beliefnest.world.scripted import ScriptedWorld
+from beliefnest.world.values import Event
+
+__all__ = ["Imagination", "Performer", "nodes_below"]
+
+Path = tuple[str, ...]
+
+_MOST_GROUNDS = 64
+
+
+def nodes_below(root: Path, depth: int, agents: Sequence[str]) -> list[Path]:
+    """A node and all below it down to a depth, each after its parent."""
+    found = [root]
+    level = [root]
+    for _ in range(depth):
+        level = [(*path, agent) for path in level for agent in agents if path[-1:] != (agent,)]
+        found += level
+    return found
+
+
+@dataclass
+class _News:
+    """What has happened since a forest was forked."""
+
+    happened: list[tuple[int, Event]] = field(default_factory=list)
+
+    def events(self, count: int) -> Sequence[tuple[int, Event]]:
+        """All events since then."""
+        return self.happened
+
+    def before(self, path: Path) -> Sequence[PerceivedEvent]:
+        """Nothing: what was heard before has had its effect."""
+        return ()
+
+
+class Performer:
+    """An agent at calls, one after the other.
+
+    Attributes:
+        calls: What is to be done yet, the call under way first.
+        failed: Whether the latest call could not be done.
+        doing: The call under way; None: none is.
+    """
+
+    def __init__(self, calls: Iterable[Call] = ()) -> None:
+        self.calls = list(calls)
+        self.failed = False
+        self.doing: Doing | None = None
+
+    @property
+    def is_done(self) -> bool:
+        """Whether nothing is left."""
+        return not self.calls
+
+    def again(self) -> "Performer":
+        """One that begins the call under way anew, as in a fork."""
+        return Performer(self.calls)
+
+
+class Imagination:
+    """A belief as a world of its own, and what is believed in it.
+
+    Args:
+        forest: The nodes, the believer's own first; nobody else's.
+        root: The believer's path.
+        unknown: Blocks that are unknown to it, in which one can be and on which one can stand.
+        world: What is the case in it.
+        grounds: Where one can stand, by blocks; shared by forks.
+        news: Where the forest looks up what has happened.
+
+    Attributes:
+        root: The believer's path.
+        world: What is the case in it.
+        happened: All that has happened in it and in what it was forked from: (tick, event).
+    """
+
+    def __init__(
+        self,
+        forest: Forest,
+        root: Path,
+        unknown: "np.ndarray[tuple[int, int, int], np.dtype[np.bool_]]",
+        world: ScriptedWorld,
+        grounds: dict[bytes, Ground],
+        news: _News,
+    ) -> None:
+        self.root = root
+        self.world = world
+        self.happened: list[tuple[int, Event]] = []
+        self._forest = forest
+        self._unknown = unknown
+        self._grounds = grounds
+        self._ground: tuple[BlockGrid, Ground] | None = None
+        self._news = news
+        context = forest.context
+        self._columns = Columns(context.box, context.agents, context.holds, 0, 0)
+        self._held = 0
+        forest.enter(self._columns)
+        world.listen(self._take)
+
+    @classmethod
+    def of(
+        cls,
+        source: Forest,
+        root: Path,
+        depth: int,
+        tick: int,
+        grounds: dict[bytes, Ground] | None = None,
+    ) -> "Imagination":
+        """What a node of a forest would be as a world of its own.
+
+        Args:
+            source: Holds the node and those below it.
+            root: The node.
+            depth: How deep below it beliefs are followed.
+            tick: The tick it is.
+            grounds: As for the class.
+        """
+        wanted = nodes_below(root, depth, source.context.agents)
+        news = _News()
+        forest = forked_forest(source, news, root, root, tick, further=wanted[1:])
+        forest.table.see_now(tick)
+        believed = NodeView(forest, root)
+        world = ScriptedWorld.from_snapshot(replace(believed.snapshot(), tick=tick))
+        known = {} if grounds is None else grounds
+        return cls(forest, root, believed.blocks < 0, world, known, news)
+
+    @property
+    def agents(self) -> tuple[str, ...]:
+        """Names of all agents, those of unknown place included."""
+        return self._forest.context.agents
+
+    @property
+    def tick(self) -> int:
+        """The latest tick."""
+        return self.world.now
+
+    def knows(self, path: Path) -> bool:
+        """Whether beliefs are followed as deep as a path below the root."""
+        return normalised((*self.root, *path)) in self._forest.table.index
+
+    def view(self, path: Path = ()) -> NodeView:
+        """What a node holds; read it before time goes on.
+
+        Args:
+            path: Agents below the root.
+
+        Raises:
+            PathError: Beliefs are not followed that deep.
+        """
+        whole = normalised((*self.root, *path))
+        self._fold()
+        if whole not in self._forest.table.index:
+            raise PathError(f"{path_text(whole)} is deeper than this imagination goes")
+        return NodeView(self._forest, whole)
+
+    def fork(self) -> "Imagination":
+        """The same once more, to go another way."""
+        self._fold()
+        news = _News()
+        nodes = [path for path in self._forest.table.index if path != self.root]
+        forest = forked_forest(
+            self._forest, news, self.root, self.root, self.world.now, further=nodes
+        )
+        world = ScriptedWorld.from_snapshot(self.world.snapshot())
+        made = Imagination(forest, self.root, self._unknown, world, self._grounds, news)
+        made.happened += self.happened
+        return made
+
+    def below(self, agent: str, depth: int) -> "Imagination":
+        """What an agent in it believes, as a world of its own."""
+        self._fold()
+        root = normalised((*self.root, agent))
+        return Imagination.of(self._forest, root, depth, self.world.now, self._grounds)
+
+    def play(
+        self,
+        performers: Mapping[str, Performer],
+        ticks: int,
+        stop: Callable[[], bool] = lambda: False,
+    ) -> int:
+        """Let agents act together, tick by tick, until `stop` says so; how many ticks passed.
+
+        Performers whose agents are not there, or whose call cannot be done, go on with the next.
+        """
+        passed = 0
+        for name, performer in performers.items():
+            self._begin(name, performer)
+        while passed < ticks and not stop():
+            passed += 1
+            with self.world.tick():
+                ended = [name for name, each in performers.items() if _advance(each)]
+            for name in ended:
+                performer = performers[name]
+                performer.doing = None
+                del performer.calls[0]
+                self._begin(name, performer)
+        return passed
+
+    def _begin(self, name: str, performer: Performer) -> None:
+        """Let an agent begin its next call that can be begun."""
+        while performer.doing is None and performer.calls:
+            if name not in self.world.agents:
+                performer.calls.clear()
+                performer.failed = True
+                return
+            call = performer.calls[0]
+            hand = Hand(name, self.world, self._standing, lambda: self.world.agents, self._standing)
+            try:
+                doing = _doing(hand, call)
+                next(doing)
+                performer.doing = doing
+                performer.failed = False
+            except StopIteration:
+                del performer.calls[0]
+            except BeliefNestError:
+                performer.failed = True
+                del performer.calls[0]
+
+    def _standing(self) -> Ground:
+        blocks = self.world.blocks
+        if self._ground is None or self._ground[0] is not blocks:
+            unknown = self._unknown & (blocks == 0)
+            grid = np.where(unknown, -1, blocks)
+            key = grid.tobytes()
+            if key not in self._grounds:
+                if len(self._grounds) >= _MOST_GROUNDS:
+                    self._grounds.clear()
+                registry = self._forest.context.registry
+                self._grounds[key] = Ground(registry, self.world.box, grid)
+            self._ground = (blocks, self._grounds[key])
+        return self._ground[1]
+
+    def _take(self, frame: Frame) -> None:
+        if not frame.is_empty:
+            self._columns.extend([frame])
+            events = [(frame.tick, event) for event in frame.events]
+            self._news.happened += events
+            self.happened += events
+
+    def _fold(self) -> None:
+        columns = self._columns
+        if self._forest.position < columns.end:
+            self._forest.context.track(columns.held[self._held :])
+            self._held = len(columns.held)
+            self._forest.advance(columns.end)
+
+
+def _advance(performer: Performer) -> bool:
+    """A tick of the call under way; whether it has ended."""
+    if performer.doing is None:
+        return False
+    try:
+        next(performer.doing)
+    except StopIteration:
+        return True
+    except BeliefNestError:
+        performer.failed = True
+        return True
+    return False
+
+
+def _doing(hand: Hand, call: Call) -> Doing:
+    if call.skill == "openContainer":
+        yield from SKILLS["goToPosition"](hand, call.args[0], 2)
+    yield from {**SKILLS, **CALLS}[call.skill](hand, *call.args)

@@ -1,0 +1,54 @@
+"""Calls of skills as values, and their texts as programs."""
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+__all__ = ["Call", "program_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A skill with its arguments, as plain values.
+
+    Attributes:
+        skill: Its name.
+        args: Positions as tuples, items as mappings, claims as plain data.
+    """
+
+    skill: str
+    args: tuple[Any, ...] = ()
+
+    @property
+    def is_nothing(self) -> bool:
+        """Whether it begins nothing, so that what goes on goes on."""
+        return self.skill == "doNothing"
+
+    @property
+    def program(self) -> str:
+        """The same as an agent's program; empty if it begins nothing."""
+        if self.is_nothing:
+            return ""
+        if self.skill == "openContainer":
+            place = _code(self.args[0])
+            return (
+                f"await goToPosition(bot, {place}, 2)\n"
+                f"const container = await bot.openContainer(bot.blockAt({place}))\n"
+                "container.close()"
+            )
+        args = ", ".join(["bot", *map(_code, self.args)])
+        return f"await {self.skill}({args})"
+
+
+def program_of(calls: "tuple[Call, ...] | list[Call]") -> str:
+    """Calls one after the other, as a program; empty if there are none."""
+    texts = [call.program for call in calls]
+    # Each in a block of its own: the names that one declares are not the next one's.
+    return "\n".join(f"{{ {text} }}" if "\n" in text else text for text in texts if text)
+
+
+def _code(value: Any) -> str:
+    """A value in a program."""
+    if isinstance(value, tuple):
+        return f"new Vec3({', '.join(map(str, value))})"
+    return json.dumps(value)
