@@ -116,7 +116,7 @@ class Imagination:
         self._ground: tuple[BlockGrid, Ground] | None = None
         self._news = news
         context = forest.context
-        self._columns = Columns(context.box, context.agents, context.holds, 0, 0)
+        self._columns = Columns(context.box, context.agents, context.holds, context.number)
         self._held = 0
         forest.enter(self._columns)
         world.listen(self._take)
