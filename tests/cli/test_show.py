@@ -133,3 +133,25 @@ def test_wrong_questions_are_one_line_and_2(
     assert run_command_line([str(run) if each == "RUN" else each for each in arguments]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert hint in line
+
+
+def test_of_several_conditions_all_have_the_tick_or_nothing_is_shown(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "run"
+    command = ["run", "sally-anne", "--condition", "1", "--condition", "3", "--world", "scripted"]
+    assert run_command_line([*command, "--out", str(folder)]) == 0
+    capsys.readouterr()
+    heads = {}
+    for name in ("condition-1", "condition-3"):
+        heads[shown(folder / name, capsys)["tick"]] = name
+    low, high = sorted(heads)
+    assert run_command_line(["show", str(folder), "--tick", str(low)]) == 0
+    assert capsys.readouterr().out.count(f"/ at tick {low}") == 2
+    png = tmp_path / "f.png"
+    for more in ([], ["--png", str(png)]):
+        assert run_command_line(["show", str(folder), "--tick", str(high), *more]) == 2
+        told = capsys.readouterr()
+        assert told.out == ""
+        assert f"in {heads[low].replace('-', ' ')}: tick {high}" in told.err
+    assert not png.exists()

@@ -5,11 +5,12 @@ import socket
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime
 from ipaddress import ip_address
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from beliefnest.cli.console import stdout
 from beliefnest.cli.folder import STORE, stores_in
@@ -19,6 +20,9 @@ from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.viewer.serving.host import Host, Opened
+
+if TYPE_CHECKING:
+    from starlette.applications import Starlette
 
 __all__ = ["ServeOptions", "listening", "serve"]
 
@@ -67,16 +71,28 @@ def serve(options: ServeOptions) -> None:
         host = Host(lambda: _stores(folder), _open, options.depth)
         host.discover()
         host.follow()
-        app = page_app(host, _names(options.address, port), token)
         query = "" if token is None else f"?token={token}"
         address = f"http://{_host(options.address)}:{port}/{query}"
         stdout().print(
             f"The page is at {address} (stop with Ctrl-C)", highlight=False, soft_wrap=True
         )
-        config = uvicorn.Config(
-            app, log_level="warning", access_log=False, timeout_graceful_shutdown=1
+
+        def app() -> "Starlette":
+            names = _names(options.address, port)
+            return page_app(host, names, token, lambda: server.should_exit)
+
+        server = uvicorn.Server(
+            uvicorn.Config(
+                app,
+                factory=True,
+                log_level="warning",
+                access_log=False,
+                timeout_graceful_shutdown=1,
+            )
         )
-        uvicorn.Server(config).run(sockets=[listener])
+        # Ctrl-C is how it is meant to end; when it has ended uvicorn raises it once more.
+        with suppress(KeyboardInterrupt):
+            server.run(sockets=[listener])
 
 
 @contextmanager

@@ -19,7 +19,7 @@ from beliefnest.cli.folder import store_in, stores_in
 from beliefnest.cli.pictures import container_name, place_text, titled
 from beliefnest.cli.report import placed_lines
 from beliefnest.cli.text import printable
-from beliefnest.errors import InputError
+from beliefnest.errors import BranchError, InputError, TickError
 from beliefnest.nest.explain.told import ToldClaim
 from beliefnest.nest.face.past_simulator import PastSimulator
 from beliefnest.nest.face.recorded import RecordedNest
@@ -81,6 +81,8 @@ def show_run(options: ShowOptions) -> None:
         stores: tuple[Path, ...] = (store_in(options.run),)
     else:
         stores = stores_in(options.run)
+        if len(stores) > 1:
+            _check(options, stores)
     if options.animation is not None:
         _animate(options, stores[0])
     if options.figures:
@@ -92,6 +94,20 @@ def show_run(options: ShowOptions) -> None:
             if len(stores) > 1:
                 stdout().print(f"[bold]{_name_in(store, options.run)}[/bold]", highlight=False)
             _show(options, store)
+
+
+def _check(options: ShowOptions, stores: Sequence[Path]) -> None:
+    """That each of several runs has what is asked for, before anything is printed or drawn."""
+    for store in stores:
+        with _opened(store) as (_, nest, _):
+            try:
+                _ = _simulator(options, nest).state
+            except (BranchError, TickError) as error:
+                example = _name_in(stores[0], options.run).replace(" ", "-")
+                raise type(error)(
+                    f"in {_name_in(store, options.run)}: {error}; "
+                    f"or name the folder of one condition, as {options.run / example}"
+                ) from None
 
 
 def _show(options: ShowOptions, store: Path) -> None:

@@ -33,16 +33,21 @@ _LOG = logging.getLogger("uvicorn.error")
 
 
 class _News:
-    """Wakes who waits for updates."""
+    """Wakes who waits for updates, at last to be told that there are no more.
 
-    def __init__(self, host: Host) -> None:
-        self._host = host
+    Args:
+        host: Who looks for them.
+        is_ending: Whether the server has been told to stop.
+    """
+
+    def __init__(self, host: Host, is_ending: Callable[[], bool]) -> None:
+        self._host, self.is_ending = host, is_ending
         self._woken = asyncio.Condition()
 
     async def run(self) -> None:
-        """Look for what is new, for as long as the server runs."""
+        """Look for what is new, until the server is told to stop."""
         looks, count = 0, len(self._host.told)
-        while True:
+        while not self.is_ending():
             try:
                 if looks % _DISCOVERY == 0:
                     await run_in_threadpool(self._host.discover)
@@ -54,33 +59,45 @@ class _News:
                 continue
             if now != count:
                 count = now
-                async with self._woken:
-                    self._woken.notify_all()
+                await self._wake()
             await asyncio.sleep(_PAUSE)
+        await self._wake()
+
+    async def _wake(self) -> None:
+        async with self._woken:
+            self._woken.notify_all()
 
     async def after(self, number: int) -> bool:
-        """Wait until there are more updates than that; False: nothing came for a while."""
+        """Wait until there are more updates than that; False: nothing came for a while, or will."""
         async with self._woken:
             with suppress(TimeoutError):
                 async with asyncio.timeout(_HEARTBEAT):
-                    await self._woken.wait_for(lambda: len(self._host.told) > number)
-                    return True
+                    await self._woken.wait_for(
+                        lambda: len(self._host.told) > number or self.is_ending()
+                    )
+                    return len(self._host.told) > number
         return False
 
 
-def page_app(host: Host, hosts: Collection[str], token: str | None) -> Starlette:
+def page_app(
+    host: Host,
+    hosts: Collection[str],
+    token: str | None,
+    is_ending: Callable[[], bool] = lambda: False,
+) -> Starlette:
     """The application.
 
     Args:
         host: What is shown.
         hosts: Names and ports under which it may be asked for.
         token: What who asks has to know; None: nothing.
+        is_ending: Whether the server has been told to stop: pages that listen are let go then.
     """
     news: list[_News] = []
 
     @asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncIterator[None]:
-        news.append(_News(host))
+        news.append(_News(host, is_ending))
         looking = asyncio.create_task(news[0].run())
         try:
             yield
@@ -124,7 +141,7 @@ def _page(host: Host) -> Response:
 async def _updates(host: Host, news: _News, first: int) -> AsyncIterator[str]:
     """Updates from number `first` on, as server-sent events."""
     number = first
-    while True:
+    while not news.is_ending():
         for run, update in host.told[number:]:
             number += 1
             told = json.dumps({"run": run, "update": update}, separators=(",", ":"))
