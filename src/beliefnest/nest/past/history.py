@@ -127,16 +127,40 @@ class History:
         `advance` takes it on.
         """
         self._keep_up(key)
-        if self._journal.info(key).base is None:
+        base = self._journal.info(key).base
+        if base is None:
             return self._initial(key, paths)
+        self._have(base, paths)
         first, *others = paths
         forest = self._begun(key, first)
         for path in others:
             if path not in forest.table.index:
-                start = len(key.path)
-                chain = [path[:depth] for depth in range(start, len(path) + 1)]
-                other = self._begun(key, path)
-                forest.adopt(other, [node for node in chain if node not in forest.table.index])
+                _adopt(forest, self._begun(key, path), key.path, path)
+        return forest
+
+    def _have(self, fork: ForkPoint, paths: Sequence[Path]) -> None:
+        """Have several nodes at hand where a timeline forks: folded at once, not one by one."""
+        key, position = fork.timeline, fork.entries
+        if position == self._journal.info(key).entries:
+            self.expect(key, paths)
+            head = self._head(key, paths[-1], position)
+            late = [path for path in paths if path not in head.table.index]
+            if len(late) > 1:
+                other = self._together(key, late, position)
+                for path in late:
+                    _adopt(head, other, key.path, path)
+            return
+        at_hand = [forest for other, forest in self._pasts if other == key]
+        if not any(
+            forest.position == position and all(path in forest.table.index for path in paths)
+            for forest in at_hand
+        ):
+            self._pasts = [(key, self._together(key, paths, position)), *self._pasts][:_PASTS]
+
+    def _together(self, key: TimelineKey, paths: Sequence[Path], position: int) -> Forest:
+        """A new forest of several nodes and their ancestors, after some entries of a timeline."""
+        forest = self.walk(key, paths)
+        self._advance(key, forest, position)
         return forest
 
     def advance(self, key: TimelineKey, forest: Forest, position: int) -> None:
@@ -250,10 +274,7 @@ class History:
             # Where it was a long way, who asks for the past need not go it again.
             self._checkpoints.keep(key, head)
         if path not in head.table.index:
-            late = self._walk(key, path, count)
-            start = len(key.path)
-            chain = [path[:depth] for depth in range(start, len(path) + 1)]
-            head.adopt(late, [node for node in chain if node not in head.table.index])
+            _adopt(head, self._walk(key, path, count), key.path, path)
         return head
 
     def _walk(
@@ -371,3 +392,18 @@ class History:
         return _Stretch(
             Columns(context.box, context.agents, context.holds, context.number, first, first_event)
         )
+
+
+def _adopt(forest: Forest, other: Forest, own: Path, path: Path) -> None:
+    """Take a node and its ancestors over, as far as they are not there.
+
+    Args:
+        forest: Where they are to be.
+        other: Where they are, at the same entry of the same timeline.
+        own: The timeline's own simulator.
+        path: The node.
+    """
+    chain = [path[:depth] for depth in range(len(own), len(path) + 1)]
+    missing = [node for node in chain if node not in forest.table.index]
+    if missing:
+        forest.adopt(other, missing)
