@@ -201,20 +201,29 @@ class HoldingsTable:
             elif cell not in self._holdings[0].containers:
                 basis = Basis(tick, Source.SEEN)
                 self._holdings[0].containers[cell] = Content({}, True, basis, entry)
-        things = self.needs_looks()
-        for node in range(1, self._table.count):
+        looking = self._looking(acts, which)
+        for node in sorted(looking | rows.keys()):
+            if node == 0:
+                continue
             for _, _, cell, old, new, observed_at, source in rows.get(node, ()):
                 names = self._context.block_name(old), self._context.container_name(new)
                 basis = self._context.basis(observed_at, source)
                 replaced_block(self._holdings[node], cell, *names, basis)
-            perceived = acts.get(node, [])
-            if not which[node] or not (perceived or things) or not self._table.is_present(node):
+            if node not in looking:
                 continue
+            perceived = acts.get(node, [])
             self._forget(node)
             into = self._see_into(node, tick, entry)
             if perceived:
                 self._follow_acts(node, perceived, into, tick, entry)
             self._see_items(node, tick, entry)
+
+    def _looking(self, acts: Mapping[int, list[Event]], which: npt.NDArray[np.bool_]) -> set[int]:
+        """Nodes whose present owners have acts or things to follow."""
+        present = which & self._table.present()
+        if self.needs_looks():
+            return set(np.flatnonzero(present).tolist())
+        return {node for node in acts if present[node]}
 
     def edit(
         self, node: int, blocks: Mapping[int, int], contents: Mapping[int, Items], tick: int
@@ -270,6 +279,12 @@ class HoldingsTable:
         state = self._table.block(node, cell)
         if node > 0 and cell in self._holdings[node].containers and not self._context.holds[state]:
             self._doubtful.setdefault(node, {})[cell] = state
+
+    def doubt_all(self, which: npt.NDArray[np.int64], cell: int) -> None:
+        """`doubt` for several nodes."""
+        knowing = self._context.holds[self._table.nodes().blocks[which, cell]]
+        for node in which[~knowing].tolist():
+            self.doubt(node, cell)
 
     def _forget(self, node: int) -> None:
         """Forget contents at places that are seen to hold no container."""

@@ -354,6 +354,13 @@ class NodeTable:
         """Whether an agent's pose is current in a node."""
         return bool(self._rows["current"][node, agent])
 
+    def present(self) -> npt.NDArray[np.bool_]:
+        """By node, whether its owner is present in its parent node (5.1)."""
+        parent, agent = self._rows["parent"][: self.count], self._rows["agent"][: self.count]
+        present: npt.NDArray[np.bool_] = self._rows["current"][parent, agent]
+        present[0] = True
+        return present
+
     def is_present(self, node: int) -> bool:
         """Whether the owner of a node is present in its parent node (5.1)."""
         return node == 0 or self.is_current(self.parent(node), self.owner(node))

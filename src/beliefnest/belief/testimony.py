@@ -97,8 +97,8 @@ class Testimony:
         for number, (row, event, _, claim) in enumerate(self._claims):
             speaker = self._context.numbers[str(event.actor)]
             self._codes[number, which] = self._weighed(number, which, row, speaker, claim)
-            believed = np.isin(self._codes[number], _BELIEVED) & level
-            self._believe(np.flatnonzero(believed), event, claim)
+            believed = _IS_BELIEVED[self._codes[number, which]]
+            self._believe(which[believed], event, claim)
 
     def verdicts(self) -> Mapping[tuple[int, int], Sequence[Verdict]]:
         """By number of event in the entry and of claim in the event, each node's verdict."""
@@ -127,9 +127,11 @@ class Testimony:
             (~is_speaker & (owner == subject), Verdict.OWN_PLACE),
             (is_speaker & (parent == 0) & is_reality, Verdict.SPEAKER),
         ]
-        every = [*first, *conditions]
-        codes = [np.int8(_CODES[verdict]) for _, verdict in every]
-        return np.select([condition for condition, _ in every], codes).astype(np.int8)
+        codes = np.zeros(len(which), dtype=np.int8)
+        # The first that holds decides.
+        for condition, verdict in reversed([*first, *conditions]):
+            codes[condition] = _CODES[verdict]
+        return codes
 
     def _informed(
         self, number: int, which: Numbers, speaker: int, claim: Claim, nodes: Nodes
@@ -139,7 +141,7 @@ class Testimony:
         is_speaker = nodes.agent[which] == speaker
         known, sees_known, missed = self._known(which, speaker, claim, nodes)
         is_short = known & (missed <= options.grace)
-        up = np.isin(self._codes[number, nodes.parent[which]], [_CODES[Verdict.TAKEN_UP]])
+        up = self._codes[number, nodes.parent[which]] == _CODES[Verdict.TAKEN_UP]
         others = ~is_speaker
         return [
             (is_speaker & is_short, Verdict.LEARNT_NOTHING),
@@ -205,12 +207,12 @@ class Testimony:
             case ClaimKind.LOCATED | ClaimKind.ABSENT:
                 place = claim.cell
                 cell, item = cell_of(self._context.box, place), str(claim.item)
+                is_there = claim.kind is ClaimKind.LOCATED
+                believe = believe_located if is_there else believe_absent
                 for node in which.tolist():
-                    if claim.kind is ClaimKind.LOCATED:
-                        believe_located(self._holdings.of(node), cell, item, basis)
-                        self._holdings.doubt(node, cell)
-                    else:
-                        believe_absent(self._holdings.of(node), cell, item, basis)
+                    believe(self._holdings.of(node), cell, item, basis)
+                if is_there:
+                    self._holdings.doubt_all(which, cell)
 
     def _believe_block(self, which: Numbers, claim: Claim, basis: Basis) -> None:
         context = self._context
@@ -225,7 +227,7 @@ class Testimony:
             self.told_cells.add((node, cell))
 
 
-_BELIEVED = [_CODES[verdict] for verdict in Verdict if verdict.believed]
+_IS_BELIEVED = np.array([verdict.believed for verdict in _VERDICTS])
 
 
 def stated(context: BeliefContext, text: str, believed: int) -> int:
@@ -251,17 +253,18 @@ def stated(context: BeliefContext, text: str, believed: int) -> int:
 def believe_located(holdings: Holdings, cell: int, item: str, basis: Basis) -> None:
     """Put one such item into a container, out of the one in which it was believed last."""
     there = holdings.containers.get(cell)
-    items = {} if there is None else dict(there.items)
+    items = {} if there is None else there.items
     if item not in items:
-        holding = [
-            (c.basis.observed_at, -at) for at, c in holdings.containers.items() if item in c.items
-        ]
-        if holding:
-            donor = -max(holding)[1]
+        donor, last = -1, 0
+        for at, held in holdings.containers.items():
+            seen = held.basis.observed_at
+            if item in held.items and (donor < 0 or seen > last or (seen == last and at < donor)):
+                donor, last = at, seen
+        if donor >= 0:
             left = dict(holdings.containers[donor].items)
             left[item] -= 1
             _hold(holdings, donor, {name: n for name, n in left.items() if n}, basis)
-        items[item] = 1
+        items = {**items, item: 1}
     _hold(holdings, cell, items, basis)
 
 

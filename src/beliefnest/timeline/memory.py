@@ -49,9 +49,10 @@ class MemoryJournal:
 
     def info(self, key: TimelineKey) -> TimelineInfo:
         """One timeline; BranchError if there is none of that key."""
-        if key not in self._infos:
+        info = self._infos.get(key)
+        if info is None:
             raise branch_missing(key, (k.branch for k in self._infos if k.path == key.path))
-        return self._infos[key]
+        return info
 
     def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
         """Begin an empty timeline; BranchError if it is there or its base is not."""

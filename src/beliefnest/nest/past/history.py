@@ -100,8 +100,9 @@ class History:
 
         `path` is the timeline's own simulator or a node below it that follows it.
         """
-        count = self._journal.info(key).entries
-        return NodeView(self._forest(key, path, count if position is None else position), path)
+        if position is None:
+            position = self._journal.info(key).entries
+        return NodeView(self._forest(key, path, position), path)
 
     def shared(self, key: TimelineKey, path: Path, position: int) -> Forest:
         """The forest behind `reading`; it goes on with whoever asks next, so read it at once."""
@@ -261,13 +262,14 @@ class History:
         return found
 
     def _head(self, key: TimelineKey, path: Path, count: int) -> Forest:
-        head = self._heads.get(key)
+        head = known = self._heads.get(key)
         if head is None:
             head = self._saved(key, count)
         if head is None or (head.table.count == 1 and path != key.path):
             # Folded as the head it leaves checkpoints on the way, other than a late node.
             head = self._begun(key, path)
-        self._heads[key] = head
+        if head is not known:
+            self._heads[key] = head
         while head.position < count:
             far = count if head.table.count == 1 else head.position + self._pace.every
             self._advance(key, head, min(count, far))

@@ -123,9 +123,11 @@ class Recording:
 
     def state(self, path: Path, tick: int | None = None) -> LiveState:
         """The view of a node's state now, or at a past tick; TickError as for `reading`."""
+        if tick is None:
+            info = self.info(path)
+            return self.state_after(info.key, path, info.entries, info.head)
         key, entries = self._when(path, tick)
-        shown = self.journal.info(key).head if tick is None else tick
-        return self.state_after(key, path, entries, shown)
+        return self.state_after(key, path, entries, tick)
 
     def states(self, paths: Iterable[Path]) -> Mapping[Path, LiveState]:
         """The views of several nodes' states now, by path."""
