@@ -108,3 +108,82 @@ def test_a_door_that_is_so_already_is_left_alone():
         assert result.ok, result
         used = [each.detail["open"] for each in result.events if each.kind is EventKind.USE_DOOR]
         assert used == [True, False]
+
+
+SIGN = [7, 1, 4]
+
+
+def doored(state: str, kind: str = "oak_door") -> dict[str, Any]:
+    """The room with a wall right across it, and a door in the wall."""
+    leaf = f"facing=north,{state}"
+    blocks = [
+        *ROOM["blocks"],
+        {"block": f"{kind}[half=lower,{leaf}]", "at": [4, 1, 6]},
+        {"block": f"{kind}[half=upper,{leaf}]", "at": [4, 2, 6]},
+    ]
+    return {**ROOM, "blocks": blocks}
+
+
+def passing(room: Mapping[str, Any], doors: str) -> tuple[list[bool], str | None, float]:
+    """What became of the door, and of who went to the other side of the wall and back."""
+    go = f"await goToPosition(bot, new Vec3(4, 1, 8), 0{doors})\n"
+    back = go.replace("8)", "3)")
+    with bn.Nest.open(bn.Scenario.from_mapping(room), world="scripted") as nest:
+        result = nest["/"].run("ann", go + back, 200)
+        used = [each.detail["open"] for each in result.events if each.kind is EventKind.USE_DOOR]
+        fault = None if result.error is None else result.error.reason
+        return used, fault, nest["/"].state.agents["ann"].position[2]
+
+
+@pytest.mark.parametrize(
+    ("door", "kind", "doors", "used", "fault"),
+    [
+        ("open=false", "oak_door", "", [True], None),
+        ("open=false", "oak_door", ", {closeDoors: true}", [True, False, True, False], None),
+        ("open=true", "oak_door", ", {closeDoors: true}", [False, True, False], None),
+        ("open=false", "oak_door", ", {openDoors: false}", [], "no_way"),
+        ("open=true", "oak_door", ", {openDoors: false}", [], None),
+        ("open=false", "iron_door", "", [], "no_way"),
+        ("open=true", "iron_door", ", {closeDoors: true}", [], None),
+    ],
+)
+def test_ways_lead_through_doors_as_in_minecraft(
+    door: str, kind: str, doors: str, used: list[bool], fault: str | None
+) -> None:
+    found, reason, z = passing(doored(door, kind), doors)
+    assert (found, reason) == (used, fault)
+    assert z == (3.5 if fault is None else 2.5)
+
+
+def test_a_gate_is_gone_through_and_no_corner_of_it_cut() -> None:
+    gate = {"block": "oak_fence_gate[facing=north,open=false]", "at": [4, 1, 6]}
+    air = {"block": "air", "at": [4, 2, 6]}
+    assert passing({**ROOM, "blocks": [*ROOM["blocks"], gate, air]}, "")[:2] == ([True], None)
+    crosswise = {"block": "oak_fence_gate[facing=east,open=true]", "at": [4, 1, 6]}
+    room = {**ROOM, "blocks": [*ROOM["blocks"], crosswise, air]}
+    assert passing(room, "")[1] == "no_way"
+
+
+def test_settings_of_doors_that_there_are_not_are_named(nest: bn.Nest) -> None:
+    error = run(nest, ann="await goToPosition(bot, new Vec3(3, 1, 2), 0, {openDoor: true})")["ann"]
+    assert "openDoors and closeDoors, each true or false" in str(error.error)
+
+
+def test_signs_are_written_on_and_read() -> None:
+    signs = [{"at": SIGN, "block": "oak_sign", "text": "food"}]
+    room = {**ROOM, "signs": signs}
+    with bn.Nest.open(bn.Scenario.from_mapping(room), world="scripted") as nest:
+        results = nest["/"].run_all(
+            {
+                "ann": "console.log(await readSign(bot, new Vec3(7, 1, 4)))\n"
+                "await writeSign(bot, new Vec3(7, 1, 4), 'no\\nfood')\n"
+                "console.log(bot.blockAt(new Vec3(7, 1, 4)).getSignText()[0])",
+                "bob": "await readSign(bot, new Vec3(1, 1, 1))",
+            },
+            100,
+        )
+        assert results["ann"].log == ("food", "no\nfood")
+        assert "no sign at (1, 1, 1)" in str(results["bob"].error)
+        assert nest["/bob"].state.signs == {(7, 1, 4): "no\nfood"}
+        result = nest["/"].run("bob", f"await writeSign(bot, new Vec3(7, 1, 4), '{'x' * 46}')")
+        assert "a line of 46 characters" in str(result.error)

@@ -4,12 +4,15 @@ import heapq
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.world.doors import is_doorway, is_open, moves_by_hand, passage
 from beliefnest.world.frames import BlockGrid
-from beliefnest.world.registry import Registry
+from beliefnest.world.registry import AIR, Registry
+from beliefnest.world.signs import is_sign
 from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position
 
 __all__ = ["Goal", "Ground", "InReach", "Near", "feet_in", "find_way"]
@@ -79,19 +82,27 @@ def feet_in(cell: Position) -> Point:
 class Ground:
     """Where one can stand: two free cells above one another, and below them something solid.
 
-    What is not known is free, and holds whoever stands on it.
+    What is not known is free, and holds whoever stands on it. Open doors and gates are free, and
+    gone through straight on.
 
     Args:
         registry: Shapes of blocks.
         box: The part of space.
         blocks: Block state ids, -1 is unknown.
+        opens: Whether doors and gates that are moved by hand are as good as open.
     """
 
-    def __init__(self, registry: Registry, box: Box, blocks: BlockGrid) -> None:
-        self._registry, self._box, self._blocks = registry, box, blocks
+    def __init__(
+        self, registry: Registry, box: Box, blocks: BlockGrid, *, opens: bool = False
+    ) -> None:
+        self._registry, self._box, self._blocks, self._opens = registry, box, blocks, opens
         states, places = np.unique(blocks, return_inverse=True)
-        free_states = [state < 0 or not registry.boxes(state) for state in states.tolist()]
+        ways = {s: passage(registry, s) for s in states.tolist() if self._is_way(s)}
+        free_states = [s < 0 or s in ways or not registry.boxes(s) for s in states.tolist()]
         free = np.array(free_states, dtype=np.bool_)[places].reshape(blocks.shape)
+        x, y, z = box.low
+        doors = np.argwhere(np.isin(blocks, list(ways))).tolist() if ways else []
+        self._doorways = {(x + i, y + j, z + k): ways[int(blocks[i, j, k])] for i, j, k in doors}
         # A margin all around, so that whatever lies a step away has a place; above the box is air.
         passing, holding = _widened(free), _widened((blocks < 0) | ~free)
         passing[1:-1, _MARGIN + blocks.shape[1], 1:-1] = True
@@ -115,12 +126,47 @@ class Ground:
         state = int(self._blocks[self._box.index(place)])
         return state < 0 or self._registry.is_container(self._registry.name(state))
 
+    def is_sign(self, place: Position) -> bool | None:
+        """Whether there is a sign at a position; None: what is there is not known."""
+        state = int(self._blocks[self._box.index(place)]) if place in self._box else AIR
+        return None if state < 0 else is_sign(self._registry.name(state))
+
     def steps(self, cell: Position) -> tuple[Position, ...]:
         """The cells that one step leads to: aside, up one block, or down up to three."""
         found = self._steps.get(cell)
         if found is None:
-            found = self._steps[cell] = tuple(self._steps_from(cell))
+            steps = self._steps_from(cell)
+            if self._doorways:
+                steps = (step for step in steps if self._is_straight(cell, step))
+            found = self._steps[cell] = tuple(steps)
         return found
+
+    @cached_property
+    def with_doors_opened(self) -> "Ground":
+        """The same for who opens doors and gates by hand."""
+        return Ground(self._registry, self._box, self._blocks, opens=True)
+
+    @property
+    def has_doorways(self) -> bool:
+        """Whether there is a door or gate that is open, or as good as open."""
+        return bool(self._doorways)
+
+    def _is_way(self, state: int) -> bool:
+        """Whether a block is a door or gate that can be gone through."""
+        if state < 0 or not is_doorway(name := self._registry.name(state)):
+            return False
+        by_hand = self._opens and moves_by_hand(name)
+        return by_hand or is_open(self._registry, state) is True
+
+    def _is_straight(self, cell: Position, step: Position) -> bool:
+        """Whether a step leads through no doorway, or straight through it."""
+        moved = (step[0] - cell[0], step[2] - cell[2])
+        for at in (cell, step):
+            along = self._doorways.get(at)
+            if along is not None and (abs(moved[0]), abs(moved[1])) != along:
+                return False
+        around = ((step[0], cell[1], cell[2]), (cell[0], cell[1], step[2]))
+        return 0 in moved or not any(at in self._doorways for at in around)
 
     def way(self, start: Position, goal: Goal) -> tuple[Position, ...] | None:
         """The way that `find_way` finds, looked for once."""

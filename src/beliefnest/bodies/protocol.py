@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from beliefnest.world.frames import BlockGrid, Frame, Snapshot
-from beliefnest.world.values import AgentState, Event, EventKind, Point
+from beliefnest.world.values import AgentState, Event, EventKind, Point, Position
 
 __all__ = [
     "KILLED",
@@ -168,10 +168,12 @@ class Sensed:
     Attributes:
         blocks: Block state ids of the box, -1 is unknown.
         agents: The agents that it knows to be there now, its own among them.
+        signs: What is written on signs, by position; a sign that is not among them is blank.
     """
 
     blocks: BlockGrid
     agents: Mapping[str, AgentState]
+    signs: Mapping[Position, str] = field(default_factory=dict)
 
 
 Sense = Callable[[], Sensed]

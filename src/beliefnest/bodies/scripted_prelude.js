@@ -50,7 +50,8 @@
     if (text === null) return null
     const [name, written] = text.split(/[[\]]/)
     const properties = Object.fromEntries((written ?? '').split(',').filter(Boolean).map(each => each.split('=')))
-    return { name, position: vector(cell), getProperties: () => properties }
+    const front = seen.signs[cell.join()] ?? ''
+    return { name, position: vector(cell), getProperties: () => properties, getSignText: () => [front, ''] }
   }
 
   async function openContainer (block) {

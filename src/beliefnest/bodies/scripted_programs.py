@@ -20,7 +20,9 @@ from beliefnest.world.values import AgentState, Event, Point
 
 __all__ = ["run_programs"]
 
-_USING = frozenset({"getItemFromChest", "depositItemIntoChest", "openDoor", "closeDoor"})
+_USING = frozenset(
+    {"getItemFromChest", "depositItemIntoChest", "openDoor", "closeDoor", "writeSign"}
+)
 _MOST_AIMS = 100
 _DOINGS = {**SKILLS, **CALLS}
 
@@ -91,7 +93,7 @@ def _begun(
     grounds: Grounds,
 ) -> _Run:
     def all_of_it() -> Sensed:
-        return Sensed(world.blocks, world.agents)
+        return Sensed(world.blocks, world.agents, world.signs)
 
     sense = senses.get(agent, all_of_it)
     hand = Hand(
@@ -99,6 +101,7 @@ def _begun(
         world,
         known=lambda: grounds.of(world.box, sense().blocks).ground,
         others=lambda: sense().agents,
+        signs=lambda: sense().signs,
         ground=lambda: grounds.of(world.box, world.blocks).ground,
     )
     run = _Run(hand, JavaScriptProgram(agent, SKILLS), sense)
@@ -165,6 +168,7 @@ def _show(run: _Run, grounds: Grounds) -> None:
         "inventory": dict(me.inventory),
         "health": me.health,
         "food": me.food,
+        "signs": {",".join(map(str, place)): text for place, text in sensed.signs.items()},
     }
     run.program.see(told, grounds.of(run.hand.world.box, sensed.blocks).text)
 

@@ -13,10 +13,11 @@ from beliefnest.bodies.footpaths import Goal, Ground, InReach, Near, feet_in
 from beliefnest.bodies.protocol import NO_WAY
 from beliefnest.errors import BeliefNestError, WorldError
 from beliefnest.world.claims import claims_from_plain
-from beliefnest.world.doors import is_open
+from beliefnest.world.doors import is_doorway, is_open, moves_by_hand
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.scripted import ScriptedWorld
-from beliefnest.world.values import AgentState, Point, Position
+from beliefnest.world.signs import sign_fault
+from beliefnest.world.values import EYE_HEIGHT, AgentState, Point, Position
 
 __all__ = ["CALLS", "SKILLS", "Doing", "Hand", "SkillError"]
 
@@ -48,6 +49,7 @@ class Hand:
         world: Where it acts.
         known: The ground as far as the agent may know it, which ways are looked for on.
         others: The agents that it knows to be there.
+        signs: What it may know to be written on signs.
         ground: The ground as it is, which carries and stops a body.
     """
 
@@ -55,6 +57,7 @@ class Hand:
     world: ScriptedWorld
     known: Callable[[], Ground]
     others: Callable[[], Mapping[str, AgentState]]
+    signs: Callable[[], Mapping[Position, str]]
     ground: Callable[[], Ground]
 
     @property
@@ -68,10 +71,11 @@ class Hand:
         return _cell(self.feet)
 
 
-def _go_to_position(hand: Hand, position: Any, dist: Any = 2) -> Doing:
+def _go_to_position(hand: Hand, position: Any, dist: Any = 2, doors: Any = None) -> Doing:
     target = _point("position", position)
     near = _number("dist", dist)
-    moved = yield from _walk(hand, target, Near(_cell(target), near), "the position")
+    doors = _doors(doors)
+    moved = yield from _walk(hand, target, Near(_cell(target), near), "the position", doors)
     if not moved:
         yield
     hand.world.arrive(hand.name, target)
@@ -121,6 +125,36 @@ def _use_door(to_open: bool) -> Callable[..., Doing]:
     return use
 
 
+def _write_sign(hand: Hand, position: Any, text: Any) -> Doing:
+    place = _block(position)
+    if not isinstance(text, str):
+        raise SkillError(f"text must be a text; it is {text!r}")
+    if fault := sign_fault(text):
+        raise SkillError(f"text is {fault}")
+    yield from _walk_to_use(hand, place)
+    yield
+    hand.world.write_sign(hand.name, place, text)
+
+
+def _read_sign(hand: Hand, position: Any) -> Doing:
+    place = _block(position)
+    if hand.known().is_sign(place) is False:
+        raise SkillError(f"there is no sign at {place}. Give the position of a sign.")
+    x, y, z = hand.feet
+    away = (place[0] + 0.5 - x, place[1] + 0.5 - y - EYE_HEIGHT, place[2] + 0.5 - z)
+    yield
+    hand.world.place_agent(
+        hand.name,
+        hand.feet,
+        yaw=math.atan2(-away[0], -away[2]),
+        pitch=math.atan2(away[1], math.hypot(away[0], away[2])),
+    )
+    yield
+    if not hand.known().is_sign(place):
+        raise SkillError(f"no sign is to be seen at {place}. Go nearer, or look somewhere else.")
+    return hand.signs().get(place, "")
+
+
 def _say(hand: Hand, text: Any, claims: Any = ()) -> Doing:
     yield
     hand.world.say(hand.name, _text(text), claims_from_plain(claims or ()))
@@ -162,6 +196,8 @@ SKILLS: Mapping[str, Callable[..., Doing]] = {
     "depositItemIntoChest": _deposit_item_into_chest,
     "openDoor": _use_door(to_open=True),
     "closeDoor": _use_door(to_open=False),
+    "writeSign": _write_sign,
+    "readSign": _read_sign,
     "giveItemToOther": _give_item,
     "say": _say,
     "whisper": _whisper,
@@ -204,12 +240,65 @@ def _walk_to_use(hand: Hand, place: Position) -> Doing:
     yield from _walk(hand, place, InReach(place, _REACH), "the block")
 
 
-def _walk(hand: Hand, target: Point, goal: Goal, what: str) -> Doing:
+@dataclass(frozen=True, slots=True)
+class _Doors:
+    """What somebody who walks does with doors and gates that are moved by hand.
+
+    Attributes:
+        opens: Whether it opens shut ones where no other way leads.
+        closes: Whether it shuts those it went through, also those that stood open.
+    """
+
+    opens: bool = True
+    closes: bool = False
+
+
+_ANY_DOOR = _Doors()
+
+
+def _doors(value: Any) -> _Doors:
+    given = {} if value is None else value
+    names = ("openDoors", "closeDoors")
+    if not isinstance(given, dict) or not all(
+        name in names and isinstance(flag, bool) for name, flag in given.items()
+    ):
+        raise SkillError(
+            f"doors may have openDoors and closeDoors, each true or false; it is {value!r}"
+        )
+    return _Doors(given.get("openDoors", True), given.get("closeDoors", False))
+
+
+def _way(hand: Hand, goal: Goal, doors: _Doors) -> tuple[Position, ...] | None:
+    """A way that opens no door, or one that does."""
+    known = hand.known()
+    way = known.way(hand.cell, goal)
+    if way is None and doors.opens and known.with_doors_opened.has_doorways:
+        way = known.with_doors_opened.way(hand.cell, goal)
+    return way
+
+
+def _bring(hand: Hand, cell: Position, *, opens: bool) -> Doing:
+    """Open or shut the door in a cell that is moved by hand, if it is not so: a tick."""
+    world, registry = hand.world, Registry.load()
+
+    def is_to_move() -> bool:
+        state = int(world.blocks[world.box.index(cell)]) if cell in world.box else AIR
+        name = registry.name(state)
+        return is_doorway(name) and moves_by_hand(name) and is_open(registry, state) is not opens
+
+    if is_to_move():
+        yield
+        # Somebody else may have done it in this very tick.
+        if is_to_move():
+            world.use_door(hand.name, cell, open=opens)
+
+
+def _walk(hand: Hand, target: Point, goal: Goal, what: str, doors: _Doors = _ANY_DOOR) -> Doing:
     """Walk until a cell is reached that is good enough, one cell a tick; whether it walked."""
     moved = False
     bumped: set[Position] = set()
     while not goal.is_met(hand.cell):
-        way = hand.known().way(hand.cell, goal)
+        way = _way(hand, goal, doors)
         if way is None or bumped & set(way):
             far = math.dist(hand.feet, target)
             raise SkillError(
@@ -218,12 +307,16 @@ def _walk(hand: Hand, target: Point, goal: Goal, what: str) -> Doing:
                 NO_WAY,
             )
         for cell in way:
+            if doors.opens:
+                yield from _bring(hand, cell, opens=True)
             yield
             if not hand.ground().stands(cell):
                 bumped.add(cell)
                 break
-            moved = True
+            moved, behind = True, hand.cell
             _step_to(hand, cell)
+            if doors.closes:
+                yield from _bring(hand, behind, opens=False)
     return moved
 
 

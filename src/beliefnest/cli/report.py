@@ -25,6 +25,7 @@ from beliefnest.scenarios.expected import (
     Intends,
     Judge,
     Opens,
+    Reads,
     Says,
     Takes,
 )
@@ -33,6 +34,7 @@ from beliefnest.scenarios.naming import items_text
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome, ProbeOutcome
 from beliefnest.scenarios.records import expectation_json, probe_json, usage_json
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.world.signs import sign_words
 from beliefnest.world.values import Point
 
 __all__ = [
@@ -231,6 +233,10 @@ def _found(outcome: ExpectationOutcome, state: State, scenario: Scenario) -> tup
         what, found = escape(container_name(content.container, scenario)), "nothing"
         if held is not None and held.items:
             found = ", ".join(f"{count} {name}" for name, count in sorted(held.items.items()))
+    elif isinstance(content, Reads):
+        text = state.signs.get(content.sign)
+        what = f"sign {point_text(content.sign)}"
+        found = "unknown" if text is None else escape(sign_words(text) or "nothing")
     elif isinstance(content, Hears):
         heard = any(content.text in text for _, _, text in state.chat)
         what, found = f"{content.text!r}", "heard" if heard else "not heard"

@@ -15,7 +15,7 @@ from beliefnest.nest.past.setting import Senses
 from beliefnest.world.frames import BlockGrid, Frame
 from beliefnest.world.paths import path_text
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import AgentState, EventKind
+from beliefnest.world.values import AgentState, EventKind, Position
 
 __all__ = ["Acting", "Deed", "ProgramActing", "SkillActing", "Step"]
 
@@ -144,6 +144,7 @@ class SkillActing:
             self._world,
             known=lambda: self._known_ground(agent),
             others=lambda: self._others(agent),
+            signs=lambda: self._signs(agent),
             ground=self._real_ground,
         )
         self._doing[agent] = _near(hand, skill(hand, *call.args), call)
@@ -182,6 +183,11 @@ class SkillActing:
         seen = self._nest[path_text((agent,))].state.agents
         # Who is perceived now is where it is perceived.
         return {name: each for name, each in agents.items() if seen[name].current or name == agent}
+
+    def _signs(self, agent: str) -> Mapping[Position, str]:
+        if self._senses == "world":
+            return self._world.signs
+        return self._nest[path_text((agent,))].state.signs
 
     def _hear(self, frame: Frame) -> None:
         if any(event.kind is EventKind.CHAT for event in frame.events):

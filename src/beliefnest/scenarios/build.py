@@ -24,12 +24,14 @@ from beliefnest.scenarios.expected import (
     Holds,
     Intends,
     Opens,
+    Reads,
     Says,
     Stands,
     Takes,
 )
 from beliefnest.scenarios.format import (
     AnswersEntry,
+    BelievedSignEntry,
     ExpectationEntry,
     ExpectEntry,
     InitialBeliefEntry,
@@ -46,6 +48,8 @@ from beliefnest.scenarios.space import (
     build_box,
     build_containers,
     build_grid,
+    build_signs,
+    check_inside,
     check_items,
     entry_mask,
 )
@@ -53,7 +57,8 @@ from beliefnest.world.frames import Snapshot
 from beliefnest.world.limits import AGENT_SLOTS, container_slots
 from beliefnest.world.paths import parse_path, parse_pattern
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import Items, Position
+from beliefnest.world.signs import plain_state, written
+from beliefnest.world.values import Block, Items, Position
 
 __all__ = ["build_scenario"]
 
@@ -116,9 +121,10 @@ class _Builder:
         box = build_box(document, file)
         grid = build_grid(document, file, box, registry)
         containers = build_containers(document, file.containers, grid, box, registry)
+        signs = build_signs(document, file.signs, grid, box, registry)
         agents = build_agents(document, file, grid, box, registry)
         grid.flags.writeable = False
-        self._snapshot = Snapshot(0, box, grid, containers, agents)
+        self._snapshot = Snapshot(0, box, grid, containers, agents, signs=signs)
 
     def setting(self) -> Setting:
         """What a nest starts from."""
@@ -228,8 +234,8 @@ class _Builder:
         self._check_belief_path((*path, "path"), entry.path)
         return Expectation(entry.path, self._expected(path, entry), entry.label)
 
-    def _expected(self, path: KeyPath, entry: ExpectationEntry) -> Holds | Stands | Hears:
-        kinds = (entry.container, entry.agent, entry.heard, entry.not_heard)
+    def _expected(self, path: KeyPath, entry: ExpectationEntry) -> Holds | Stands | Hears | Reads:
+        kinds = (entry.container, entry.agent, entry.sign, entry.heard, entry.not_heard)
         alone = sum(kind is not None for kind in kinds) == 1
         if alone and entry.container is not None and entry.items is not None:
             self._check_container((*path, "container"), entry.container)
@@ -238,12 +244,16 @@ class _Builder:
         if alone and entry.agent is not None and entry.items is None:
             self._check_agent((*path, "agent"), entry.agent)
             return Stands(entry.agent, entry.position, entry.within)
+        if alone and entry.sign is not None and entry.items is None:
+            check_inside(self._document, (*path, "sign"), entry.sign, self._snapshot.box)
+            return Reads(entry.sign, entry.text)
         spoken = entry.heard or entry.not_heard
         if alone and spoken and entry.items is None:
             return Hears(spoken, ever=entry.heard is not None)
         raise self._document.fault(
             path,
-            "give one of 'container' and 'items', 'agent' and 'position', 'heard', 'not_heard'",
+            "give one of 'container' and 'items', 'agent' and 'position', 'sign' and 'text', "
+            "'heard', 'not_heard'",
         )
 
     def _step(self, number: int, entry: StepEntry) -> Step:
@@ -293,7 +303,7 @@ class _Builder:
         if not names:
             raise self._document.fault((*path, "path"), "'/' is the real world, not a belief")
         box = self._snapshot.box
-        blocks: dict[Position, int] = {}
+        blocks: dict[Position, Block] = {}
         for index, block in enumerate(entry.blocks):
             place = (*path, "blocks", index)
             state = UNKNOWN
@@ -302,6 +312,8 @@ class _Builder:
                     state = self._registry.state_id(block.block)
             for i, j, k in np.argwhere(entry_mask(self._document, place, block, box)).tolist():
                 blocks[(box.low[0] + i, box.low[1] + j, box.low[2] + k)] = state
+        for index, sign in enumerate(entry.signs):
+            blocks[sign.at] = self._believed_sign((*path, "signs", index), sign, blocks)
         for index, container in enumerate(entry.containers):
             place = (*path, "containers", index)
             self._check_container((*place, "at"), container.at)
@@ -320,6 +332,19 @@ class _Builder:
             blocks=blocks,
             agents=dict(entry.agents),
         )
+
+    def _believed_sign(
+        self, path: KeyPath, entry: BelievedSignEntry, blocks: Mapping[Position, Block]
+    ) -> Block:
+        box = self._snapshot.box
+        check_inside(self._document, (*path, "at"), entry.at, box)
+        if entry.block is not None:
+            with self._document.naming((*path, "block")):
+                state = self._registry.state_id(entry.block)
+        else:
+            state = plain_state(blocks.get(entry.at, self._snapshot.block(entry.at)))
+        with self._document.naming(path):
+            return written(self._registry, state, entry.text)
 
     def _template(self, path: KeyPath, name: str | None) -> str | None:
         if name is None:

@@ -20,6 +20,7 @@ __all__ = [
     "Intends",
     "Judge",
     "Opens",
+    "Reads",
     "Says",
     "Stands",
     "Takes",
@@ -158,6 +159,19 @@ class Hears:
 
 
 @dataclass(frozen=True, slots=True)
+class Reads:
+    """Something is to be written on a sign as far as a simulator knows.
+
+    Attributes:
+        sign: Where the sign is.
+        text: What is to be written on it; None: that is to be unknown.
+    """
+
+    sign: Position
+    text: str | None
+
+
+@dataclass(frozen=True, slots=True)
 class Expectation:
     """What a simulator is to hold after the script.
 
@@ -168,7 +182,7 @@ class Expectation:
     """
 
     path: str
-    content: Holds | Stands | Hears
+    content: Holds | Stands | Hears | Reads
     label: str = ""
 
 

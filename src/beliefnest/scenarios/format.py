@@ -16,6 +16,7 @@ __all__ = [
     "LABELLED",
     "AgentEntry",
     "AnswersEntry",
+    "BelievedSignEntry",
     "BlockEntry",
     "ContainerEntry",
     "EquipmentEntry",
@@ -27,6 +28,7 @@ __all__ = [
     "ProbeEntry",
     "RadiusEntry",
     "ScenarioFile",
+    "SignEntry",
     "StepEntry",
     "allowed_keys",
     "allowed_values",
@@ -79,6 +81,30 @@ class ContainerEntry(_Entry, frozen=True):
     looks: Annotated[str, _note("What it looks as if it held, in words; see the key `labels`.")] = (
         ""
     )
+
+
+_SignText = Annotated[
+    str,
+    _note("What is written on its front: at most 4 lines of 45 characters, split by line breaks."),
+]
+
+
+class SignEntry(_Entry, frozen=True):
+    """A sign, its block included, and what is written on it."""
+
+    at: Annotated[Position, _note("Where its block is.")]
+    text: _SignText = ""
+    block: Annotated[str, _note("A block state of a sign.")] = "oak_sign"
+
+
+class BelievedSignEntry(_Entry, frozen=True):
+    """A sign that is believed to be somewhere, and to say something."""
+
+    at: Position
+    text: _SignText = ""
+    block: Annotated[
+        str | None, _note("A block state of a sign; null: that of the sign which stands there.")
+    ] = None
 
 
 class EquipmentEntry(_Entry, frozen=True):
@@ -164,6 +190,7 @@ class InitialBeliefEntry(_Entry, frozen=True):
     ]
     containers: list[_BelievedContainerEntry] = []
     blocks: Annotated[list[BlockEntry], _note("Believed blocks; block null: unknown.")] = []
+    signs: Annotated[list[BelievedSignEntry], _note("Believed signs.")] = []
     agents: Annotated[dict[str, Point], _note("Believed positions of the feet.")] = {}
 
 
@@ -204,13 +231,15 @@ class AnswersEntry(_Entry, frozen=True):
 
 
 class ExpectationEntry(_Entry, frozen=True):
-    """What a belief should hold in the end; one of `container`, `agent` and (`not_`)`heard`."""
+    """What a belief should hold in the end: of a container, an agent, a sign, or what was heard."""
 
     path: Annotated[str, _note("The belief; / is the real world.")]
     label: Annotated[str, _note("A name for tables and overrides.")] = ""
     container: Annotated[Position | None, _note("A container that holds `items`.")] = None
     items: Annotated[dict[str, int] | None, _note("Exactly the items known to be in it.")] = None
     agent: Annotated[str | None, _note("An agent that stands at `position`.")] = None
+    sign: Annotated[Position | None, _note("A sign that says `text`.")] = None
+    text: Annotated[str | None, _note("Exactly what is written; null: that is not known.")] = None
     heard: Annotated[str | None, _note("Part of an utterance that is known of.")] = None
     not_heard: Annotated[str | None, _note("Part of no utterance that is known of.")] = None
     position: Annotated[Point | None, _note("Middle of the feet.")] = None
@@ -320,6 +349,7 @@ class ScenarioFile(_Entry, frozen=True):
     ] = []
     blocks: Annotated[list[BlockEntry], _note("The rest of the box is air.")] = []
     containers: list[ContainerEntry] = []
+    signs: list[SignEntry] = []
     places: Annotated[dict[str, Position], _note("What people call places: name to block.")] = {}
     perception: PerceptionEntry = PerceptionEntry()
     senses: Annotated[

@@ -18,6 +18,7 @@ from beliefnest.scenarios.expected import (
     Intends,
     Judge,
     Opens,
+    Reads,
     Says,
     Stands,
     Takes,
@@ -25,6 +26,7 @@ from beliefnest.scenarios.expected import (
 )
 from beliefnest.scenarios.naming import items_text, place_text
 from beliefnest.scenarios.trial import Trial
+from beliefnest.world.signs import sign_words
 from beliefnest.world.values import Event, EventKind, Items, Point, Position
 
 __all__ = [
@@ -141,7 +143,7 @@ def answer_verdict(expected: Answers, answer: str | None) -> Verdict:
     return _verdict(expected, ok, f"answered {answer!r}", by_deed=True)
 
 
-def found_instead(content: Holds | Stands | Hears, state: State) -> str | None:
+def found_instead(content: Holds | Stands | Hears | Reads, state: State) -> str | None:
     """What a simulator holds in place of what was expected of it; None: just that."""
     match content:
         case Holds(place, items):
@@ -155,6 +157,13 @@ def found_instead(content: Holds | Stands | Hears, state: State) -> str | None:
             if ever is any(text in line for _, _, line in state.chat):
                 return None
             return f"{text!r} was {'not ' if ever else ''}heard"
+        case Reads(place, written):
+            meant = "unknown" if written is None else repr(sign_words(written))
+            return (
+                None
+                if state.signs.get(place) == written
+                else f"{sign_found(state, place)}, not {meant}"
+            )
         case Stands(agent, wanted, within):
             position = state.agents[agent].position
             if wanted is None or position is None:
@@ -164,6 +173,14 @@ def found_instead(content: Holds | Stands | Hears, state: State) -> str | None:
             there = "nowhere" if position is None else f"at {place_text(position)}"
             meant = "nowhere" if wanted is None else f"at {place_text(wanted)}"
             return None if ok else f"{agent} is {there}, not {meant}"
+
+
+def sign_found(state: State, place: Position) -> str:
+    """What is known of the sign at a place, in words."""
+    text = state.signs.get(place)
+    if text is None:
+        return f"of a sign at {place_text(place)} nothing is known"
+    return f"the sign at {place_text(place)} says {sign_words(text)!r}"
 
 
 def places_of(items: Items, state: State) -> tuple[Position, ...]:

@@ -17,6 +17,7 @@ from beliefnest.scenarios.expected import (
     Intends,
     Judge,
     Opens,
+    Reads,
     Says,
     Takes,
 )
@@ -139,6 +140,8 @@ def _expected_of(expectation: Expectation) -> dict[str, object]:
     expected: Mapping[str, object]
     if isinstance(content, Holds):
         expected = {"container": list(content.container), "items": dict(content.items)}
+    elif isinstance(content, Reads):
+        expected = {"sign": list(content.sign), "text": content.text}
     elif isinstance(content, Hears):
         expected = {"heard" if content.ever else "not_heard": content.text}
     else:

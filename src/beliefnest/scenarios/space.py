@@ -6,13 +6,23 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.scenarios.document import Document, KeyPath
-from beliefnest.scenarios.format import BlockEntry, ContainerEntry, ScenarioFile
+from beliefnest.scenarios.format import BlockEntry, ContainerEntry, ScenarioFile, SignEntry
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.limits import box_fault, container_slots, items_fault
 from beliefnest.world.registry import Registry
+from beliefnest.world.signs import text_of, written
 from beliefnest.world.values import Box, Items, Position
 
-__all__ = ["UNKNOWN", "build_box", "build_containers", "build_grid", "check_items", "entry_mask"]
+__all__ = [
+    "UNKNOWN",
+    "build_box",
+    "build_containers",
+    "build_grid",
+    "build_signs",
+    "check_inside",
+    "check_items",
+    "entry_mask",
+]
 
 UNKNOWN = -1
 """Block state id of what is not known."""
@@ -45,9 +55,35 @@ def build_grid(document: Document, file: ScenarioFile, box: Box, registry: Regis
             state = registry.state_id(container.block)
         if not registry.is_container(registry.name(state)):
             raise document.fault((*path, "block"), f"{container.block!r} is no container")
-        _check_inside(document, (*path, "at"), container.at, box)
+        check_inside(document, (*path, "at"), container.at, box)
         grid[box.index(container.at)] = state
+    for number, sign in enumerate(file.signs):
+        path = ("signs", number)
+        with document.naming((*path, "block")):
+            state = registry.state_id(sign.block)
+        check_inside(document, (*path, "at"), sign.at, box)
+        grid[box.index(sign.at)] = state
     return grid
+
+
+def build_signs(
+    document: Document,
+    entries: Iterable[SignEntry],
+    grid: BlockGrid,
+    box: Box,
+    registry: Registry,
+) -> dict[Position, str]:
+    """What is written on signs; those on which nothing is are left out."""
+    places: set[Position] = set()
+    texts = {}
+    for number, entry in enumerate(entries):
+        path = ("signs", number)
+        if entry.at in places:
+            raise document.fault((*path, "at"), f"{list(entry.at)} has a sign already")
+        places.add(entry.at)
+        with document.naming(path):
+            texts[entry.at] = text_of(written(registry, int(grid[box.index(entry.at)]), entry.text))
+    return {place: text for place, text in sorted(texts.items()) if text}
 
 
 def build_containers(
@@ -93,7 +129,8 @@ def check_items(
         raise document.fault(path, fault)
 
 
-def _check_inside(document: Document, path: KeyPath, position: Position, box: Box) -> None:
+def check_inside(document: Document, path: KeyPath, position: Position, box: Box) -> None:
+    """Refuse a position that lies outside the box."""
     if position not in box:
         raise document.fault(
             path, f"{list(position)} lies outside the box {list(box.low)} to {list(box.high)}"
@@ -112,7 +149,7 @@ def entry_mask(
     corners = (entry.at, entry.at) if entry.at is not None else (entry.fill or entry.walls)
     assert corners is not None  # one of the three is given
     for corner in corners:
-        _check_inside(document, (*path, key), corner, box)
+        check_inside(document, (*path, key), corner, box)
     low = np.minimum(*corners) - box.low
     high = np.maximum(*corners) - box.low
     i, j, k = (slice(a, b + 1) for a, b in zip(low.tolist(), high.tolist(), strict=True))

@@ -47,6 +47,7 @@ class _Map:
 _ITEMS = _Map("item", "keep")
 _CORNERS = _Each("block")
 _BLOCKS = _Each({"block": "state", "at": "block", "fill": _CORNERS, "walls": _CORNERS})
+_SIGNS = _Each({"at": "block", "text": "text", "block": "state"})
 _EQUIPMENT = dict.fromkeys(("head", "chest", "legs", "feet", "main_hand", "off_hand"), "item")
 _EXPECTATION = {
     "label": "keep",
@@ -55,6 +56,8 @@ _EXPECTATION = {
     "items": _ITEMS,
     "agent": "agent",
     "position": "point",
+    "sign": "block",
+    "text": "text",
     "within": "keep",
     "heard": "text",
     "not_heard": "text",
@@ -84,6 +87,7 @@ _SHAPE: Mapping[str, Any] = {
     "box": _CORNERS,
     "blocks": _BLOCKS,
     "containers": _Each({"at": "block", "block": "state", "items": _ITEMS, "label": "label"}),
+    "signs": _SIGNS,
     "places": _Map("keep", "block"),
     "agents": _Map(
         "agent",
@@ -108,6 +112,7 @@ _SHAPE: Mapping[str, Any] = {
             "path": "path",
             "containers": _Each({"at": "block", "items": _ITEMS, "complete": "keep"}),
             "blocks": _BLOCKS,
+            "signs": _SIGNS,
             "agents": _Map("agent", "point"),
         }
     ),

@@ -6,15 +6,31 @@ from beliefnest.errors import WorldError
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 
-__all__ = ["is_door", "is_open", "used_door"]
+__all__ = ["is_door", "is_doorway", "is_open", "moves_by_hand", "passage", "used_door"]
 
 _KINDS = ("_door", "_trapdoor", "_fence_gate")
 _BY_POWER = "iron_"
+_WAYS = ("_door", "_fence_gate")
 
 
 def is_door(name: str) -> bool:
     """Whether the block of that name opens and shuts: a door, a trapdoor or a fence gate."""
     return name.endswith(_KINDS)
+
+
+def is_doorway(name: str) -> bool:
+    """Whether one walks through the block of that name where it is open: a door or a fence gate."""
+    return name.endswith(_WAYS)
+
+
+def moves_by_hand(name: str) -> bool:
+    """Whether the door, trapdoor or gate of that name is not moved by power alone."""
+    return is_door(name) and not name.startswith(_BY_POWER)
+
+
+def passage(registry: Registry, state: int) -> tuple[int, int]:
+    """Along which of x and z a door or gate is gone through: (1, 0) or (0, 1)."""
+    return (0, 1) if registry.properties(state)["facing"] in ("north", "south") else (1, 0)
 
 
 def is_open(registry: Registry, state: int) -> bool | None:
@@ -41,7 +57,7 @@ def used_door(
     stands_open = is_open(registry, state_at(place))
     if stands_open is None:
         raise WorldError(f"there is no door, trapdoor or gate at {place}, but {text}")
-    if name.startswith(_BY_POWER):
+    if not moves_by_hand(name):
         raise WorldError(f"the {name} at {place} is not moved by hand; set_block() changes it")
     if stands_open is opens:
         raise WorldError(f"the {name} at {place} is {'open' if opens else 'shut'} already")

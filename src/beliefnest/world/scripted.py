@@ -75,7 +75,7 @@ class _Pending:
             dict(facts.items),
             dict(facts.signs),
         )
-        self.old_blocks: dict[Position, int] = {}
+        self.changed = False
         self.blocks: dict[Position, Block] = {}
         self.containers: set[Position] = set()
         self.agents: set[str] = set()
@@ -115,6 +115,7 @@ class ScriptedWorld:
         self._tick = tick
         self._listeners: list[Listener] = []
         self._pending: _Pending | None = None
+        self._handed_out = False
         self._facts = _Facts(np.zeros(self._box.shape, dtype=np.int32), {}, {}, {})
         for position, text in (blocks or {}).items():
             self._put(self._inside(position), text)
@@ -277,8 +278,14 @@ class ScriptedWorld:
 
     @property
     def blocks(self) -> BlockGrid:
-        """Block state ids of the box; what was handed out in one tick does not change later."""
+        """Block state ids of the box; what was handed out does not change later."""
+        self._handed_out = True
         return self._facts.blocks
+
+    @property
+    def signs(self) -> Mapping[Position, str]:
+        """What is written on signs."""
+        return dict(self._facts.signs)
 
     def deposit(self, name: str, position: Position, items: Items) -> None:
         """An agent puts items of its inventory into a container."""
@@ -370,9 +377,9 @@ class ScriptedWorld:
 
     def _change(self, pending: _Pending, place: Position, state: int, actor: str | None) -> None:
         """Replace a block by another one, in the tick that is being made."""
-        if not pending.old_blocks:
+        if self._handed_out or not pending.changed:
             self._facts.blocks = self._facts.blocks.copy()
-        pending.old_blocks.setdefault(place, self._state_at(place))
+            pending.changed, self._handed_out = True, False
         held = self._facts.containers.get(place)
         self._put(place, self._registry.text(state))
         if self._facts.containers.get(place) is not held:

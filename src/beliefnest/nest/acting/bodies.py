@@ -183,7 +183,7 @@ class Bodies:
                 if each.current and each.position is not None
             }
             own = embodied.body.snapshot().agents[agent]
-            return Sensed(seen.blocks, {**agents, agent: own})
+            return Sensed(seen.blocks, {**agents, agent: own}, seen.signs)
 
         return sensed
 
