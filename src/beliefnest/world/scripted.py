@@ -8,7 +8,7 @@ and changes nothing.
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -26,19 +26,21 @@ from beliefnest.world.limits import (
 )
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.scripted_parts import (
+    Facts,
+    Pending,
     checked_box,
+    checked_equipment,
     checked_name,
     checked_utterance,
     rest_of,
     sum_of,
+    whole_position,
 )
 from beliefnest.world.signs import plain_state, text_of, written
 from beliefnest.world.values import (
-    EQUIPMENT_SLOTS,
     AgentState,
     Block,
     Box,
-    DroppedItem,
     Event,
     EventKind,
     Items,
@@ -51,35 +53,6 @@ __all__ = ["Listener", "ScriptedWorld"]
 
 Listener = Callable[[Frame], None]
 """Takes a frame for every tick, empty ones included."""
-
-
-@dataclass
-class _Facts:
-    """What is the case; copied before a tick so that a failed one leaves no trace."""
-
-    blocks: "np.ndarray[tuple[int, int, int], np.dtype[np.int32]]"
-    containers: dict[Position, dict[str, int]]
-    agents: dict[str, AgentState]
-    items: dict[int, DroppedItem]
-    signs: dict[Position, str] = field(default_factory=dict)
-
-
-class _Pending:
-    """What the tick being made changes."""
-
-    def __init__(self, facts: _Facts) -> None:
-        self.saved = _Facts(
-            facts.blocks,
-            dict(facts.containers),
-            dict(facts.agents),
-            dict(facts.items),
-            dict(facts.signs),
-        )
-        self.changed = False
-        self.blocks: dict[Position, Block] = {}
-        self.containers: set[Position] = set()
-        self.agents: set[str] = set()
-        self.events: list[Event] = []
 
 
 class ScriptedWorld:
@@ -114,15 +87,15 @@ class ScriptedWorld:
         self._box = checked_box(box)
         self._tick = tick
         self._listeners: list[Listener] = []
-        self._pending: _Pending | None = None
+        self._pending: Pending | None = None
         self._handed_out = False
-        self._facts = _Facts(np.zeros(self._box.shape, dtype=np.int32), {}, {}, {})
+        self._facts = Facts(np.zeros(self._box.shape, dtype=np.int32), {}, {}, {})
         for position, text in (blocks or {}).items():
             self._put(self._inside(position), text)
         for position, items in (containers or {}).items():
             place = self._inside(position)
             if place not in self._facts.containers:
-                if place in {self._whole(p) for p in blocks or {}}:
+                if place in {whole_position(p) for p in blocks or {}}:
                     raise WorldError(f"the block at {place} is no container; it cannot hold items")
                 self._put(place, "chest")
             self._facts.containers[place] = self._items(items)
@@ -133,7 +106,7 @@ class ScriptedWorld:
         for name, items in (inventories or {}).items():
             self._set_agent(name, inventory=self._items(items))
         for name, worn in (equipment or {}).items():
-            self._set_agent(name, equipment=self._equipment(worn))
+            self._set_agent(name, equipment=checked_equipment(worn, self._items))
         if fault := snapshot_fault(self.snapshot(), self._registry):
             raise WorldError(fault)
 
@@ -180,7 +153,7 @@ class ScriptedWorld:
         if snapshot.box != self._box:
             raise WorldError(f"a snapshot of {snapshot.box} does not fit into {self._box}")
         self._tick = snapshot.tick
-        self._facts = _Facts(
+        self._facts = Facts(
             snapshot.blocks.copy(),
             {place: dict(items) for place, items in snapshot.containers.items()},
             dict(snapshot.agents),
@@ -375,7 +348,7 @@ class ScriptedWorld:
         except InputError as fault:
             raise WorldError(str(fault)) from None
 
-    def _change(self, pending: _Pending, place: Position, state: int, actor: str | None) -> None:
+    def _change(self, pending: Pending, place: Position, state: int, actor: str | None) -> None:
         """Replace a block by another one, in the tick that is being made."""
         if self._handed_out or not pending.changed:
             self._facts.blocks = self._facts.blocks.copy()
@@ -407,7 +380,7 @@ class ScriptedWorld:
             self._facts.signs[place] = block.text
 
     @contextmanager
-    def _act(self) -> Iterator[_Pending]:
+    def _act(self) -> Iterator[Pending]:
         """One act: a tick of its own, or a part of the one being made."""
         if self._pending is not None:
             yield self._pending
@@ -416,8 +389,8 @@ class ScriptedWorld:
             yield pending
 
     @contextmanager
-    def _new_tick(self) -> Iterator[_Pending]:
-        pending = self._pending = _Pending(self._facts)
+    def _new_tick(self) -> Iterator[Pending]:
+        pending = self._pending = Pending(self._facts)
         before = self._tick
         try:
             yield pending
@@ -430,7 +403,7 @@ class ScriptedWorld:
         finally:
             self._pending = None
 
-    def _finish(self, pending: _Pending) -> None:
+    def _finish(self, pending: Pending) -> None:
         self._tick += 1
         facts = self._facts
         frame = Frame(
@@ -487,18 +460,12 @@ class ScriptedWorld:
         return place
 
     def _inside(self, position: Position) -> Position:
-        place = self._whole(position)
+        place = whole_position(position)
         if place not in self._box:
             raise WorldError(
                 f"position {place} lies outside the box {self._box.low}..{self._box.high}"
             )
         return place
-
-    def _whole(self, position: Position) -> Position:
-        if len(position) != 3 or any(p != math.floor(p) for p in position):
-            raise WorldError(f"{position!r} is no block position; give three whole numbers")
-        x, y, z = (int(p) for p in position)
-        return (x, y, z)
 
     def _feet(self, position: Point) -> Point:
         if len(position) != 3 or not all(math.isfinite(p) for p in position):
@@ -527,11 +494,3 @@ class ScriptedWorld:
         if fault := items_fault(items, self._registry, slots, who):
             raise WorldError(f"{moved} cannot be moved: they would {fault}")
         return items
-
-    def _equipment(self, worn: Mapping[str, str]) -> dict[str, str]:
-        for slot, item in worn.items():
-            if slot not in EQUIPMENT_SLOTS:
-                there = ", ".join(EQUIPMENT_SLOTS)
-                raise WorldError(f"there is no slot {slot!r}; there are {there}")
-            self._items({item: 1})
-        return dict(worn)

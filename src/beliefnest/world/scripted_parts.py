@@ -1,17 +1,64 @@
-"""Parts of the scripted world that are functions of their arguments alone."""
+"""Parts of the scripted world: what is the case, what a tick changes, checks of arguments."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 from beliefnest.errors import WorldError
+from beliefnest.world.frames import BlockGrid
 from beliefnest.world.limits import agent_name_fault, box_fault
 from beliefnest.world.texts import fault_of
-from beliefnest.world.values import Box, Items, Position
+from beliefnest.world.values import (
+    EQUIPMENT_SLOTS,
+    AgentState,
+    Block,
+    Box,
+    DroppedItem,
+    Event,
+    Items,
+    Position,
+)
 
 __all__ = [
+    "Facts",
+    "Pending",
     "checked_box",
+    "checked_equipment",
     "checked_name",
     "checked_utterance",
     "rest_of",
     "sum_of",
+    "whole_position",
 ]
+
+
+@dataclass
+class Facts:
+    """What is the case; copied before a tick so that a failed one leaves no trace."""
+
+    blocks: BlockGrid
+    containers: dict[Position, dict[str, int]]
+    agents: dict[str, AgentState]
+    items: dict[int, DroppedItem]
+    signs: dict[Position, str] = field(default_factory=dict)
+
+
+class Pending:
+    """What the tick being made changes."""
+
+    def __init__(self, facts: Facts) -> None:
+        self.saved = Facts(
+            facts.blocks,
+            dict(facts.containers),
+            dict(facts.agents),
+            dict(facts.items),
+            dict(facts.signs),
+        )
+        self.changed = False
+        self.blocks: dict[Position, Block] = {}
+        self.containers: set[Position] = set()
+        self.agents: set[str] = set()
+        self.events: list[Event] = []
 
 
 def checked_box(box: tuple[Position, Position]) -> Box:
@@ -54,3 +101,21 @@ def rest_of(items: Items, change: Items, who: str) -> dict[str, int]:
             raise WorldError(f"{who} has {items.get(name, 0)} {name}, not {count}")
     rest = {name: count - change.get(name, 0) for name, count in items.items()}
     return {name: count for name, count in rest.items() if count}
+
+
+def whole_position(position: Position) -> Position:
+    """A block position; WorldError if it is none."""
+    if len(position) != 3 or any(p != math.floor(p) for p in position):
+        raise WorldError(f"{position!r} is no block position; give three whole numbers")
+    x, y, z = (int(p) for p in position)
+    return (x, y, z)
+
+
+def checked_equipment(worn: Mapping[str, str], check: Callable[[Items], object]) -> dict[str, str]:
+    """Items by slot; WorldError if there is no such slot, and what `check` of items raises."""
+    for slot, item in worn.items():
+        if slot not in EQUIPMENT_SLOTS:
+            there = ", ".join(EQUIPMENT_SLOTS)
+            raise WorldError(f"there is no slot {slot!r}; there are {there}")
+        check({item: 1})
+    return dict(worn)

@@ -228,7 +228,14 @@ class Imagination:
                 performer.failed = True
                 return
             call = performer.calls[0]
-            hand = Hand(name, self.world, self._standing, lambda: self.world.agents, self._standing)
+            hand = Hand(
+                name,
+                self.world,
+                known=self._standing,
+                others=lambda: self.world.agents,
+                signs=lambda: self.world.signs,
+                ground=self._standing,
+            )
             try:
                 doing = _doing(hand, call)
                 next(doing)
