@@ -17,8 +17,23 @@ const DEFAULT_OUTDIR = path.join(__dirname, '..', '..', '_bundle')
 async function build (outdir) {
   fs.rmSync(outdir, { recursive: true, force: true })
   fs.mkdirSync(outdir, { recursive: true })
-  const result = await esbuild.build({
-    entryPoints: [path.join(SOURCE, 'main.js'), path.join(SOURCE, 'channel', 'lifeline.js')],
+  // Two programs: what opens sockets is no part of the one that opens none.
+  const inputs = await bundle(outdir, ['main.js', path.join('channel', 'lifeline.js')], false)
+  Object.assign(inputs, await bundle(outdir, ['realtime.js'], true))
+  fs.writeFileSync(
+    path.join(outdir, `registry-${MINECRAFT_VERSION}.msgpack`), encode(buildRegistry(MINECRAFT_VERSION)))
+  fs.writeFileSync(path.join(outdir, INTERPRETER), interpreterBytes())
+  // Programs in the scripted world have the same class.
+  fs.copyFileSync(path.join(SOURCE, 'sandbox', 'guest', 'vec3.js'), path.join(outdir, 'vec3.js'))
+  const folders = packageFolders(inputs)
+  fs.writeFileSync(path.join(outdir, 'packages.json'), `${JSON.stringify(packageList(folders), null, 1)}\n`)
+  fs.writeFileSync(path.join(outdir, 'licenses.txt'), licenseTexts(folders))
+}
+
+/** @returns {Promise<object>} what programs were made of, by file */
+async function bundle (outdir, programs, overTcp) {
+  const { metafile } = await esbuild.build({
+    entryPoints: programs.map(program => path.join(SOURCE, program)),
     entryNames: '[name]',
     outdir,
     bundle: true,
@@ -30,22 +45,15 @@ async function build (outdir) {
     metafile: true,
     logLevel: 'warning',
     define: { BUNDLED: 'true' },
-    plugins: [replacements(MINECRAFT_VERSION, outdir)]
+    plugins: [replacements(MINECRAFT_VERSION, outdir, overTcp)]
   })
-  fs.writeFileSync(
-    path.join(outdir, `registry-${MINECRAFT_VERSION}.msgpack`), encode(buildRegistry(MINECRAFT_VERSION)))
-  fs.writeFileSync(path.join(outdir, INTERPRETER), interpreterBytes())
-  // Programs in the scripted world have the same class.
-  fs.copyFileSync(path.join(SOURCE, 'sandbox', 'guest', 'vec3.js'), path.join(outdir, 'vec3.js'))
-  const folders = packageFolders(result.metafile)
-  fs.writeFileSync(path.join(outdir, 'packages.json'), `${JSON.stringify(packageList(folders), null, 1)}\n`)
-  fs.writeFileSync(path.join(outdir, 'licenses.txt'), licenseTexts(folders))
+  return metafile.inputs
 }
 
 /** @returns {string[]} folders of the packages the bundle has code or data of, by name */
-function packageFolders (metafile) {
+function packageFolders (inputs) {
   const folders = new Set()
-  for (const input of Object.keys(metafile.inputs)) {
+  for (const input of Object.keys(inputs)) {
     const parts = input.split('/')
     const last = parts.lastIndexOf('node_modules')
     if (last === -1) continue

@@ -17,16 +17,31 @@ const INLINE_BYTES = 20000
 // Where build.js puts the interpreter of agent programs.
 const INTERPRETER = 'quickjs.wasm'
 
-// Data of connections and commands, which bots that are joined in memory do not have.
-const UNUSED = ['commands', 'protocol']
+// Data of connections and commands; bots that are joined in memory do not even have a protocol.
+const UNUSED = ['commands']
+const UNUSED_IN_MEMORY = [...UNUSED, 'protocol']
 
 const empty = 'module.exports = {}'
 
 /** Whole modules by the end of their path, with what stands for each. */
-const STAND_INS = [
+const IN_MEMORY = [
   [/minecraft-protocol\/src\/index\.js$/, `module.exports = {
     createClient () { throw new Error('this build joins bots in memory only') }
+  }`]
+]
+
+/** Over TCP, nobody logs in with an account or serves others. */
+const OVER_TCP = [
+  [/minecraft-protocol\/src\/index\.js$/, `module.exports = {
+    createClient: require('./createClient'), ping: require('./ping')
   }`],
+  [/minecraft-protocol\/src\/client\/(mojangAuth|microsoftAuth)\.js$/, `module.exports = () => {
+    throw new Error('this build plays on servers in offline mode only')
+  }`],
+  [/yggdrasil\/src\/index\.js$/, 'module.exports = { server: () => ({}) }']
+]
+
+const STAND_INS = [
   [/flying-squid\/index\.js$/, `module.exports = {
     UserError: require('./src/lib/user_error'), experience: require('./src/lib/experience')
   }`],
@@ -50,10 +65,10 @@ const STAND_INS = [
   [/prismarine-chunk\/src\/bedrock\/.*\.js$/, empty]
 ]
 
-/** @returns {string} minecraft-data's index of versions, with only `version` in it */
-function versionIndex (version) {
+/** @returns {string} minecraft-data's index of versions, with only `version` in it and without what is unused */
+function versionIndex (version, unused) {
   const paths = JSON.parse(fs.readFileSync(path.join(DATA, 'dataPaths.json'))).pc[version]
-  const getters = Object.entries(paths).filter(([name]) => !UNUSED.includes(name))
+  const getters = Object.entries(paths).filter(([name]) => !unused.includes(name))
     .filter(([name, folder]) => fs.existsSync(path.join(DATA, folder, `${name}.json`)))
     .map(([name, folder]) => {
       const file = JSON.stringify(`./minecraft-data/data/${folder}/${name}.json`)
@@ -62,16 +77,17 @@ function versionIndex (version) {
   return `module.exports = { pc: { ${JSON.stringify(version)}: {\n${getters.join(',\n')}\n} }, bedrock: {} }`
 }
 
-/** An esbuild plugin. `version` is Minecraft's, `outdir` where data files go. */
-function replacements (version, outdir) {
+/** An esbuild plugin. `version` is Minecraft's, `outdir` where data files go, `overTcp` whether bots join so. */
+function replacements (version, outdir, overTcp) {
+  const standIns = [...STAND_INS, ...(overTcp ? OVER_TCP : IN_MEMORY)]
   return {
     name: 'replacements',
     setup (build) {
-      for (const [filter, contents] of STAND_INS) {
+      for (const [filter, contents] of standIns) {
         build.onLoad({ filter }, ({ path: file }) => ({ contents, loader: 'js', resolveDir: path.dirname(file) }))
       }
       build.onLoad({ filter: /minecraft-data\/data\.js$/ }, ({ path: file }) => ({
-        contents: versionIndex(version), loader: 'js', resolveDir: path.dirname(file)
+        contents: versionIndex(version, overTcp ? UNUSED : UNUSED_IN_MEMORY), loader: 'js', resolveDir: path.dirname(file)
       }))
       build.onLoad({ filter: /minecraft-data\/minecraft-data\/data\/pc\/.*\.json$/ }, ({ path: file }) => ({
         contents: dataModule(file, outdir), loader: 'js'

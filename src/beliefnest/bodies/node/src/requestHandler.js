@@ -57,25 +57,36 @@ class RequestHandler {
     }
   }
 
-  async hello ({ protocol, seed, minecraft }) {
+  async hello (request) {
+    const { protocol, minecraft } = request
     if (protocol !== PROTOCOL) {
       throw new BadRequest(`protocol ${protocol} was asked for; this side speaks ${PROTOCOL}`)
     }
     if (minecraft !== versions.minecraft) {
       throw new BadRequest(`Minecraft ${minecraft} was asked for; this build has ${versions.minecraft}`)
     }
-    this.clock.root.random = new Random(String(seed))
     const registry = require('prismarine-registry')(minecraft)
     registry.loadDimensionCodec(registry.loginPacket.dimensionCodec)
     rememberBlocks(registry)
-    const serv = createServer(registry)
-    const alive = () => this.beat({ beat: serv.region?.tick ?? null })
-    this.regions = new Regions(serv, this.clock, frame => this.send({ frame }), alive)
+    const alive = () => this.beat({ beat: this.tick })
+    this.regions = await this.open(registry, request, alive)
     this.sandbox = createSandbox({}, alive)
     // For its names, which are those of every bot.
     await this.sandbox.warm(scopeOf({ registry }, () => {}))
     this.runner = new Runner(this.regions, request => this.sandbox.run(request), scopeOf)
     return { protocol: PROTOCOL, node: process.version, ...versions }
+  }
+
+  /** @returns {Promise<object>} the regions of the world that `hello` asks for */
+  async open (registry, { seed }, alive) {
+    this.clock.root.random = new Random(String(seed))
+    const serv = createServer(registry)
+    return new Regions(serv, this.clock, frame => this.send({ frame }), alive)
+  }
+
+  /** The tick of the region that runs; null if none does. */
+  get tick () {
+    return this.regions?.serv.region?.tick ?? null
   }
 }
 

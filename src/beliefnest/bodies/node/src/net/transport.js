@@ -4,28 +4,24 @@
  * without sockets, compression or encryption. Both ends look like node-minecraft-protocol
  * clients that have reached the `play` state.
  */
-const { EventEmitter } = require('node:events')
+const { End, handOver } = require('./end')
 
 // What a bot may send before the other side has taken any of it: some loops of Mineflayer that wait for a window
 // which is closed meanwhile would go on without letting time pass.
 const MOST_AT_ONCE = 5000
 
-class MemoryEnd extends EventEmitter {
+class MemoryEnd extends End {
   /**
    * @param {object} link what both ends share: `version`, `supportFeature`, `report(error)`
    * @param {string} username
    * @param {string} uuid
    */
   constructor (link, username, uuid) {
-    super()
-    this.setMaxListeners(0)
+    super(username, uuid)
     this.link = link
     this.version = link.version
     this.protocolVersion = link.protocolVersion
-    this.username = username
-    this.uuid = uuid
     this.state = 'play'
-    this.latency = 0
     this.ended = false
     this.expected = 0
     this.settings = {}
@@ -100,12 +96,8 @@ class ClientEnd extends MemoryEnd {
 class ServerEnd extends MemoryEnd {
   checkRoom () {}
 
-  /** Handlers on the server side may be async; what they throw is reported all the same. */
   deliver (name, params) {
-    for (const listener of this.listeners(name)) {
-      const result = listener.call(this, params)
-      if (result instanceof Promise) result.catch(this.link.report)
-    }
+    handOver(this, name, params, this.link.report)
   }
 }
 

@@ -4,10 +4,8 @@ const { connect } = require('../net/transport')
 const { BadRequest } = require('../channel/errors')
 const { orBadRequest } = require('./changes')
 const { agentState } = require('./facts')
-const { agentUuid, INJECTION_MS, startBot, stopBot } = require('../bots/bot')
-
-// What gravity leaves of the vertical speed of one who stands: (0 - 0.08) * 0.98 a tick.
-const STANDING_VELOCITY = -0.0784
+const { join, showWorld } = require('./joining')
+const { agentUuid, ground, INJECTION_MS, startBot, stopBot } = require('../bots/bot')
 
 class Bodies {
   /**
@@ -34,7 +32,7 @@ class Bodies {
     for (const { player, state } of joining) this.letIn(region, player, state)
     await this.clock.advance(0)
     for (const { agent, bot, player, state } of joining) {
-      ground(bot, player, state)
+      stand(bot, player, state)
       bot.physicsEnabled = true
       region.bodies.set(agent, { bot, player })
     }
@@ -53,21 +51,11 @@ class Bodies {
     })
     const bot = startBot(client, this.clock)
     bot.physicsEnabled = false
-    const player = this.serv.join(server, {
-      position: region.toServer(state.position),
-      yaw: state.yaw,
-      pitch: state.pitch,
-      onGround: state.on_ground,
-      health: state.health,
-      food: state.food
-    })
-    return { agent, bot, player, state }
+    return { agent, bot, player: join(this.serv, region, server, state), state }
   }
 
   letIn (region, player, state) {
-    player.sendWorld(region.columns)
-    player.meet()
-    player.emit('connected')
+    showWorld(player, region.columns)
     give(player, state)
   }
 
@@ -87,7 +75,7 @@ class Bodies {
       give(player, state)
     }
     await this.clock.advance(0)
-    for (const { bot, player, state } of changed) ground(bot, player, state)
+    for (const { bot, player, state } of changed) stand(bot, player, state)
   }
 
   // Who acts first in a tick depends on who joined first, so that all join anew.
@@ -115,7 +103,7 @@ class Bodies {
     await this.clock.advance(0)
     for (const { bot, player, state, velocity } of settling) {
       if (!state.on_ground) bot.entity.velocity.update(velocity)
-      ground(bot, player, state)
+      stand(bot, player, state)
     }
   }
 
@@ -178,9 +166,8 @@ function give (player, { inventory, equipment, health }) {
 }
 
 // A client answers being placed with "not on the ground".
-function ground (bot, player, { on_ground: onGround }) {
-  bot.entity.onGround = onGround
-  if (onGround) bot.entity.velocity.y = STANDING_VELOCITY
+function stand (bot, player, { on_ground: onGround }) {
+  ground(bot, onGround)
   player.onGround = onGround
 }
 

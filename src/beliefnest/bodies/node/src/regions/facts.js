@@ -61,6 +61,17 @@ function itemStates (serv, region) {
   return items
 }
 
+/** @returns {object} what a Recorder asks of a server in this process */
+function factsOf (serv, region) {
+  return {
+    agents: () => agentStates(serv, region),
+    items: () => itemStates(serv, region),
+    changedContainers: () => changedContainers(serv, region),
+    blockText: state => serv.blocks.text(state),
+    signText: position => serv.signs.get(region.toServer(position))
+  }
+}
+
 /** Puts what lies in a region exactly where the channel says it does. */
 function settleItems (serv, region) {
   for (const entity of serv.itemEntities(place => region.contains(place))) {
@@ -69,4 +80,4 @@ function settleItems (serv, region) {
   }
 }
 
-module.exports = { agentState, agentStates, changedContainers, containerStates, itemStates, settleItems, signStates }
+module.exports = { agentState, agentStates, containerStates, factsOf, itemStates, rounded, settleItems, signStates, sorted }

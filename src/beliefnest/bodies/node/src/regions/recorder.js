@@ -1,16 +1,20 @@
 'use strict'
 /** Collects what changes in a region during a tick, and makes frames of it. */
 const { Claims } = require('./claims')
-const { stateAt } = require('./columns')
-const { agentStates, changedContainers, itemStates } = require('./facts')
 
 // Details of events that say where something is.
 const PLACES = ['position', 'destination']
 
 class Recorder {
-  constructor (serv, region) {
-    this.serv = serv
+  /**
+   * @param {import('./region').Region} region
+   * @param {object} facts what a body has to know of its server, whichever that is: `agents()` and `items()` that are
+   *   there now (as of the channel), `changedContainers()` since the last call as [x, y, z, ITEMS or null],
+   *   `blockText(state)`, `signText(position)` (scenario; empty where nothing is written)
+   */
+  constructor (region, facts) {
     this.region = region
+    this.facts = facts
     this.known = { agents: new Map(), items: new Map() }
     this.claims = new Claims(region)
     this.clear()
@@ -44,23 +48,20 @@ class Recorder {
     const place = this.region.toScenario(position)
     this.blocks.set(place.join(), [...place, state])
     this.event({
-      kind: 'block_update', actor: null, detail: { position: place, block: this.serv.blocks.text(state) }
+      kind: 'block_update', actor: null, detail: { position: place, block: this.facts.blockText(state) }
     })
   }
 
-  /** The text of a sign became another one. */
-  signChanged ({ position, text, player }) {
-    const state = stateAt(this.serv, position)
+  /** The text of a sign, a block in `state`, became another one. */
+  signChanged (position, state, text, actor) {
     const place = this.region.toScenario(position)
     this.blocks.set(place.join(), [...place, state])
-    this.event({
-      kind: 'block_update', actor: player?.username ?? null, detail: { position: place, block: this.serv.blocks.text(state), text }
-    })
+    this.event({ kind: 'block_update', actor, detail: { position: place, block: this.facts.blockText(state), text } })
   }
 
   /** A row of a block that changed, with what is written on it. */
   row ([x, y, z, state]) {
-    const text = this.serv.signs.get(this.region.toServer([x, y, z]))
+    const text = this.facts.signText([x, y, z])
     return text === '' ? [x, y, z, state] : [x, y, z, state, text]
   }
 
@@ -71,9 +72,9 @@ class Recorder {
 
   /** Takes the present state as known, so that frames tell only what differs from it. */
   settle () {
-    this.changes('agents', agentStates(this.serv, this.region))
-    this.changes('items', itemStates(this.serv, this.region))
-    changedContainers(this.serv, this.region)
+    this.changes('agents', this.facts.agents())
+    this.changes('items', this.facts.items())
+    this.facts.changedContainers()
     this.forgetClaims()
     this.clear()
   }
@@ -83,10 +84,10 @@ class Recorder {
     const frame = {
       region: this.region.name,
       tick: this.region.tick,
-      agents: this.changes('agents', agentStates(this.serv, this.region)),
+      agents: this.changes('agents', this.facts.agents()),
       blocks: [...this.blocks.values()].map(block => this.row(block)),
-      containers: changedContainers(this.serv, this.region),
-      items: this.changes('items', itemStates(this.serv, this.region)),
+      containers: this.facts.changedContainers(),
+      items: this.changes('items', this.facts.items()),
       events: this.events
     }
     this.clear()

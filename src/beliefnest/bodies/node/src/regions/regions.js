@@ -6,7 +6,7 @@ const { Bodies } = require('./bodies')
 const { Box } = require('./box')
 const { buildColumns, dropColumns, readStates } = require('./columns')
 const { applyBlocks, applyContainers, applyItems, applySigns } = require('./changes')
-const { agentStates, containerStates, itemStates, settleItems, signStates } = require('./facts')
+const { agentStates, containerStates, factsOf, itemStates, settleItems, signStates } = require('./facts')
 const { Recorder } = require('./recorder')
 const { Region, TICK_MS } = require('./region')
 const { BadRequest } = require('../channel/errors')
@@ -28,7 +28,8 @@ class Regions {
     this.bodies.keepSpeeds()
     this.byName = new Map()
     serv.blocks.on('change', ({ position, after }) => serv.region.recorder.blockChanged(position, after))
-    serv.signs.on('change', change => serv.region.recorder.signChanged(change))
+    serv.signs.on('change', ({ position, text, player }) => serv.region.recorder.signChanged(
+      position, serv.blocks.at(position).stateId, text, player?.username ?? null))
     serv.facts.on('event', event => serv.region.recorder.serverEvent(event))
   }
 
@@ -60,7 +61,7 @@ class Regions {
     requireHeight(this.serv, box)
     const states = statesOf(blocks, box)
     const region = new Region({ name, seed, box, origin: this.allotment.take(box), tick, known })
-    region.recorder = new Recorder(this.serv, region)
+    region.recorder = new Recorder(region, factsOf(this.serv, region))
     this.byName.set(name, region)
     try {
       await this.inside(region, async () => {

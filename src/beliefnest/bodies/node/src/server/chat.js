@@ -14,6 +14,8 @@ module.exports.server = serv => {
     return component
   }
   serv._createNetworkEncodedChatComponent = text => serv._createChatComponent(text).toNetworkFormat()
+  /** What a player types that begins with a slash and is no whisper. */
+  serv.command = (player, command) => player.system(`Agents have no commands: /${command.split(' ')[0]} was not run.`)
   serv.broadcast = text => { for (const player of serv.players) player.system(text) }
 }
 
@@ -30,10 +32,10 @@ module.exports.player = (player, serv) => {
     serv.region.emit({ kind: 'chat', actor: player.agent, detail: { text: message } })
   })
 
-  // What every player may do, operator or not; all other commands are refused.
+  // What every player may do, operator or not.
   player._client.on('chat_command', ({ command }) => {
     const whispered = WHISPER.exec(command)
-    if (whispered === null) player.system(`Agents have no commands: /${command.split(' ')[0]} was not run.`)
+    if (whispered === null) serv.command(player, command)
     else whisper(player, serv, ...whispered.slice(1))
   })
 }

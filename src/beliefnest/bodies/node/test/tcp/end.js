@@ -1,20 +1,16 @@
 'use strict'
 /** The server's end of a connection over TCP, as `serv.join` takes it (see src/net/transport.js). */
-const { EventEmitter } = require('node:events')
+const { End, handOver } = require('../../src/net/end')
 
-class TcpEnd extends EventEmitter {
+class TcpEnd extends End {
   /**
    * @param {import('minecraft-protocol').Client} client that has reached the `play` state
    * @param {(action: () => any) => any} inside runs an action in the region of the player
    * @param {(error: Error) => void} report hears what a packet's handlers throw
    */
   constructor (client, inside, report) {
-    super()
-    this.setMaxListeners(0)
+    super(client.username, client.uuid)
     this.client = client
-    this.username = client.username
-    this.uuid = client.uuid
-    this.latency = 0
     this.report = report
     client.on('packet', (params, { name, state }) => {
       if (state === 'play') inside(() => this.deliver(name, params))
@@ -28,13 +24,10 @@ class TcpEnd extends EventEmitter {
   }
 
   deliver (name, params) {
-    for (const listener of this.listeners(name)) {
-      try {
-        const result = listener.call(this, params)
-        if (result instanceof Promise) result.catch(this.report)
-      } catch (error) {
-        this.report(error)
-      }
+    try {
+      handOver(this, name, params, this.report)
+    } catch (error) {
+      this.report(error)
     }
   }
 

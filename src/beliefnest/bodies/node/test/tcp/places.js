@@ -9,7 +9,8 @@ const { Allotment } = require('../../src/regions/allotment')
 const { Box } = require('../../src/regions/box')
 const { applyContainers, applyItems } = require('../../src/regions/changes')
 const { buildColumns, dropColumns } = require('../../src/regions/columns')
-const { agentState } = require('../../src/regions/facts')
+const { agentState, factsOf } = require('../../src/regions/facts')
+const { join, showWorld } = require('../../src/regions/joining')
 const { Recorder } = require('../../src/regions/recorder')
 const { Region, TICK_MS } = require('../../src/regions/region')
 const { TcpEnd } = require('./end')
@@ -49,7 +50,7 @@ class Places {
     const box = new Box(...corners)
     const origin = this.allotment.take(box)
     const region = new Region({ name, seed: name, box, origin, tick: 0 })
-    region.recorder = new Recorder(serv, region)
+    region.recorder = new Recorder(region, factsOf(serv, region))
     const place = { region, events: [], players: new Map() }
     this.byName.set(name, place)
     for (const [agent, player] of Object.entries(players)) this.expected.set(player, { place, agent, state: agents[agent] })
@@ -70,18 +71,10 @@ class Places {
     const { region } = place
     const inside = action => this.inside(place, action)
     return inside(() => {
-      const player = this.serv.join(new TcpEnd(client, inside, error => region.faults.push({ error, agent })), {
-        position: region.toServer(state.position),
-        yaw: state.yaw,
-        pitch: state.pitch,
-        onGround: state.on_ground,
-        health: state.health,
-        food: state.food
-      })
+      const end = new TcpEnd(client, inside, error => region.faults.push({ error, agent }))
+      const player = join(this.serv, region, end, state)
       player.agent = agent
-      player.sendWorld(region.columns)
-      player.meet()
-      player.emit('connected')
+      showWorld(player, region.columns)
       player.setPossessions(state)
       player.updateHealth(state.health)
       place.players.set(agent, player)

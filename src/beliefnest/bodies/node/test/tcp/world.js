@@ -11,7 +11,7 @@ const { setTimeout: sleep } = require('node:timers/promises')
 const { rememberBlocks } = require('../../src/blocks')
 const { startBot } = require('../../src/bots/bot')
 const versions = require('../../src/versions')
-const { connect } = require('./client')
+const { connect } = require('../../src/remote/connection')
 
 const TICK_MS = 50
 const LIMIT_MS = 180_000

@@ -1,7 +1,7 @@
 'use strict'
 
 const { EventEmitter } = require('events')
-const { decode, encode } = require('./lib/states')
+const { blockStates, encode } = require('./lib/states')
 
 /**
  * Blocks, read and written at once. flying-squid's own accessors are asynchronous, so that
@@ -13,42 +13,19 @@ const { decode, encode } = require('./lib/states')
  */
 module.exports.server = (serv) => {
   const { registry } = serv
-  const Block = require('prismarine-block')(registry)
-  const known = new Map()
+  const { describe, text } = blockStates(registry)
   const blocks = new EventEmitter()
   blocks.setMaxListeners(0)
-
-  function describe (stateId) {
-    if (!known.has(stateId)) {
-      const block = Block.fromStateId(stateId, 0)
-      known.set(stateId, Object.freeze({
-        stateId,
-        type: block.type,
-        name: block.name,
-        shapes: block.shapes,
-        solid: block.boundingBox === 'block',
-        transparent: block.transparent,
-        properties: Object.freeze(decode(registry, stateId)),
-      }))
-    }
-    return known.get(stateId)
-  }
 
   /** `{stateId, type, name, shapes, solid, transparent, properties}` of the block there. */
   blocks.at = (position) => describe(serv.overworld.sync.getBlockStateId(position))
   blocks.describe = describe
+  blocks.text = text
   /** State id by name and properties. */
   blocks.state = (name, properties = {}) => encode(registry, name, properties)
   /** The state a block has after some of its properties changed. */
   blocks.stateWith = (block, properties) => encode(
     registry, block.name, { ...block.properties, ...properties })
-
-  /** A state as text, e.g. `lever[face=floor,facing=north,powered=true]`. */
-  blocks.text = (stateId) => {
-    const { name, properties } = describe(stateId)
-    const entries = Object.entries(properties).sort(([a], [b]) => (a < b ? -1 : 1))
-    return entries.length ? `${name}[${entries.map((entry) => entry.join('=')).join(',')}]` : name
-  }
 
   /** Tells a player what is there, whether or not it changed. */
   blocks.send = (player, position) => player._client.write('block_change', {

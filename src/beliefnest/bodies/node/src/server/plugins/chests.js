@@ -1,8 +1,7 @@
 'use strict'
 
 const { cell, containerMenu } = require('./lib/menus')
-const { vecOf } = require('./lib/positions')
-const { vectorOf, clockwise, counterclockwise } = require('./lib/directions')
+const { halvesAt, partnerOf } = require('./lib/doubleChest')
 
 const HALF = 27
 const WINDOW_9X3 = 2
@@ -10,23 +9,8 @@ const WINDOW_9X6 = 5
 const TITLES = { chest: 'Chest', trapped_chest: 'Trapped Chest', barrel: 'Barrel' }
 const LID_ACTION = 1
 
-/** Where the other half of a double chest stands, by the state of one half; null for a single. */
-function partnerOf (position, { properties }) {
-  if (!properties.type || properties.type === 'single') return null
-  const turn = properties.type === 'left' ? clockwise : counterclockwise
-  return vecOf(position).plus(vectorOf(turn(properties.facing)))
-}
-
 const isFullCube = ({ shapes }) => shapes.length === 1 &&
   shapes[0].every((edge, i) => edge === (i < 3 ? 0 : 1))
-
-/** The halves of what opens at a position, the upper one of the window first. */
-function halvesAt (serv, position) {
-  const block = serv.blocks.at(position)
-  const other = partnerOf(position, block)
-  if (!other || serv.blocks.at(other).name !== block.name) return [vecOf(position)]
-  return block.properties.type === 'right' ? [vecOf(position), other] : [other, vecOf(position)]
-}
 
 function isBlocked (serv, position) {
   const above = serv.blocks.at(position.offset(0, 1, 0))
@@ -51,7 +35,7 @@ module.exports.server = (serv) => {
   Object.keys(TITLES).forEach((name) => serv.containers.define(name, HALF))
 
   function open ({ player, position, block }) {
-    const positions = halvesAt(serv, position)
+    const positions = halvesAt(serv.blocks.at, position)
     if (positions.some((half) => isBlocked(serv, half))) return true
     const cells = positions.flatMap((half) => {
       const slots = serv.containers.slots(half)

@@ -1,5 +1,6 @@
 'use strict'
 
+const { handOver } = require('./lib/gifts')
 const { alike, withCount } = require('./lib/items')
 const { isInReach, metadataOf } = require('./lib/itemEntity')
 const { step } = require('./lib/motion')
@@ -7,19 +8,7 @@ const { together, without } = require('./lib/throws')
 
 const LIFETIME = 6000
 const MERGE_DISTANCE = 0.5
-/** How long what was thrown is a gift to whoever picks it up; later it is found. */
-const GIFT_TICKS = 240
 const VOID_DEPTH = 64
-
-/** What somebody threw and somebody else picks up was given, unless it lay there for long. */
-function handOver (serv, player, throws, item) {
-  for (const [agent, count, tick] of throws) {
-    if (agent === player.agent || serv.region.tick - tick > GIFT_TICKS) continue
-    const given = withCount(item, count)
-    serv.players.find((other) => other.agent === agent)?.countAct('give_item_to_other', given, player.agent)
-    player.countAct('receive_item_from_other', given, agent)
-  }
-}
 
 /** Dropped items fall, lie, come together, are picked up as far as they fit, and vanish in the end. */
 module.exports.server = (serv) => {
@@ -33,7 +22,7 @@ module.exports.server = (serv) => {
     if (taken === 0) return
     const { by, left } = without(entity.thrown, taken)
     entity.thrown = left
-    handOver(serv, player, by, withCount(entity.item, taken))
+    handOver(serv.players, serv.region.tick, player, by, withCount(entity.item, taken))
     serv._writeAll('collect', {
       collectedEntityId: entity.id, collectorEntityId: player.id, pickupItemCount: taken,
     })

@@ -39,4 +39,36 @@ function encode (registry, name, properties) {
   return block.minStateId + index
 }
 
-module.exports = { decode, encode }
+/** What is asked of the block states of a version, each worked out once. */
+function blockStates (registry) {
+  const Block = require('prismarine-block')(registry)
+  const known = new Map()
+
+  /** `{stateId, type, name, shapes, solid, transparent, properties}` */
+  function describe (stateId) {
+    if (!known.has(stateId)) {
+      const block = Block.fromStateId(stateId, 0)
+      known.set(stateId, Object.freeze({
+        stateId,
+        type: block.type,
+        name: block.name,
+        shapes: block.shapes,
+        solid: block.boundingBox === 'block',
+        transparent: block.transparent,
+        properties: Object.freeze(decode(registry, stateId)),
+      }))
+    }
+    return known.get(stateId)
+  }
+
+  /** A state as text, e.g. `lever[face=floor,facing=north,powered=true]`. */
+  function text (stateId) {
+    const { name, properties } = describe(stateId)
+    const entries = Object.entries(properties).sort(([a], [b]) => (a < b ? -1 : 1))
+    return entries.length ? `${name}[${entries.map((entry) => entry.join('=')).join(',')}]` : name
+  }
+
+  return { describe, text }
+}
+
+module.exports = { blockStates, decode, encode }

@@ -1,0 +1,190 @@
+'use strict'
+/** The agents of a place on a server elsewhere: their connections, and how they are put where they are to be. */
+const { setTimeout: sleep } = require('node:timers/promises')
+const { isDeepStrictEqual } = require('node:util')
+const { BadRequest } = require('../channel/errors')
+const { ground, stopBot } = require('../bots/bot')
+const { layOut, possessionsOf } = require('../server/plugins/lib/slots')
+const { wrap } = require('../server/angles')
+const { rounded, sorted } = require('../regions/facts')
+const { Link } = require('./link')
+const { Witness } = require('./witness')
+
+const NEAR = 0.02
+const FULL = 20
+const SLOTS = 46
+const FIRST_HOTBAR = 36
+const PLACING_MS = 10_000
+const RESULT = 0
+const ANSWER_MS = 1000
+
+class Agents {
+  /**
+   * @param {import('./scene').Scene} scene
+   * @param {import('./operator').Operator} operator
+   * @param {object} commands of commandsFor
+   * @param {object} registry
+   * @param {(agent: string) => object} connect begins the connection of one
+   */
+  constructor (scene, operator, commands, registry, connect) {
+    this.scene = scene
+    this.region = scene.region
+    this.operator = operator
+    this.commands = commands
+    this.registry = registry
+    this.connect = connect
+    this.Item = require('prismarine-item')(registry)
+    this.links = new Map()
+    this.latest = new Map()
+  }
+
+  /** Lets agents in, all at the same time. */
+  async add (agents, patienceMs) {
+    const { operator, region } = this
+    const players = Object.keys(operator.bot.players)
+    for (const agent of Object.keys(agents)) {
+      if (players.includes(agent)) throw new BadRequest(`a player called ${agent} is on the server already; end the other run, or give the agent another name`)
+    }
+    await Promise.all(Object.keys(agents).sort().map(async agent => {
+      const witness = new Witness(agent, region, this.scene, this.Item)
+      this.scene.witnesses.set(agent, witness)
+      const link = new Link(agent, () => this.connect(agent), operator.server, patienceMs, () => this.stand(agent))
+      link.on('begun', (bot, client) => witness.attach(bot, client))
+      link.on('lost', reason => region.faults.push({ agent, error: new Error(`it lost its connection to the server (${reason})`) }))
+      this.links.set(agent, link)
+      await link.open()
+      region.bodies.set(agent, { get bot () { return link.bot }, player: witness })
+    }))
+    await this.place(agents)
+  }
+
+  /** Lets an agent leave. */
+  async remove (agent) {
+    const link = this.links.get(agent)
+    this.links.delete(agent)
+    this.latest.delete(agent)
+    this.scene.witnesses.delete(agent)
+    this.region.bodies.delete(agent)
+    await link?.close()
+  }
+
+  /** Gravity holds for one who has come in once the ground is there. */
+  async stand (agent) {
+    const { bot } = this.links.get(agent)
+    if (!this.latest.has(agent)) return
+    await bot.waitForChunksToLoad()
+    bot.physicsEnabled = true
+  }
+
+  /** Makes agents be where, and have what, they are to. */
+  async place (agents) {
+    const { operator, commands } = this
+    const placing = Object.entries(agents)
+    for (const [agent, state] of placing) {
+      this.bot(agent).physicsEnabled = false
+      operator.type(commands.mode(agent, 'survival'))
+      operator.type(commands.clear(agent))
+      this.slots(agent, state).forEach((stack, slot) => { if (stack) operator.type(commands.wear(agent, slot, stack)) })
+      if (operator.can('effect') && this.bot(agent).health < FULL && state.health === FULL) operator.type(commands.heal(agent))
+      if (operator.can('effect') && this.bot(agent).food < FULL && state.food === FULL) operator.type(commands.feed(agent))
+      operator.type(commands.go(agent, state.position, state))
+    }
+    await Promise.all(placing.map(([agent, state]) => this.arrived(agent, state)))
+    for (const [agent, state] of placing) {
+      const bot = this.bot(agent)
+      bot.setQuickBarSlot(0)
+      ground(bot, state.on_ground)
+      bot.physicsEnabled = true
+      this.scene.witnesses.get(agent).stoodAt = bot.entity.position.floored()
+      this.latest.set(agent, this.look(agent))
+    }
+  }
+
+  async arrived (agent, state) {
+    const bot = this.bot(agent)
+    const there = () => bot.entity.position.distanceTo({ x: state.position[0], y: state.position[1], z: state.position[2] }) < NEAR
+    const has = () => isDeepStrictEqual(this.look(agent).inventory, sorted(state.inventory))
+    if (await this.operator.until(() => there() && has(), PLACING_MS)) {
+      await bot.waitForChunksToLoad()
+      return
+    }
+    const what = there() ? `has ${JSON.stringify(this.look(agent).inventory)} instead of ${JSON.stringify(state.inventory)}` : `is at ${bot.entity.position} instead of (${state.position.join(', ')})`
+    throw new BadRequest(`${agent} ${what} on the server; it said last: ${this.operator.lines.at(-1) ?? 'nothing'}`)
+  }
+
+  slots (agent, state) {
+    try {
+      return layOut({ Item: this.Item, registry: this.registry }, SLOTS, state, agent)
+    } catch (error) {
+      if (error instanceof RangeError) throw new BadRequest(error.message)
+      throw error
+    }
+  }
+
+  bot (agent) {
+    return this.links.get(agent).bot
+  }
+
+  /** @returns {object} AGENT by name; one who is away is as it was last */
+  states () {
+    for (const [agent, link] of this.links) if (link.isHere) this.latest.set(agent, this.look(agent))
+    return Object.fromEntries([...this.latest].sort(([a], [b]) => (a < b ? -1 : 1)))
+  }
+
+  look (agent) {
+    const { entity, health, food, inventory, currentWindow, quickBarSlot } = this.bot(agent)
+    const stacks = [currentWindow?.selectedItem ?? inventory.selectedItem, ...inventory.slots.slice(1)]
+    if (currentWindow) {
+      const shift = currentWindow.inventoryStart - inventory.inventoryStart
+      for (let slot = inventory.inventoryStart; slot < inventory.inventoryEnd; slot++) stacks[slot] = currentWindow.slots[slot + shift]
+    }
+    stacks[RESULT] ??= null
+    const possessions = possessionsOf(stacks, stacks[FIRST_HOTBAR + (quickBarSlot ?? 0)])
+    const { x, y, z } = entity.position
+    return {
+      position: [x, y, z].map(rounded),
+      yaw: rounded(wrap(entity.yaw)),
+      pitch: rounded(wrap(entity.pitch)),
+      on_ground: entity.onGround,
+      equipment: possessions.equipment,
+      inventory: sorted(possessions.inventory),
+      health,
+      food
+    }
+  }
+
+  /** Ends what agents were doing; resolves when all they did has been handled and seen. */
+  async rest (agents) {
+    for (const agent of agents) if (this.links.get(agent).isHere) stopBot(this.bot(agent))
+    await this.settled()
+    for (const agent of agents) this.scene.witnesses.get(agent).rest()
+  }
+
+  async settled () {
+    const here = [...this.links.values()].filter(({ isHere }) => isHere)
+    await Promise.all(here.map(({ bot }) => bot.tabComplete('/', true, false, ANSWER_MS).catch(() => {})))
+    const from = this.region.now()
+    await this.operator.until(() => this.region.now() >= from + 2 || !this.operator.link.isHere, ANSWER_MS)
+    if (this.operator.link.isHere) await this.operator.settled().catch(() => {})
+    await this.operator.until(() => this.scene.isQuiet)
+  }
+
+  /** Resolves when all agents are connected. @throws {Unplayable} if one was given up */
+  async present () {
+    for (const link of this.links.values()) {
+      while (!link.isHere) {
+        if (link.failure !== null) throw link.failure
+        await sleep(20)
+      }
+    }
+  }
+
+  async close () {
+    await Promise.all([...this.links.values()].map(link => link.close()))
+    this.links.clear()
+    this.scene.witnesses.clear()
+    this.region.bodies.clear()
+  }
+}
+
+module.exports = { Agents }

@@ -1,0 +1,59 @@
+'use strict'
+/** The texts of the vanilla commands that an operator types; places are scenario coordinates, angles as on the channel. */
+const { toDegrees } = require('../server/angles')
+
+/** What an operator needs, without which nothing can be set up. */
+const NEEDED = ['fill', 'setblock', 'tp', 'item', 'clear', 'forceload', 'gamemode', 'kill']
+/** What is used where it is there. */
+const USEFUL = ['effect', 'summon', 'data']
+
+const SLOTS = { 5: 'armor.head', 6: 'armor.chest', 7: 'armor.legs', 8: 'armor.feet', 45: 'weapon.offhand' }
+const FIRST_OWN = 9
+const FIRST_HOTBAR = 36
+
+/** @returns {string} the game's name of a slot of an inventory */
+function slotName (slot) {
+  if (slot in SLOTS) return SLOTS[slot]
+  return slot >= FIRST_HOTBAR ? `hotbar.${slot - FIRST_HOTBAR}` : `inventory.${slot - FIRST_OWN}`
+}
+
+/**
+ * @param {import('../regions/place').Place} place
+ * @param {(state: number) => string} textOf a block state
+ */
+function commandsFor (place, textOf) {
+  const at = position => {
+    const { x, y, z } = place.toServer(position)
+    return `${x} ${y} ${z}`
+  }
+  const stack = item => item === null ? 'minecraft:air' : `minecraft:${item.name} ${item.count}`
+  return {
+    blocks: ({ state, low, high }) => low.every((value, axis) => value === high[axis])
+      ? `setblock ${at(low)} minecraft:${textOf(state)}`
+      : `fill ${at(low)} ${at(high)} minecraft:${textOf(state)}`,
+    contents: (position, slot, item) => `item replace block ${at(position)} container.${slot} with ${stack(item)}`,
+    wear: (agent, slot, item) => `item replace entity ${agent} ${slotName(slot)} with ${stack(item)}`,
+    clear: agent => `clear ${agent}`,
+    mode: (player, mode) => `gamemode ${mode} ${player}`,
+    go (player, position, pose) {
+      const { yaw, pitch } = toDegrees(pose)
+      return `tp ${player} ${at(position)} ${yaw} ${pitch}`
+    },
+    heal: agent => `effect give ${agent} minecraft:instant_health 1 5`,
+    feed: agent => `effect give ${agent} minecraft:saturation 1 20`,
+    removeItems () {
+      const { low, shape } = place.box
+      const { x, y, z } = place.toServer(low)
+      return `kill @e[type=item,x=${x},y=${y},z=${z},dx=${shape[0] - 1},dy=${shape[1] - 1},dz=${shape[2] - 1}]`
+    },
+    layItem: ({ name, count, position }) =>
+      `summon minecraft:item ${at(position)} {Item:{id:"minecraft:${name}",Count:${count}b},PickupDelay:0}`,
+    load (act) {
+      const { low, high } = place.box
+      const corner = ([x, , z]) => `${x + place.origin.x} ${z + place.origin.z}`
+      return `forceload ${act} ${corner(low)} ${corner(high)}`
+    }
+  }
+}
+
+module.exports = { commandsFor, NEEDED, USEFUL }

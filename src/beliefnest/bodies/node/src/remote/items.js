@@ -1,0 +1,74 @@
+'use strict'
+/** Dropped items of a place on a server elsewhere: their numbers on the timeline, and who threw them. */
+const { rounded } = require('../regions/facts')
+
+// Every tick has numbers of its own, as in the embedded world.
+const NUMBERS_PER_TICK = 100
+
+class Items {
+  constructor (region) {
+    this.region = region
+    this.entities = () => ({})
+    // By the server's number of the entity: {number, throws}.
+    this.known = new Map()
+    this.awaited = []
+    this.last = 0
+  }
+
+  /** Items that are about to be laid, with their numbers. */
+  await (items) {
+    this.known.clear()
+    this.awaited = Object.entries(items).map(([number, item]) => ({ number: Number(number), ...item }))
+    this.last = Math.max(0, ...Object.keys(items).map(Number))
+  }
+
+  appeared (entity, thrown) {
+    const stack = entity.getDroppedItem?.()
+    if (!stack || this.known.has(entity.id)) return
+    const index = this.awaited.findIndex(({ name, count }) => name === stack.name && count === stack.count)
+    const number = index < 0 ? this.nextNumber() : this.awaited.splice(index, 1)[0].number
+    const by = thrown.findIndex(({ name, count }) => name === stack.name && count === stack.count)
+    const throws = by < 0 ? [] : thrown.splice(by, 1).map(({ agent, count, tick }) => [agent, count, tick])
+    this.known.set(entity.id, { number, throws })
+  }
+
+  nextNumber () {
+    this.last = Math.max(this.last + 1, (this.region.tick + 1) * NUMBERS_PER_TICK)
+    return this.last
+  }
+
+  gone (id) {
+    this.known.delete(id)
+  }
+
+  stackOf (id) {
+    return this.entities()[id]?.getDroppedItem?.() ?? null
+  }
+
+  throwsOf (id) {
+    return this.known.get(id)?.throws ?? []
+  }
+
+  setThrows (id, throws) {
+    if (this.known.has(id)) this.known.get(id).throws = throws
+  }
+
+  /** @returns {object} ITEM by number, of those in the box */
+  states () {
+    const found = {}
+    for (const [id, { number }] of this.known) {
+      const entity = this.entities()[id]
+      const stack = this.stackOf(id)
+      if (!stack || !this.isInside(entity.position)) continue
+      const { x, y, z } = entity.position
+      found[number] = { name: stack.name, count: stack.count, position: [x, y, z].map(rounded) }
+    }
+    return found
+  }
+
+  isInside ({ x, y, z }) {
+    return this.region.box.contains(Math.floor(x), Math.floor(y), Math.floor(z))
+  }
+}
+
+module.exports = { Items }

@@ -1,0 +1,122 @@
+'use strict'
+/** One player's connection to a server: begun, and begun again with growing pauses when it is lost. */
+const { EventEmitter, once } = require('node:events')
+const { setTimeout: sleep } = require('node:timers/promises')
+const { startBot } = require('../bots/bot')
+const reasons = require('./reasons')
+
+const REAL_TIME = { charge () {} }
+const FIRST_PAUSE_MS = 250
+const LONGEST_PAUSE_MS = 8000
+const LOGIN_MS = 15_000
+// Milliseconds a bot may search for a way: on a busy machine most of them pass without it.
+const THINKING_MS = 60_000
+
+class Link extends EventEmitter {
+  /**
+   * @param {string} name of the player
+   * @param {() => object} connect begins a connection (connection.js)
+   * @param {object} server what reasons.js tells of it
+   * @param {number} patienceMs after which a lost connection is given up
+   * @param {(link: Link) => Promise<void>} [arrive] what is to be done whenever the player has come in
+   */
+  constructor (name, connect, server, patienceMs, arrive = async () => {}) {
+    super()
+    this.name = name
+    this.connect = connect
+    this.server = server
+    this.patienceMs = patienceMs
+    this.arrive = arrive
+    this.bot = null
+    this.isHere = false
+    this.failure = null
+    this.closed = false
+  }
+
+  /** @throws {Unplayable} if the server does not let the player in */
+  async open () {
+    const client = this.connect()
+    const bot = startBot(client, REAL_TIME)
+    this.emit('begun', bot, client)
+    bot.physicsEnabled = false
+    // Whoever waits listens for itself; an error that nobody hears would end the process.
+    bot.on('error', () => {})
+    try {
+      await this.spawned(bot, client)
+      bot.pathfinder.thinkTimeout = THINKING_MS
+      this.bot = bot
+      this.isHere = true
+      bot.once('end', reason => this.lost(bot.lastReason ?? reason))
+      bot.on('kicked', reason => { bot.lastReason = reasonOf(bot, reason).text })
+      await this.arrive(this)
+    } catch (error) {
+      this.isHere = false
+      client.end('given up')
+      throw error
+    }
+  }
+
+  async spawned (bot, client) {
+    const ending = new AbortController()
+    const { signal } = ending
+    const failed = (event, make) => once(client, event, { signal }).then(args => { throw make(...args) })
+    const late = sleep(LOGIN_MS, null, { signal }).then(() => { throw reasons.unreachable(this.server, `${LOGIN_MS / 1000} s passed before it let ${this.name} in`) })
+    const refused = packet => reasons.refusal(this.server, this.name, reasonOf(bot, packet.reason))
+    const waiting = [
+      once(bot, 'spawn', { signal }), late,
+      failed('encryption_begin', () => reasons.onlineMode(this.server)),
+      failed('disconnect', refused),
+      failed('kick_disconnect', refused),
+      failed('error', error => reasons.unreachable(this.server, error.code ?? error.message)),
+      failed('end', reason => reasons.unreachable(this.server, `it ended the connection: ${reason}`))
+    ]
+    try {
+      await Promise.race(waiting)
+    } finally {
+      ending.abort()
+      await Promise.allSettled(waiting)
+    }
+  }
+
+  lost (reason) {
+    this.isHere = false
+    if (this.closed) return
+    this.emit('lost', reason)
+    this.again(reason).catch(error => {
+      this.failure = error
+      this.emit('failed', error)
+    })
+  }
+
+  async again (reason) {
+    const end = performance.now() + this.patienceMs
+    for (let pause = FIRST_PAUSE_MS; !this.closed; pause = Math.min(2 * pause, LONGEST_PAUSE_MS)) {
+      await sleep(Math.min(pause, Math.max(0, end - performance.now())))
+      if (this.closed) return
+      try {
+        await this.open()
+        this.emit('back')
+        return
+      } catch (error) {
+        if (performance.now() >= end) throw reasons.gone(this.server, this.name, `${reason}; then: ${error.message}`, this.patienceMs / 1000)
+      }
+    }
+  }
+
+  async close () {
+    this.closed = true
+    if (!this.isHere) return
+    const ended = once(this.bot, 'end')
+    this.bot._client.end('the world is given up')
+    await ended
+  }
+}
+
+/** What a server says at a disconnection, as text and as the key of the game's own text. */
+function reasonOf (bot, reason) {
+  const ChatMessage = require('prismarine-chat')(bot.registry)
+  const message = ChatMessage.fromNotch(reason)
+  return { key: message.translate ?? message.json?.translate, text: message.toString() }
+}
+
+module.exports = { Link }

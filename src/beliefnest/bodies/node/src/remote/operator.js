@@ -1,0 +1,121 @@
+'use strict'
+/** The bot that serves a place on a server elsewhere: it types commands, and its client is what the place looks like. */
+const { once } = require('node:events')
+const { setTimeout: sleep } = require('node:timers/promises')
+const { Vec3 } = require('vec3')
+const { NEEDED } = require('./commands')
+const reasons = require('./reasons')
+
+const POLL_MS = 10
+const ANSWER_MS = 5000
+const MOST_LINES = 20
+const EYE_HEIGHT = 1.62
+const TOP = 1
+
+class Operator {
+  /**
+   * @param {import('./link').Link} link
+   * @param {object} server what reasons.js tells of it
+   */
+  constructor (link, server) {
+    this.link = link
+    this.server = server
+    this.lines = []
+    this.commandNames = null
+    link.on('begun', (bot, client) => {
+      this.commandNames = null
+      client.on('declare_commands', packet => { this.commandNames = namesOf(packet) })
+      bot.on('messagestr', text => { this.lines = [...this.lines, text].slice(-MOST_LINES) })
+    })
+  }
+
+  get bot () {
+    return this.link.bot
+  }
+
+  /** Types a command; what comes of it is looked at elsewhere. */
+  type (command) {
+    this.bot._client.chat(`/${command}`)
+  }
+
+  can (name) {
+    return this.commandNames?.has(name) ?? false
+  }
+
+  /** @throws {Unplayable} if what is needed cannot be typed */
+  async requireRights () {
+    await this.until(() => this.commandNames !== null)
+    const lacking = NEEDED.filter(name => !this.can(name))
+    if (lacking.length > 0) throw reasons.noOperator(this.server, lacking)
+  }
+
+  /** Resolves when the server has done what was typed before and has told of it. */
+  async settled () {
+    await this.bot.tabComplete('/', true, false, ANSWER_MS)
+  }
+
+  /** @returns {Promise<boolean>} whether the condition held in time */
+  async until (condition, milliseconds = ANSWER_MS) {
+    const end = performance.now() + milliseconds
+    while (!condition()) {
+      if (performance.now() > end) return false
+      await sleep(POLL_MS)
+    }
+    return true
+  }
+
+  hasColumns (box) {
+    for (let x = box.low[0] >> 4; x <= box.high[0] >> 4; x++) {
+      for (let z = box.low[2] >> 4; z <= box.high[2] >> 4; z++) {
+        if (!this.bot.world.getColumn(x, z)) return false
+      }
+    }
+    return true
+  }
+
+  /** @returns {Int32Array} the states of a box, in its array order */
+  readStates (box) {
+    const states = new Int32Array(box.size)
+    const place = new Vec3(0, 0, 0)
+    box.forEach((x, y, z, index) => {
+      place.set(x, y, z)
+      states[index] = this.bot.world.getBlockStateId(place)
+    })
+    return states
+  }
+
+  /** Resolves when the operator's client is at a place. */
+  async go (command, [x, y, z]) {
+    const there = new Vec3(x, y, z)
+    this.type(command)
+    return this.until(() => this.bot.entity.position.distanceTo(there) < 1)
+  }
+
+  /**
+   * Looks into a container from above.
+   * @param {object} commands of commandsFor
+   * @returns {Promise<Array | null>} its stacks by slot; null if it does not open
+   */
+  async lookInto (commands, [x, y, z]) {
+    const { bot } = this
+    const place = [x + 0.5, y + 1.5 - EYE_HEIGHT, z + 0.5]
+    await this.go(commands.go(this.link.name, place, { yaw: 0, pitch: -Math.PI / 2 }), place)
+    const opened = once(bot, 'windowOpen', { signal: AbortSignal.timeout(ANSWER_MS) }).catch(() => null)
+    bot._client.write('block_place', {
+      location: new Vec3(x, y, z), direction: TOP, hand: 0, cursorX: 0.5, cursorY: 1, cursorZ: 0.5, insideBlock: false, sequence: 0
+    })
+    const answer = await opened
+    if (answer === null) return null
+    const [window] = answer
+    const stacks = window.slots.slice(0, window.inventoryStart)
+    bot.closeWindow(window)
+    return stacks
+  }
+}
+
+/** Names of the commands that a player may type. */
+function namesOf ({ nodes, rootIndex }) {
+  return new Set(nodes[rootIndex].children.map(index => nodes[index].extraNodeData?.name))
+}
+
+module.exports = { Operator }

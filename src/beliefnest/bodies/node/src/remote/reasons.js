@@ -1,0 +1,61 @@
+'use strict'
+/** Why a server cannot be played on, in words for the person who runs it: what was found, and what to type. */
+
+class Unplayable extends Error {
+  /** Of the channel: the world failed, and the message is all there is to say. */
+  get kind () { return 'world' }
+}
+
+const where = ({ host, port }) => `the server at ${host}:${port}`
+
+/** What the game says when it refuses a player, by the key of its text. */
+const REFUSALS = {
+  'multiplayer.disconnect.server_full': ({ agents }) =>
+    `is full: it has no room for the ${agents.length} agents and the operator; raise max-players in server.properties and restart it`,
+  'multiplayer.disconnect.not_whitelisted': ({ agents, operator }) =>
+    `lets in players of its list only; on its console: ${[operator, ...agents].map(name => `whitelist add ${name}`).join(', ')}`,
+  'multiplayer.disconnect.unverified_username': () =>
+    'asks Microsoft who players are (online mode); set online-mode=false in server.properties and restart it',
+  'multiplayer.disconnect.duplicate_login': () =>
+    'has sent a player away because another one of the same name came; end the other run, or give agents other names',
+  'multiplayer.disconnect.name_taken': () => 'has a player of that name already; end the other run, or give agents other names'
+}
+
+/**
+ * @param {{host: string, port: number, operator: string, agents: string[]}} server
+ * @param {string} player who was refused
+ * @param {{key?: string, text: string}} told
+ */
+function refusal (server, player, { key, text }) {
+  const known = REFUSALS[key]
+  if (known !== undefined) return new Unplayable(`${where(server)} ${known(server)}`)
+  return new Unplayable(`${where(server)} does not let ${player} in: ${text}`)
+}
+
+const unreachable = (server, why) => new Unplayable(
+  `${where(server)} does not answer (${why}); start it, or mend the address: minecraft://HOST:PORT`)
+
+const onlineMode = server => refusal(server, '', { key: 'multiplayer.disconnect.unverified_username', text: '' })
+
+const wrongVersion = (server, found, wanted) => new Unplayable(
+  `${where(server)} speaks Minecraft ${found}; this build has ${wanted}. Run a server of ${wanted}` +
+  `; one that speaks several, or lies about it, is played on with ?version=${wanted}`)
+
+const noOperator = (server, lacking) => new Unplayable(
+  `on ${where(server)} ${server.operator} may not use ${lacking.map(name => `/${name}`).join(', ')}; on its console: op ${server.operator}`)
+
+const tooFar = (server, { low, high }) => new Unplayable(
+  `${where(server)} does not show all of the box from (${low.join(', ')}) to (${high.join(', ')}); raise view-distance in server.properties and restart it`)
+
+const spawnProtected = server => new Unplayable(
+  `on ${where(server)} agents cannot use blocks where the box is; set spawn-protection=0 in server.properties and restart it, ` +
+  'or play farther from its spawn: ?at=X,Z (multiples of 16)')
+
+const stalled = (server, seconds) => new Unplayable(
+  `${where(server)} has not gone on for ${seconds} s; what was recorded until the last call is kept: when the server runs again, go on with Nest.resume`)
+
+const gone = (server, player, why, seconds) => new Unplayable(
+  `the connection of ${player} to ${where(server)} was lost (${why}) and did not come back within ${seconds} s; ` +
+  'what was recorded until the last call is kept: when the server runs again, go on with Nest.resume')
+
+module.exports = { gone, noOperator, onlineMode, refusal, spawnProtected, stalled, tooFar, unreachable, Unplayable, wrongVersion }

@@ -1,0 +1,258 @@
+'use strict'
+/**
+ * The real world on a server elsewhere, as the channel asks for regions: one place, which goes on between the calls.
+ * What happens there meanwhile is told with the next call.
+ */
+const { setTimeout: sleep } = require('node:timers/promises')
+const { BadRequest } = require('../channel/errors')
+const { Box } = require('../regions/box')
+const { Recorder } = require('../regions/recorder')
+const { vecOf } = require('../server/plugins/lib/positions')
+const { Agents } = require('./agents')
+const { commandsFor } = require('./commands')
+const { connect } = require('./connection')
+const { RemotePlace } = require('./remotePlace')
+const { Scene } = require('./scene')
+const { Setup } = require('./setup')
+const reasons = require('./reasons')
+
+const POLL_MS = 5
+const NOTHING = new Uint8Array(0)
+
+class RemoteRegions {
+  /**
+   * @param {object} server `host`, `port`, `operator`, `at` (where scenario (0, 0) lies: x, z), `overwrite`, `keep`, `patience` (s)
+   * @param {object} session `operator`, `clock`
+   * @param {object} registry
+   * @param {(frame: object) => void} send
+   */
+  constructor (server, { operator, clock }, registry, send) {
+    this.server = server
+    this.operator = operator
+    this.serverClock = clock
+    this.registry = registry
+    this.send = send
+    this.open = null
+    // What a Runner asks of regions.
+    this.bodies = { rest: (_, agents) => this.open.agents.rest(agents) }
+    this.clock = { advance: () => new Promise(resolve => { setImmediate(resolve) }) }
+  }
+
+  /** @throws {BadRequest} if there is no such region */
+  get (name) {
+    if (this.open?.region.name !== name) throw new BadRequest(`there is no region ${name} on this server`)
+    return this.open.region
+  }
+
+  /** @returns {Promise<object>} SNAPSHOT, once every agent stands there */
+  async create ({ region: name, box: corners, tick, blocks, containers, agents, items, known = Object.keys(agents) }) {
+    if (this.open !== null) throw new BadRequest(`${this.open.region.name} is played on this server; there can be one place at a time`)
+    const [x, z] = this.server.at
+    const region = new RemotePlace({ name, box: new Box(...corners), origin: { x, z }, tick, known }, this.serverClock)
+    this.server.agents = Object.keys(agents)
+    this.open = this.equip(region)
+    try {
+      await this.fill(this.open, { blocks, containers, agents, items })
+      this.begin(this.open, tick, agents)
+    } catch (error) {
+      await this.giveUp(this.open).catch(() => {})
+      throw error
+    }
+    return this.snapshot(region)
+  }
+
+  equip (region) {
+    const { operator, registry, server: { host, port, at, operator: hidden } } = this
+    const scene = new Scene(region, registry)
+    const commands = commandsFor(region, state => scene.states.text(state))
+    const setup = new Setup(scene, operator, commands, registry)
+    const agents = new Agents(scene, operator, commands, registry, agent =>
+      connect({ host, port, username: agent, origin: { x: at[0], z: at[1] }, hidden: [hidden] }))
+    const { contents, states, items } = scene
+    region.recorder = new Recorder(region, {
+      agents: () => agents.states(), items: () => items.states(), changedContainers: () => contents.drain(), blockText: state => states.text(state)
+    })
+    return { region, scene, setup, agents, saved: null }
+  }
+
+  async fill (open, { blocks, containers, agents, items }) {
+    const { region, scene, setup } = open
+    const wanted = statesOf(blocks, region.box)
+    await setup.arrive()
+    scene.attach(this.operator.bot, this.operator.bot._client)
+    const present = this.operator.readStates(region.box)
+    if (!this.server.overwrite) setup.requireFree(present, wanted)
+    open.saved = await this.save(open, present)
+    const built = await setup.build(wanted)
+    scene.settle(built)
+    await setup.stock(withEmpty(setup.containers(built), containers))
+    await setup.lay(items)
+    await open.agents.add(agents, this.server.patience * 1000)
+  }
+
+  async save ({ scene, setup }, present) {
+    scene.settle(present)
+    const containers = []
+    for (const position of setup.containers(present)) containers.push([...position, await setup.read(position) ?? {}])
+    return { states: present, containers }
+  }
+
+  /** From now on what happens is told. */
+  begin (open, tick, agents) {
+    const { region } = open
+    region.rebase(tick)
+    this.know(open, agents)
+    this.operator.link.on('back', open.back = () => this.lookAgain(open).catch(error => { this.operator.link.failure = error }))
+    region.pulse = setInterval(() => this.tickUndriven(open), POLL_MS)
+  }
+
+  /** Takes as known what was asked for: where the server has it otherwise, the next frame tells that. */
+  know ({ region, scene }, agents) {
+    scene.endTick()
+    region.recorder.settle()
+    for (const [agent, state] of Object.entries(agents)) if (state !== null) region.recorder.known.agents.set(agent, state)
+  }
+
+  /** The operator has been away: what changed meanwhile it finds by looking. */
+  async lookAgain ({ region, scene, setup }) {
+    await setup.arrive()
+    scene.attach(this.operator.bot, this.operator.bot._client)
+    const present = this.operator.readStates(region.box)
+    region.box.forEach((x, y, z, index) => scene.blockChanged(vecOf({ x, y, z }), present[index]))
+  }
+
+  tickUndriven (open) {
+    const { region } = open
+    if (region.isDriven || region.now() <= region.tick) return
+    region.tick = region.now()
+    this.makeFrame(open)
+  }
+
+  makeFrame ({ region, scene }) {
+    scene.endTick()
+    const frame = region.recorder.frame()
+    if (frame === null) return
+    if (region.isDriven) this.send(frame)
+    else region.waiting.push(frame)
+  }
+
+  /** Runs a call on a region: its ticks are then the call's to take. */
+  async resumed (region, action) {
+    const { agents } = this.open
+    await agents.present()
+    region.faults.length = 0
+    region.isDriven = true
+    try {
+      for (const frame of region.waiting.splice(0)) this.send(frame)
+      region.recorder.forgetClaims()
+      await action()
+      return { tick: region.tick, hidden: NOTHING }
+    } finally {
+      region.isDriven = false
+    }
+  }
+
+  /** The next tick; what happened in it is sent. */
+  async tick (region, before) {
+    const { operator: { link }, server } = this
+    while (region.now() <= region.tick) {
+      if (link.failure !== null) throw link.failure
+      if (link.isHere && this.serverClock.silence > server.patience * 1000) throw reasons.stalled(server, server.patience)
+      await sleep(POLL_MS)
+    }
+    region.tick = region.now()
+    await before?.()
+    region.tick = region.now()
+    this.makeFrame(this.open)
+  }
+
+  async step (name, ticks) {
+    const region = this.get(name)
+    return this.resumed(region, async () => {
+      const last = region.tick + ticks
+      while (region.tick < last) await this.tick(region)
+    })
+  }
+
+  /** Makes the place so; what happened there since the last call is forgotten with what it led to. */
+  async apply ({ region: name, blocks, containers, agents, items, tick }) {
+    const region = this.get(name)
+    const { scene, setup } = this.open
+    region.isDriven = true
+    try {
+      await this.open.agents.present()
+      const wanted = scene.blocks.slice()
+      for (const [x, y, z, state] of blocks) wanted[region.box.index(x, y, z)] = state
+      scene.settle(await setup.build(wanted))
+      for (const position of blocks.map(([x, y, z]) => vecOf({ x, y, z }))) scene.replaced(position, scene.at(position))
+      await setup.stock(containers.filter(([, , , held]) => held !== null))
+      await setup.lay(items)
+      await this.moveAgents(this.open, agents)
+      region.waiting.length = 0
+      region.rebase(tick)
+      this.know(this.open, agents)
+    } finally {
+      region.isDriven = false
+    }
+    return this.snapshot(region)
+  }
+
+  async moveAgents ({ agents: present }, agents) {
+    const gone = Object.keys(agents).filter(agent => agents[agent] === null)
+    for (const agent of gone) await present.remove(agent)
+    const wanted = Object.entries(agents).filter(([, state]) => state !== null)
+    const come = wanted.filter(([agent]) => !present.links.has(agent))
+    await present.place(Object.fromEntries(wanted.filter(([agent]) => present.links.has(agent))))
+    if (come.length > 0) await present.add(Object.fromEntries(come), this.server.patience * 1000)
+  }
+
+  async destroy (name) {
+    this.get(name)
+    await this.giveUp(this.open)
+  }
+
+  /** Lets agents leave and puts back what was there, unless it is to be kept. */
+  async giveUp (open) {
+    const { region, setup, agents, saved } = open
+    clearInterval(region.pulse)
+    if (open.back !== undefined) this.operator.link.off('back', open.back)
+    this.open = null
+    await agents.close()
+    if (saved === null || !this.operator.link.isHere) return
+    if (!this.server.keep) {
+      await setup.lay({})
+      open.scene.settle(await setup.build(saved.states))
+      await setup.stock(saved.containers)
+    }
+    this.operator.type(setup.commands.load('remove'))
+    await this.operator.settled()
+  }
+
+  /** @returns {object} SNAPSHOT of what is there now */
+  snapshot ({ tick }) {
+    const { scene, agents } = this.open
+    return {
+      tick, blocks: new Uint8Array(scene.blocks.slice().buffer), containers: scene.contents.states(), agents: agents.states(), items: scene.items.states(), hidden: NOTHING
+    }
+  }
+
+  /** Ends all that is open. */
+  async close () {
+    if (this.open !== null) await this.giveUp(this.open)
+    await this.operator.link.close()
+  }
+}
+
+/** All containers of the box, those of which nothing is said as empty. */
+function withEmpty (positions, containers) {
+  const said = new Set(containers.map(([x, y, z]) => `${x},${y},${z}`))
+  return [...containers, ...positions.filter(position => !said.has(position.join())).map(position => [...position, {}])]
+}
+
+function statesOf (bytes, box) {
+  const needed = box.size * Int32Array.BYTES_PER_ELEMENT
+  if (bytes.byteLength !== needed) throw new BadRequest(`the box has ${box.size} blocks, so "blocks" must have ${needed} bytes; it has ${bytes.byteLength}`)
+  return new Int32Array(new Uint8Array(bytes).buffer)
+}
+
+module.exports = { RemoteRegions }

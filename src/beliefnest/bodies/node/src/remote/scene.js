@@ -1,0 +1,177 @@
+'use strict'
+/**
+ * What happens in a place on a server elsewhere, as its operator sees and hears it: blocks, dropped items, words. Who
+ * did it is found among what the agents tried just before.
+ */
+const { Vec3 } = require('vec3')
+const { blockStates } = require('../server/plugins/lib/states')
+const { halvesAt } = require('../server/plugins/lib/doubleChest')
+const { handOver } = require('../server/plugins/lib/gifts')
+const { listOf } = require('../server/plugins/lib/positions')
+const { without } = require('../server/plugins/lib/throws')
+const { slotsIn } = require('./kinds')
+const { Contents } = require('./contents')
+const { Items } = require('./items')
+
+const BY_HAND = /(_door|_trapdoor|_fence_gate)$/
+// Ticks after which words that nobody heard are not waited for any more.
+const UNHEARD_AFTER = 60
+
+class Scene {
+  /**
+   * @param {import('../regions/place').Place} region
+   * @param {object} registry
+   */
+  constructor (region, registry) {
+    this.region = region
+    this.states = blockStates(registry)
+    this.contents = new Contents()
+    this.items = new Items(region)
+    this.witnesses = new Map()
+    this.expected = []
+    this.thrown = []
+    // What was done with blocks in this tick, told after what it did to them.
+    this.deeds = []
+    this.blocks = null
+    this.serv = servFor(this)
+  }
+
+  /** Takes the states of the box as what is there. */
+  settle (states) {
+    this.blocks = states.slice()
+  }
+
+  at ({ x, y, z }) {
+    const { box } = this.region
+    return this.states.describe(box.contains(x, y, z) ? this.blocks[box.index(x, y, z)] : 0)
+  }
+
+  halvesAt (position) {
+    return halvesAt(place => this.at(place), position)
+  }
+
+  /** A block of the box became `state`. */
+  blockChanged (position, state) {
+    const { box, recorder } = this.region
+    if (this.blocks === null || !box.contains(position.x, position.y, position.z)) return
+    const index = box.index(position.x, position.y, position.z)
+    if (this.blocks[index] === state) return
+    const before = this.states.describe(this.blocks[index])
+    const after = this.states.describe(state)
+    this.blocks[index] = state
+    if (before.name !== after.name) this.replaced(position, after)
+    recorder.blockChanged(this.region.toServer(listOf(position)), state)
+    this.attribute(position, before, after)
+  }
+
+  replaced (position, after) {
+    this.contents.forget(position)
+    if (slotsIn(after.name) > 0) this.contents.know(position, {})
+  }
+
+  attribute (position, before, after) {
+    const detail = { position: listOf(position) }
+    const { properties } = after
+    if (before.name === after.name) {
+      if (after.name === 'lever' && before.properties.powered !== properties.powered) this.used(position, 'use_lever', { ...detail, powered: properties.powered })
+      if (after.name.endsWith('_button') && properties.powered && !before.properties.powered) this.used(position, 'press_button', detail)
+      if (BY_HAND.test(after.name) && before.properties.open !== properties.open) this.usedDoor(position, after)
+    } else if (after.name === 'air' || after.name === 'water') {
+      const who = this.whoTried('dig', position)
+      if (who !== null) this.deeds.push({ who, kind: 'mine_block', detail: { ...detail, block: this.states.text(before.stateId) } })
+    } else {
+      this.placed(position, after)
+    }
+  }
+
+  used (position, kind, detail) {
+    const who = this.whoTried('use', position)
+    if (who !== null) this.deeds.push({ who, kind, detail })
+  }
+
+  /** A door is where its lower half is, whichever half was used. */
+  usedDoor (position, { name, properties }) {
+    const isUpper = name.endsWith('_door') && properties.half === 'upper'
+    const lower = isUpper ? position.offset(0, -1, 0) : position
+    const who = this.whoTried('use', lower) ?? this.whoTried('use', lower.offset(0, 1, 0))
+    if (who !== null) this.deeds.push({ who, kind: 'use_door', detail: { position: listOf(lower), open: properties.open } })
+  }
+
+  /** What appears beside what somebody used with a block in hand, or in its place, that one has put. */
+  placed (position, after) {
+    if (after.properties.half === 'upper' && after.name.endsWith('_door')) return
+    for (const face of [[0, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1], [-1, 0, 0], [1, 0, 0]]) {
+      const who = this.whoTried('use', position.plus(new Vec3(...face)))
+      if (who === null) continue
+      this.deeds.push({ who, kind: 'place_block', detail: { position: listOf(position), block: this.states.text(after.stateId) } })
+      return
+    }
+  }
+
+  whoTried (kind, position) {
+    return [...this.witnesses.values()].find(witness => witness.hasTried(kind, position)) ?? null
+  }
+
+  /** An agent has sent words: they are told when they are heard. */
+  expect (words) {
+    this.expected.push({ ...words, tick: this.region.tick })
+  }
+
+  /** A line of text that a player was shown; `null` is the operator. */
+  heardBy (agent, text) {
+    const line = spaced(text)
+    const index = this.expected.findIndex(({ actor, text: said, to }) => line.includes(actor) && line.endsWith(spaced(said)) &&
+      (to === undefined ? agent === null : agent === to))
+    if (index < 0) return
+    const [{ actor, text: said, to }] = this.expected.splice(index, 1)
+    this.region.emit({ kind: 'chat', actor, detail: to === undefined ? { text: said } : { text: said, to } })
+  }
+
+  /** Whether all that agents said has been heard, or will not be. */
+  get isQuiet () {
+    this.expected = this.expected.filter(({ tick }) => this.region.tick - tick <= UNHEARD_AFTER)
+    return this.expected.length === 0
+  }
+
+  /** Follows the operator's connection. */
+  attach (bot, client) {
+    bot.on('blockUpdate', (_, block) => { if (block !== null) this.blockChanged(block.position, block.stateId) })
+    bot.on('messagestr', text => this.heardBy(null, text))
+    bot.on('itemDrop', entity => this.items.appeared(entity, this.thrown))
+    bot.on('entityGone', entity => this.items.gone(entity.id))
+    client.on('collect', packet => this.collected(bot, packet))
+    this.items.entities = () => bot.entities
+  }
+
+  collected (bot, { collectedEntityId, collectorEntityId, pickupItemCount }) {
+    const receiver = this.witnesses.get(bot.entities[collectorEntityId]?.username)
+    const item = this.items.stackOf(collectedEntityId)
+    if (receiver === undefined || item === null) return
+    const { by, left } = without(this.items.throwsOf(collectedEntityId), pickupItemCount)
+    this.items.setThrows(collectedEntityId, left)
+    handOver([...this.witnesses.values()], this.region.tick, receiver, by, item)
+  }
+
+  endTick () {
+    for (const witness of this.witnesses.values()) witness.endTick()
+    for (const { who, kind, detail } of this.deeds.splice(0)) who.emitEvent({ kind, detail })
+    this.thrown = this.thrown.filter(({ tick }) => this.region.tick - tick <= UNHEARD_AFTER)
+  }
+}
+
+/** Words as servers hand them on: each run of spaces is one. */
+const spaced = text => text.replace(/\s+/g, ' ').trim()
+
+/** What the plugins for reports ask of a server: agents speak scenario coordinates here. */
+function servFor (scene) {
+  return {
+    get players () { return [...scene.witnesses.values()] },
+    region: {
+      emit: event => scene.region.emit(event),
+      toServer: ([x, y, z]) => new Vec3(x, y, z),
+      toScenario: ({ x, y, z }) => [x, y, z]
+    }
+  }
+}
+
+module.exports = { Scene }

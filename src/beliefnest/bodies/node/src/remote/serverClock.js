@@ -1,0 +1,45 @@
+'use strict'
+/**
+ * The age of a server's world, in ticks. The server tells it now and then; in between it is counted on, at most as far
+ * as the next telling: a slow server is waited for. It never falls.
+ */
+const TICK_MS = 50
+// Vanilla tells its age every 20 ticks.
+const TELLS_EVERY = 20
+
+class ServerClock {
+  /** @param {() => number} now milliseconds */
+  constructor (now = () => performance.now()) {
+    this.now = now
+    this.told = null
+    this.toldAt = now()
+    this.offset = 0
+    this.latest = 0
+  }
+
+  /** Takes what the server says; one whose age has fallen was set up anew, and is counted on from here. */
+  tell (age) {
+    if (this.told !== null && age < this.told) this.offset = this.latest - age
+    this.told = age
+    this.toldAt = this.now()
+  }
+
+  /** Whether the server has ever told its age. */
+  get isSet () {
+    return this.told !== null
+  }
+
+  /** Milliseconds since the server told its age. */
+  get silence () {
+    return this.now() - this.toldAt
+  }
+
+  get age () {
+    if (this.told === null) return this.latest
+    const passed = Math.min(Math.floor(this.silence / TICK_MS), TELLS_EVERY - 1)
+    this.latest = Math.max(this.latest, this.told + this.offset + passed)
+    return this.latest
+  }
+}
+
+module.exports = { ServerClock, TICK_MS }

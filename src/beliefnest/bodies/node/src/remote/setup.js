@@ -1,0 +1,171 @@
+'use strict'
+/** Makes a place on a server elsewhere as asked, and looks whether it is. */
+const { BadRequest } = require('../channel/errors')
+const { countByName } = require('../server/plugins/lib/items')
+const { vecOf } = require('../server/plugins/lib/positions')
+const { isDeepStrictEqual } = require('node:util')
+const { sorted } = require('../regions/facts')
+const { halvesAt } = require('../server/plugins/lib/doubleChest')
+const { slotsIn, slotted } = require('./kinds')
+const { planFills } = require('./plan')
+const reasons = require('./reasons')
+
+const ATTEMPTS = 3
+const COLUMNS_MS = 20_000
+const MOST_TOLD = 5
+const ABOVE = 3
+
+class Setup {
+  /**
+   * @param {import('./scene').Scene} scene of the place
+   * @param {import('./operator').Operator} operator
+   * @param {object} commands of commandsFor
+   * @param {object} registry
+   */
+  constructor (scene, operator, commands, registry) {
+    this.scene = scene
+    this.region = scene.region
+    this.operator = operator
+    this.commands = commands
+    this.registry = registry
+    this.Item = require('prismarine-item')(registry)
+  }
+
+  /** Brings the operator to where it sees all of the box, unseen itself. */
+  async arrive () {
+    const { operator, commands, region: { box } } = this
+    operator.type(commands.mode(operator.link.name, 'spectator'))
+    operator.type(commands.load('add'))
+    await this.goAbove()
+    if (!await operator.until(() => operator.hasColumns(box), COLUMNS_MS)) throw reasons.tooFar(operator.server, box)
+    await operator.settled()
+  }
+
+  async goAbove () {
+    const { box: { low, high } } = this.region
+    const place = [(low[0] + high[0] + 1) / 2, high[1] + ABOVE, (low[2] + high[2] + 1) / 2]
+    await this.operator.go(this.commands.go(this.operator.link.name, place, { yaw: 0, pitch: -Math.PI / 2 }), place)
+  }
+
+  /** @throws {BadRequest} if the box holds what is not the scenario's */
+  requireFree (present, wanted) {
+    const { box } = this.region
+    const foreign = []
+    box.forEach((x, y, z, index) => {
+      const { name } = this.scene.states.describe(present[index])
+      if (present[index] !== wanted[index] && !name.endsWith('air')) foreign.push(`${name} at (${x}, ${y}, ${z})`)
+    })
+    if (foreign.length === 0) return
+    const [low, high] = [box.low, box.high].map(corner => this.region.toServer(corner))
+    throw new BadRequest(
+      `the box of the scenario, from ${low} to ${high} on the server, holds ${foreign.length} other blocks, as ${foreign.slice(0, MOST_TOLD).join(', ')}; ` +
+      'choose another place with ?at=X,Z (multiples of 16), or let them be replaced, and put back at the end, with --overwrite (?overwrite=yes)')
+  }
+
+  /**
+   * Makes the blocks of the box so.
+   * @returns {Promise<Int32Array>} what is there then: the same blocks, as the server connects them
+   * @throws {BadRequest} if the server builds something else
+   */
+  async build (wanted) {
+    const { operator, region: { box } } = this
+    let present = operator.readStates(box)
+    for (let attempt = 0; attempt < ATTEMPTS && this.flaws(present, wanted).length > 0; attempt++) {
+      for (const cuboid of planFills(box, present, wanted, state => this.rank(state))) operator.type(this.commands.blocks(cuboid))
+      await operator.settled()
+      await operator.until(() => this.flaws(operator.readStates(box), wanted).length === 0, 500)
+      present = operator.readStates(box)
+    }
+    const flaws = this.flaws(present, wanted)
+    if (flaws.length === 0) return present
+    throw new BadRequest(
+      `the server did not build ${flaws.length} blocks of the box, as ${flaws.slice(0, MOST_TOLD).join(', ')}; it said last: ${operator.lines.at(-1) ?? 'nothing'}`)
+  }
+
+  /** What holds others first, what hangs on others last. */
+  rank (state) {
+    const { name, solid } = this.scene.states.describe(state)
+    if (name.endsWith('air')) return 0
+    return solid && !/_door$|_trapdoor$/.test(name) ? 1 : 2
+  }
+
+  /** Where another block stands than asked for; how fences and panes connect is up to the server. */
+  flaws (present, wanted) {
+    const { states } = this.scene
+    const told = []
+    this.region.box.forEach((x, y, z, index) => {
+      if (present[index] === wanted[index]) return
+      const [found, asked] = [present[index], wanted[index]].map(state => states.describe(state))
+      if (found.name === asked.name && isConnected(asked.name)) return
+      told.push(`${states.text(found.stateId)} instead of ${states.text(asked.stateId)} at (${x}, ${y}, ${z})`)
+    })
+    return told
+  }
+
+  /**
+   * Makes containers hold exactly this, and looks into them.
+   * @param {Array} containers [x, y, z, ITEMS]
+   */
+  async stock (containers) {
+    for (const [x, y, z, items] of containers) this.putIn([x, y, z], items)
+    await this.operator.settled()
+    for (const [x, y, z, items] of containers) {
+      const found = await this.read([x, y, z])
+      if (found !== null && !isDeepStrictEqual(sorted(found), sorted(items))) {
+        throw new BadRequest(`the container at (${x}, ${y}, ${z}) holds ${JSON.stringify(found)} on the server instead of ${JSON.stringify(items)}; it said last: ${this.operator.lines.at(-1) ?? 'nothing'}`)
+      }
+      this.scene.contents.know(vecOf({ x, y, z }), items)
+    }
+    if (containers.length > 0) await this.goAbove()
+  }
+
+  putIn (position, items) {
+    const { name } = this.scene.at(vec(position))
+    try {
+      slotted(this.Item, this.registry, name, items).forEach((stack, slot) => {
+        this.operator.type(this.commands.contents(position, slot, stack))
+      })
+    } catch (error) {
+      if (error instanceof RangeError) throw new BadRequest(`contents at (${position.join(', ')}): ${error.message}`)
+      throw error
+    }
+  }
+
+  /** @returns {Promise<object | null>} ITEMS of a container; null if it cannot be opened, as under a block */
+  async read (position) {
+    const stacks = await this.operator.lookInto(this.commands, position)
+    if (stacks === null) return null
+    const halves = halvesAt(place => this.scene.at(place), vec(position))
+    const size = slotsIn(this.scene.at(vec(position)).name)
+    const first = halves.findIndex(half => half.equals(vec(position))) * size
+    return countByName(stacks.slice(first, first + size))
+  }
+
+  /** Positions of all containers that stand in the box. */
+  containers (present) {
+    const found = []
+    this.region.box.forEach((x, y, z, index) => {
+      if (slotsIn(this.scene.states.describe(present[index]).name) > 0) found.push([x, y, z])
+    })
+    return found
+  }
+
+  /** Lets exactly these items lie in the box. */
+  async lay (items) {
+    const { operator, commands, scene } = this
+    operator.type(commands.removeItems())
+    await operator.settled()
+    scene.items.await(items)
+    if (Object.keys(items).length === 0) return
+    if (!operator.can('summon')) throw new BadRequest('items lie in the box, which this server cannot be told: it has no /summon')
+    for (const item of Object.values(items)) operator.type(commands.layItem(item))
+    await operator.settled()
+    await operator.until(() => scene.items.awaited.length === 0)
+  }
+}
+
+const vec = ([x, y, z]) => vecOf({ x, y, z })
+
+const isConnected = name => /fence|_wall$|_pane$|iron_bars|stairs|redstone_wire|vine|tripwire/.test(name)
+
+module.exports = { Setup }

@@ -1,0 +1,113 @@
+'use strict'
+/**
+ * One agent on a server elsewhere, as its own connection tells: what it sends is what it tries, what comes back is what
+ * came of it. It is to the plugins for acts and reports what a player is in this process.
+ */
+const { EventEmitter } = require('node:events')
+const { Vec3 } = require('vec3')
+const acts = require('../server/plugins/acts')
+const reports = require('../server/plugins/reports')
+const { vecOf } = require('../server/plugins/lib/positions')
+const { Windows } = require('./windows')
+
+const WHISPER = /^(?:tell|msg|w) (\S+) (.+)$/s
+const DIG = { START: 0, CANCEL: 1, FINISH: 2, DROP_STACK: 3, DROP_ONE: 4 }
+// Ticks within which the server answers what an agent tried.
+const ANSWERED_WITHIN = 60
+
+class Witness extends EventEmitter {
+  /**
+   * @param {string} agent
+   * @param {import('../regions/place').Place} region
+   * @param {import('./scene').Scene} scene
+   * @param {object} Item class of the version
+   */
+  constructor (agent, region, scene, Item) {
+    super()
+    this.setMaxListeners(0)
+    this.agent = agent
+    this.region = region
+    this.scene = scene
+    this.bot = null
+    // What it tried last with a block: {position, tick, kind}, the latest first.
+    this.tries = []
+    this.used = null
+    this.windows = new Windows(this, scene, Item)
+    this.stoodAt = new Vec3(0, 0, 0)
+    acts.player(this)
+    reports.player(this, scene.serv)
+  }
+
+  get position () {
+    return this.bot.entity.position
+  }
+
+  emitEvent ({ kind, detail }) {
+    this.region.recorder.event({ kind, actor: this.agent, detail })
+  }
+
+  /** Follows a connection, from its first packet on. */
+  attach (bot, client) {
+    this.bot = bot
+    this.windows.reset()
+    const sent = { block_dig: packet => this.dig(packet), block_place: packet => this.use(packet), window_click: packet => this.windows.click(packet), close_window: () => this.windows.close(), chat_command: ({ command }) => this.command(command), chat_message: ({ message }) => this.scene.expect({ actor: this.agent, text: message }) }
+    client.on('sent', (name, packet) => sent[name]?.(packet))
+    client.on('open_window', packet => this.windows.open(packet))
+    client.on('window_items', packet => this.windows.show(packet))
+    client.on('set_slot', packet => this.windows.showSlot(packet))
+    client.on('close_window', () => this.windows.close())
+    bot.on('messagestr', text => this.scene.heardBy(this.agent, text))
+  }
+
+  lookedAt () {
+    return this.used
+  }
+
+  try (kind, position) {
+    this.tries.unshift({ kind, position, tick: this.region.tick })
+    this.tries = this.tries.filter(({ tick }) => this.region.tick - tick <= ANSWERED_WITHIN)
+  }
+
+  /** Whether this agent tried that kind of thing there a moment ago; then the try is used up. */
+  hasTried (kind, position) {
+    const index = this.tries.findIndex(each => each.kind === kind && each.position.equals(position) && this.region.tick - each.tick <= ANSWERED_WITHIN)
+    if (index < 0) return false
+    this.tries.splice(index, 1)
+    return true
+  }
+
+  dig ({ status, location }) {
+    if (status === DIG.START || status === DIG.FINISH) this.try('dig', vecOf(location))
+    if (status !== DIG.DROP_STACK && status !== DIG.DROP_ONE) return
+    const held = this.bot.heldItem
+    if (held) this.threw(status === DIG.DROP_ONE ? Object.assign(Object.create(held), { count: 1 }) : held)
+  }
+
+  use ({ location }) {
+    this.used = vecOf(location)
+    this.try('use', this.used)
+  }
+
+  threw (item) {
+    this.scene.thrown.push({ agent: this.agent, name: item.name, count: item.count, tick: this.region.tick })
+  }
+
+  command (command) {
+    const [, to, text] = WHISPER.exec(command) ?? []
+    if (text !== undefined) this.scene.expect({ actor: this.agent, text, to })
+  }
+
+  /** At the end of a tick: what was counted in it. */
+  endTick () {
+    this.uttered = 0
+    this.windows.settle()
+    this.tellActs()
+  }
+
+  /** What was still going on has ended with its program. */
+  rest () {
+    this.emit('rest')
+  }
+}
+
+module.exports = { Witness }

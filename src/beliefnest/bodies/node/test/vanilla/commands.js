@@ -1,0 +1,191 @@
+'use strict'
+/**
+ * The commands of a vanilla server that an operator bot uses, in the game's own syntax, with absolute coordinates. Each
+ * is `run(serv, words, player)`; it returns what the server says, and throws a Refusal for what it will not do.
+ */
+const { Vec3 } = require('vec3')
+const { fromDegrees } = require('../../src/server/angles')
+
+const MOST_BLOCKS = 32768
+const MODES = ['survival', 'creative', 'adventure', 'spectator']
+const OWN_SLOTS = {
+  'armor.head': 5, 'armor.chest': 6, 'armor.legs': 7, 'armor.feet': 8, 'weapon.offhand': 45
+}
+
+class Refusal extends Error {}
+
+/** @returns {number} the state of `minecraft:lever[face=floor]` */
+function stateOf (serv, text) {
+  const [, name, given] = /^(?:minecraft:)?(\w+)(?:\[(.*)\])?$/.exec(text) ?? []
+  if (serv.registry.blocksByName[name] === undefined) throw new Refusal(`Unknown block type '${text}'`)
+  const properties = Object.fromEntries((given ? given.split(',') : []).map(each => each.split('=')))
+  try {
+    return serv.blocks.state(name, properties)
+  } catch (error) {
+    throw new Refusal(error.message)
+  }
+}
+
+function stackOf (serv, text, count = '1') {
+  const name = text.replace(/^minecraft:/, '')
+  if (name === 'air') return null
+  if (serv.registry.itemsByName[name] === undefined) throw new Refusal(`Unknown item '${text}'`)
+  return new serv.Item(serv.registry.itemsByName[name].id, Number(count))
+}
+
+function playerOf (serv, name) {
+  const player = serv.players.find(({ username }) => username === name)
+  if (player === undefined) throw new Refusal('No player was found')
+  return player
+}
+
+const place = words => new Vec3(...words.map(Number))
+
+function requireLoaded (serv, position) {
+  if (serv.overworld.sync.getColumn(position.x >> 4, position.z >> 4) === undefined) throw new Refusal('That position is not loaded')
+}
+
+function setblock (serv, [x, y, z, block]) {
+  const position = place([x, y, z])
+  requireLoaded(serv, position)
+  if (serv.blocks.put(position, stateOf(serv, block)) === null) throw new Refusal('Could not set the block')
+  return `Changed the block at ${x}, ${y}, ${z}`
+}
+
+function fill (serv, words) {
+  const [from, to] = [place(words.slice(0, 3)), place(words.slice(3, 6))]
+  const [low, high] = [from.min(to), from.max(to)]
+  const size = high.minus(low).offset(1, 1, 1)
+  const number = size.x * size.y * size.z
+  if (number > MOST_BLOCKS) throw new Refusal(`Too many blocks in the specified area (maximum ${MOST_BLOCKS}, specified ${number})`)
+  const state = stateOf(serv, words[6])
+  let changed = 0
+  for (let x = low.x; x <= high.x; x++) {
+    for (let y = low.y; y <= high.y; y++) {
+      for (let z = low.z; z <= high.z; z++) {
+        requireLoaded(serv, { x, z })
+        if (serv.blocks.put(new Vec3(x, y, z), state) !== null) changed += 1
+      }
+    }
+  }
+  if (changed === 0) throw new Refusal('No blocks were filled')
+  return `Successfully filled ${changed} block(s)`
+}
+
+function tp (serv, [name, x, y, z, yaw, pitch]) {
+  const player = playerOf(serv, name)
+  const angles = yaw === undefined ? player.pose : fromDegrees(Number(yaw), Number(pitch))
+  player.place(place([x, y, z]), angles.yaw, angles.pitch)
+  player.fallsFrom = null
+  return `Teleported ${name} to ${x}, ${y}, ${z}`
+}
+
+/** `replace block X Y Z SLOT with ITEM COUNT`, `replace entity NAME SLOT with ITEM COUNT` */
+function item (serv, [, kind, ...words]) {
+  if (kind === 'entity') {
+    const [name, slot, , what, count] = words
+    const player = playerOf(serv, name)
+    player.inventory.slots[ownSlot(player, slot)] = stackOf(serv, what, count)
+    player.inventoryChanged()
+    return `Replaced a slot on ${name}`
+  }
+  const [x, y, z, slot, , what, count] = words
+  const position = place([x, y, z])
+  if (serv.containers.get(position) === null) throw new Refusal('Target position is not a container')
+  serv.containers.slots(position)[Number(slot.split('.')[1])] = stackOf(serv, what, count)
+  serv.containers.touch(position)
+  return `Replaced a slot at ${x}, ${y}, ${z}`
+}
+
+function ownSlot (player, text) {
+  if (text in OWN_SLOTS) return OWN_SLOTS[text]
+  const [kind, number] = text.split('.')
+  if (text === 'weapon.mainhand') return 36 + player.heldItemSlot
+  return Number(number) + (kind === 'hotbar' ? 36 : 9)
+}
+
+function give (serv, [name, what, count]) {
+  const player = playerOf(serv, name)
+  player.storeItem(stackOf(serv, what, count))
+  return `Gave ${count ?? 1} [${what}] to ${name}`
+}
+
+function clear (serv, [name]) {
+  const player = playerOf(serv, name)
+  if (player.inventory.slots.every(slot => !slot)) throw new Refusal(`No items were found on player ${name}`)
+  player.inventory.slots.forEach((_, index) => { player.inventory.slots[index] = null })
+  player.inventoryChanged()
+  return `Removed the items of ${name}`
+}
+
+function gamemode (serv, [mode, name], self) {
+  const player = name === undefined ? self : playerOf(serv, name)
+  if (!MODES.includes(mode)) throw new Refusal(`Unknown game mode ${mode}`)
+  player.gameMode = MODES.indexOf(mode)
+  player._client.write('game_state_change', { reason: 3, gameMode: player.gameMode })
+  return `Set ${player.username}'s game mode to ${mode}`
+}
+
+function effect (serv, [act, name, what, , amplifier]) {
+  const player = playerOf(serv, name)
+  if (act === 'clear') throw new Refusal('Target has no effects to remove')
+  const kind = what.replace(/^minecraft:/, '')
+  if (kind === 'instant_health') player.updateHealth(Math.min(20, player.health + (4 << Number(amplifier))))
+  if (kind === 'saturation') player.updateFood(20)
+  return `Applied effect ${kind} to ${name}`
+}
+
+/** Of the selectors, that of dropped items in a box. */
+function kill (serv, [selector]) {
+  const [, conditions] = /^@e\[type=item,(.*)\]$/.exec(selector) ?? []
+  if (conditions === undefined) throw new Refusal(`this server kills dropped items only, not ${selector}`)
+  const given = Object.fromEntries(conditions.split(',').map(each => each.split('=')).map(([key, value]) => [key, Number(value)]))
+  const found = serv.itemEntities(({ x, y, z }) => x >= given.x && x <= given.x + given.dx + 1 &&
+    y >= given.y && y <= given.y + given.dy + 1 && z >= given.z && z <= given.z + given.dz + 1)
+  if (found.length === 0) throw new Refusal('No entity was found')
+  found.forEach(({ id }) => serv.removeItem(id))
+  return `Killed ${found.length} entities`
+}
+
+function summon (serv, [what, x, y, z, tag]) {
+  const [, name, count] = /id:"minecraft:(\w+)",Count:(\d+)b/.exec(tag) ?? []
+  if (what !== 'minecraft:item' || name === undefined) throw new Refusal(`this server summons dropped items only, not ${what}`)
+  serv.dropItem(place([x, y, z]), stackOf(serv, name, count), { delay: 0 })
+  return 'Summoned new Item'
+}
+
+function forceload (serv, [act]) {
+  return act === 'add' ? 'Marked the chunks to be force loaded' : 'Unmarked the chunks'
+}
+
+/** Contents, as the game writes them. */
+function data (serv, [, , x, y, z]) {
+  const position = place([x, y, z])
+  if (serv.containers.get(position) === null) throw new Refusal('The target block is not a block entity')
+  const items = serv.containers.slots(position).flatMap((stack, slot) =>
+    stack ? [`{Slot: ${slot}b, id: "minecraft:${stack.name}", Count: ${stack.count}b}`] : [])
+  return `${x}, ${y}, ${z} has the following block data: {Items: [${items.join(', ')}]}`
+}
+
+function gamerule (serv, [name, value]) {
+  serv.gamerules ??= { doMobSpawning: 'true', doDaylightCycle: 'true', doWeatherCycle: 'true' }
+  if (!(name in serv.gamerules)) throw new Refusal('Incorrect argument for command')
+  if (value === undefined) return `Gamerule ${name} is currently set to: ${serv.gamerules[name]}`
+  serv.gamerules[name] = value
+  return `Gamerule ${name} is now set to: ${value}`
+}
+
+const COMMANDS = { clear, data, effect, fill, forceload, gamemode, gamerule, give, item, kill, setblock, summon, tp }
+
+/** @returns {string} what the server says to a command */
+function runCommand (serv, text, player) {
+  const [name, ...words] = text.split(' ')
+  try {
+    return COMMANDS[name](serv, words, player)
+  } catch (error) {
+    if (error instanceof Refusal) return error.message
+    throw error
+  }
+}
+
+module.exports = { COMMANDS, runCommand }

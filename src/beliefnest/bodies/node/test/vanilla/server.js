@@ -1,0 +1,50 @@
+'use strict'
+/**
+ * A Minecraft server of the project's own plugins that does what an operator bot asks of a vanilla one, as a process of
+ * its own: `node server.js [OPTIONS]`, a JSON object: `port` (0: any), `ops`, `lacking` (commands it is without), `age`,
+ * `latency` (milliseconds each way), `tickMs`, `isProtected`, `maxPlayers`, `online`. It prints `{"port": N}` and then
+ * takes lines on its standard input as a console does (world.js); it ends with that input.
+ */
+require('../../src/prepare').prepare()
+const { once } = require('node:events')
+const readline = require('node:readline')
+const minecraft = require('minecraft-protocol')
+const { rememberBlocks } = require('../../src/blocks')
+const { createServer } = require('../../src/server')
+const versions = require('../../src/versions')
+const { openDelayed } = require('../tcp/delay')
+const { OpenWorld, TICK_MS } = require('./world')
+
+const DEFAULTS = {
+  port: 0, ops: ['BeliefNest'], lacking: [], age: 1000, latency: 0, tickMs: TICK_MS, isProtected: false, maxPlayers: 100, online: false
+}
+
+async function main (options) {
+  const registry = require('prismarine-registry')(versions.minecraft)
+  registry.loadDimensionCodec(registry.loginPacket.dimensionCodec)
+  rememberBlocks(registry)
+  const world = new OpenWorld(createServer(registry), options)
+  const listening = minecraft.createServer({
+    host: '127.0.0.1', port: options.port, version: versions.minecraft, 'online-mode': options.online, maxPlayers: options.maxPlayers, motd: 'BeliefNest', hideErrors: true
+  })
+  listening.on('playerJoin', client => world.join(client))
+  await once(listening, 'listening')
+  const inner = listening.socketServer.address().port
+  const port = options.latency > 0 ? await openDelayed(inner, options.latency) : inner
+  keepTime(world, options.tickMs)
+  const input = readline.createInterface({ input: process.stdin })
+  input.on('line', line => world.console(line))
+  input.on('close', () => process.exit(0))
+  process.stdout.write(`${JSON.stringify({ port })}\n`)
+}
+
+/** As many ticks as the length of one says; what comes late is made up for, up to two seconds. */
+function keepTime (world, tickMs) {
+  let due = performance.now()
+  setInterval(() => {
+    due = Math.max(due, performance.now() - 2000)
+    for (; due < performance.now(); due += tickMs) world.tick()
+  }, TICK_MS / 5)
+}
+
+main({ ...DEFAULTS, ...JSON.parse(process.argv[2] ?? '{}') })

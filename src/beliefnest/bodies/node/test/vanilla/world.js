@@ -1,0 +1,131 @@
+'use strict'
+/**
+ * One open world without regions, as on any server: a floor of stone under air, players who join where they were last,
+ * operators, time that is told. Its players come over TCP.
+ */
+const { Box } = require('../../src/regions/box')
+const { join, showWorld } = require('../../src/regions/joining')
+const { columnsOf } = require('../../src/regions/columns')
+const { Region, TICK_MS } = require('../../src/regions/region')
+const { TcpEnd } = require('../tcp/end')
+const { COMMANDS, runCommand } = require('./commands')
+
+const BOX = [[-64, -63, -64], [63, 60, 63]]
+const FLOOR_Y = -61
+const SPAWN = [0.5, FLOOR_Y + 1, 0.5]
+const AGE_EVERY = 20
+const NEWCOMER = { position: SPAWN, yaw: 0, pitch: 0, on_ground: true, health: 20, food: 20, gameMode: 0 }
+const ALL_MAY = ['tell', 'msg', 'w']
+
+class OpenWorld {
+  /**
+   * @param {object} serv from createServer
+   * @param {object} options
+   * @param {string[]} options.ops names of the operators
+   * @param {string[]} options.lacking commands that this server does not have
+   * @param {number} options.age in ticks
+   * @param {boolean} options.isProtected whether only operators may use blocks
+   */
+  constructor (serv, { ops, lacking, age, isProtected }) {
+    this.serv = serv
+    this.ops = new Set(ops)
+    this.lacking = new Set(lacking)
+    this.isProtected = isProtected
+    this.known = new Map()
+    this.region = openRegion(age)
+    serv.region = this.region
+    build(serv, this.region)
+    serv.command = (player, text) => this.command(player, text)
+    const canUse = serv.interact
+    serv.interact = use => this.mayUse(use.player) && canUse(use)
+  }
+
+  mayUse ({ username }) {
+    return !this.isProtected || this.ops.has(username)
+  }
+
+  join (client) {
+    const { serv, region } = this
+    const state = this.known.get(client.username) ?? NEWCOMER
+    const end = new TcpEnd(client, action => action(), error => { process.stderr.write(`${client.username}: ${error.stack}\n`) })
+    const player = join(serv, region, end, state)
+    player.gameMode = state.gameMode
+    showWorld(player, region.columns)
+    player.updateHealth(state.health)
+    this.tellCommands(player)
+    this.tellAge([player])
+    end.on('tab_complete', ({ transactionId }) => end.write('tab_complete', { transactionId, start: 1, length: 0, matches: [] }))
+    player.on('disconnected', () => this.known.set(player.username, {
+      position: region.toScenario(player.position), ...player.pose, on_ground: player.onGround, health: player.health, food: player.food, gameMode: player.gameMode
+    }))
+  }
+
+  commandsOf ({ username }) {
+    const own = this.ops.has(username) ? Object.keys(COMMANDS) : []
+    return [...ALL_MAY, ...own].filter(name => !this.lacking.has(name))
+  }
+
+  tellCommands (player) {
+    const node = (type, children, name) => ({
+      flags: { unused: 0, has_custom_suggestions: 0, has_redirect_node: 0, has_command: 1, command_node_type: type },
+      children,
+      redirectNode: undefined,
+      extraNodeData: name === undefined ? undefined : { name }
+    })
+    const names = this.commandsOf(player)
+    player._client.write('declare_commands', {
+      nodes: [node(0, names.map((_, index) => index + 1)), ...names.map(name => node(1, [], name))], rootIndex: 0
+    })
+  }
+
+  command (player, text) {
+    const known = this.commandsOf(player).includes(text.split(' ')[0])
+    player.system(known ? runCommand(this.serv, text, player) : 'Unknown or incomplete command, see below for error')
+  }
+
+  tellAge (players) {
+    const { tick } = this.region
+    for (const player of players) player._client.write('update_time', { age: [0, tick], time: [0, 6000] })
+  }
+
+  tick () {
+    const { serv, region } = this
+    region.tick += 1
+    serv.tickCount = region.tick
+    serv.tickRegion(() => true)
+    serv.emit('tick', TICK_MS / 1000, region.tick, region)
+    if (region.tick % AGE_EVERY === 0) this.tellAge(serv.players)
+  }
+
+  /** What is typed on the console: one line. */
+  console (line) {
+    const [word, name] = line.split(' ')
+    const player = this.serv.players.find(({ username }) => username === name)
+    if (word === 'op') this.ops.add(name)
+    else if (word === 'deop') this.ops.delete(name)
+    else if (word === 'kick') player?._client.end(JSON.stringify({ text: 'Kicked by an operator' }))
+    else if (word === 'drop') player?._client.client.socket.destroy()
+    else if (player === undefined) runCommand(this.serv, line, null)
+    if (player !== undefined && word.endsWith('op')) this.tellCommands(player)
+  }
+}
+
+/** A region that records nothing: what happens here nobody writes down. */
+function openRegion (age) {
+  const region = new Region({ name: 'world', seed: 'world', box: new Box(...BOX), origin: { x: 0, z: 0 }, tick: age, known: [] })
+  region.recorder = { event () {}, serverEvent () {}, blockChanged () {} }
+  return region
+}
+
+function build (serv, region) {
+  const Chunk = require('prismarine-chunk')(serv.registry)
+  region.columns = columnsOf(new Box([BOX[0][0] + 1, 0, BOX[0][2] + 1], [BOX[1][0] - 1, 0, BOX[1][2] - 1]), region.origin)
+  const stone = serv.registry.blocksByName.stone.defaultState
+  for (const [x, z] of region.columns) {
+    const column = new Chunk({ minY: serv.minY, worldHeight: serv.worldHeight })
+    for (let i = 0; i < 256; i++) column.setBlockStateId({ x: i & 15, y: FLOOR_Y, z: i >> 4 }, stone)
+    serv.overworld.sync.setColumn(x, z, column)
+  }
+}
+
+module.exports = { OpenWorld, TICK_MS }
