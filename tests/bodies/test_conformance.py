@@ -6,6 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.servers import GameServer
+
 from beliefnest.bodies.protocol import Body, World
 from beliefnest.bodies.scripted import ScriptedBody
 from beliefnest.bodies.worlds import WORLDS, open_world
@@ -44,11 +46,17 @@ ACTS: dict[str, tuple[str, Callable[[ScriptedBody], None], str]] = {
 }
 
 
-@pytest.fixture(params=WORLDS, scope="module")
+@pytest.fixture(params=[*WORLDS, "server"], scope="module")
 def world(request: pytest.FixtureRequest) -> Iterator[World]:
-    opened = open_world(request.param, 0)
-    yield opened
-    opened.close()
+    if request.param != "server":
+        opened = open_world(request.param, 0)
+        yield opened
+        opened.close()
+        return
+    with GameServer(latency=10) as server:
+        opened = open_world(server.address(at="0,32"), 0)
+        yield opened
+        opened.close()
 
 
 @pytest.fixture
@@ -92,7 +100,8 @@ def deeds(frames: list[Frame]) -> list[tuple[EventKind, str | None, dict[str, ob
 
 def test_a_body_is_what_it_was_filled_with(body):
     there, wanted = body.snapshot(), start()
-    assert body.tick == there.tick == wanted.tick
+    assert body.tick == wanted.tick
+    assert there.tick >= wanted.tick if body.goes_on else there.tick == wanted.tick
     assert np.array_equal(there.blocks, wanted.blocks)
     assert there.containers == wanted.containers
     for name, agent in wanted.agents.items():
@@ -104,7 +113,8 @@ def test_a_body_is_what_it_was_filled_with(body):
 
 def test_ticks_pass_and_nothing_happens_by_itself(body, frames):
     body.step(5)
-    assert body.tick == start().tick + 5
+    passed = body.tick - start().tick
+    assert passed >= 5 if body.goes_on else passed == 5
     assert all(frame.is_empty for frame in frames)
 
 
@@ -161,7 +171,8 @@ def test_a_body_becomes_what_it_is_told_without_a_frame(body, frames):
     body.set_state(wanted)
     there = body.snapshot()
     assert frames == []
-    assert (body.tick, there.tick) == (3, 3)
+    assert body.tick == 3
+    assert there.tick >= 3 if body.goes_on else there.tick == 3
     assert there.containers == wanted.containers
     assert {n: (a.position, a.inventory) for n, a in there.agents.items()} == {
         n: (a.position, a.inventory) for n, a in wanted.agents.items()
@@ -179,6 +190,8 @@ def test_bodies_do_not_know_of_one_another(world, body):
 
 
 def test_the_same_seed_tells_the_same_frames(world, body, frames):
+    if body.goes_on:
+        pytest.skip("the time of a server is not repeated")
     again: list[Frame] = []
     twin = world.open_body("/twin", "seed", start(), again.append)
     for act in ("deposit", "withdraw", "open"):

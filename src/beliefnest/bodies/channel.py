@@ -213,5 +213,7 @@ def _result(op: str, answer: dict[str, Any]) -> Any:
     error = answer["error"]
     if error["kind"] == "bad_request":
         raise WorldError(error["message"])
+    if error["kind"] == "world":
+        raise BodyError(error["message"])
     stack = error.get("stack", "")
     raise BodyError(f"the Minecraft side failed in {op!r}: {error['message']}\n{stack}".rstrip())

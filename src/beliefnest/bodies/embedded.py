@@ -1,6 +1,6 @@
 """The embedded Minecraft world: one Node process with the server and all bots."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Self
 
 import numpy as np
@@ -8,13 +8,13 @@ import numpy as np
 from beliefnest.bodies import messages
 from beliefnest.bodies.channel import PROTOCOL, Channel
 from beliefnest.bodies.limits import ProcessLimits
-from beliefnest.bodies.node_files import node_command
+from beliefnest.bodies.node_files import EMBEDDED, node_command
 from beliefnest.bodies.protocol import ProgramResult, Sense, Sink
 from beliefnest.errors import BodyError, BodyLostError, WorldError
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.values import Box, Event
 
-__all__ = ["MINECRAFT", "EmbeddedBody", "EmbeddedWorld"]
+__all__ = ["MINECRAFT", "EmbeddedBody", "EmbeddedWorld", "started"]
 
 MINECRAFT = "1.20.4"
 """The Minecraft version of the embedded world."""
@@ -29,7 +29,7 @@ class EmbeddedBody:
         region: str,
         snapshot: Snapshot,
         sink: Sink,
-        on_close: Callable[[], None],
+        on_close: Callable[[], None] = lambda: None,
     ) -> None:
         self._channel = channel
         self._region = region
@@ -41,6 +41,32 @@ class EmbeddedBody:
         self._happened: list[tuple[int, Event]] = []
         self._closed = False
         self._on_close = on_close
+
+    @classmethod
+    def opened(
+        cls,
+        channel: Channel,
+        region: str,
+        seed: str,
+        snapshot: Snapshot,
+        sink: Sink,
+        known: Sequence[str],
+        on_close: Callable[[], None] = lambda: None,
+    ) -> Self:
+        """Let Node make a region and fill it; `known` are all agents that can be spoken of."""
+        channel.request(
+            "create_region",
+            region=region,
+            seed=seed,
+            known=known,
+            **messages.snapshot_message(snapshot),
+        )
+        return cls(channel, region, snapshot, sink, on_close)
+
+    @property
+    def goes_on(self) -> bool:
+        """False: its clock stands still between the calls."""
+        return False
 
     @property
     def lost(self) -> bool:
@@ -179,17 +205,17 @@ class EmbeddedWorld:
         if name in self._names:
             raise WorldError(f"there is a body {name!r} already")
         # In a belief somebody may be missing whom one can speak of all the same.
-        self._agents |= snapshot.agents.keys()
-        channel.request(
-            "create_region",
-            region=name,
-            seed=seed,
-            known=sorted(self._agents),
-            **messages.snapshot_message(snapshot),
+        self.knows(snapshot.agents)
+        names, known = self._names, sorted(self._agents)
+        body = EmbeddedBody.opened(
+            channel, name, seed, snapshot, sink, known, lambda: names.discard(name)
         )
-        names = self._names
         names.add(name)
-        return EmbeddedBody(channel, name, snapshot, sink, lambda: names.discard(name))
+        return body
+
+    def knows(self, agents: Iterable[str]) -> None:
+        """Take note of agents that can be spoken of in any body, also where they are not."""
+        self._agents |= set(agents)
 
     def another(self) -> "EmbeddedWorld":
         """One more, with a process of its own."""
@@ -215,16 +241,28 @@ class EmbeddedWorld:
         if self._channel is None or self._channel.lost:
             if self._channel is not None:
                 self._channel.close()
-            self._channel, self._versions = _started(self._seed, self._limits)
+            self._channel, self._versions = started(self._seed, self._limits)
             self._names = set()
         return self._channel
 
 
-def _started(seed: int, limits: ProcessLimits) -> tuple[Channel, Mapping[str, str]]:
-    """A channel to a new Node with an empty world, and the versions of what runs there."""
-    channel = Channel.start(node_command(limits), limits)
+def started(
+    seed: int, limits: ProcessLimits, program: str = EMBEDDED, **more: Any
+) -> tuple[Channel, Mapping[str, str]]:
+    """A channel to a new Node with an empty world, and the versions of what runs there.
+
+    Args:
+        seed: Drives the random numbers of the world itself.
+        limits: What Node may take.
+        program: Name of what it runs.
+        more: What that is told besides.
+
+    Raises:
+        BodyError: Node or the bundle is missing, or the start failed.
+    """
+    channel = Channel.start(node_command(limits, program), limits)
     try:
-        told = channel.request("hello", protocol=PROTOCOL, seed=seed, minecraft=MINECRAFT)
+        told = channel.request("hello", protocol=PROTOCOL, seed=seed, minecraft=MINECRAFT, **more)
     except BodyLostError as error:
         channel.close()
         raise BodyError(f"Node cannot be started; run `beliefnest doctor`. {error}") from error

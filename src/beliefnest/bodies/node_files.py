@@ -9,10 +9,16 @@ from pathlib import Path
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.errors import BodyError
 
-__all__ = ["OLDEST_NODE", "bundle_path", "node_command", "node_path"]
+__all__ = ["EMBEDDED", "OLDEST_NODE", "REALTIME", "bundle_path", "node_command", "node_path"]
 
 OLDEST_NODE = 24
 """Major version from which on Node is that of the packaged one, with its permissions and flags."""
+
+EMBEDDED = "main.js"
+"""The program with the embedded world, which opens no sockets."""
+
+REALTIME = "realtime.js"
+"""The program that plays on a Minecraft server elsewhere."""
 
 _BUNDLE = Path(__file__).parents[1] / "_bundle"
 
@@ -55,25 +61,25 @@ def _node_on_path() -> Path:
     return Path(found)
 
 
-def bundle_path() -> Path:
-    """The bundled JavaScript.
+def bundle_path(program: str = EMBEDDED) -> Path:
+    """A program of the bundled JavaScript.
 
     Raises:
         BodyError: The package was not built.
     """
-    path = _BUNDLE / "main.js"
+    path = _BUNDLE / program
     if not path.is_file():
         raise BodyError(f"the JavaScript bundle is missing at {path}: run `pip install .`")
     return path
 
 
-def node_command(limits: ProcessLimits | None = None) -> list[str]:
+def node_command(limits: ProcessLimits | None = None, program: str = EMBEDDED) -> list[str]:
     """The command that starts the Minecraft side, with as few permissions as it needs.
 
     Raises:
         BodyError: Node or the bundle is missing.
     """
-    node, bundle = node_path(), bundle_path()
+    node, bundle = node_path(), bundle_path(program)
     heap = (limits or ProcessLimits()).heap
     return [
         str(node),

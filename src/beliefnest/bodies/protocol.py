@@ -181,7 +181,7 @@ Sense = Callable[[], Sensed]
 
 
 class Body(Protocol):
-    """One simulator's part of a world; its clock stands still between the calls.
+    """One simulator's part of a world; its clock stands still between the calls, or it `goes_on`.
 
     Any call but `close` may raise BodyLostError: the process behind the world ended. What was
     asked for has not happened, whatever frames it sent; the body and all others of that
@@ -191,6 +191,10 @@ class Body(Protocol):
     @property
     def lost(self) -> bool:
         """Whether the process behind the world has ended."""
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether time passes in it between the calls; the next call tells what happened."""
 
     @property
     def tick(self) -> int:

@@ -31,6 +31,11 @@ class ScriptedBody:
         return False
 
     @property
+    def goes_on(self) -> bool:
+        """False: its clock stands still between the calls."""
+        return False
+
+    @property
     def tick(self) -> int:
         """The body's latest tick."""
         return self.world.now

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from types import TracebackType
 from typing import Self
 
+from beliefnest.bodies.address import SCHEME, ServerAddress, is_server
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.protocol import Body, Sink, World
 from beliefnest.bodies.scripted import ScriptedBodies
@@ -13,7 +14,7 @@ from beliefnest.world.frames import Snapshot
 __all__ = ["WORLDS", "LazyWorld", "Worlds", "check_world", "open_world"]
 
 WORLDS = ("embedded", "scripted")
-"""Names of the worlds."""
+"""Names of the worlds; any other one is the address of a server, `minecraft://HOST:PORT`."""
 
 _WITHOUT_PHYSICS = frozenset({"scripted"})
 
@@ -31,6 +32,10 @@ def open_world(name: str, seed: int, limits: ProcessLimits | None = None) -> Wor
         UnknownNameError: There is no world of that name.
     """
     check_world(name)
+    if is_server(name):
+        from beliefnest.bodies.minecraft import MinecraftWorld
+
+        return MinecraftWorld.start(ServerAddress.parse(name), seed, limits)
     match name:
         case "embedded":
             from beliefnest.bodies.embedded import EmbeddedWorld
@@ -47,9 +52,14 @@ def check_world(name: str) -> None:
 
     Raises:
         UnknownNameError: There is no world of that name.
+        InputError: It is the address of a server and not of the right form.
     """
-    if name not in WORLDS:
-        raise UnknownNameError(f"there is no world {name!r}; there are {', '.join(WORLDS)}")
+    if is_server(name):
+        ServerAddress.parse(name)
+    elif name not in WORLDS:
+        raise UnknownNameError(
+            f"there is no world {name!r}; there are {', '.join(WORLDS)}, {SCHEME}://HOST:PORT"
+        )
 
 
 class LazyWorld:

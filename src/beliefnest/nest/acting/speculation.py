@@ -66,6 +66,11 @@ class SpeculatedBody:
         return self._ran and isinstance(self._speculation.error, BodyLostError)
 
     @property
+    def goes_on(self) -> bool:
+        """False: its clock stands still between the calls."""
+        return False
+
+    @property
     def tick(self) -> int:
         """The body's latest tick."""
         return self._speculation.tick

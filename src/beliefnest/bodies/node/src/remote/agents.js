@@ -8,6 +8,7 @@ const { layOut, possessionsOf } = require('../server/plugins/lib/slots')
 const { wrap } = require('../server/angles')
 const { rounded, sorted } = require('../regions/facts')
 const { Link } = require('./link')
+const { hasColumns, until } = require('./waiting')
 const { Witness } = require('./witness')
 
 const NEAR = 0.02
@@ -15,6 +16,7 @@ const FULL = 20
 const SLOTS = 46
 const FIRST_HOTBAR = 36
 const PLACING_MS = 10_000
+const COLUMNS_MS = 5000
 const RESULT = 0
 const ANSWER_MS = 1000
 
@@ -72,7 +74,7 @@ class Agents {
   async stand (agent) {
     const { bot } = this.links.get(agent)
     if (!this.latest.has(agent)) return
-    await bot.waitForChunksToLoad()
+    await this.sees(bot)
     bot.physicsEnabled = true
   }
 
@@ -89,6 +91,9 @@ class Agents {
       if (operator.can('effect') && this.bot(agent).food < FULL && state.food === FULL) operator.type(commands.feed(agent))
       operator.type(commands.go(agent, state.position, state))
     }
+    // One who was there before is moved all the same.
+    await operator.settled()
+    await Promise.all(placing.map(([agent]) => this.answered(agent)))
     await Promise.all(placing.map(([agent, state]) => this.arrived(agent, state)))
     for (const [agent, state] of placing) {
       const bot = this.bot(agent)
@@ -105,11 +110,18 @@ class Agents {
     const there = () => bot.entity.position.distanceTo({ x: state.position[0], y: state.position[1], z: state.position[2] }) < NEAR
     const has = () => isDeepStrictEqual(this.look(agent).inventory, sorted(state.inventory))
     if (await this.operator.until(() => there() && has(), PLACING_MS)) {
-      await bot.waitForChunksToLoad()
+      await this.sees(bot)
       return
     }
     const what = there() ? `has ${JSON.stringify(this.look(agent).inventory)} instead of ${JSON.stringify(state.inventory)}` : `is at ${bot.entity.position} instead of (${state.position.join(', ')})`
     throw new BadRequest(`${agent} ${what} on the server; it said last: ${this.operator.lines.at(-1) ?? 'nothing'}`)
+  }
+
+  /** Resolves when a bot has been shown the box, or the part of it that the server shows from there. */
+  async sees (bot) {
+    await until(() => hasColumns(bot, this.region.box), COLUMNS_MS)
+    const [x, y, z] = bot.entity.position.toArray().map(Math.floor)
+    await until(() => hasColumns(bot, { low: [x, y, z], high: [x, y, z] }), PLACING_MS)
   }
 
   slots (agent, state) {
@@ -162,11 +174,16 @@ class Agents {
 
   async settled () {
     const here = [...this.links.values()].filter(({ isHere }) => isHere)
-    await Promise.all(here.map(({ bot }) => bot.tabComplete('/', true, false, ANSWER_MS).catch(() => {})))
+    await Promise.all(here.map(({ name }) => this.answered(name)))
     const from = this.region.now()
     await this.operator.until(() => this.region.now() >= from + 2 || !this.operator.link.isHere, ANSWER_MS)
     if (this.operator.link.isHere) await this.operator.settled().catch(() => {})
     await this.operator.until(() => this.scene.isQuiet)
+  }
+
+  /** Resolves when the server has handled what an agent's client has sent, and the client what was sent to it before. */
+  async answered (agent) {
+    await this.bot(agent).tabComplete('/', true, false, ANSWER_MS).catch(() => {})
   }
 
   /** Resolves when all agents are connected. @throws {Unplayable} if one was given up */

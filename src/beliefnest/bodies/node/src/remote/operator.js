@@ -1,12 +1,11 @@
 'use strict'
 /** The bot that serves a place on a server elsewhere: it types commands, and its client is what the place looks like. */
 const { once } = require('node:events')
-const { setTimeout: sleep } = require('node:timers/promises')
 const { Vec3 } = require('vec3')
 const { NEEDED } = require('./commands')
 const reasons = require('./reasons')
+const { until } = require('./waiting')
 
-const POLL_MS = 10
 const ANSWER_MS = 5000
 const MOST_LINES = 20
 const EYE_HEIGHT = 1.62
@@ -56,21 +55,7 @@ class Operator {
 
   /** @returns {Promise<boolean>} whether the condition held in time */
   async until (condition, milliseconds = ANSWER_MS) {
-    const end = performance.now() + milliseconds
-    while (!condition()) {
-      if (performance.now() > end) return false
-      await sleep(POLL_MS)
-    }
-    return true
-  }
-
-  hasColumns (box) {
-    for (let x = box.low[0] >> 4; x <= box.high[0] >> 4; x++) {
-      for (let z = box.low[2] >> 4; z <= box.high[2] >> 4; z++) {
-        if (!this.bot.world.getColumn(x, z)) return false
-      }
-    }
-    return true
+    return until(condition, milliseconds)
   }
 
   /** @returns {Int32Array} the states of a box, in its array order */

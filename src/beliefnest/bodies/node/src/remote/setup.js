@@ -9,6 +9,7 @@ const { halvesAt } = require('../server/plugins/lib/doubleChest')
 const { slotsIn, slotted } = require('./kinds')
 const { planFills } = require('./plan')
 const reasons = require('./reasons')
+const { hasColumns } = require('./waiting')
 
 const ATTEMPTS = 3
 const COLUMNS_MS = 20_000
@@ -37,7 +38,7 @@ class Setup {
     operator.type(commands.mode(operator.link.name, 'spectator'))
     operator.type(commands.load('add'))
     await this.goAbove()
-    if (!await operator.until(() => operator.hasColumns(box), COLUMNS_MS)) throw reasons.tooFar(operator.server, box)
+    if (!await operator.until(() => hasColumns(operator.bot, box), COLUMNS_MS)) throw reasons.tooFar(operator.server, box)
     await operator.settled()
   }
 

@@ -15,6 +15,8 @@ const FLOOR_Y = -61
 const SPAWN = [0.5, FLOOR_Y + 1, 0.5]
 const AGE_EVERY = 20
 const NEWCOMER = { position: SPAWN, yaw: 0, pitch: 0, on_ground: true, health: 20, food: 20, gameMode: 0 }
+// Who leaves does not wait for what is on its way.
+const BROKEN_OFF = ['EPIPE', 'ECONNRESET']
 const ALL_MAY = ['tell', 'msg', 'w']
 
 class OpenWorld {
@@ -47,7 +49,9 @@ class OpenWorld {
   join (client) {
     const { serv, region } = this
     const state = this.known.get(client.username) ?? NEWCOMER
-    const end = new TcpEnd(client, action => action(), error => { process.stderr.write(`${client.username}: ${error.stack}\n`) })
+    const end = new TcpEnd(client, action => action(), error => {
+      if (!BROKEN_OFF.includes(error.code)) process.stderr.write(`${client.username}: ${error.stack}\n`)
+    })
     const player = join(serv, region, end, state)
     player.gameMode = state.gameMode
     showWorld(player, region.columns)

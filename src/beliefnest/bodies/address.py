@@ -1,0 +1,134 @@
+"""Addresses of Minecraft servers: `minecraft://HOST:PORT?option=value&...`."""
+
+import re
+from dataclasses import asdict, dataclass
+from typing import Any
+from urllib.parse import parse_qsl, urlsplit
+
+from beliefnest.errors import InputError
+
+__all__ = ["SCHEME", "ServerAddress", "is_server"]
+
+SCHEME = "minecraft"
+
+_PORT = 25565
+_CHUNK = 16
+_FARTHEST = 29_000_000
+_NAME = re.compile(r"[A-Za-z0-9_]{1,16}")
+_FORM = "write minecraft://HOST:PORT, with options as ?version=1.20.4&at=0,160&overwrite=yes"
+
+
+def is_server(world: str) -> bool:
+    """Whether the name of a world is the address of a server."""
+    return world.startswith(f"{SCHEME}://")
+
+
+@dataclass(frozen=True, slots=True)
+class ServerAddress:
+    """Where a server is, and how it is played on.
+
+    Attributes:
+        host: Its name or number.
+        port: Its port.
+        version: The Minecraft version to speak; None: what the server says.
+        operator: Name of the bot that sets up and watches, which must be an operator.
+        at: Where scenario (0, y, 0) lies in its world: x and z, multiples of 16.
+        overwrite: Whether blocks in the box that are not the scenario's may be replaced.
+        keep: Whether the box is left as it is at the end, not as it was before.
+        patience: Seconds for which a lost connection, or a server that stands still, is waited for.
+    """
+
+    host: str
+    port: int = _PORT
+    version: str | None = None
+    operator: str = "BeliefNest"
+    at: tuple[int, int] = (0, 0)
+    overwrite: bool = False
+    keep: bool = False
+    patience: float = 30.0
+
+    @classmethod
+    def parse(cls, text: str) -> "ServerAddress":
+        """The address that a text is.
+
+        Raises:
+            InputError: It is none, or an option is not known or not of its form.
+        """
+        parts = urlsplit(text)
+        if parts.username is not None or parts.password is not None:
+            raise InputError(
+                "the address of a server has no name or password in it, which would be kept with "
+                "every run; servers in offline mode are joined without"
+            )
+        try:
+            host, port = parts.hostname, parts.port
+        except ValueError as error:
+            raise InputError(f"{text!r} has no port that there is: {_FORM}") from error
+        if parts.scheme != SCHEME or not host or parts.path not in ("", "/") or parts.fragment:
+            raise InputError(f"{text!r} is no address of a server: {_FORM}")
+        options: dict[str, Any] = {}
+        for key, value in parse_qsl(parts.query, keep_blank_values=True):
+            if key not in _OPTIONS:
+                known = ", ".join(_OPTIONS)
+                raise InputError(f"{text!r} has the option {key!r}; there are {known}")
+            options[key] = _OPTIONS[key](key, value)
+        return cls(host, _PORT if port is None else port, **options)
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """What the Minecraft side is told of it."""
+        return asdict(self)
+
+    def __str__(self) -> str:
+        return f"{SCHEME}://{self.host}:{self.port}"
+
+
+def _text(key: str, value: str) -> str:
+    if not value:
+        raise InputError(f"the option {key} is empty: {_FORM}")
+    return value
+
+
+def _name(key: str, value: str) -> str:
+    if _NAME.fullmatch(value) is None:
+        raise InputError(
+            f"the option {key} is {value!r}; a player's name has 1 to 16 letters, digits or _"
+        )
+    return value
+
+
+def _yes(key: str, value: str) -> bool:
+    if value not in ("yes", "no"):
+        raise InputError(f"the option {key} is {value!r}; give yes or no")
+    return value == "yes"
+
+
+def _place(key: str, value: str) -> tuple[int, int]:
+    found = re.fullmatch(r"(-?\d{1,8}),(-?\d{1,8})", value)
+    if found is not None:
+        x, z = int(found[1]), int(found[2])
+        if x % _CHUNK == z % _CHUNK == 0 and max(abs(x), abs(z)) <= _FARTHEST:
+            return x, z
+    raise InputError(
+        f"the option {key} is {value!r}; give X,Z, both multiples of {_CHUNK}, as at=0,160"
+    )
+
+
+def _seconds(key: str, value: str) -> float:
+    try:
+        seconds = float(value)
+    except ValueError:
+        seconds = 0.0
+    if not 1 <= seconds <= 3600:
+        raise InputError(f"the option {key} is {value!r}; give seconds from 1 to 3600")
+    return seconds
+
+
+_OPTIONS = {
+    "version": _text,
+    "operator": _name,
+    "at": _place,
+    "overwrite": _yes,
+    "keep": _yes,
+    "patience": _seconds,
+}
