@@ -1,4 +1,4 @@
-"""Minecraft servers for tests: processes of their own that do what a vanilla one does for an operator bot."""
+"""Minecraft servers for tests: processes that do what a vanilla one does for an operator bot."""
 
 import json
 import os

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
 from tests.servers import GameServer
 
 from beliefnest.bodies.protocol import Body, World
