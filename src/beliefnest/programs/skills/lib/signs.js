@@ -44,4 +44,4 @@ async function read (context, signPosition) {
   return textOf(signAt(context, position))
 }
 
-module.exports = { read, write }
+module.exports = { read, textOf, write }

@@ -17,6 +17,9 @@ function slotName (slot) {
   return slot >= FIRST_HOTBAR ? `hotbar.${slot - FIRST_HOTBAR}` : `inventory.${slot - FIRST_OWN}`
 }
 
+/** A text as the game's own notation has it. */
+const quoted = text => `'${text.replace(/[\\']/g, found => `\\${found}`)}'`
+
 /**
  * @param {import('../regions/place').Place} place
  * @param {(state: number) => string} textOf a block state
@@ -48,6 +51,7 @@ function commandsFor (place, textOf) {
     },
     layItem: ({ name, count, position }) =>
       `summon minecraft:item ${at(position)} {Item:{id:"minecraft:${name}",Count:${count}b},PickupDelay:0}`,
+    write: (position, line, text) => `data modify block ${at(position)} front_text.messages[${line}] set value ${quoted(JSON.stringify(text))}`,
     load (act) {
       const { low, high } = place.box
       const corner = ([x, , z]) => `${x + place.origin.x} ${z + place.origin.z}`

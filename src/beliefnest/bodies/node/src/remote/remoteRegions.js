@@ -45,14 +45,14 @@ class RemoteRegions {
   }
 
   /** @returns {Promise<object>} SNAPSHOT, once every agent stands there */
-  async create ({ region: name, box: corners, tick, blocks, containers, agents, items, known = Object.keys(agents) }) {
+  async create ({ region: name, box: corners, tick, blocks, containers, agents, items, signs = [], known = Object.keys(agents) }) {
     if (this.open !== null) throw new BadRequest(`${this.open.region.name} is played on this server; there can be one place at a time`)
     const [x, z] = this.server.at
     const region = new RemotePlace({ name, box: new Box(...corners), origin: { x, z }, tick, known }, this.serverClock)
     this.server.agents = Object.keys(agents)
     this.open = this.equip(region)
     try {
-      await this.fill(this.open, { blocks, containers, agents, items })
+      await this.fill(this.open, { blocks, containers, agents, items, signs })
       this.begin(this.open, tick, agents)
     } catch (error) {
       await this.giveUp(this.open).catch(() => {})
@@ -70,12 +70,12 @@ class RemoteRegions {
       connect({ host, port, username: agent, origin: { x: at[0], z: at[1] }, hidden: [hidden] }))
     const { contents, states, items } = scene
     region.recorder = new Recorder(region, {
-      agents: () => agents.states(), items: () => items.states(), changedContainers: () => contents.drain(), blockText: state => states.text(state)
+      agents: () => agents.states(), items: () => items.states(), changedContainers: () => contents.drain(), blockText: state => states.text(state), signText: ([x, y, z]) => scene.signText({ x, y, z })
     })
     return { region, scene, setup, agents, saved: null }
   }
 
-  async fill (open, { blocks, containers, agents, items }) {
+  async fill (open, { blocks, containers, agents, items, signs }) {
     const { region, scene, setup } = open
     const wanted = statesOf(blocks, region.box)
     await setup.arrive()
@@ -86,6 +86,7 @@ class RemoteRegions {
     const built = await setup.build(wanted)
     scene.settle(built)
     await setup.stock(withEmpty(setup.containers(built), containers))
+    await setup.write(signs)
     await setup.lay(items)
     await open.agents.add(agents, this.server.patience * 1000)
   }
@@ -175,7 +176,7 @@ class RemoteRegions {
   }
 
   /** Makes the place so; what happened there since the last call is forgotten with what it led to. */
-  async apply ({ region: name, blocks, containers, agents, items, tick }) {
+  async apply ({ region: name, blocks, containers, agents, items, tick, signs = [] }) {
     const region = this.get(name)
     const { scene, setup } = this.open
     region.isDriven = true
@@ -186,6 +187,7 @@ class RemoteRegions {
       scene.settle(await setup.build(wanted))
       for (const position of blocks.map(([x, y, z]) => vecOf({ x, y, z }))) scene.replaced(position, scene.at(position))
       await setup.stock(containers.filter(([, , , held]) => held !== null))
+      await setup.write(signs)
       await setup.lay(items)
       await this.moveAgents(this.open, agents)
       region.waiting.length = 0
@@ -232,7 +234,7 @@ class RemoteRegions {
   snapshot ({ tick }) {
     const { scene, agents } = this.open
     return {
-      tick, blocks: new Uint8Array(scene.blocks.slice().buffer), containers: scene.contents.states(), agents: agents.states(), items: scene.items.states(), hidden: NOTHING
+      tick, blocks: new Uint8Array(scene.blocks.slice().buffer), containers: scene.contents.states(), agents: agents.states(), items: scene.items.states(), hidden: NOTHING, signs: scene.signStates()
     }
   }
 

@@ -7,8 +7,9 @@ const { Vec3 } = require('vec3')
 const { blockStates } = require('../server/plugins/lib/states')
 const { halvesAt } = require('../server/plugins/lib/doubleChest')
 const { handOver } = require('../server/plugins/lib/gifts')
-const { listOf } = require('../server/plugins/lib/positions')
+const { byPlace, keyOf, listOf } = require('../server/plugins/lib/positions')
 const { without } = require('../server/plugins/lib/throws')
+const { textOf } = require('../../../../programs/skills/lib/signs')
 const { slotsIn } = require('./kinds')
 const { Contents } = require('./contents')
 const { Items } = require('./items')
@@ -27,6 +28,8 @@ class Scene {
     this.states = blockStates(registry)
     this.contents = new Contents()
     this.items = new Items(region)
+    // What is written on signs that are written on.
+    this.signs = new Map()
     this.witnesses = new Map()
     this.expected = []
     this.thrown = []
@@ -66,7 +69,31 @@ class Scene {
 
   replaced (position, after) {
     this.contents.forget(position)
+    this.signs.delete(keyOf(position))
     if (slotsIn(after.name) > 0) this.contents.know(position, {})
+  }
+
+  /** A sign shows this text. */
+  signShown (position, text) {
+    const { box, recorder } = this.region
+    if (this.blocks === null || !box.contains(position.x, position.y, position.z) || text === this.signText(position)) return
+    this.writeDown(position, text)
+    const writer = this.whoTried('write', position)
+    recorder.signChanged(this.region.toServer(listOf(position)), this.at(position).stateId, text, writer?.agent ?? null)
+  }
+
+  writeDown (position, text) {
+    if (text === '') this.signs.delete(keyOf(position))
+    else this.signs.set(keyOf(position), { position, text })
+  }
+
+  signText (position) {
+    return this.signs.get(keyOf(position))?.text ?? ''
+  }
+
+  /** @returns {Array} [x, y, z, text] of all signs that are written on, in order */
+  signStates () {
+    return [...this.signs.values()].map(({ position, text }) => [...listOf(position), text]).sort(byPlace)
   }
 
   attribute (position, before, after) {
@@ -137,6 +164,7 @@ class Scene {
   attach (bot, client) {
     bot.on('blockUpdate', (_, block) => { if (block !== null) this.blockChanged(block.position, block.stateId) })
     bot.on('messagestr', text => this.heardBy(null, text))
+    bot.on('blockEntityData', block => { if (block?.name.endsWith('_sign')) this.signShown(block.position, textOf(block)) })
     bot.on('itemDrop', entity => this.items.appeared(entity, this.thrown))
     bot.on('entityGone', entity => this.items.gone(entity.id))
     client.on('collect', packet => this.collected(bot, packet))

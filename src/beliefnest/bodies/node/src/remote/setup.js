@@ -15,6 +15,7 @@ const ATTEMPTS = 3
 const COLUMNS_MS = 20_000
 const MOST_TOLD = 5
 const ABOVE = 3
+const LINES = 4
 
 class Setup {
   /**
@@ -149,6 +150,27 @@ class Setup {
       if (slotsIn(this.scene.states.describe(present[index]).name) > 0) found.push([x, y, z])
     })
     return found
+  }
+
+  /**
+   * Lets exactly this be written on the signs of the box.
+   * @param {Array} signs [x, y, z, text]
+   */
+  async write (signs) {
+    const { operator, scene } = this
+    const wanted = new Map([...scene.signStates().map(([x, y, z]) => [[x, y, z].join(), '']), ...signs.map(([x, y, z, text]) => [[x, y, z].join(), text])])
+    const differing = [...wanted].map(([key, text]) => [key.split(',').map(Number), text]).filter(([position, text]) => scene.signText(vec(position)) !== text)
+    if (differing.length === 0) return
+    if (!operator.can('data')) throw new BadRequest('signs in the box are written on, which this server cannot be told: it has no /data')
+    for (const [position, text] of differing) {
+      const lines = text.split('\n')
+      for (let line = 0; line < LINES; line++) operator.type(this.commands.write(position, line, lines[line] ?? ''))
+    }
+    await operator.settled()
+    const flaws = () => differing.filter(([position, text]) => scene.signText(vec(position)) !== text)
+    if (await operator.until(() => flaws().length === 0)) return
+    const [[position, text]] = flaws()
+    throw new BadRequest(`the sign at (${position.join(', ')}) does not show ${JSON.stringify(text)} on the server; it said last: ${operator.lines.at(-1) ?? 'nothing'}`)
   }
 
   /** Lets exactly these items lie in the box. */

@@ -158,13 +158,23 @@ function forceload (serv, [act]) {
   return act === 'add' ? 'Marked the chunks to be force loaded' : 'Unmarked the chunks'
 }
 
-/** Contents, as the game writes them. */
-function data (serv, [, , x, y, z]) {
+/** `get block X Y Z`: contents, as the game writes them; `modify block X Y Z front_text.messages[N] set value '"TEXT"'` */
+function data (serv, [act, , x, y, z, ...words]) {
   const position = place([x, y, z])
+  if (act === 'modify') return write(serv, position, words)
   if (serv.containers.get(position) === null) throw new Refusal('The target block is not a block entity')
   const items = serv.containers.slots(position).flatMap((stack, slot) =>
     stack ? [`{Slot: ${slot}b, id: "minecraft:${stack.name}", Count: ${stack.count}b}`] : [])
   return `${x}, ${y}, ${z} has the following block data: {Items: [${items.join(', ')}]}`
+}
+
+function write (serv, position, [path, , , ...words]) {
+  const line = Number(/^front_text\.messages\[(\d)\]$/.exec(path)?.[1])
+  const text = JSON.parse(words.join(' ').slice(1, -1).replace(/\\(.)/g, '$1'))
+  const lines = serv.signs.get(position).split('\n')
+  const changed = [0, 1, 2, 3].map(index => index === line ? text : lines[index] ?? '')
+  serv.signs.set(position, changed.join('\n').replace(/\n+$/, ''))
+  return 'Modified block data'
 }
 
 function gamerule (serv, [name, value]) {
