@@ -1,15 +1,47 @@
 #!/usr/bin/env bash
 # What a newcomer gets: the source distribution, a wheel made of it, installed in an environment
-# of its own and run away from the sources.
+# of its own and run away from the sources, with every supported Python that this machine has.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 room=$(mktemp -d)
 trap 'rm -rf "$room"' EXIT
+export PYTHONPATH=''
+
+# Paths of the Pythons from 3.11 on, one of each version, on the PATH or kept by pyenv.
+pythons() {
+  local minor python
+  for minor in 11 12 13 14; do
+    for python in "python3.$minor" "${PYENV_ROOT:-$HOME/.pyenv}"/versions/3."$minor".*/bin/python; do
+      if "$python" -c "import sys; sys.exit(sys.version_info[:2] != (3, $minor))" 2>/dev/null; then
+        echo "$python"
+        break
+      fi
+    done
+  done
+}
+
+# Install the wheel with one Python and run the README's first command; says all at its end.
+visit() {
+  local home said
+  home=$(mktemp -d -p "$room")
+  if said=$( {
+    "$1" -m venv "$home/venv" &&
+      "$home/venv/bin/pip" install --quiet "$room"/wheel/*.whl &&
+      cd "$home" &&
+      venv/bin/beliefnest --version &&
+      venv/bin/beliefnest run sally-anne --out run
+  } 2>&1); then
+    printf '%s\n%s\n' "$("$1" --version)" "$said"
+  else
+    printf '%s\n%s\nthe wheel does not work with %s\n' "$("$1" --version)" "$said" "$1" >&2
+    return 1
+  fi
+}
 
 python -m hatchling build -t sdist -d "$room/sdist"
 python -m pip wheel --quiet --no-deps --wheel-dir "$room/wheel" "$room"/sdist/*.tar.gz
-python3 -m venv "$room/venv"
-"$room/venv/bin/pip" install --quiet "$room"/wheel/*.whl
-cd "$room"
-PYTHONPATH='' venv/bin/beliefnest --version
-PYTHONPATH='' venv/bin/beliefnest run sally-anne --out run
+mapfile -t found < <(pythons)
+((${#found[@]})) || { echo "no Python from 3.11 on was found" >&2; exit 1; }
+export room
+export -f visit
+printf '%s\n' "${found[@]}" | xargs -P 2 -I{} bash -c 'set -euo pipefail; visit "$1"' visit {}
