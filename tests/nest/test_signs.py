@@ -5,10 +5,12 @@ import pytest
 import beliefnest as bn
 from beliefnest.belief.entries import Source
 from beliefnest.nest.past.setting import Setting
+from beliefnest.prompts.templates import built_in_template
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.values import EventKind
 
 SIGN = (5, 1, 5)
+DEFAULT = built_in_template("default").text
 WALL = {(7, y, z): "stone" for y in (1, 2, 3) for z in range(11)}
 
 
@@ -137,3 +139,24 @@ def test_snapshots_of_other_makers_are_checked(world):
     }
     with pytest.raises(bn.InputError, match="the sign at"):
         Setting("x", Snapshot(**good, signs={(0, 0, 0): "x"}))
+
+
+def test_prompts_say_what_signs_say_and_explanations_who_wrote_it(world, nest):
+    template = "{{ branch | signs }}"
+    world.write_sign("anne", SIGN, "tools\nno food")
+    assert nest["/sally"].render(template) == (
+        '(5, 1, 5) oak_sign: says "tools / no food"; seen now; last written on by anne 0 s ago'
+    )
+    world.place_agent("sally", (9.5, 1, 5.5))
+    world.step(40)
+    with world.tick():
+        world.write_sign("anne", SIGN, "")
+    assert "seen 2.1 s ago" in nest["/sally"].render(template)
+    assert "says nothing; seen now" in nest["/anne"].render(template)
+    told = str(nest["/sally"].explain(block=SIGN))
+    assert "anne wiped what was written on it" in told
+    assert "tick 1" in told
+    prompt = nest["/sally"].render(DEFAULT, task="Find food.")
+    assert "\nSigns:\n(5, 1, 5) oak_sign" in prompt
+    assert "writeSign;anne" in prompt
+    assert nest["/sally"].render("{{ branch | mechanisms }}") == "Not observed"

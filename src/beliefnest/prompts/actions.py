@@ -62,6 +62,8 @@ def action_name(event: PerceivedEvent) -> str:
         return "turnOnLever" if event.detail["powered"] else "turnOffLever"
     if event.kind is EventKind.USE_DOOR and "open" in event.detail:
         return "openDoor" if event.detail["open"] else "closeDoor"
+    if event.kind is EventKind.BLOCK_UPDATE and event.actor and "text" in event.detail:
+        return "writeSign"
     return ACTION_NAMES[event.kind]
 
 

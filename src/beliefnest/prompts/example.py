@@ -24,6 +24,7 @@ _BOX = Box((-11, -52, -11), (11, -49, 11))
 _LEFT: Position = (-2, -51, -4)
 _RIGHT: Position = (2, -51, -4)
 _LEVER: Position = (0, -51, -4)
+_SIGN: Position = (4, -51, -4)
 
 
 @dataclass(frozen=True)
@@ -137,6 +138,7 @@ def _state(
                 _LEFT: "chest[facing=south,type=single,waterlogged=false]",
                 _RIGHT: "chest[facing=south,type=single,waterlogged=false]",
                 _LEVER: "lever[face=floor,facing=north,powered=true]",
+                _SIGN: "oak_sign[rotation=0,waterlogged=false]",
             },
             visible,
         ),
@@ -164,4 +166,5 @@ def _state(
         chat=((80, "anne", "Where are you going?"), (95, "sally", "Out. Back soon!")),
         thoughts=((100, "sally", "The diamond is safe."),),
         addressees=(None, None),
+        signs={_SIGN: "keep shut\nplease"},
     )

@@ -6,6 +6,7 @@ from beliefnest.prompts import actions, text
 from beliefnest.prompts.filterset import filter
 from beliefnest.prompts.view import BranchView
 from beliefnest.world.doors import is_door
+from beliefnest.world.signs import sign_words
 from beliefnest.world.values import TICKS_PER_SECOND, EventKind, Position
 
 __all__ = ["FILTERS", "memory"]
@@ -90,6 +91,29 @@ def mechanisms(branch: BranchView) -> str:
     return "\n".join(lines) or text.NOT_OBSERVED
 
 
+@filter("signs")
+def signs(branch: BranchView) -> str:
+    """Known signs, one a line: what is written on each, and where that comes from.
+
+    Lines of a sign are split by `/`; a sign on which nothing is written says so. With who was last
+    perceived to write on it. `Not observed` when none is known.
+    """
+    state = branch.state
+    lines = []
+    for at, written in state.signs.items():
+        block, basis = state.blocks[at], state.blocks.basis(at)
+        name = "sign" if block is None else text.block_name(block)
+        says = f'says "{sign_words(written)}"' if written else "says nothing"
+        came = "" if basis is None else f"; {_memory_of_block(state, at, basis)}"
+        lines.append(f"{text.position(at)} {name}: {says}{came}{_writer(state, at)}")
+    return "\n".join(lines) or text.NOT_OBSERVED
+
+
+def _writer(state: State, at: Position) -> str:
+    acts = [event for event in state.events if _is_use(event, at) and "text" in event.detail]
+    return f"; last written on by {acts[-1].actor} {_age(state, acts[-1].tick)}" if acts else ""
+
+
 def _memory_of_block(state: State, at: Position, basis: Basis) -> str:
     return memory(state, basis, current=state.blocks.current(at))
 
@@ -140,5 +164,5 @@ def _age(state: State, tick: int) -> str:
     return f"{text.number(round((state.tick - tick) / TICKS_PER_SECOND, 1))} s ago"
 
 
-FILTERS = (containers, whereabouts, mechanisms)
+FILTERS = (containers, whereabouts, mechanisms, signs)
 """The filters of this module."""

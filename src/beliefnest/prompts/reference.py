@@ -37,6 +37,7 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
     "other_players": ("{{ branch | other_players }}",),
     "position": ("{{ branch | position }}", '{{ branch | position("anne") }}'),
     "whereabouts": ("{{ branch | whereabouts }}",),
+    "signs": ("{{ branch | signs }}",),
     "thought": ("{{ branch | thought }}",),
 }
 """Filter to the templates that show it."""

@@ -1,6 +1,7 @@
 """Explanations in words: one line for what is so, then one or two for each belief."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 from beliefnest.belief.entries import Basis, PerceivedEvent, Source
 from beliefnest.nest.explain.parts import (
@@ -14,6 +15,7 @@ from beliefnest.nest.explain.parts import (
     View,
 )
 from beliefnest.world.paths import path_text
+from beliefnest.world.signs import sign_words
 from beliefnest.world.values import EventKind, Items
 
 __all__ = ["explanation_lines"]
@@ -200,9 +202,17 @@ def _act_text(act: PerceivedEvent) -> str:
         case EventKind.USE_DOOR:
             return f"{actor} {'opened' if act.detail.get('open') else 'shut'} it"
         case EventKind.BLOCK_UPDATE | EventKind.PLACE_BLOCK if "block" in act.detail:
-            return f"{actor} made it {act.detail['block']}"
+            return f"{actor} {_made_text(act.detail)}"
         case _:
             return f"{actor} did {act.kind.value}"
+
+
+def _made_text(detail: Mapping[str, Any]) -> str:
+    """What was done to a block, as it is recorded."""
+    written = detail.get("text")
+    if written is None:
+        return f"made it {detail['block']}"
+    return f'wrote "{sign_words(written)}" on it' if written else "wiped what was written on it"
 
 
 def _kind_text(kind: EventKind | None) -> str:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from beliefnest.world.signs import sign_words
 from beliefnest.world.values import Event, EventKind, Position
 
 __all__ = ["event_text", "place_name"]
@@ -25,6 +26,8 @@ _DEEDS = {
     EventKind.EMOTE: "shows {name}",
     EventKind.BLOCK_UPDATE: "{block} is now at {place}",
 }
+_WRITES = "writes “{text}” on the sign at {place}"
+_SAYS = "the sign at {place} says “{text}”"
 
 
 def event_text(event: Event, labels: Mapping[Position, str]) -> str:
@@ -40,10 +43,13 @@ def event_text(event: Event, labels: Mapping[Position, str]) -> str:
         to = f" whispers to {detail['to']}" if detail.get("to") else ""
         return f"{actor}{to}: “{detail.get('text', '')}”"
     pattern = _DEEDS.get(event.kind)
+    text = detail.get("text", "")
+    if event.kind is EventKind.BLOCK_UPDATE and "text" in detail:
+        pattern, text = _WRITES if actor else _SAYS, sign_words(text)
     if pattern is None:
         return f"{actor} does {event.kind.value.replace('_', ' ')}".strip()
     words = pattern.format(
-        text=detail.get("text", ""),
+        text=text,
         destination=_point(detail.get("destination")),
         block=str(detail.get("block", "a block")),
         place=place_name(detail.get("position"), labels),
