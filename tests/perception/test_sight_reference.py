@@ -14,6 +14,7 @@ from beliefnest.world.registry import Registry
 
 REGISTRY = Registry.load()
 UNKNOWN = -1
+HEIGHTS = (1.62, 0.9, 0.05)
 PALETTE = [
     "air",
     "stone",
@@ -112,6 +113,15 @@ class Reference:
             for sample in self.samples(eye, position)
         )
 
+    def sees_agent(self, eye, yaw, pitch, feet):
+        x, y, z = feet
+        if math.dist(eye, (x, y + 0.9, z)) > self.max_distance + 1e-9:
+            return False
+        return any(
+            self.in_field(eye, yaw, pitch, sample) and self.is_free(eye, sample, None)
+            for sample in ((x, y + height, z) for height in HEIGHTS)
+        )
+
 
 coordinate = st.one_of(
     st.integers(-8, 48).map(lambda n: n / 8),
@@ -163,6 +173,26 @@ def test_blocks_agree_with_the_reference(world, eye, yaw, pitch, max_distance, f
     asked = [tuple(int(c) for c in p) for p in positions + outside]
     expected += [reference.sees_block(eye, yaw, pitch, p) for p in asked[len(positions) :]]
     assert sight.geometry(blocks, origin).sees_blocks(eye, yaw, pitch, asked).tolist() == expected
+
+
+@settings(max_examples=at_night(2000, 80))
+@given(
+    world=worlds(),
+    eye=st.tuples(coordinate, coordinate, coordinate),
+    yaw=angles,
+    pitch=angles,
+    max_distance=st.sampled_from([None, 1.5, 3.0, 4.7]),
+    field_of_view=st.sampled_from([360, 360, 70, 90, 180, 300]),
+    feet=st.lists(st.tuples(coordinate, coordinate, coordinate), min_size=1, max_size=6),
+)
+def test_agents_agree_with_the_reference(world, eye, yaw, pitch, max_distance, field_of_view, feet):
+    blocks, origin = world
+    eye = tuple(e + o for e, o in zip(eye, origin, strict=True))
+    feet = [tuple(f + o for f, o in zip(foot, origin, strict=True)) for foot in feet]
+    reference = Reference(blocks, origin, max_distance, field_of_view)
+    expected = [reference.sees_agent(eye, yaw, pitch, foot) for foot in feet]
+    seen = Sight(REGISTRY, max_distance, field_of_view).geometry(blocks, origin)
+    assert seen.sees_agents(eye, yaw, pitch, feet).tolist() == expected
 
 
 @settings(max_examples=at_night(2000, 150))

@@ -1,6 +1,5 @@
 """What all nodes of one nest stand on: the box, its agents, and how they perceive."""
 
-import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -103,12 +102,11 @@ class BeliefContext:
     def _senses(self) -> Senses:
         """What agents can perceive, for the kernel."""
         options = self.options
-        far = options.max_visible_distance
-        angle = options.field_of_view
+        cos_half, far = self.sight.limits
         hearing = {"global": HEAR_ALL, "sight": HEAR_SEEN}.get(str(options.hearing), HEAR_NEAR)
         return Senses(
-            math.inf if far is None else float(far),
-            -2.0 if angle >= 360 else math.cos(math.radians(angle) / 2),
+            far,
+            cos_half,
             hearing,
             options.hearing.blocks if isinstance(options.hearing, Radius) else 0.0,
             options.negative_evidence,

@@ -33,6 +33,7 @@ from beliefnest.belief.arrays import (
 )
 from beliefnest.perception.eyes import (
     Eye,
+    eye_at,
     eye_sees_agent,
     eye_sees_block,
     eye_sees_point,
@@ -74,14 +75,12 @@ def _grid_cell(space: Space, cell: int) -> Cell:
 def _eye(space: Space, poses: Poses, pose: int) -> Eye:
     x, y, z = poses.feet[pose]
     yaw, pitch = poses.angles[pose]
-    level = math.cos(pitch)
     place = (
         x + space.origin[0],
         y + EYE_HEIGHT + space.origin[1],
         z + space.origin[2],
     )
-    look = (-math.sin(yaw) * level, math.sin(pitch), -math.cos(yaw) * level)
-    return place, look, space.senses.cos_half, space.senses.far
+    return eye_at(place, yaw, pitch, space.senses.cos_half, space.senses.far)
 
 
 @inlined

@@ -30,7 +30,17 @@ from beliefnest.perception.rays import (
 )
 from beliefnest.perception.shadows import ROOM, Shadows
 
-__all__ = ["Beam", "Eye", "beam_room", "in_field", "in_reach", "new_beam", "sees_block"]
+__all__ = [
+    "Beam",
+    "Eye",
+    "beam_room",
+    "eye_at",
+    "eye_of",
+    "in_field",
+    "in_reach",
+    "new_beam",
+    "sees_block",
+]
 
 Eye = tuple[Vector, Vector, float, float]
 """Place, unit vector it looks along, cosine of half its field of view (-2: it sees all
@@ -65,6 +75,16 @@ def beam_room() -> Beam:
 
 new_beam = inlined(beam_room)
 """`beam_room` for kernels."""
+
+
+def eye_of(place: Vector, yaw: float, pitch: float, cos_half: float, far: float) -> Eye:
+    """An eye that looks along Mineflayer's radians; for the rest see `Eye`."""
+    level = math.cos(pitch)
+    return place, (-math.sin(yaw) * level, math.sin(pitch), -math.cos(yaw) * level), cos_half, far
+
+
+eye_at = inlined(eye_of)
+"""`eye_of` for kernels."""
 
 
 @inlined

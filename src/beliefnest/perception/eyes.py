@@ -5,7 +5,7 @@ Coordinates and codes are those of `rays`, an `Eye` is that of `beams`.
 
 import numpy as np
 
-from beliefnest.perception.beams import Beam, Eye, in_field, in_reach, sees_block
+from beliefnest.perception.beams import Beam, Eye, eye_at, in_field, in_reach, sees_block
 from beliefnest.perception.codes import INTRUDED, OWN, Reaches
 from beliefnest.perception.rays import (
     Cell,
@@ -22,7 +22,7 @@ from beliefnest.perception.rays import (
 from beliefnest.perception.shadows import Shadows
 from beliefnest.world.values import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT
 
-__all__ = ["Eye", "eye_sees_agent", "eye_sees_block", "eye_sees_point", "set_code"]
+__all__ = ["Eye", "eye_at", "eye_sees_agent", "eye_sees_block", "eye_sees_point", "set_code"]
 
 _HEIGHTS = np.array(AGENT_SAMPLE_HEIGHTS)
 

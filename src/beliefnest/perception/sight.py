@@ -31,7 +31,7 @@ from beliefnest.perception.codes import (
 )
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT, Point, Position
+from beliefnest.world.values import Point, Position
 
 if TYPE_CHECKING:
     from beliefnest.perception.beams import Eye
@@ -101,6 +101,13 @@ class Sight:
         mark_intruded(codes, self._reaches)
         codes.flags.writeable = False
         return Geometry(self, origin, codes)
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Cosine of half the field of view (-2: all around), and how far is seen (infinite too)."""
+        angle, far = self.field_of_view, self.max_visible_distance
+        cos_half = -2.0 if angle >= 360 else math.cos(math.radians(angle) / 2)
+        return cos_half, math.inf if far is None else float(far)
 
     def tables(self) -> "Tables":
         """What kernels of other rooms need to know of shapes."""
@@ -225,11 +232,10 @@ class Geometry:
         Raises:
             InputError: The feet are not rows of three numbers.
         """
-        places = _rows(feet).astype(np.float64)
-        heights = np.array([(0.0, height, 0.0) for height in AGENT_SAMPLE_HEIGHTS])
-        samples = (places[:, None, :] + heights).reshape(-1, 3)
-        seen = self._free(eye, yaw, pitch, samples).reshape(-1, len(heights)).any(axis=1)
-        return self._near(eye, places + np.array((0.0, BODY_CENTRE_HEIGHT, 0.0))) & seen
+        from beliefnest.perception import views
+
+        places = self._local(_rows(feet).astype(np.float64))
+        return views.seen_agents(self._scene, self._eye(eye, yaw, pitch), places)
 
     def blocker(self, eye: Point, point: Point) -> Position | None:
         """Position of the first block whose shape the ray from eye to point enters."""
@@ -272,12 +278,10 @@ class Geometry:
         return points + (1.0 - np.array(self.origin))
 
     def _eye(self, eye: Point, yaw: float, pitch: float) -> "Eye":
+        from beliefnest.perception import beams
+
         x, y, z = (float(e) + (1 - o) for e, o in zip(eye, self.origin, strict=True))
-        level = math.cos(pitch)
-        look = (-math.sin(yaw) * level, math.sin(pitch), -math.cos(yaw) * level)
-        angle, far = self.sight.field_of_view, self.sight.max_visible_distance
-        cos_half = -2.0 if angle >= 360 else math.cos(math.radians(angle) / 2)
-        return (x, y, z), look, cos_half, math.inf if far is None else float(far)
+        return beams.eye_of((x, y, z), yaw, pitch, *self.sight.limits)
 
 
 def _rows(points: npt.ArrayLike) -> npt.NDArray[np.generic]:

@@ -1,4 +1,4 @@
-"""What an eye sees of a grid of shapes: compiled loops over blocks and points.
+"""What an eye sees of a grid of shapes: compiled loops over blocks, agents and points.
 
 Coordinates are those of `rays`, an `Eye` is that of `beams`.
 """
@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.perception.beams import Eye, in_field, in_reach, new_beam, sees_block
+from beliefnest.perception.eyes import eye_sees_agent
 from beliefnest.perception.rays import (
     Cell,
     Scene,
@@ -17,7 +18,7 @@ from beliefnest.perception.rays import (
 )
 from beliefnest.perception.shadows import CLEAR, HIDDEN, UNSURE, Shadows
 
-__all__ = ["Eye", "seen_blocks", "seen_points"]
+__all__ = ["Eye", "seen_agents", "seen_blocks", "seen_points"]
 
 
 @compiled
@@ -54,6 +55,15 @@ def seen_blocks(
 def _is_margin(sizes: Cell, cell: Cell) -> bool:
     i, j, k = cell
     return i == 0 or j == 0 or k == 0 or i == sizes[0] - 1 or j == sizes[1] - 1 or k == sizes[2] - 1
+
+
+@compiled
+def seen_agents(scene: Scene, eye: Eye, feet: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    """Which of the agents with feet at (n, 3) are seen."""
+    seen = np.zeros(len(feet), dtype=np.bool_)
+    for n in range(len(feet)):
+        seen[n] = eye_sees_agent(scene, eye, (feet[n, 0], feet[n, 1], feet[n, 2]))
+    return seen
 
 
 @compiled
