@@ -117,16 +117,16 @@ def killed_in(monkeypatch, op, times=1) -> Iterator[list[int]]:
     asked, killed = [], []
     request, answer = Channel.request, Channel._answer
 
-    def asking(self, name, on_frame=None, **arguments):
+    def asking(self, name, *handlers, **arguments):
         asked.append(name)
-        return request(self, name, on_frame, **arguments)
+        return request(self, name, *handlers, **arguments)
 
-    def answering(self, on_frame):
+    def answering(self, *handlers):
         if asked[-1] == op and len(killed) < times:
             killed.append(self.pid)
             os.kill(self.pid, signal.SIGKILL)
             self._child._process.wait()
-        return answer(self, on_frame)
+        return answer(self, *handlers)
 
     with monkeypatch.context() as patched:
         patched.setattr(Channel, "request", asking)

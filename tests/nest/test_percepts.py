@@ -3,7 +3,6 @@
 import json
 from typing import Any
 
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import at_night
@@ -102,11 +101,3 @@ def test_a_body_bumps_into_what_its_agent_does_not_know() -> None:
         assert result.error is not None
         assert result.error.reason == "no_way"
         assert nest["/"].state.agents["ann"].position[0] < 2
-
-
-def test_minecraft_refuses_what_it_cannot_promise() -> None:
-    with (
-        bn.Nest.open(bn.Scenario.from_mapping({**ROOM, "blocks": [FLOOR]})) as nest,
-        pytest.raises(bn.WorldError, match="percepts"),
-    ):
-        nest["/"].run("ann", "", senses="percepts")

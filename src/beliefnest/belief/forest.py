@@ -175,10 +175,15 @@ class Forest:
             self.tick = self.columns.tick(reached - 1)
             self.position = reached
 
-    def heard(self, node: int, count: int) -> Iterator[PerceivedEvent]:
-        """What a node perceived of the first `count` events, oldest first."""
-        yield from self._events.before(self.table.path(node))
-        numbers = np.flatnonzero(self.hearing.of(node, count)).tolist()
+    def heard(self, node: int, count: int, first: int | None = None) -> Iterator[PerceivedEvent]:
+        """What a node perceived of the first `count` events, oldest first.
+
+        Those before `first` are left out; None: none is, nor what it perceived before the timeline.
+        """
+        if first is None:
+            yield from self._events.before(self.table.path(node))
+        since = first or 0
+        numbers = (np.flatnonzero(self.hearing.of(node, count)[since:]) + since).tolist()
         events = self._events.events(numbers[-1] + 1) if numbers else ()
         for number in numbers:
             tick, event = events[number]

@@ -97,6 +97,10 @@ class NodeView:
         """All perceived events, oldest first."""
         return tuple(self._forest.heard(self._node, self.count_of_events))
 
+    def events_since(self, count: int) -> tuple[PerceivedEvent, ...]:
+        """Perceived events but for the timeline's first `count` ones, oldest first."""
+        return tuple(self._forest.heard(self._node, self.count_of_events, count))
+
     def visible_from(self, agent: str) -> npt.NDArray[np.bool_]:
         """Which blocks an agent sees from its believed pose; none if that is unknown."""
         viewer = self.agents[agent]

@@ -17,7 +17,7 @@ from beliefnest.errors import BodyError, BodyLostError, InputError, WorldError
 
 __all__ = ["PROTOCOL", "Channel"]
 
-PROTOCOL = 2
+PROTOCOL = 3
 """Version of the channel's messages; both sides state it."""
 
 _HEADER = struct.Struct(">I")
@@ -25,6 +25,7 @@ _MAX_MESSAGE = 1 << 30
 _WAIT_SECONDS = 1.0
 
 FrameHandler = Callable[[dict[str, Any]], None]
+PerceptsHandler = Callable[[], dict[str, Any]]
 A = TypeVar("A")
 T = TypeVar("T")
 
@@ -79,8 +80,16 @@ class Channel:
         """Whether Node has ended; it will answer nothing more."""
         return not self._child.alive
 
-    def request(self, op: str, on_frame: FrameHandler | None = None, **arguments: Any) -> Any:
+    def request(
+        self,
+        op: str,
+        on_frame: FrameHandler | None = None,
+        percepts: PerceptsHandler | None = None,
+        **arguments: Any,
+    ) -> Any:
         """Send a request and return its result; frames on the way go to `on_frame`.
+
+        Where Node asks what agents perceive by now, `percepts` says so.
 
         Raises:
             InputError: A text of the request has half of a character in it and cannot be sent.
@@ -94,8 +103,8 @@ class Channel:
         self._number += 1
         self._tick = None
         try:
-            self._send(_HEADER.pack(len(message)) + message)
-            answer, refused = self._answer(on_frame)
+            self._send(message)
+            answer, refused = self._answer(on_frame, percepts)
         except (OSError, EOFError) as error:
             raise self._lost(op) from error
         except _BrokenError as error:
@@ -118,8 +127,10 @@ class Channel:
         self._connection.close()
         self._child.close()
 
-    def _answer(self, on_frame: FrameHandler | None) -> tuple[dict[str, Any], Exception | None]:
-        """The answer to a request, and why a frame before it could not be taken.
+    def _answer(
+        self, on_frame: FrameHandler | None, percepts: PerceptsHandler | None
+    ) -> tuple[dict[str, Any], Exception | None]:
+        """The answer to a request, and why a frame or a question before it was not taken.
 
         Frames are read to the end all the same, so that the next request finds its answer.
         """
@@ -137,6 +148,16 @@ class Channel:
                         on_frame(message["frame"])
                     except Exception as error:  # noqa: BLE001 - raised again after the answer
                         refused = error
+            elif "perceive" in message:
+                if percepts is None:
+                    raise _BrokenError("asked what nobody is to perceive")
+                told = None
+                if refused is None:
+                    try:
+                        told = percepts()
+                    except Exception as error:  # noqa: BLE001 - raised again after the answer
+                        refused = error
+                self._send(_packed({"percepts": told}))
             elif message.get("id") == self._number:
                 return message, refused
             else:
@@ -196,9 +217,14 @@ class Channel:
         return BodyLostError(f"Node {ended} {when}{told}")
 
 
+def _packed(message: dict[str, Any]) -> bytes:
+    body = msgspec.msgpack.encode(message)
+    return _HEADER.pack(len(body)) + body
+
+
 def _encoded(op: str, message: dict[str, Any]) -> bytes:
     try:
-        return msgspec.msgpack.encode(message)
+        return _packed(message)
     except UnicodeEncodeError as error:
         half = error.object[error.start]
         raise InputError(

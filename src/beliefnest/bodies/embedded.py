@@ -20,6 +20,25 @@ MINECRAFT = "1.20.4"
 """The Minecraft version of the embedded world."""
 
 
+class _Telling:
+    """Tells Node what an agent knows, and then what has changed of that."""
+
+    def __init__(self, sense: Sense, box: Box) -> None:
+        self._sense, self._box = sense, box
+        self._told = sense()
+
+    def whole(self) -> dict[str, Any]:
+        """All that it knows, as a message."""
+        return messages.percepts_message(self._told)
+
+    def changes(self) -> dict[str, Any]:
+        """What has changed since the last message."""
+        before, self._told = self._told, self._sense()
+        if before is self._told:
+            return {}
+        return messages.percepts_changes(before, self._told, self._box.low)
+
+
 class EmbeddedBody:
     """A region of the embedded world."""
 
@@ -96,11 +115,6 @@ class EmbeddedBody:
         senses: Mapping[str, Sense] | None = None,
     ) -> Mapping[str, ProgramResult]:
         """Run programs by agent, together, until the last has ended."""
-        if senses:
-            raise WorldError(
-                f"the programs of {', '.join(sorted(senses))} are to read percepts alone, which "
-                "Mineflayer cannot be kept to; open the nest with world='scripted'"
-            )
         for agent in programs:
             if agent not in self._agents:
                 raise WorldError(
@@ -108,12 +122,15 @@ class EmbeddedBody:
                     f"there are {', '.join(sorted(self._agents)) or 'no bots'}"
                 )
         self._happened = []
+        telling = {agent: _Telling(sense, self._box) for agent, sense in (senses or {}).items()}
         answer = self._channel.request(
             "run",
             self._take,
+            lambda: {agent: each.changes() for agent, each in telling.items()},
             region=self._region,
             programs=dict(programs),
             timeout_ticks=timeout_ticks,
+            senses={agent: each.whole() for agent, each in telling.items()},
         )
         self._tick, self._internal_state = answer["tick"], answer["hidden"]
         return messages.results_of(answer["results"], tuple(self._happened))

@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from beliefnest.bodies.protocol import Aim, Fault, ProgramResult, Unfinished
+from beliefnest.bodies.protocol import Aim, Fault, ProgramResult, Sensed, Unfinished
 from beliefnest.errors import BeliefNestError, BodyError
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.frames import Frame, Snapshot
@@ -27,6 +27,8 @@ __all__ = [
     "contents_message",
     "frame_of",
     "items_message",
+    "percepts_changes",
+    "percepts_message",
     "results_of",
     "signs_message",
     "snapshot_message",
@@ -142,6 +144,51 @@ def agent_message(agent: AgentState) -> dict[str, Any]:
         "inventory": dict(agent.inventory),
         "health": agent.health,
         "food": agent.food,
+    }
+
+
+def percepts_message(sensed: Sensed) -> dict[str, Any]:
+    """PERCEPTS of an agent whose program begins: all that it knows."""
+    return {
+        "states": sensed.blocks.astype("<i4").tobytes(),
+        "agents": {name: _pose_message(agent) for name, agent in sensed.agents.items()},
+        "items": items_message(sensed.items),
+        **signs_message(sensed.signs),
+    }
+
+
+def percepts_changes(before: Sensed, after: Sensed, low: Position) -> dict[str, Any]:
+    """PERCEPTS of an agent: what it knows now and did not; `low` is the box's lowest corner."""
+    places = np.argwhere(before.blocks != after.blocks).tolist()
+    agents: dict[str, Any] = dict.fromkeys(before.agents.keys() - after.agents.keys())
+    for name, agent in after.agents.items():
+        if before.agents.get(name) != agent:
+            agents[name] = _pose_message(agent)
+    items: dict[str, Any] = {str(number): None for number in before.items.keys() - after.items}
+    for number, item in after.items.items():
+        if before.items.get(number) != item:
+            items[str(number)] = item
+    parts = {
+        "blocks": [
+            [low[0] + i, low[1] + j, low[2] + k, int(after.blocks[i, j, k])] for i, j, k in places
+        ],
+        "agents": dict(sorted(agents.items())),
+        "items": dict(sorted(items.items(), key=lambda item: int(item[0]))),
+        "heard": after.heard,
+    }
+    changes = {name: part for name, part in parts.items() if part}
+    if before.signs != after.signs:
+        changes["signs"] = [[*place, text] for place, text in sorted(after.signs.items())]
+    return changes
+
+
+def _pose_message(agent: AgentState) -> dict[str, Any]:
+    return {
+        "position": agent.position,
+        "yaw": agent.yaw,
+        "pitch": agent.pitch,
+        "on_ground": agent.on_ground,
+        "equipment": dict(agent.equipment),
     }
 
 

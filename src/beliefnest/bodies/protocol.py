@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from beliefnest.world.frames import BlockGrid, Frame, Snapshot
-from beliefnest.world.values import AgentState, Event, EventKind, Point, Position
+from beliefnest.world.values import AgentState, DroppedItem, Event, EventKind, Point, Position
 
 __all__ = [
     "KILLED",
@@ -167,12 +167,16 @@ class Sensed:
 
     Attributes:
         blocks: Block state ids of the box, -1 is unknown.
-        agents: The agents that it knows to be there now, its own among them.
+        agents: The other agents that its own perceives now; of itself it knows by its body.
+        items: Dropped items by number, where they were seen last.
+        heard: What was heard in the latest tick: speaker, text, and to whom it was whispered.
         signs: What is written on signs, by position; a sign that is not among them is blank.
     """
 
     blocks: BlockGrid
     agents: Mapping[str, AgentState]
+    items: Mapping[int, DroppedItem] = field(default_factory=dict)
+    heard: tuple[tuple[str, str, str | None], ...] = ()
     signs: Mapping[Position, str] = field(default_factory=dict)
 
 

@@ -93,7 +93,7 @@ def _begun(
     grounds: Grounds,
 ) -> _Run:
     def all_of_it() -> Sensed:
-        return Sensed(world.blocks, world.agents, world.signs)
+        return Sensed(world.blocks, _others(world.agents, agent), signs=world.signs)
 
     sense = senses.get(agent, all_of_it)
     hand = Hand(
@@ -161,16 +161,21 @@ def _told(error: Exception) -> dict[str, object]:
 
 def _show(run: _Run, grounds: Grounds) -> None:
     sensed = run.sense()
-    me = sensed.agents[run.hand.name]
+    me = run.hand.world.agents[run.hand.name]
+    there = {**sensed.agents, run.hand.name: me}
     told = {
-        "agents": {name: _pose(agent) for name, agent in sensed.agents.items()},
-        "players": {name: name in sensed.agents for name in sorted(run.hand.world.agents)},
+        "agents": {name: _pose(agent) for name, agent in there.items()},
+        "players": {name: name in there for name in sorted(run.hand.world.agents)},
         "inventory": dict(me.inventory),
         "health": me.health,
         "food": me.food,
         "signs": {",".join(map(str, place)): text for place, text in sensed.signs.items()},
     }
     run.program.see(told, grounds.of(run.hand.world.box, sensed.blocks).text)
+
+
+def _others(agents: Mapping[str, AgentState], me: str) -> Mapping[str, AgentState]:
+    return {name: agent for name, agent in agents.items() if name != me}
 
 
 def _pose(agent: AgentState) -> dict[str, object]:

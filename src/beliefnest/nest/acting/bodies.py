@@ -7,11 +7,12 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from beliefnest.bodies.protocol import Body, Sense, Sensed, World
+from beliefnest.bodies.protocol import Body, Sense, World
 from beliefnest.errors import BodyError, BranchError, WorldError
 from beliefnest.nest.acting.frame_recorder import FrameRecorder
 from beliefnest.nest.acting.hearsay import ClaimReader, Hearsay
 from beliefnest.nest.acting.lives import Lives
+from beliefnest.nest.acting.sensing import Sensing
 from beliefnest.nest.acting.speculation import SpeculatedBody, Speculation
 from beliefnest.nest.acting.starting import Start, start_of
 from beliefnest.nest.past.body_state import note_internal_state, present
@@ -19,7 +20,6 @@ from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.paths import path_text
-from beliefnest.world.values import AgentState
 
 __all__ = ["Bodies"]
 
@@ -169,23 +169,12 @@ class Bodies:
         Beliefs are worked out from what has been recorded so far, as they always are. Where the
         agent is, and what it has on it, it knows from its own body.
         """
-        believer = path if path[-1:] == (agent,) else (*path, agent)
-        embodied, recording = self._embodied[path], self._recording
+        embodied = self._embodied[path]
 
-        def sensed() -> Sensed:
+        def written() -> None:
             embodied.recorder.flush(embodied.body.tick)
-            seen = recording.reading(believer)
-            agents = {
-                name: AgentState(
-                    each.position, each.yaw, each.pitch, each.on_ground, each.equipment or {}
-                )
-                for name, each in seen.agents.items()
-                if each.current and each.position is not None
-            }
-            own = embodied.body.snapshot().agents[agent]
-            return Sensed(seen.blocks, {**agents, agent: own}, seen.signs)
 
-        return sensed
+        return Sensing(self._recording, path, agent, written)
 
     @contextmanager
     def changing(self, path: Path, unless: type[BaseException] | tuple[()] = ()) -> Iterator[None]:

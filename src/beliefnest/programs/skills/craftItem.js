@@ -1,5 +1,6 @@
 'use strict'
 const { blockPosition, count: checkCount, item: checkItem, show } = require('./lib/arguments')
+const { isUnseen, nameOf } = require('./lib/known')
 const { answered } = require('./lib/answers')
 const { walkToUse } = require('./lib/walking')
 const { countOf } = require('./lib/inventory')
@@ -37,10 +38,14 @@ function choose ({ bot, fail }, item, wanted, hasTable) {
 async function goToTable (context, craftingTablePos) {
   const { bot, fail } = context
   const position = blockPosition(context, 'craftingTablePos', craftingTablePos)
-  const name = bot.blockAt(position)?.name
-  if (name !== 'crafting_table') fail(`there is no crafting table at ${show(position)}, but ${name ?? 'nothing that is loaded'}.`)
+  const table = () => {
+    const block = bot.blockAt(position)
+    if (block?.name !== 'crafting_table') fail(`there is no crafting table at ${show(position)}, but ${nameOf(bot, block)}.`)
+    return block
+  }
+  if (!isUnseen(bot, position)) table()
   await walkToUse(context, position, 'the crafting table')
-  return bot.blockAt(position)
+  return table()
 }
 
 module.exports = {

@@ -1,5 +1,6 @@
 'use strict'
 const { blockPosition, item: checkItem, show } = require('./lib/arguments')
+const { nameOf } = require('./lib/known')
 const { answered } = require('./lib/answers')
 const { canSee, canUse, stepToView, walk, viewpoint } = require('./lib/walking')
 const { hold, stackOf } = require('./lib/inventory')
@@ -56,7 +57,7 @@ module.exports = {
     stackOf(context, item)
     const there = bot.blockAt(place)
     if (!there || !FREE.has(there.name)) {
-      fail(`${show(place)} is not free: ${there ? `${there.name} is there` : 'it is not loaded'}. Choose a free position.`)
+      fail(`${show(place)} is not free: ${nameOf(bot, there)} is there. Choose a free position.`)
     }
     const [reference] = references(context, place)
     if (!reference) fail(`there is no solid block beside ${show(place)} to put ${name} against. Choose a position on the ground or at a wall.`)

@@ -1,6 +1,7 @@
 'use strict'
 const { blockPosition, count: checkCount, show } = require('./lib/arguments')
 const { walkToUse } = require('./lib/walking')
+const { isUnseen, nameOf } = require('./lib/known')
 const { answered } = require('./lib/answers')
 const { ticks } = require('./lib/waiting')
 
@@ -20,10 +21,10 @@ module.exports = {
     const duration = checkCount(context, 'number', number)
     const bed = () => {
       const block = bot.blockAt(position)
-      if (!block || !bot.isABed(block)) fail(`there is no bed at ${show(position)}, but ${block ? block.name : 'nothing that is loaded'}.`)
+      if (!block || !bot.isABed(block)) fail(`there is no bed at ${show(position)}, but ${nameOf(bot, block)}.`)
       return block
     }
-    bed()
+    if (!isUnseen(bot, position)) bed()
     await walkToUse(context, position, 'the bed')
     if (bed().getProperties().occupied) fail(`somebody lies in the bed at ${show(position)}. Wait, or find another one.`)
     await bot.activateBlock(bed())

@@ -1,5 +1,6 @@
 'use strict'
 const { blockPosition, count: checkCount, item: checkItem, show } = require('./lib/arguments')
+const { isUnseen, nameOf } = require('./lib/known')
 const { answered } = require('./lib/answers')
 const { walkToUse } = require('./lib/walking')
 const { countOf, contents } = require('./lib/inventory')
@@ -18,7 +19,7 @@ function checkAmount ({ bot, fail }, item, wanted) {
 function findFurnace ({ bot, fail }, position) {
   const block = bot.blockAt(position)
   if (!FURNACES.includes(block?.name)) {
-    fail(`there is no furnace at ${show(position)}, but ${block ? block.name : 'nothing that is loaded'}.`)
+    fail(`there is no furnace at ${show(position)}, but ${nameOf(bot, block)}.`)
   }
   return block
 }

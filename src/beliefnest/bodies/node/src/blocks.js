@@ -12,16 +12,20 @@ const LAYER = 256
 
 /** Makes the chunk columns and worlds of a version remember what they were asked for; once is enough. */
 function rememberBlocks (registry) {
-  const Block = require('prismarine-block')(registry)
   const Chunk = require('prismarine-chunk')(registry)
   const World = require('prismarine-world')(registry)
   if ('remembered' in Chunk.prototype) return
   rememberColumns(World)
   quicken(Object.getPrototypeOf(new World(null).sync))
+  rememberIn(Chunk, maker(registry))
+}
+
+/** @returns {(stateId: number) => object} makes blocks without a position; what a state is like is worked out once */
+function maker (registry) {
+  const Block = require('prismarine-block')(registry)
   const copy = copier(Block)
   const known = new Map()
-
-  function make (stateId) {
+  return stateId => {
     let block = known.get(stateId)
     if (block === undefined) {
       block = Block.fromStateId(stateId, 0)
@@ -29,8 +33,6 @@ function rememberBlocks (registry) {
     }
     return copy(block)
   }
-
-  rememberIn(Chunk, make)
 }
 
 /** Makes `getBlock` of a column find again what it made, as long as the place keeps its state. */
@@ -132,4 +134,4 @@ function copier (Block) {
   return original => ({ __proto__: Block.prototype, ...LAYOUT, ...original, computedStates: {} })
 }
 
-module.exports = { rememberBlocks }
+module.exports = { maker, rememberBlocks }

@@ -18,7 +18,7 @@ function main ([first, second]) {
 function start (clock, descriptor, lifeline) {
   const { RequestHandler } = require('./requestHandler')
   const { serve } = require('./channel/serving')
-  serve((post, beat) => new RequestHandler(clock, post, beat), descriptor, lifeline)
+  serve((post, beat, ask) => new RequestHandler(clock, post, beat, ask), descriptor, lifeline)
 }
 
 async function measure (clock, pairs) {

@@ -10,18 +10,20 @@ const { scopeOf } = require('./scope')
 const { BadRequest } = require('./channel/errors')
 const versions = require('./versions')
 
-const PROTOCOL = 2
+const PROTOCOL = 3
 
 class RequestHandler {
   /**
    * @param {import('./time/clock').Clock} clock
    * @param {(message: object) => void} send
    * @param {(message: object) => void} [beat] takes a sign of life, as often as there is one
+   * @param {(message: object) => Promise<object>} [ask] sends a question, and resolves with the other side's answer
    */
-  constructor (clock, send, beat = () => {}) {
+  constructor (clock, send, beat = () => {}, ask = undefined) {
     this.clock = clock
     this.send = send
     this.beat = beat
+    this.ask = ask
     this.regions = null
     this.runner = null
     this.sandbox = null
@@ -49,7 +51,7 @@ class RequestHandler {
       case 'create_region': return this.regions.create(request)
       case 'destroy_region': return this.regions.destroy(request.region).then(() => null)
       case 'step': return this.regions.step(request.region, request.ticks)
-      case 'run': return this.runner.run(request.region, request.programs, request.timeout_ticks)
+      case 'run': return this.runner.run(request.region, request.programs, request.timeout_ticks, request.senses)
       case 'apply': return this.regions.apply(request)
       case 'snapshot': return this.regions.snapshot(this.regions.get(request.region))
       case 'shutdown': return null
@@ -73,7 +75,8 @@ class RequestHandler {
     this.sandbox = createSandbox({}, alive)
     // For its names, which are those of every bot.
     await this.sandbox.warm(scopeOf({ registry }, () => {}))
-    this.runner = new Runner(this.regions, request => this.sandbox.run(request), scopeOf)
+    const perceive = async tick => (await this.ask({ perceive: tick })).percepts
+    this.runner = new Runner(this.regions, request => this.sandbox.run(request), scopeOf, perceive)
     return { protocol: PROTOCOL, node: process.version, ...versions }
   }
 

@@ -1,6 +1,9 @@
 'use strict'
 /** Runs the programs of agents in one region, together, tick by tick. */
 const { stopBot } = require('./bots/bot')
+const { View } = require('./percepts/view')
+const { statesOf } = require('./regions/regions')
+const { Random } = require('./time/random')
 
 const MOST_AIMS = 100
 
@@ -14,26 +17,33 @@ class Runner {
    * @param {(bot: object, emit: (event: object) => void, signal: AbortSignal) => object} scopeOf what a
    *   program of this bot finds in scope; `emit` hears what its skills report until `signal` is aborted, and throws
    *   what they may not
+   * @param {(tick: number) => Promise<object | null>} [perceive] asks what agents whose programs read percepts alone
+   *   perceive now that a tick is over: PERCEPTS by agent; null: programs are to be ended
    */
-  constructor (regions, runProgram, scopeOf) {
+  constructor (regions, runProgram, scopeOf, perceive) {
     this.regions = regions
     this.runProgram = runProgram
     this.scopeOf = scopeOf
+    this.perceive = perceive
   }
 
   /**
    * @param {string} name of the region
    * @param {object} programs code by agent
    * @param {number} timeoutTicks after which programs that still run are ended
+   * @param {object} [senses] PERCEPTS by agent, of those whose programs are to read nothing else
    * @returns {Promise<{tick: number, hidden: Uint8Array, results: object}>} RESULT by agent
    */
-  async run (name, programs, timeoutTicks) {
+  async run (name, programs, timeoutTicks, senses = {}) {
     const region = this.regions.get(name)
     const bodies = Object.keys(programs).map(agent => region.body(agent))
     const first = region.tick
     const runs = []
     const ended = await this.regions.resumed(region, async () => {
-      Object.entries(programs).forEach(([agent, code], index) => runs.push(this.start(region, agent, bodies[index], code)))
+      Object.entries(programs).forEach(([agent, code], index) => {
+        const view = senses[agent] === undefined ? null : this.viewOf(region, bodies[index], senses[agent])
+        runs.push(this.start(region, agent, { bot: view?.bot ?? bodies[index].bot, view }, code))
+      })
       try {
         await this.untilEnded(region, runs, timeoutTicks)
       } finally {
@@ -44,23 +54,32 @@ class Runner {
     return { ...ended, results: Object.fromEntries(results) }
   }
 
-  start (region, agent, { bot }, code) {
+  viewOf (region, { bot }, percepts) {
+    const states = statesOf(percepts.states, region.box)
+    return new View({ bot, clock: this.regions.clock, box: region.box, names: region.known, percepts: { ...percepts, states } })
+  }
+
+  start (region, agent, { bot, view }, code) {
     const abort = new AbortController()
-    const run = { agent, abort, result: null, endTick: null, end: null, crash: null }
+    const run = { agent, view, abort, result: null, endTick: null, end: null, crash: null }
     const aims = []
     const aim = made => { if (aims.length < MOST_AIMS) aims.push({ tick: region.tick, ...made }) }
     const emit = event => region.report(agent, event)
     const request = { code, bot, scope: this.scopeOf(bot, emit, abort.signal), signal: abort.signal, aim }
+    // Numbers that others draw, too, would tell of what they do.
+    if (view !== null) request.random = randomOf(region, agent)
     this.runProgram(request).then(report => {
       abort.abort()
-      run.result = { ...resultOf(report, stopBot(bot), run.end), aims }
+      const stopped = stopBot(bot)
+      if (view !== null) stopBot(view.close())
+      run.result = { ...resultOf(report, stopped, run.end), aims }
     }).catch(error => { run.crash = error })
     return run
   }
 
   // What programs leave undone is broken off before the last frame is made, which so tells of it.
   async untilEnded (region, runs, timeoutTicks) {
-    const lastTick = region.tick + timeoutTicks
+    let lastTick = region.tick + timeoutTicks
     let over = false
     const look = async () => {
       region.faults = region.faults.filter(fault => !this.blame(region, runs, fault))
@@ -71,7 +90,24 @@ class Runner {
       const clean = runs.every(({ result }) => result.unfinished.length === 0)
       await this.regions.bodies.rest(region, runs.map(({ agent }) => agent), clean)
     }
-    while (!over) await this.regions.tick(region, look)
+    while (!over) {
+      const changed = await this.regions.tick(region, look)
+      if (!over && !await this.look(region, runs, changed)) lastTick = region.tick
+    }
+  }
+
+  /**
+   * Lets programs that read percepts alone have what came of the tick that is over.
+   * @param {boolean} changed whether anything did; if not, there is nothing new to perceive
+   * @returns {Promise<boolean>} whether programs go on
+   */
+  async look (region, runs, changed) {
+    const limited = runs.filter(({ view, result, crash }) => view !== null && (result ?? crash) === null)
+    if (limited.length === 0) return true
+    const told = changed ? await this.perceive(region.tick) : {}
+    if (told === null) return false
+    for (const { agent, view } of limited) region.context.run(agent, () => view.update(told[agent] ?? null))
+    return true
   }
 
   /**
@@ -115,6 +151,11 @@ function resultOf ({ ok, error, lines, log, unfinished }, stopped, end) {
     log: log.map(({ text }) => text),
     unfinished: [...unfinished, ...stopped.map(what => ({ what, line: null }))]
   }
+}
+
+function randomOf (region, agent) {
+  const random = new Random(`${region.seed} ${region.tick} ${agent}`)
+  return () => random.next()
 }
 
 module.exports = { Runner }

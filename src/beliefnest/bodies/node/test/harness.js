@@ -38,7 +38,7 @@ class Node {
   }
 
   hello (seed = 0) {
-    return this.request('hello', { protocol: 2, seed, minecraft: '1.20.4' })
+    return this.request('hello', { protocol: 3, seed, minecraft: '1.20.4' })
   }
 
   /** Ends the process as Python's end would. */

@@ -43,6 +43,7 @@ async function answered ({ bot, fail, nextNumber }) {
   const location = bot.entity.position.floored()
   bot._client.write('block_dig', { status: CANCEL_DIGGING, location, face: FACE_DOWN, sequence: number })
   if (!await answer) fail(`the server did not answer within ${ANSWER_TICKS} ticks.`)
+  if (bot.perceived !== undefined) await bot.perceived()
 }
 
 module.exports = { answered, numbers }

@@ -1,6 +1,7 @@
 'use strict'
 /** Opening a chest as a player does, and moving counted items between it and the inventory. */
 const { show } = require('./arguments')
+const { isUnseen, nameOf } = require('./known')
 const { answered } = require('./answers')
 const { walkToUse } = require('./walking')
 
@@ -9,7 +10,7 @@ const CONTAINERS = ['chest', 'trapped_chest', 'barrel']
 function findContainer ({ bot, fail }, position) {
   const block = bot.blockAt(position)
   if (!CONTAINERS.includes(block?.name)) {
-    fail(`there is no chest at ${show(position)}, but ${block ? block.name : 'nothing that is loaded'}. Give the position of a chest or barrel.`)
+    fail(`there is no chest at ${show(position)}, but ${nameOf(bot, block)}. Give the position of a chest or barrel.`)
   }
   return block
 }
@@ -23,7 +24,7 @@ function checkLid ({ bot, fail }, block) {
 /** Goes to the container, opens it, hands its window to `action`, and closes it whatever happens. */
 async function withContainer (context, position, action) {
   const { bot } = context
-  findContainer(context, position)
+  if (!isUnseen(bot, position)) findContainer(context, position)
   await walkToUse(context, position, 'the chest')
   const block = findContainer(context, position)
   checkLid(context, block)

@@ -2,6 +2,7 @@
 /** Breaking blocks with the best tool at hand, and picking up what falls out. */
 const { show } = require('./arguments')
 const { centreOf, walk, walkToUse } = require('./walking')
+const { isUnseen, nameOf } = require('./known')
 const { answered } = require('./answers')
 const { until } = require('./waiting')
 
@@ -12,7 +13,7 @@ const MOST_TRIES = 3
 function findBlock ({ bot, fail }, position, name) {
   const block = bot.blockAt(position)
   if (block?.name !== name) {
-    fail(`there is no ${name} at ${show(position)}, but ${block ? block.name : 'nothing that is loaded'}. Look where it is, for instance with bot.findBlock.`)
+    fail(`there is no ${name} at ${show(position)}, but ${nameOf(bot, block)}. Look where it is, for instance with bot.findBlock.`)
   }
   if (!block.diggable) fail(`${name} cannot be mined.`)
   return block
@@ -60,7 +61,7 @@ async function digOut (context, { name, position }) {
 /** Goes to a block, mines it and picks up what it drops. */
 async function mine (context, position, name) {
   const { bot } = context
-  findBlock(context, position, name)
+  if (!isUnseen(bot, position)) findBlock(context, position, name)
   await walkToUse(context, position, `the ${name}`)
   const block = findBlock(context, position, name)
   await takeTool(context, block)

@@ -6,7 +6,7 @@ function bodyOf (context, name, value) {
   const { bot, fail } = context
   const other = otherAgent(context, name, value)
   const { entity } = bot.players[other]
-  if (!entity) fail(`${other} is nowhere near. Find out where ${other} is first.`)
+  if (!entity) fail(`${other} is ${bot.perceived === undefined ? 'nowhere near' : 'not to be seen'}. Find out where ${other} is first.`)
   return entity
 }
 

@@ -1,6 +1,7 @@
 'use strict'
 const { blockPosition, show } = require('./arguments')
 const { answered } = require('./answers')
+const { isUnseen, nameOf } = require('./known')
 const { signFlawOf } = require('./text')
 const { walkToUse } = require('./walking')
 
@@ -8,7 +9,7 @@ const { walkToUse } = require('./walking')
 function signAt ({ bot, fail }, position) {
   const found = bot.blockAt(position)
   if (!found?.name.endsWith('_sign')) {
-    fail(`there is no sign at ${show(position)}, but ${found ? found.name : 'nothing that is loaded'}. Give the position of a sign.`)
+    fail(`there is no sign at ${show(position)}, but ${nameOf(bot, found)}. Give the position of a sign.`)
   }
   return found
 }
@@ -26,7 +27,7 @@ async function write (context, signPosition, text) {
   const flaw = signFlawOf(text)
   if (flaw !== null) fail(`text ${flaw}.`)
   const wanted = text.replace(/\n+$/, '')
-  signAt(context, position)
+  if (!isUnseen(bot, position)) signAt(context, position)
   await walkToUse(context, position, 'the sign')
   if (textOf(signAt(context, position)) === wanted) return
   await bot.activateBlock(signAt(context, position))

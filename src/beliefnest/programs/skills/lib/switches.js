@@ -1,6 +1,7 @@
 'use strict'
 const { blockPosition, show } = require('./arguments')
 const { walkToUse } = require('./walking')
+const { isUnseen, nameOf } = require('./known')
 const { answered } = require('./answers')
 const { until } = require('./waiting')
 
@@ -43,9 +44,10 @@ async function pressButton (context, buttonPosition) {
 async function useDoor (context, doorPosition, open) {
   const { bot, fail } = context
   const position = blockPosition(context, 'position', doorPosition)
-  const name = bot.blockAt(position)?.name ?? ''
+  const known = bot.blockAt(position)
+  const name = known?.name ?? 'door'
   if (name.startsWith('iron_') && DOOR.is(name)) {
-    if (bot.blockAt(position).getProperties().open === open) return
+    if (known.getProperties().open === open) return
     fail(`the ${name} at ${show(position)} is not moved by hand. Use the lever or button that powers it.`)
   }
   const { block } = await goTo(context, position, DOOR)
@@ -62,11 +64,11 @@ async function goTo (context, place, { called, is }) {
   const block = () => {
     const found = bot.blockAt(position)
     if (found === null || !is(found.name)) {
-      fail(`there is no ${called} at ${show(position)}, but ${found ? found.name : 'nothing that is loaded'}. Give the position of a ${called}.`)
+      fail(`there is no ${called} at ${show(position)}, but ${nameOf(bot, found)}. Give the position of a ${called}.`)
     }
     return found
   }
-  block()
+  if (!isUnseen(bot, position)) block()
   await walkToUse(context, position, `the ${called}`)
   return { position, block }
 }

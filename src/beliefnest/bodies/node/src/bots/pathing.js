@@ -40,13 +40,18 @@ function chargePathfinder (bot, clock) {
 /**
  * Movements note on a block what it is to a walker, anew each time it is asked for, a hundred times a node. What they
  * noted holds as long as the block: a place whose state changes gets another object. Their sets of
- * kinds of blocks must not be changed any more.
+ * kinds of blocks must not be changed any more. A bot that does not know every block says by `unknownAt` what to make of those.
  */
 function rememberBlocks (movements, bot) {
   const { getBlock } = movements
   movements.getBlock = (place, dx, dy, dz) => {
     if (!place || !Number.isInteger(place.y)) return getBlock.call(movements, place, dx, dy, dz)
-    const block = bot.world.blockIn(Math.floor(place.x + dx), place.y + dy, Math.floor(place.z + dz))
+    const x = Math.floor(place.x + dx)
+    const y = place.y + dy
+    const z = Math.floor(place.z + dz)
+    const unknown = bot.unknownAt?.(x, y, z, dy < 0)
+    if (unknown !== undefined) return unknown
+    const block = bot.world.blockIn(x, y, z)
     if (block === null || block.notedBy !== movements) return noted(place, dx, dy, dz)
     // A search raises blocks it would put another one on.
     block.height = block.top

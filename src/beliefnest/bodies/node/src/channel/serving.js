@@ -9,7 +9,8 @@ const { Channel } = require('./channel')
 const LIFELINE_FILE = 'lifeline.js'
 
 /**
- * @param {(post: function(object): void, beat: function(object): void) => object} makeHandler gives who answers: `answer(request)`, `prepare()`
+ * @param {(post: function(object): void, beat: function(object): void, ask: function(object): Promise<object>) => object} makeHandler
+ *   gives who answers: `answer(request)`, `prepare()`; `ask` sends a question and resolves with what the other side says to it
  * @param {number} descriptor of the channel
  * @param {number} lifeline another one
  */
@@ -17,10 +18,18 @@ function serve (makeHandler, descriptor, lifeline) {
   new Worker(path.join(__dirname, LIFELINE_FILE), { workerData: { descriptor: lifeline } })
     .on('error', fail)
   const stream = new net.Socket({ fd: descriptor, readable: true, writable: true })
-  const handler = makeHandler(message => channel.post(message), message => channel.beat(message))
+  let asking = null
+  const ask = question => {
+    asking = Promise.withResolvers()
+    channel.send(question)
+    return asking.promise
+  }
+  const handler = makeHandler(message => channel.post(message), message => channel.beat(message), ask)
   let turn = Promise.resolve()
   const channel = new Channel(stream, request => {
-    turn = turn.then(() => answer(request)).catch(fail)
+    // What answers a question is no request.
+    if (request.op === undefined) asking.resolve(request)
+    else turn = turn.then(() => answer(request)).catch(fail)
   })
   async function answer (request) {
     channel.send(await handler.answer(request))

@@ -140,6 +140,7 @@ class Regions {
   /**
    * One tick of the active region; its frame is sent if anything changed.
    * @param {() => Promise<void>} [before] what is to happen before the frame is made
+   * @returns {Promise<boolean>} whether anything changed
    */
   async tick (region, before) {
     await this.clock.advance(TICK_MS)
@@ -154,6 +155,7 @@ class Regions {
     this.alive()
     region.reseed()
     region.raiseFaults()
+    return frame !== null
   }
 
   async step (name, ticks) {
@@ -195,4 +197,4 @@ function statesOf (bytes, box) {
   return new Int32Array(new Uint8Array(bytes).buffer)
 }
 
-module.exports = { Regions, TICK_MS }
+module.exports = { Regions, statesOf, TICK_MS }

@@ -36,6 +36,7 @@ function createSandbox (options = {}, alive = () => {}) {
  *   claims are the guest's own.
  * @param {AbortSignal} [request.signal] ends the program when aborted
  * @param {function(object): void} [request.aim] hears what the program asks its bot to make for (see aims.js)
+ * @param {function(): number} [request.random] its random numbers, as Math.random; those of the process if left out
  * @returns {Promise<{ok: boolean, error: ?{message: string, line: ?number, column: ?number, skill: ?string,
  *   kind: string, reason?: string}, lines: number[], log: {level: string, text: string}[],
  *   unfinished: {what: string, line: ?number}[], fuel: number}>}
@@ -45,7 +46,7 @@ function createSandbox (options = {}, alive = () => {}) {
  *   statement that began them; `fuel` was used.
  *   Time, timers and random numbers are those of the process at the time of the call.
  */
-async function run (engine, { code, bot, scope = {}, fuel, memory, signal, aim }) {
+async function run (engine, { code, bot, scope = {}, fuel, memory, signal, aim, random = () => Math.random() }) {
   if (!(fuel > 0 && fuel <= MAX_FUEL)) throw new RangeError(`the fuel must be between 1 and ${MAX_FUEL}, found ${fuel}`)
   const { skills, data } = splitScope(scope)
   const names = namesOf({ skills, data })
@@ -58,7 +59,7 @@ async function run (engine, { code, bot, scope = {}, fuel, memory, signal, aim }
     return { ok: false, error: { message, line, column, skill: null, kind: 'syntax' }, lines: [], log: [], unfinished: [], fuel: 0 }
   }
   const guest = await engine.open({ fuel, memory }, names)
-  const session = new Session(guest, { bot, skills, data, random: () => Math.random(), aim })
+  const session = new Session(guest, { bot, skills, data, random, aim })
   const report = await observe(session, guest, program, { fuel, memory, signal, names: names.parameters })
   engine.close(guest)
   return report

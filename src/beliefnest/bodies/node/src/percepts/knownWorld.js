@@ -1,0 +1,90 @@
+'use strict'
+/**
+ * The blocks that an agent knows, as a bot's `world` answers for them: what is not known is null. Beyond the box lie walls
+ * and air that never change; for them the bot's own world answers.
+ */
+const { Vec3 } = require('vec3')
+const { maker } = require('../blocks')
+
+const UNKNOWN = -1
+
+class KnownWorld {
+  /**
+   * @param {object} options
+   * @param {import('prismarine-registry').Registry} options.registry
+   * @param {import('../regions/box').Box} options.box
+   * @param {Int32Array} options.states of the box in its array order; -1 is unknown
+   * @param {object} options.beyond the bot's own world
+   */
+  constructor ({ registry, box, states, beyond }) {
+    this.box = box
+    this.beyond = beyond
+    this.make = maker(registry)
+    this.blocks = new Array(box.size).fill(null)
+    this.states = states
+    this.texts = new Map()
+    // It looks along rays through `getBlock`.
+    this.raycast = beyond.raycast
+  }
+
+  /** Whether nothing is known of what is there. */
+  lacks (x, y, z) {
+    return this.box.contains(x, y, z) && this.states[this.box.index(x, y, z)] < 0
+  }
+
+  /** @returns {?object} the block at whole numbers */
+  blockIn (x, y, z) {
+    if (!this.box.contains(x, y, z)) return this.beyond.getBlock(new Vec3(x, y, z))
+    const index = this.box.index(x, y, z)
+    if (this.blocks[index] === null && this.states[index] >= 0) this.blocks[index] = this.made(this.states[index], x, y, z)
+    return this.blocks[index]
+  }
+
+  getBlock ({ x, y, z }) {
+    return this.blockIn(Math.floor(x), Math.floor(y), Math.floor(z))
+  }
+
+  /** A block of a state, wherever it stands. */
+  made (state, x, y, z) {
+    const block = this.make(state)
+    block.position = new Vec3(x, y, z)
+    const text = this.texts.get(this.box.index(x, y, z))
+    // As blocks of the game say it that have more to them than their state.
+    return text === undefined ? block : Object.assign(block, { entity: {}, getSignText: () => [text, ''] })
+  }
+
+  /** Learns all that is written on signs, as [x, y, z, text]. */
+  readSigns (signs) {
+    for (const index of this.texts.keys()) this.blocks[index] = null
+    this.texts = new Map(signs.map(([x, y, z, text]) => [this.box.index(x, y, z), text]))
+    for (const index of this.texts.keys()) this.blocks[index] = null
+  }
+
+  /** Learns what is in a place, -1 for nothing; @returns {{before: ?object, after: ?object}} blocks */
+  learn (x, y, z, state) {
+    const before = this.blockIn(x, y, z)
+    const index = this.box.index(x, y, z)
+    this.states[index] = state
+    this.blocks[index] = null
+    return { before, after: this.blockIn(x, y, z) }
+  }
+
+  /** @returns {Vec3[]} places of known blocks that match, nearest first */
+  find (matches, point, maxDistance, count) {
+    const { low, high } = this.box
+    const reach = (axis, coordinate) => [Math.max(low[axis], Math.floor(coordinate - maxDistance)), Math.min(high[axis], Math.ceil(coordinate + maxDistance))]
+    const [[x0, x1], [y0, y1], [z0, z1]] = [reach(0, point.x), reach(1, point.y), reach(2, point.z)]
+    const found = []
+    for (let x = x0; x <= x1; x++) {
+      for (let y = y0; y <= y1; y++) {
+        for (let z = z0; z <= z1; z++) {
+          const block = this.blockIn(x, y, z)
+          if (block !== null && matches(block) && block.position.distanceTo(point) <= maxDistance) found.push(block.position.clone())
+        }
+      }
+    }
+    return found.sort((a, b) => a.distanceTo(point) - b.distanceTo(point)).slice(0, count)
+  }
+}
+
+module.exports = { KnownWorld, UNKNOWN }

@@ -1,0 +1,121 @@
+'use strict'
+/**
+ * The agents and dropped items that an agent knows of, as entities of a bot. Their numbers tell nothing of what else there
+ * is: agents are numbered by their names, items in the order in which they were seen first.
+ */
+const { EventEmitter } = require('node:events')
+const { Vec3 } = require('vec3')
+
+const FIRST_ITEM = 1000
+const EYES = 1.62
+/** Mineflayer's order of what a player wears and holds. */
+const SLOTS = ['main_hand', 'off_hand', 'feet', 'legs', 'chest', 'head']
+
+class Others {
+  /**
+   * @param {object} bot
+   * @param {string[]} names of all agents that can be spoken of
+   */
+  constructor (bot, names) {
+    this.bot = bot
+    this.names = [...names].sort()
+    this.Item = require('prismarine-item')(bot.registry)
+    this.byName = new Map()
+    this.items = new Map()
+    this.lastItem = FIRST_ITEM
+    this.own = null
+    this.body = null
+  }
+
+  /** The agent's own body, under its number here. */
+  get self () {
+    if (this.body !== this.bot.entity) {
+      this.body = this.bot.entity
+      this.own = Object.create(this.body, { id: { value: this.idOf(this.bot.username) } })
+    }
+    return this.own
+  }
+
+  /** @returns {object} entities by number, the agent's own among them */
+  get entities () {
+    const all = [this.self, ...this.byName.values(), ...this.items.values()]
+    return Object.fromEntries(all.map(entity => [entity.id, entity]))
+  }
+
+  /** @returns {object} all agents by name; the entity of who is not seen is null */
+  get players () {
+    return Object.fromEntries(this.names.map(username => [username, { username, entity: this.entityOf(username), ping: 0, gamemode: 0 }]))
+  }
+
+  entityOf (name) {
+    return name === this.bot.username ? this.self : this.byName.get(name) ?? null
+  }
+
+  idOf (name) {
+    return this.names.indexOf(name) + 1
+  }
+
+  /** @returns {object} the bot's own entity for one of these */
+  realOf (entity) {
+    if (entity === this.own) return this.bot.entity
+    const id = entity.username === undefined ? entity.number : this.bot.players[entity.username]?.entity?.id
+    if (!entity.isValid || id === undefined) throw new Error(`${entity.username ?? 'the item'} is not seen any more. Look where it is first.`)
+    return Object.create(entity, { id: { value: id } })
+  }
+
+  /** Learns how somebody is seen now; null: not any more. @returns {[string, object][]} events for the program */
+  see (name, pose) {
+    const known = this.byName.get(name)
+    if (pose === null) {
+      this.byName.delete(name)
+      return known === undefined ? [] : [['entityGone', gone(known)]]
+    }
+    const entity = known ?? this.agent(name)
+    this.byName.set(name, entity)
+    entity.position.update(new Vec3(...pose.position))
+    entity.equipment = SLOTS.map(slot => this.stack(pose.equipment[slot], 1))
+    Object.assign(entity, { yaw: pose.yaw, pitch: pose.pitch, onGround: pose.on_ground, heldItem: entity.equipment[0] })
+    return [[known === undefined ? 'entitySpawn' : 'entityMoved', entity]]
+  }
+
+  /** Learns what lies where; null: not any more. @returns {[string, object][]} events for the program */
+  find (number, item) {
+    const known = this.items.get(number)
+    if (item === null) {
+      this.items.delete(number)
+      return known === undefined ? [] : [['entityGone', gone(known)]]
+    }
+    const entity = known ?? this.dropped(number)
+    this.items.set(number, entity)
+    entity.position.update(new Vec3(...item.position))
+    entity.stack = this.stack(item.name, item.count)
+    return known === undefined ? [['entitySpawn', entity], ['itemDrop', entity]] : [['entityMoved', entity]]
+  }
+
+  agent (username) {
+    return this.entity('player', { id: this.idOf(username), username, eyeHeight: EYES })
+  }
+
+  dropped (number) {
+    return this.entity('item', { id: ++this.lastItem, number, stack: null })
+  }
+
+  entity (name, more) {
+    const { type, displayName, category, width, height } = this.bot.registry.entitiesByName[name]
+    return Object.assign(new EventEmitter(), {
+      type, name, displayName, kind: category, width, height, position: new Vec3(0, 0, 0), velocity: new Vec3(0, 0, 0),
+      yaw: 0, pitch: 0, onGround: true, isValid: true, equipment: [], heldItem: null, getDroppedItem () { return this.stack ?? null }
+    }, more)
+  }
+
+  stack (name, count) {
+    return name === undefined ? null : new this.Item(this.bot.registry.itemsByName[name].id, count)
+  }
+}
+
+function gone (entity) {
+  entity.isValid = false
+  return entity
+}
+
+module.exports = { Others }

@@ -1,0 +1,181 @@
+'use strict'
+/**
+ * A bot as far as its agent perceives or remembers: what a program and its skills hold in place of the bot, if the
+ * program is to read percepts alone. Its body is the bot's: it acts there, bumps into what is there, and has what the bot has.
+ * Whatever tells of the world around it answers from what the agent knows, which is told after each tick (`update`).
+ */
+const { EventEmitter } = require('node:events')
+const rayTrace = require('mineflayer/lib/plugins/ray_trace')
+const { KnownWorld } = require('./knownWorld')
+const { Others } = require('./others')
+const { Walker } = require('./walker')
+
+/** Events that tell of the agent's own body or of what it does; of all others it hears what it perceives. */
+const OF_THE_BODY = new Set([
+  'health', 'breath', 'death', 'spawn', 'respawn', 'rain', 'time', 'move', 'forcedMove', 'physicsTick', 'physicTick', 'sleep', 'wake',
+  'experience', 'diggingCompleted', 'diggingAborted', 'windowOpen', 'windowClose', 'heldItemChanged', 'usedFirework'
+])
+
+class View {
+  /**
+   * @param {object} options
+   * @param {object} options.bot
+   * @param {import('../time/clock').Clock} options.clock
+   * @param {import('../regions/box').Box} options.box
+   * @param {string[]} options.names of the agents that can be spoken of
+   * @param {object} options.percepts PERCEPTS of the channel, with all blocks as `states`
+   */
+  constructor ({ bot, clock, box, names, percepts: { states, ...changes } }) {
+    this.body = bot
+    this.emitter = new EventEmitter().setMaxListeners(0)
+    this.forwarded = []
+    this.collected = []
+    this.waiting = []
+    this.known = new KnownWorld({ registry: bot.registry, box, states, beyond: bot.world })
+    this.others = new Others(bot, names)
+    this.bot = this.made()
+    this.walker = new Walker(this.bot, this.known, clock)
+    this.onCollect = (collector, collected) => this.collected.push({ name: collector.username, number: collected.id })
+    bot.on('playerCollect', this.onCollect)
+    this.onSignOpen = ({ position }) => this.emitter.emit('signOpen', this.known.getBlock(position))
+    bot.on('signOpen', this.onSignOpen)
+    this.learn(changes)
+  }
+
+  /** The bot that a program gets. */
+  made () {
+    const { body, known, others } = this
+    const view = Object.create(body, {
+      world: { value: known },
+      entity: { get: () => others.self },
+      entities: { get: () => others.entities },
+      players: { get: () => others.players },
+      player: { get: () => others.players[body.username] },
+      // Assigned by what is injected into it, where the bot has properties that cannot be.
+      pathfinder: { value: null, writable: true }
+    })
+    rayTrace(view)
+    return Object.assign(view, this.events(), looking(view, known), touching(body, others), { perceived: () => this.perceived() })
+  }
+
+  events () {
+    const { body, emitter } = this
+    const add = (event, listener, once) => {
+      if (!OF_THE_BODY.has(event)) emitter[once ? 'once' : 'on'](event, listener)
+      else {
+        this.forwarded.push({ event, listener })
+        body[once ? 'once' : 'on'](event, listener)
+      }
+      return this.bot
+    }
+    const remove = (event, listener) => {
+      if (!OF_THE_BODY.has(event)) emitter.removeListener(event, listener)
+      else {
+        this.forwarded = this.forwarded.filter(each => each.event !== event || each.listener !== listener)
+        body.removeListener(event, listener)
+      }
+      return this.bot
+    }
+    const removeAll = event => {
+      for (const each of this.forwarded.filter(each => each.event === event)) remove(event, each.listener)
+      emitter.removeAllListeners(event)
+      return this.bot
+    }
+    return {
+      on: (event, listener) => add(event, listener, false),
+      addListener: (event, listener) => add(event, listener, false),
+      once: (event, listener) => add(event, listener, true),
+      off: remove,
+      removeListener: remove,
+      removeAllListeners: removeAll,
+      emit: (event, ...values) => emitter.emit(event, ...values)
+    }
+  }
+
+  /** Resolves when what came of this tick has been perceived. */
+  perceived () {
+    return new Promise(resolve => { this.waiting.push(resolve) })
+  }
+
+  /** Takes PERCEPTS, what has changed since the last; null: nothing has. */
+  update (changes) {
+    if (changes !== null) for (const [event, ...values] of this.learn(changes)) this.emitter.emit(event, ...values)
+    this.collected = []
+    for (const resolve of this.waiting.splice(0)) resolve()
+  }
+
+  /** @returns {Array[]} events that tell of what was learnt, each a name with values */
+  learn ({ blocks = [], signs = null, agents = {}, items = {}, heard = [] }) {
+    const told = []
+    if (signs !== null) this.known.readSigns(signs)
+    for (const [x, y, z, state] of blocks) {
+      const { before, after } = this.known.learn(x, y, z, state)
+      this.walker.learn(before, after)
+      told.push(['blockUpdate', before, after], [`blockUpdate:(${x}, ${y}, ${z})`, before, after])
+    }
+    for (const [name, pose] of Object.entries(agents)) told.push(...this.others.see(name, pose))
+    const taken = this.collected.map(({ name, number }) => [this.others.entityOf(name), this.others.items.get(number)])
+    for (const [number, item] of Object.entries(items)) told.push(...this.others.find(Number(number), item))
+    // Who is seen taking up what was seen to lie there.
+    told.push(...taken.filter(pair => pair.every(Boolean)).map(pair => ['playerCollect', ...pair]))
+    return [...told, ...heard.flatMap(utterance => this.hearing(utterance))]
+  }
+
+  hearing ([speaker, text, to]) {
+    if (to === null) return [['messagestr', `<${speaker}> ${text}`], ['chat', speaker, text]]
+    if (to !== this.body.username) return [['messagestr', `You whisper to ${to}: ${text}`]]
+    return [['messagestr', `${speaker} whispers to you: ${text}`], ['whisper', speaker, text]]
+  }
+
+  /** Lets go of the bot; @returns {object} it */
+  close () {
+    for (const { event, listener } of this.forwarded.splice(0)) this.body.removeListener(event, listener)
+    this.body.removeListener('playerCollect', this.onCollect)
+    this.body.removeListener('signOpen', this.onSignOpen)
+    this.emitter.removeAllListeners()
+    return this.body
+  }
+}
+
+/** What looks around. */
+function looking (view, known) {
+  const findBlocks = ({ matching, point, maxDistance = 16, count = 1 }) => {
+    const types = [matching].flat()
+    const matches = typeof matching === 'function' ? matching : block => types.includes(block.type)
+    return known.find(matches, (point ?? view.entity.position).floored(), maxDistance, count)
+  }
+  return {
+    blockAt: place => known.getBlock(place),
+    findBlocks,
+    findBlock: options => {
+      const [place] = findBlocks({ ...options, count: 1 })
+      return place === undefined ? null : known.getBlock(place)
+    },
+    canSeeBlock: ({ position }) => {
+      const eye = view.entity.position.offset(0, view.entity.eyeHeight, 0)
+      const way = position.offset(0.5, 0.5, 0.5).minus(eye)
+      const meets = (block, ray) => ray.intersect(block.shapes, block.position) !== null || block.position.equals(position)
+      return known.raycast(eye, way.normalize(), eye.distanceTo(position), meets)?.position.equals(position) ?? false
+    },
+    nearestEntity: (matches = () => true) => {
+      const far = ({ position }) => position.distanceTo(view.entity.position)
+      return Object.values(view.entities).filter(entity => entity !== view.entity && matches(entity))
+        .reduce((best, entity) => (best === null || far(entity) < far(best) ? entity : best), null)
+    }
+  }
+}
+
+/** What is done to others, under the numbers that the game has for them. */
+function touching (body, others) {
+  const told = name => (entity, ...rest) => body[name](others.realOf(entity), ...rest)
+  const opened = name => (target, ...rest) => body[name](target.stateId === undefined ? others.realOf(target) : target, ...rest)
+  return {
+    activateEntity: told('activateEntity'),
+    useOn: told('useOn'),
+    attack: told('attack'),
+    openContainer: opened('openContainer'),
+    openChest: opened('openChest')
+  }
+}
+
+module.exports = { View }
