@@ -38,7 +38,14 @@ ROOM: dict[str, Any] = {
 ACTS = frozenset(
     (
         *("chat", "whisper", "dig", "stopDigging", "placeBlock"),
-        *("activateBlock", "updateSign", "activateEntity", "activateItem", "deactivateItem", "useOn"),
+        *(
+            "activateBlock",
+            "updateSign",
+            "activateEntity",
+            "activateItem",
+            "deactivateItem",
+            "useOn",
+        ),
         *("attack", "swingArm", "lookAt", "look", "setControlState"),
         *("clearControlStates", "waitForTicks", "waitForChunksToLoad", "equip", "unequip"),
         *("setQuickBarSlot", "toss", "tossStack", "consume", "sleep"),
@@ -201,7 +208,8 @@ PROGRAMS = {
     "what is written": """
         console.log(await readSign(bot, new Vec3(8, 1, 1)).catch(() => 'unseen'))
         await goToPosition(bot, new Vec3(6, 1, 3), 0)
-        console.log(bot.blockAt(new Vec3(8, 1, 1)).getSignText()[0], await readSign(bot, new Vec3(8, 1, 1)))
+        console.log(bot.blockAt(new Vec3(8, 1, 1)).getSignText()[0])
+        console.log(await readSign(bot, new Vec3(8, 1, 1)))
         await writeSign(bot, new Vec3(8, 1, 1), 'no food')
         await goToPosition(bot, new Vec3(1, 1, 3), 0)
         console.log(await readSign(bot, new Vec3(8, 1, 1)))""",
@@ -222,7 +230,10 @@ def bare(text: str) -> str:
 
 @pytest.mark.parametrize("what", PROGRAMS)
 def test_both_worlds_answer_the_same(worlds: Worlds, what: str) -> None:
-    room = {"blocks": [FLOOR, WALL, GAP], "items": {"apple": 1}}
+    sign = {"block": "oak_sign", "at": [8, 1, 1]}
+    texts = [{"at": [8, 1, 1], "text": "tools"}]
+    blocks = [FLOOR, WALL, GAP, *([sign] if "written" in what else [])]
+    room = {"blocks": blocks, "items": {"apple": 1}, "signs": texts if "written" in what else []}
     found, there = played(worlds, PROGRAMS[what], **room)
     told, place = played(worlds, PROGRAMS[what], world="scripted", **room)
     assert found.error is None, found.error
