@@ -106,7 +106,7 @@ class Runner {
     if (limited.length === 0) return true
     const told = changed ? await this.perceive(region.tick) : {}
     if (told === null) return false
-    for (const { agent, view } of limited) region.context.run(agent, () => view.update(told[agent] ?? null))
+    for (const { agent, view } of limited) region.runAs(agent, () => view.update(told[agent] ?? null))
     return true
   }
 

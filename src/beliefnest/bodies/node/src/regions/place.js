@@ -36,6 +36,15 @@ class Place {
     return body
   }
 
+  /** Runs an action as code of an agent's program; what it throws is a fault of that. */
+  runAs (agent, action) {
+    try {
+      action()
+    } catch (error) {
+      this.faults.push({ error, agent })
+    }
+  }
+
   /**
    * What an agent's skills tell; positions in `detail` are scenario coordinates.
    * @throws {RangeError} for what the server does not let it tell

@@ -37,6 +37,10 @@ class Region extends Place {
     return this.toServer(this.box.low)
   }
 
+  runAs (agent, action) {
+    this.context.run(agent, action)
+  }
+
   /** Lets random numbers depend on seed and tick alone, not on what was drawn before. */
   reseed () {
     this.context.random = new Random(`${this.seed} ${this.tick}`)

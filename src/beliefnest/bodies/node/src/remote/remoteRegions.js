@@ -35,7 +35,7 @@ class RemoteRegions {
     this.open = null
     // What a Runner asks of regions.
     this.bodies = { rest: (_, agents) => this.open.agents.rest(agents) }
-    this.clock = { advance: () => new Promise(resolve => { setImmediate(resolve) }) }
+    this.clock = { advance: () => new Promise(resolve => { setImmediate(resolve) }), charge () {} }
   }
 
   /** @throws {BadRequest} if there is no such region */
@@ -129,12 +129,14 @@ class RemoteRegions {
     this.makeFrame(open)
   }
 
+  /** @returns {boolean} whether anything has changed */
   makeFrame ({ region, scene }) {
     scene.endTick()
     const frame = region.recorder.frame()
-    if (frame === null) return
+    if (frame === null) return false
     if (region.isDriven) this.send(frame)
     else region.waiting.push(frame)
+    return true
   }
 
   /** Runs a call on a region: its ticks are then the call's to take. */
@@ -153,7 +155,7 @@ class RemoteRegions {
     }
   }
 
-  /** The next tick; what happened in it is sent. */
+  /** The next tick; what happened in it is sent. @returns {Promise<boolean>} whether anything has */
   async tick (region, before) {
     const { operator: { link }, server } = this
     while (region.now() <= region.tick) {
@@ -164,7 +166,7 @@ class RemoteRegions {
     region.tick = region.now()
     await before?.()
     region.tick = region.now()
-    this.makeFrame(this.open)
+    return this.makeFrame(this.open)
   }
 
   async step (name, ticks) {
