@@ -1,0 +1,59 @@
+"""`nest.view()` in a notebook that is executed: what it shows is the page, in a real browser."""
+
+from pathlib import Path
+
+import nbclient
+import nbformat
+import pytest
+
+from beliefnest.cli.bench.browser import CHROMIUM, DRIVER, opened_browser
+
+pytestmark = pytest.mark.skipif(
+    CHROMIUM is None or DRIVER is None,
+    reason="the page is tested in Chromium: apt-get install chromium chromium-driver",
+)
+
+BEFORE = """
+import beliefnest as bn
+world = bn.ScriptedWorld(
+    ((0, 0, 0), (9, 4, 9)),
+    {(x, 0, z): "stone" for x in range(10) for z in range(10)}
+    | {(x, y, 5): "bricks" for x in range(10) for y in (1, 2, 3)},
+    {"sally": (2.5, 1, 2.5), "anne": (4.5, 1, 2.5)},
+    inventories={"sally": {"diamond": 1}},
+    containers={(3, 1, 3): {}},
+)
+nest = bn.Nest(world, static_blocks=["stone", "bricks"])
+world.deposit("sally", (3, 1, 3), {"diamond": 1})
+world.place_agent("sally", (2.5, 1, 7.5))
+"""
+AFTER = 'world.withdraw("anne", (3, 1, 3), {"diamond": 1})'
+
+
+@pytest.mark.filterwarnings("ignore")  # of Jupyter's own libraries
+def test_a_cell_shows_the_page_of_the_nest_as_it_was_then(tmp_path: Path) -> None:
+    cells = [BEFORE, "nest.view(height=640)", AFTER, "nest.view()", "print(repr(nest.view(1)))"]
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])
+    resources = {"metadata": {"path": str(tmp_path)}}
+    nbclient.NotebookClient(notebook, timeout=300, resources=resources).execute()
+    _, first, _, second, printed = notebook.cells
+    assert (
+        printed.outputs[0].text == "<page of 'scripted', beliefs to depth 1; a notebook shows it>\n"
+    )
+    with opened_browser(tmp_path / "profile") as browser:
+        for cell, false in ((first, False), (second, True)):
+            (shown,) = cell.outputs
+            assert "a notebook shows it" in shown.data["text/plain"]
+            file = tmp_path / "cell.html"
+            file.write_text(f"<!doctype html><body>{shown.data['text/html']}", encoding="utf-8")
+            browser.driver.get(file.as_uri())
+            browser.driver.switch_to.frame(browser.one("iframe"))
+            browser.until_script("return document.documentElement.dataset.ready")
+            browser.click("[data-node='0 /sally']")
+            browser.one("[data-node='0 /sally'].chosen")
+            told = browser.script("return document.body.innerText")
+            assert ("sally puts 1 diamond into (3, 1, 3)" in told, "1 false" in told) == (
+                True,
+                false,
+            )
+            assert browser.complaints() == []
