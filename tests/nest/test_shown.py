@@ -63,6 +63,7 @@ def test_notebooks_get_escaped_text_of_reasons_and_differences(nest: bn.Nest) ->
     assert "<td>1 diamond</td>" in found._repr_html_()  # type: ignore[attr-defined]
     assert found == list(found)
     assert repr(nest.compare("/", "/")) == "<0 differences of / and />"
+    assert "No differences of / and /." in nest.compare("/", "/")._repr_html_()  # type: ignore[attr-defined]
 
 
 def test_names_of_others_are_escaped(nest: bn.Nest) -> None:

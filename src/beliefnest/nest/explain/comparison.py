@@ -13,7 +13,7 @@ from beliefnest.belief.entries import AgentBelief, ContainerBelief, Source
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.parts import Contents
 from beliefnest.nest.past.recording import Recording
-from beliefnest.pictures.words import html_table, items_words, place_words, point_words
+from beliefnest.pictures.words import html_lines, html_table, items_words, place_words, point_words
 from beliefnest.world.paths import path_text
 from beliefnest.world.values import Point, Position
 
@@ -105,11 +105,17 @@ class Differences(list[Difference]):
         ]
         more = len(self) - len(lines)
         lines += [f"  and {more} more"] if more else []
-        count = f"{len(self)} difference{'s' * (len(self) != 1)} of {a} and {b}"
+        count = f"{len(self)} {self._about()}"
         return "\n".join([f"<{count}{':' if lines else ''}", *lines]) + ">"
 
     def _repr_html_(self) -> str:
+        if not self:
+            return html_lines([f"No {self._about()}."])
         return html_table(self._headings, self._rows())
+
+    def _about(self) -> str:
+        _, a, b = self._headings
+        return f"difference{'s' * (len(self) != 1)} of {a} and {b}"
 
     def _rows(self) -> list[tuple[str, str, str]]:
         return [(_what(each), value_words(each.a), value_words(each.b)) for each in self]

@@ -10,6 +10,9 @@ from beliefnest.viewer.page.static import still_page
 
 __all__ = ["PageView"]
 
+# Notebooks take frames out of what they do not trust; what is left is this.
+_UNTRUSTED = "The page is shown once this notebook is trusted: File, Trust Notebook."
+
 
 @dataclass(frozen=True)
 class PageView:
@@ -47,5 +50,5 @@ class PageView:
         return (
             f'<iframe sandbox="allow-scripts allow-popups" title="{html.escape(self._title)}" '
             f'srcdoc="{html.escape(self.page)}" style="width: 100%; height: {self.height}px; '
-            'border: 1px solid #ddd"></iframe>'
+            f'box-sizing: border-box; border: 1px solid #ddd">{_UNTRUSTED}</iframe>'
         )
