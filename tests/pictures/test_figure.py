@@ -217,3 +217,19 @@ def test_past_and_branches_are_drawn_as_they_are(nest: bn.Nest) -> None:
     belief.scripted.step(3)
     drawn = texts(nest.figure(f"/{bob}").drawing())
     assert any("branch try" in text for text in drawn)
+
+
+def test_a_sign_is_drawn_with_what_is_known_to_be_written_on_it():
+    place = (3, 1, 3)
+    world = bn.ScriptedWorld(
+        ((0, 0, 0), (6, 3, 6)),
+        {place: "oak_sign"},
+        {"ann": (1.5, 1, 1.5), "bob": (5.5, 1, 1.5)},
+        signs={place: "food"},
+    )
+    with bn.Nest(world) as nest:
+        nest["/ann"].edit(signs={place: "a long text that does not fit"})
+        drawn = nest.figure(["/", "/ann"])._repr_html_()
+        assert "“food”" in drawn
+        assert "“a long text that does n…”" in drawn
+        assert ">sign<" in drawn

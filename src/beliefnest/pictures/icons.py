@@ -168,7 +168,7 @@ def item(at: XY, size: float, name: str) -> list[Drawn]:
 
 
 def device(at: XY, cell: float, shown: Device) -> list[Drawn]:
-    """A door as wide as it stands, a lever, a button, a plate, a table to work at.
+    """A door as wide as it stands, a lever, a button, a plate, a sign, a table to work at.
 
     Args:
         at: Left upper corner of its column.
@@ -210,6 +210,13 @@ def device(at: XY, cell: float, shown: Device) -> list[Drawn]:
         ]
     if "door" in shown.name or "gate" in shown.name:
         return _door(at, cell, shown)
+    if shown.name.endswith("sign"):
+        board = (x + cell * 0.1, y + cell * 0.3, cell * 0.8, cell * 0.4)
+        line = ((x + cell * 0.22, y + cell * 0.5), (x + cell * 0.78, y + cell * 0.5))
+        return [
+            Rectangle(*board, _WOOD, INK, cell * 0.05, role="part"),
+            Lines((line,), INK, cell * 0.06, "part"),
+        ]
     return _table(at, cell, shown)
 
 

@@ -12,7 +12,7 @@ from beliefnest.pictures.marks import XY, Bounds, Lines, Polygon, Rectangle, Tex
 from beliefnest.pictures.marks import Mark as Drawn
 from beliefnest.pictures.palette import INK, MARKS, PAPER, QUIET, AgentLook, Mark, age_text, mix
 from beliefnest.pictures.room import Room
-from beliefnest.pictures.scene import Cell, Person, Scene, Store
+from beliefnest.pictures.scene import DEVICES, Cell, Person, Scene, Store
 from beliefnest.world.registry import Registry
 
 __all__ = ["Plan", "draw_plan", "hatching"]
@@ -39,7 +39,7 @@ _KINDS: Mapping[str, str] = {
     "log": "#96744c",
     "sand": "#e0d2a0",
 }
-_DEVICES = ("door", "lever", "button", "furnace", "smoker", "crafting_table", "gate", "plate")
+_MOST_QUOTED = 24
 _STORES = ("chest", "barrel", "furnace", "smoker")
 
 
@@ -294,6 +294,8 @@ class _Sheet:
             if not any(store.position == shown.position for store in self._scene.stores):
                 self.marks += icons.device(self._place(x, z), self._cell, shown)
                 self.kinds.add(_device_kind(shown.name))
+                if shown.says and self._holds((x + 0.5, z + 0.5)):
+                    self._quote(shown.says, self._place(x, z))
         for store in self._scene.stores:
             if self._holds((store.position[0] + 0.5, store.position[2] + 0.5)):
                 self._store(store)
@@ -371,6 +373,12 @@ class _Sheet:
         square = Rectangle(x0, y0, self._cell, self._cell, None, INK, 0.6, dash=1.2)
         self.marks.append(square)
         self._label((x0 + self._cell / 2, y0 + self._cell / 2), self._cell, ((label, True),))
+
+    def _quote(self, says: str, corner: XY) -> None:
+        """What is written on a sign, as much as fits beside it."""
+        short = says if len(says) <= _MOST_QUOTED else f"{says[: _MOST_QUOTED - 1]}…"
+        middle = (corner[0] + self._cell / 2, corner[1] + self._cell / 2)
+        self._label(middle, self._cell, ((f"“{short}”", False),))
 
     def _label(self, spot: XY, size: float, lines: tuple[tuple[str, bool], ...]) -> None:
         half = size / 2
@@ -458,7 +466,7 @@ def _with_height(name: str, above: int) -> str:
 
 
 def _device_kind(name: str) -> str:
-    return next(kind for kind in _DEVICES if kind in name)
+    return next(kind for kind in DEVICES if kind in name).lstrip("_")
 
 
 def _ground_colour(cell: Cell) -> str:
@@ -473,7 +481,7 @@ def _standing(text: str) -> tuple[tuple[float, float, float, float], ...]:
     name = text.partition("[")[0]
     if name in {"air", "cave_air", "void_air"}:
         return ()
-    if any(kind in name for kind in (*_DEVICES, *_STORES)):
+    if any(kind in name for kind in (*DEVICES, *_STORES)):
         return ()
     registry = Registry.load()
     boxes = registry.boxes(registry.state_id(text))

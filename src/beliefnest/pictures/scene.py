@@ -13,10 +13,12 @@ from beliefnest.belief.entries import AgentBelief, ContainerBelief
 from beliefnest.belief.view import State
 from beliefnest.pictures.palette import Mark
 from beliefnest.world.registry import Registry
+from beliefnest.world.signs import sign_words
 from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import Items, Point, Position
 
 __all__ = [
+    "DEVICES",
     "Cell",
     "Device",
     "Labels",
@@ -30,6 +32,12 @@ __all__ = [
     "read_scene",
     "read_stores",
 ]
+
+DEVICES = (
+    *("door", "lever", "button", "furnace", "smoker", "crafting_table", "gate", "plate"),
+    "_sign",
+)
+"""Parts of names of blocks that people work with."""
 
 Labels = Mapping[Position, str]
 """What people call containers and places."""
@@ -97,12 +105,14 @@ class Device:
         name: Block name.
         on: Whether it is open, switched on or pressed.
         parts: Where it stands in its column, from 0 to 1: left, top, right, bottom of each box.
+        says: What is written on it.
     """
 
     position: Position
     name: str
     on: bool
     parts: tuple[tuple[float, float, float, float], ...]
+    says: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -291,7 +301,7 @@ def read_scene(
         height=level,
         cells=cells,
         stores=read_stores(state, level, labels or {}, by_place),
-        devices=_devices(cells, (x0, level, z0)),
+        devices=_devices(cells, (x0, level, z0), state.signs),
         items=tuple((item.name, item.position) for _, item in sorted(state.items.items())),
         places=tuple((on_one_line(name), at) for name, at in sorted((places or {}).items())),
         people=tuple(
@@ -402,16 +412,17 @@ def _person(
     )
 
 
-_DEVICES = ("door", "lever", "button", "furnace", "smoker", "crafting_table", "gate", "plate")
 _ON = ("open", "powered", "lit")
 
 
-def _devices(cells: Sequence[Sequence[Cell]], low: Position) -> tuple[Device, ...]:
+def _devices(
+    cells: Sequence[Sequence[Cell]], low: Position, signs: Mapping[Position, str]
+) -> tuple[Device, ...]:
     registry = Registry.load()
     found = []
     for i, row in enumerate(cells):
         for k, cell in enumerate(row):
-            if cell.standing is None or not any(kind in cell.standing for kind in _DEVICES):
+            if cell.standing is None or not any(kind in cell.standing for kind in DEVICES):
                 continue
             state = registry.state_id(cell.standing)
             properties = registry.properties(state)
@@ -420,5 +431,6 @@ def _devices(cells: Sequence[Sequence[Cell]], low: Position) -> tuple[Device, ..
             states = [properties[key] == "true" for key in _ON if key in properties]
             parts = tuple((b[0], b[2], b[3], b[5]) for b in registry.boxes(state))
             place = (low[0] + i, low[1], low[2] + k)
-            found.append(Device(place, name, bool(states and states[0]), parts))
+            says = sign_words(signs.get(place, ""))
+            found.append(Device(place, name, bool(states and states[0]), parts, says))
     return tuple(found)

@@ -26,6 +26,7 @@ export class Detail {
     const held = document.activeElement?.dataset?.row
     refill(this.holds,
       table('Containers', things.containers.map(each => this.row(run, each, contentsText(each.contents), choice))),
+      table('Signs', things.signs.map(each => this.row(run, each, `“${each.says}”`, choice))),
       table('Agents', things.agents.map(each => this.row(run, each, placeText(each.pose), choice))),
       this.others(run, things))
     if (held !== undefined) this.holds.querySelector(`[data-row="${CSS.escape(held)}"]`)?.focus()
@@ -121,7 +122,7 @@ function valueText (run, track, tick, thing) {
   if (thing[0] === 'c') return contentsText(track.contents(number, tick))
   if (thing[0] === 'b') {
     const state = track.grid(tick)[number]
-    return state < 0 ? 'not known' : run.states[state].text
+    return state < 0 ? 'not known' : blockText(run.states[state])
   }
   const [items, complete] = track.owned(number, tick)
   const has = itemsText(items) ? `has ${itemsText(items)}${complete ? '' : ', perhaps more'}` : complete ? 'has nothing' : 'what it has is not known'
@@ -129,6 +130,10 @@ function valueText (run, track, tick, thing) {
   const pose = track.agent(number, tick)
   const age = pose && !pose.current ? `, seen ${ago(tick - pose.seenAt)}` : ''
   return `${placeText(pose)}${age}; ${has}`
+}
+
+function blockText ({ text, says }) {
+  return says === undefined ? text : `${text} that says “${says}”`
 }
 
 /** What the data itself says of a thing, where the whole chain was not written into the page. */

@@ -7,6 +7,7 @@ import { contentsLabel, contentsText, signsText } from './things.js'
 const LIGHT = { wall: '#7d7a78', nowhere: '#d9d5cc', unknown: '#eeeae2', hatch: '#b9b4aa', unseen: 'rgba(43,42,51,.30)', blend: '#fcfbf8' }
 const DARK = { wall: '#9a979c', nowhere: '#17161b', unknown: '#2b2930', hatch: '#56525e', unseen: 'rgba(0,0,0,.55)', blend: '#24232a' }
 const LEAST = 6
+const MOST_SHOWN = 24
 const LETTER = 7
 const LINE = 14
 
@@ -38,7 +39,7 @@ export class Plan {
     }
     this.labelled = []
     refill(this.over,
-      ...this.wrongBlocks(scene), ...this.ray(scene), ...this.containers(scene), ...this.items(scene), ...this.agents(scene))
+      ...this.wrongBlocks(scene), ...this.ray(scene), ...this.containers(scene), ...this.signs(scene), ...this.items(scene), ...this.agents(scene))
   }
 
   drawBlocks (scene, width, depth) {
@@ -102,6 +103,19 @@ export class Plan {
         svg('line', { class: 'lid', x1: x + 0.08 * s, x2: x + 0.92 * s, y1: y + 0.42 * s, y2: y + 0.42 * s }),
         wrong ? svg('rect', { class: 'wrong', x, y, width: s, height: s, rx: 0.16 * s }) : null,
         this.label(x + s / 2, y - 5, text, wrong))
+    })
+  }
+
+  signs ({ things, chosen, storey }) {
+    return things.signs.filter(each => each.place[1] === storey).map(each => {
+      const [x, y] = this.at(each.place[0], each.place[2])
+      const s = this.size
+      const wrong = each.marks.includes('false')
+      const text = each.says.length > MOST_SHOWN ? `${each.says.slice(0, MOST_SHOWN - 1)}…` : each.says
+      return this.target(each.thing, `${each.name} says “${each.says}”${wrong ? ' (false)' : ''}`, chosen,
+        svg('rect', { class: 'board', x: x + 0.1 * s, y: y + 0.3 * s, width: 0.8 * s, height: 0.4 * s, rx: 0.06 * s }),
+        svg('line', { class: 'lid', x1: x + 0.22 * s, x2: x + 0.78 * s, y1: y + 0.5 * s, y2: y + 0.5 * s }),
+        this.label(x + s / 2, y - 2, `“${text}”`, wrong))
     })
   }
 

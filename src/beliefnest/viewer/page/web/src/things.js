@@ -2,7 +2,7 @@
 
 import { ago, itemsText } from './elements.js'
 
-/** @returns {object} agents, containers, dropped items and false blocks of a track at a tick */
+/** @returns {object} agents, containers, dropped items, written signs and false blocks of a track at a tick */
 export function thingsOf (run, track, tick) {
   const wrong = new Set(track.wrong(tick))
   const known = new Set([...track.cells(), ...(run.timelines[0]?.track('/')?.cells() ?? [])])
@@ -10,9 +10,23 @@ export function thingsOf (run, track, tick) {
     agents: run.head.agents.map((look, number) => agentThing(run, track, tick, look, number, wrong)),
     containers: [...known].sort((a, b) => a - b).map(cell => containerThing(run, track, tick, cell, wrong)),
     items: [...track.items(tick).values()],
+    signs: writtenSigns(run, track, tick, wrong),
     wrong,
     wrongBlocks: [...wrong].filter(thing => thing[0] === 'b').map(thing => Number(thing.slice(1)))
   }
+}
+
+/** Signs on which something is written, as far as that is known. */
+function writtenSigns (run, track, tick, wrong) {
+  if (!run.states.some(state => state.says !== undefined)) return []
+  const found = []
+  track.grid(tick).forEach((state, cell) => {
+    if (state < 0 || run.states[state].says === undefined) return
+    const thing = `b${cell}`
+    const { name, says } = run.states[state]
+    found.push({ thing, cell, place: run.place(cell), name: `${name.replaceAll('_', ' ')} at ${run.place(cell).join(', ')}`, says, marks: wrong.has(thing) ? ['false'] : [], age: null })
+  })
+  return found
 }
 
 function agentThing (run, track, tick, look, number, wrong) {
