@@ -47,6 +47,25 @@ def test_replaying_finds_no_difference(run, capsys):
     assert [row["programs"] for row in told["timelines"]] == [3, 1, 2]
 
 
+def test_replaying_lets_programs_read_what_they_read_then(tmp_path, capsys):
+    """What Anne knows decides where she goes; with the whole world she would go elsewhere."""
+    store = tmp_path / "run.bn"
+    look = """
+      const chests = bot.findBlocks({ matching: block => block.name === 'chest', count: 9 })
+      await goToPosition(bot, chests.at(-1) ?? new Vec3(0, -51, 5), 2)
+      const sally = bot.players.sally.entity
+      bot.chat(`${chests.length} ${sally === null}`)"""
+    with bn.Nest.open(bn.Scenario.load("sally-anne", 3), store=store, seed=4) as nest:
+        nest.play()
+        nest["/"].run("anne", look, senses="percepts")
+        nest["/"].edit(blocks={(0, -51, 0): "stone"})
+        nest["/observer"].switch("try")
+        nest["/observer"].run("sally", look, senses="percepts")
+    assert run_command_line(["replay", str(store), "--json"]) == 0
+    with SqliteJournal.read(store) as journal:
+        assert [p.senses for p in journal.records.programs()][-2:] == ["percepts", "percepts"]
+
+
 def test_replaying_names_the_first_tick_and_field_that_differ(run, tmp_path, capsys):
     other = tmp_path / "run.bn"
     other.write_bytes(run.read_bytes())

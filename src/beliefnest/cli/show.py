@@ -284,6 +284,7 @@ def _program_json(program: ProgramRecord) -> dict[str, object]:
         "log": list(program.log),
         "unfinished": list(program.unfinished),
         "code": program.code,
+        "senses": program.senses,
     }
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TypeVar
+from typing import Literal, TypeVar
 
 import msgspec
 
@@ -11,7 +11,18 @@ from beliefnest.timeline import codec
 from beliefnest.timeline.database import Database, Row, checked, checksum
 from beliefnest.timeline.journal import FOLLOW, TimelineKey
 
-__all__ = ["ProgramRecord", "PromptRecord", "Records", "RunRecord", "path_from", "path_to"]
+__all__ = [
+    "ProgramRecord",
+    "PromptRecord",
+    "Records",
+    "RunRecord",
+    "Senses",
+    "path_from",
+    "path_to",
+]
+
+Senses = Literal["world", "percepts"]
+"""What programs read: everything there is, or what their agents perceive or remember."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +69,7 @@ class ProgramRecord:
         timeout_ticks: Ticks after which it would have been stopped.
         step: Number of the script's step that it is part of, from 0; None: it is in no script.
         kept: Whether what it did was recorded; not if the world's process ended under it.
+        senses: What it read; files of earlier versions, which do not say it, are read as `world`.
     """
 
     path: tuple[str, ...]
@@ -76,6 +88,7 @@ class ProgramRecord:
     timeout_ticks: int = 0
     step: int | None = None
     kept: bool = True
+    senses: Senses = "world"
 
 
 @dataclass(frozen=True, slots=True)

@@ -265,6 +265,7 @@ def _program_detail(program: ProgramRecord) -> dict[str, str]:
         **({} if program.step is None else {"step": str(program.step)}),
         "timeout_ticks": str(program.timeout_ticks),
         **({} if program.kept else {"undone": "killed"}),
+        **({} if program.senses == "world" else {"senses": program.senses}),
         "entries": str(program.entries),
     }
 

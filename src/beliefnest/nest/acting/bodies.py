@@ -12,7 +12,7 @@ from beliefnest.errors import BodyError, BranchError, WorldError
 from beliefnest.nest.acting.frame_recorder import FrameRecorder
 from beliefnest.nest.acting.hearsay import ClaimReader, Hearsay
 from beliefnest.nest.acting.lives import Lives
-from beliefnest.nest.acting.sensing import Sensing
+from beliefnest.nest.acting.sensing import Sensing, believer_of
 from beliefnest.nest.acting.speculation import SpeculatedBody, Speculation
 from beliefnest.nest.acting.starting import Start, start_of
 from beliefnest.nest.past.body_state import note_internal_state, present
@@ -169,12 +169,14 @@ class Bodies:
         Beliefs are worked out from what has been recorded so far, as they always are. Where the
         agent is, and what it has on it, it knows from its own body.
         """
-        embodied = self._embodied[path]
+        embodied, recording = self._embodied[path], self._recording
 
-        def written() -> None:
+        def entries() -> int:
             embodied.recorder.flush(embodied.body.tick)
+            return recording.info(path).entries
 
-        return Sensing(self._recording, path, agent, written)
+        believer = believer_of(path, agent)
+        return Sensing(agent, entries, lambda _: recording.reading(believer))
 
     @contextmanager
     def changing(self, path: Path, unless: type[BaseException] | tuple[()] = ()) -> Iterator[None]:

@@ -183,7 +183,7 @@ class Engine:
         try:
             with self.bodies.acting(path) as body:
                 results = body.run(programs, timeout_ticks, limited)
-                self._note(before, programs, results, timeout_ticks, step)
+                self._note(before, programs, results, timeout_ticks, step, senses)
             if placed := placed_in(self.recording, path):
                 results = {name: replace(each, placed=placed) for name, each in results.items()}
         except BodyLostError as lost:
@@ -194,7 +194,7 @@ class Engine:
             fault = Fault(message, KILLED)
             results = {agent: ProgramResult(agent, False, fault, 0) for agent in programs}
             with self.recording.journal.together():
-                self._note(before, programs, results, timeout_ticks, step, kept=False)
+                self._note(before, programs, results, timeout_ticks, step, senses, kept=False)
         return results
 
     def speculate(
@@ -273,6 +273,7 @@ class Engine:
         results: Mapping[str, ProgramResult],
         timeout_ticks: int,
         step: int | None,
+        senses: Senses,
         *,
         kept: bool = True,
     ) -> None:
@@ -298,5 +299,6 @@ class Engine:
                     timeout_ticks=timeout_ticks,
                     step=step,
                     kept=kept,
+                    senses=senses,
                 )
             )

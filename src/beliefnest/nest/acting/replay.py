@@ -4,8 +4,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from beliefnest.bodies.protocol import Body, World
+from beliefnest.bodies.protocol import Body, Sense, World
 from beliefnest.nest.acting.hearsay import recalled
+from beliefnest.nest.acting.sensing import Sensing, believer_of
 from beliefnest.nest.acting.starting import start_of
 from beliefnest.nest.past.body_state import internal_state_at
 from beliefnest.nest.past.history import History
@@ -13,7 +14,7 @@ from beliefnest.nest.past.placing import placing_frame
 from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.compare import EntryDifference, first_difference
 from beliefnest.timeline.journal import Edit, Entry, ForkPoint, Journal, TimelineInfo, TimelineKey
-from beliefnest.timeline.records import ProgramRecord
+from beliefnest.timeline.records import ProgramRecord, Senses
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import path_text
 
@@ -43,6 +44,7 @@ class _Call:
     entries: int
     programs: Mapping[str, str]
     timeout_ticks: int
+    senses: Senses
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +60,21 @@ class _Recorded:
         moment = ForkPoint(self.info.key, entries, tick)
         path, physics = self.info.key.path, world.has_physics
         return start_of(self.journal, self.history, path, moment, has_physics=physics).snapshot
+
+    def senses(self, call: _Call, body: Body) -> Mapping[str, Sense]:
+        """What its agents knew when, as recorded: what differs by then is told anyway."""
+        if call.senses == "world":
+            return {}
+        return {agent: self._sense(call, body, agent) for agent in call.programs}
+
+    def _sense(self, call: _Call, body: Body, agent: str) -> Sense:
+        key, believer = self.info.key, believer_of(self.info.key.path, agent)
+
+        def entries() -> int:
+            # Edits between two calls lie before the later one.
+            return max(call.entries, self.journal.entries_until(key, body.tick))
+
+        return Sensing(agent, entries, lambda count: self.history.reading(key, believer, count))
 
     def wait_until(self, body: Body, tick: int) -> None:
         """Let time pass in a body, in the calls in which it passed.
@@ -110,7 +127,7 @@ def replay(
 def _call(group: Sequence[ProgramRecord]) -> _Call:
     first = group[0]
     programs = {program.agent: program.code for program in group}
-    return _Call(first.tick, first.entries, programs, first.timeout_ticks)
+    return _Call(first.tick, first.entries, programs, first.timeout_ticks, first.senses)
 
 
 def _run_again(
@@ -142,7 +159,7 @@ def _run_again(
         for tick, number, act in sorted(acts, key=lambda each: each[:2]):
             recorded.wait_until(body, tick)
             if isinstance(act, _Call):
-                body.run(act.programs, act.timeout_ticks)
+                body.run(act.programs, act.timeout_ticks, recorded.senses(act, body))
                 continue
             if act.path == info.key.path:
                 body.set_state(recorded.after(number + 1, act.tick, world))

@@ -2,48 +2,51 @@
 
 from collections.abc import Callable
 
+from beliefnest.belief.node_view import NodeView
 from beliefnest.bodies.protocol import Sensed
-from beliefnest.nest.past.recording import Recording
 from beliefnest.world.values import AgentState, EventKind
 
-__all__ = ["Sensing"]
+__all__ = ["Sensing", "believer_of"]
 
 Path = tuple[str, ...]
 
 
+def believer_of(path: Path, agent: str) -> Path:
+    """The node that an agent of a simulator reads from.
+
+    In its own belief that is the simulator itself: all there is is what it believes.
+    """
+    return path if path[-1:] == (agent,) else (*path, agent)
+
+
 class Sensing:
-    """A `Sense`: the belief of an agent of a simulator, as of what has been recorded.
+    """A `Sense`: the belief of an agent, as of what has been recorded.
 
     Args:
-        recording: What beliefs are worked out from.
-        path: The simulator that it acts in. In its own belief all there is is what it believes.
         agent: Who it is.
-        write: Lets everything be recorded that has happened.
+        entries: How many entries of the timeline that it acts in are over by now.
+        reading: The agent's belief after that many entries.
     """
 
     def __init__(
-        self, recording: Recording, path: Path, agent: str, write: Callable[[], None]
+        self, agent: str, entries: Callable[[], int], reading: Callable[[int], NodeView]
     ) -> None:
-        self._recording = recording
-        self._path = path
         self._agent = agent
-        self._believer = path if path[-1:] == (agent,) else (*path, agent)
-        self._write = write
-        self._entries = -1
+        self._entries = entries
+        self._reading = reading
+        self._read = -1
         self._events: int | None = None
         self._last: Sensed | None = None
 
     def __call__(self) -> Sensed:
         """What it knows by now; the same object as long as nothing has been recorded."""
-        self._write()
-        entries = self._recording.info(self._path).entries
-        if self._last is None or entries != self._entries:
-            self._entries = entries
-            self._last = self._sensed()
+        entries = self._entries()
+        if self._last is None or entries != self._read:
+            self._read = entries
+            self._last = self._sensed(self._reading(entries))
         return self._last
 
-    def _sensed(self) -> Sensed:
-        seen = self._recording.reading(self._believer)
+    def _sensed(self, seen: NodeView) -> Sensed:
         agents = {
             name: AgentState(
                 each.position, each.yaw, each.pitch, each.on_ground, each.equipment or {}

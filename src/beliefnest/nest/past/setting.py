@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
 
 from beliefnest.belief.entries import InitialBelief
 from beliefnest.errors import InputError, PathError
 from beliefnest.perception.options import Perception
+from beliefnest.timeline.records import Senses
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.limits import (
     agent_name_fault,
@@ -22,9 +22,6 @@ from beliefnest.world.texts import escaped, is_well_formed
 from beliefnest.world.values import Box, Position
 
 __all__ = ["MAIN", "Senses", "Setting", "Step"]
-
-Senses = Literal["world", "percepts"]
-"""What programs read: everything there is, or what their agents perceive or remember."""
 
 MAIN = "main"
 """Name of the real world's first branch."""
