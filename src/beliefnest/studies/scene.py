@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
-from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.errors import BeliefNestError, InputError, MissingExtraError
 from beliefnest.scenarios.document import Document, KeyPath, Node, plain, wrapped
 
 __all__ = ["Kind", "SceneChange", "changed_scene"]
@@ -201,5 +201,7 @@ def _leaf(document: Document, node: Node, kind: Kind, path: KeyPath, change: Sce
     except (TypeError, ValueError):
         # Of the wrong form, as above.
         return node
+    except MissingExtraError:
+        raise
     except BeliefNestError as error:
         raise document.fault(path, str(error)) from error
