@@ -1,5 +1,6 @@
 """Tasks of Inspect AI, with its mock model and ours, as `inspect eval` finds them."""
 
+import json
 import os
 import re
 import subprocess
@@ -13,29 +14,96 @@ pytest.importorskip("inspect_ai", reason="the extra `inspect` is not installed")
 
 GUIDE = Path(__file__).parents[2] / "docs" / "inspect.md"
 
-MOCKED = """
+MODEL = """
 from inspect_ai import eval
 from inspect_ai.log import read_eval_log
 from inspect_ai.model import ModelOutput, ModelUsage, get_model
-from beliefnest.inspect.registry import scenario
 
-def answer(messages, tools, choice, config):
+def mock(answer):
+    def output(messages, tools, choice, config):
+        said = ModelOutput.from_content("mockllm/model", answer(messages))
+        # Else the mock model counts them with a table from the network.
+        said.usage = ModelUsage(input_tokens=1, output_tokens=1, total_tokens=2)
+        return said
+    return get_model("mockllm/model", custom_outputs=output)
+
+def read(logs):
+    for log in logs:
+        assert log.status == "success", log.error
+    return [read_eval_log(log.location) for log in logs]
+"""
+
+LEFT_OR_NOWHERE = """
+def answer(messages):
+    assert messages[0].role == "system"
     x = -2 if "Get a diamond" in messages[-1].text else 0
     code = f"await getItemFromChest(bot, new Vec3({x}, -51, -4), {{diamond: 1}})"
-    output = ModelOutput.from_content("mockllm/model", f"```javascript\\n{code}\\n```")
-    # Else the mock model counts them with a table from the network.
-    output.usage = ModelUsage(input_tokens=1, output_tokens=1, total_tokens=2)
-    return output
+    return f"```javascript\\n{code}\\n```"
 
-task = scenario("sally-anne", conditions=[1, 2], world="scripted")
-model = get_model("mockllm/model", custom_outputs=answer)
-(log,) = eval(task, model=model, display="none")
-assert log.status == "success", log.error
+task = "beliefnest/sally_anne"
+arguments = {"conditions": [1, 2], "world": "scripted"}
+(log,) = read(eval(task, task_args=arguments, model=mock(answer), display="none"))
 for sample in log.samples:
     score = sample.scores["in_the_belief"]
     print(sample.metadata["condition"], score.value, score.metadata["outcome"])
     assert "/observer/sally" in score.explanation, score.explanation
-    assert sample.messages[0].role == "system"
+"""
+
+LIKE_OURS = """
+from beliefnest.llm.messages import Message, Sampling
+from beliefnest.llm.offline import OfflineModel
+
+def answer(messages):
+    asked = [Message(each.role, each.text) for each in messages]
+    return OfflineModel().answer(asked, Sampling()).text
+"""
+
+VARIED = """
+arguments = {"conditions": 2, "variations": 3, "seed": 1}
+(log,) = read(
+    eval("beliefnest/sally_anne", task_args=arguments, model=mock(answer), display="none")
+)
+for sample in log.samples:
+    score = sample.scores["in_the_belief"]
+    told = score.explanation.splitlines()
+    path, names = sample.metadata["path"], sample.metadata["variation"]["agents"]
+    assert path == f"/{names['observer']}/{names['sally']}"
+    assert sample.metadata["world"] == "embedded"
+    print(score.value, told[0], any(f"What {path} holds, and why:" == line for line in told))
+    assert any(names["anne"] in line for line in told[3:]), told
+assert len({str(sample.metadata["variation"]) for sample in log.samples}) == 3
+"""
+
+EVERY = """
+from beliefnest.scenarios.loading import builtin_names
+
+logs = []
+for name in builtin_names():
+    # Its script looks at things, which the scripted world has no skill for.
+    arguments = {"world": "embedded" if name == "knowledge-access" else "scripted"}
+    task = "beliefnest/" + name.replace("-", "_")
+    logs += read(eval(task, task_args=arguments, model=mock(answer), display="none", limit=1))
+assert len(logs) == len(builtin_names())
+for log in logs:
+    (sample,) = log.samples
+    score = sample.scores["in_the_belief"]
+    assert score.explanation.splitlines()[0].startswith(score.metadata["outcome"]), score
+"""
+
+STORIES = """
+def answer(messages):
+    text = messages[-1].text
+    return "Answer: box" if "Where does Ann think" in text else "Answer: in none of them"
+
+for name, file in FILES.items():
+    arguments = {"file": file}
+    (log,) = read(
+        eval(f"beliefnest/{name}", task_args=arguments, model=mock(answer), display="none")
+    )
+    for sample in log.samples:
+        score = sample.scores["story_answer"]
+        print(name, sample.metadata["order"], sample.target, score.answer, score.value)
+        assert ", expected the " in score.explanation, score.explanation
 """
 
 
@@ -49,7 +117,32 @@ def run(code, folder):
 
 
 def test_answers_of_the_mock_model_are_run_in_the_belief_and_explained(tmp_path):
-    assert sorted(run(MOCKED, tmp_path)) == ["1 C ok", "2 I wrong"]
+    assert sorted(run(MODEL + LEFT_OR_NOWHERE, tmp_path)) == ["1 C ok", "2 I wrong"]
+
+
+def test_variations_in_minecraft_are_samples_with_explanations_of_their_own(tmp_path):
+    assert run(MODEL + LIKE_OURS + VARIED, tmp_path) == ["C ok True"] * 3
+
+
+def test_every_built_in_scenario_is_a_task_whose_samples_are_scored(tmp_path):
+    run(MODEL + LIKE_OURS + EVERY, tmp_path)
+
+
+def test_suites_are_tasks_whose_answers_are_scored_and_explained(tmp_path):
+    story = "1 Ann and Bob entered the den.\n2 The ball is in the box.\n3 Ann exited the den.\n"
+    story += "4 Bob moved the ball to the jar."
+    asked = {"Where does Ann think the ball is?": "box", "Where is the ball really?": "jar"}
+    rows = [{"story": story, "question": each, "answer": asked[each]} for each in asked]
+    files = {"hi_tom": str(tmp_path / "hi.json"), "stories": str(tmp_path / "own.jsonl")}
+    Path(files["hi_tom"]).write_text(json.dumps(rows), encoding="utf-8")
+    own = {"story": story.splitlines(), "questions": [{"q": q, "a": a} for q, a in asked.items()]}
+    Path(files["stories"]).write_text(json.dumps(own) + "\n", encoding="utf-8")
+    found = run(f"FILES = {files!r}\n{MODEL}{STORIES}", tmp_path)
+    assert found == [
+        line
+        for name in files
+        for line in (f"{name} 1 box box C", f"{name} 0 jar in none of them I")
+    ]
 
 
 def test_the_guide_does_what_it_says(tmp_path):

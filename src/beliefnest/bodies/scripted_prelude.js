@@ -74,6 +74,7 @@
     blockAt,
     openContainer,
     openChest: openContainer,
+    closeWindow: () => undefined,
     chat: text => { ask('bot.chat', [text]).catch(() => {}) },
     whisper: (name, text) => { ask('bot.whisper', [name, text]).catch(() => {}) },
     waitForTicks: ticks => ask('waitTicks', [ticks])

@@ -4,21 +4,12 @@ from pathlib import Path
 
 from anyio.to_thread import run_sync
 from inspect_ai import Task
-from inspect_ai.dataset import MemoryDataset, Sample
-from inspect_ai.scorer import (
-    CORRECT,
-    INCORRECT,
-    Score,
-    Scorer,
-    Target,
-    accuracy,
-    grouped,
-    scorer,
-    stderr,
-)
-from inspect_ai.solver import TaskState, generate
+from inspect_ai.dataset import Sample
+from inspect_ai.scorer import Score, Scorer, Target, scorer
+from inspect_ai.solver import TaskState
 
 from beliefnest.errors import InputError
+from beliefnest.inspect.parts import metrics_by, score_of, task_of
 from beliefnest.scenarios.questioning import parse_answer
 from beliefnest.scenarios.stories.data import Item, StoryItems, read_items
 from beliefnest.scenarios.stories.explaining import explain_answer
@@ -52,9 +43,7 @@ def suite_task(suite: str, file: str, limit: int | None) -> Task:
     ]
     if not samples:
         raise InputError(f"{file} has no questions")
-    return Task(
-        dataset=MemoryDataset(samples, name=suite), solver=generate(), scorer=story_answer()
-    )
+    return task_of(suite, samples, story_answer())
 
 
 def _options(asked: StoryItems) -> list[str]:
@@ -94,18 +83,14 @@ def _sample(
     )
 
 
-@scorer(metrics=[accuracy(), stderr(), grouped(accuracy(), "order", all=False)])
+@scorer(metrics=metrics_by("order"))
 def story_answer() -> Scorer:
     """Compare the container with what is expected; tell what the nest holds, and why."""
 
     async def score(state: TaskState, target: Target) -> Score:
         answer, _ = parse_answer(state.output.completion, state.metadata["options"])
         lines = await run_sync(_explanation, dict(state.metadata))
-        return Score(
-            value=CORRECT if answer == target.text else INCORRECT,
-            answer=answer,
-            explanation="\n".join(lines),
-        )
+        return score_of(ok=answer == target.text, answer=answer, lines=lines)
 
     return score
 

@@ -5,22 +5,13 @@ from typing import Any
 
 from anyio.to_thread import run_sync
 from inspect_ai import Task
-from inspect_ai.dataset import MemoryDataset, Sample
+from inspect_ai.dataset import Sample
 from inspect_ai.model import ChatMessage, ChatMessageSystem, ChatMessageUser
-from inspect_ai.scorer import (
-    CORRECT,
-    INCORRECT,
-    Score,
-    Scorer,
-    Target,
-    accuracy,
-    grouped,
-    scorer,
-    stderr,
-)
-from inspect_ai.solver import Generate, Solver, TaskState, generate, solver
+from inspect_ai.scorer import Score, Scorer, Target, scorer
+from inspect_ai.solver import Generate, Solver, TaskState, solver
 
 from beliefnest.errors import InputError
+from beliefnest.inspect.parts import metrics_by, score_of, task_of
 from beliefnest.inspect.stage import Stage, requests_of
 from beliefnest.llm.messages import Message
 from beliefnest.scenarios.loading import read_document
@@ -65,11 +56,7 @@ def scenario_task(
     if not samples:
         why = plan.invalid[0].why if plan.invalid else "it has no probes with expectations"
         raise InputError(f"{scenario} gives no samples: {why}")
-    return Task(
-        dataset=MemoryDataset(samples, name=scenario),
-        solver=[belief_prompt(), generate()],
-        scorer=in_the_belief(),
-    )
+    return task_of(scenario, samples, in_the_belief(), belief_prompt())
 
 
 def _several(numbers: list[int] | None) -> tuple[int, ...] | None:
@@ -125,7 +112,7 @@ def belief_prompt() -> Solver:
     return solve
 
 
-@scorer(metrics=[accuracy(), stderr(), grouped(accuracy(), "case", all=False)])
+@scorer(metrics=metrics_by("case"))
 def in_the_belief() -> Scorer:
     """Run the answer's program in the belief it is meant for, or judge the answer's words."""
     stage = Stage()
@@ -137,10 +124,10 @@ def in_the_belief() -> Scorer:
         lines = [f"{outcome.outcome}: {outcome.why_not}" if outcome.why_not else outcome.outcome]
         if judged.grounds:
             lines += ["", f"What {outcome.probe.path} holds, and why:", *judged.grounds]
-        return Score(
-            value=CORRECT if outcome.ok else INCORRECT,
+        return score_of(
+            ok=outcome.ok,
             answer=outcome.program or state.output.completion,
-            explanation="\n".join(lines),
+            lines=lines,
             metadata={"outcome": outcome.outcome, **{key: told[key] for key in _KEPT}},
         )
 
