@@ -54,6 +54,17 @@ def test_claims_tell_of_each_belief(tmp_path):
     assert frames.requests_df(tmp_path / "run.bn").empty
 
 
+def test_a_study_that_was_not_recorded_has_cells_and_probes_alone(tmp_path):
+    study = bn.Study("sally-anne", conditions=[1], world="scripted")
+    study.run(tmp_path / "plain", jobs=1)
+    cells, probes = (read(tmp_path / "plain") for read in (frames.cells_df, frames.probes_df))
+    assert list(cells.cell) == list(probes.cell)
+    assert cells.run.isna().all()
+    for read in (frames.requests_df, frames.events_df, frames.claims_df):
+        with pytest.raises(bn.InputError, match="no cell of the study was recorded"):
+            read(tmp_path / "plain")
+
+
 def test_where_there_is_no_run_it_says_so(tmp_path):
     with pytest.raises(bn.InputError, match="there is no run"):
         frames.cells_df(tmp_path)

@@ -135,7 +135,11 @@ def test_suites_are_tasks_whose_answers_are_scored_and_explained(tmp_path):
     rows = [{"story": story, "question": each, "answer": asked[each]} for each in asked]
     files = {"hi_tom": str(tmp_path / "hi.json"), "stories": str(tmp_path / "own.jsonl")}
     Path(files["hi_tom"]).write_text(json.dumps(rows), encoding="utf-8")
-    own = {"story": story.splitlines(), "questions": [{"q": q, "a": a} for q, a in asked.items()]}
+    events = [line.partition(" ")[2] for line in story.splitlines()]
+    own = {
+        "events": events,
+        "questions": [{"question": each, "answer": asked[each]} for each in asked],
+    }
     Path(files["stories"]).write_text(json.dumps(own) + "\n", encoding="utf-8")
     found = run(f"FILES = {files!r}\n{MODEL}{STORIES}", tmp_path)
     assert found == [

@@ -54,6 +54,15 @@ def test_one_row_for_each_probe_of_each_cell(whole):
     assert str(frame["ticks"].dtype) == "int64[pyarrow]"
 
 
+def test_several_templates_are_told_apart_everywhere(tmp_path):
+    study = bn.Study(small_in(tmp_path), templates=["default", "paper"])
+    result = study.run(tmp_path / "out", jobs=1)
+    assert list(result.summary()["template"]) == ["default", "paper"]
+    assert result.write_page(tmp_path / "page.html").read_text("utf-8").count("<td>paper</td>") >= 2
+    one = bn.Study(small_in(tmp_path)).run(tmp_path / "one", jobs=1)
+    assert "template" not in one.summary()
+
+
 def test_invalid_combinations_are_listed(whole):
     invalid = bn.StudyResult.read(whole[0]).invalid
     assert [each["variation"]["count"] for each in invalid] == [1, 2, 3]

@@ -22,15 +22,16 @@ __all__ = ["run_reproduction"]
 
 @dataclass(frozen=True, slots=True)
 class _Claim:
-    """What the paper reports of a probe.
+    """What is to come out for a probe.
 
     Attributes:
         scenario: The built-in scenario.
-        condition: Its condition that is the paper's.
+        condition: Its condition.
         probe: Label of the probe.
         section: Of the paper.
-        text: What it says.
-        differs: Where our expectation is another, and why; empty: it is the paper's.
+        text: What the paper says; of a control variant, what is changed.
+        differs: Where our expectation is another than the paper's, and why; empty: it is not.
+        is_control: Whether it is a control variant of ours, of which the paper reports nothing.
     """
 
     scenario: str
@@ -39,21 +40,30 @@ class _Claim:
     section: str
     text: str
     differs: str = ""
+    is_control: bool = False
 
 
 _SALLY = ("sally-anne", "Example 1: Sally-Anne Task")
+_VAN = ("ice-cream-van", "Example 2: Ice Cream Van Task")
+_SEES = "control: John follows the seller and sees him tell Mary"
+_STAYS = "control: Mary stays at home and is never told"
 _CLAIMS = (
     _Claim(_SALLY[0], 1, "prediction", _SALLY[1], "Sally would open the left box"),
     _Claim(_SALLY[0], 2, "prediction", _SALLY[1], "Sally would open the right box"),
     _Claim(_SALLY[0], 3, "prediction", _SALLY[1], "Sally would open the left box"),
     _Claim(
-        "ice-cream-van",
+        _VAN[0],
         1,
         "third order",
-        "Example 2: Ice Cream Van Task",
+        _VAN[1],
         "what John thinks Mary believes: Mary goes to location B",
         "Mary goes to A: as the paper says, John does not know that she was told of B, and what "
         "she was told before is A",
+    ),
+    *(
+        _Claim(_VAN[0], condition, probe, _VAN[1], text, is_control=True)
+        for condition, text in ((2, _SEES), (3, _STAYS))
+        for probe in ("third order", "second order", "reality")
     ),
 )
 
@@ -75,7 +85,7 @@ def run_reproduction(copies: int, jobs: int, page: Path | None, *, as_json: bool
     varied = _played(Study(names, variations=copies), jobs, "copies") if copies else ([], 0.0)
     lines = [_line(claim, written[0], varied[0]) for claim in _CLAIMS]
     rows = [*written[0], *varied[0]]
-    right = sum(row["ok"] is True and row["beliefs_ok"] is not False for row in rows)
+    right = sum(_is_right(row) for row in rows)
     seconds = written[1] + varied[1]
     about = f"{right} of {len(rows)} probes as expected, all conditions and copies, {seconds:.0f} s"
     if page is not None:
@@ -106,19 +116,39 @@ def _line(
 ) -> dict[str, Any]:
     own, copies = ([row for row in rows if _is_of(row, claim)] for rows in (written, varied))
     (row,) = own
-    place = row["opened"].split(" ")[0] if row["opened"] else row["arrived"]
+    place = row["opened"].split(" ")[0] if row["opened"] else _rounded(row["arrived"])
     verb = "opens" if row["opened"] else "arrives at"
     result = f"{row['agent']} {verb} {place}" if place else row["why_not"]
     return {
         **asdict(claim),
+        "path": row["path"],
+        "expected": _in_words(json.loads(row["expected"])),
         "result": result if row["ok"] else f"{result}: {row['why_not']}",
-        "ok": row["ok"],
-        "as_the_paper": bool(row["ok"]) and not claim.differs,
+        "ok": _is_right(row),
+        "as_the_paper": None if claim.is_control else _is_right(row) and not claim.differs,
         "copies": len(copies),
-        "copies_ok": sum(each["ok"] is True for each in copies),
+        "copies_ok": sum(_is_right(each) for each in copies),
         "seconds": row["wall_seconds"],
         "command": f"beliefnest run {claim.scenario} --condition {claim.condition}",
     }
+
+
+def _is_right(row: Mapping[str, Any]) -> bool:
+    """Whether a probe and all beliefs of its cell came out as expected."""
+    return row["ok"] is True and row["beliefs_ok"] is not False
+
+
+def _in_words(expected: Mapping[str, Any]) -> str:
+    """What is expected of a probe, for a table: each part with its value, places in blocks."""
+    return ", ".join(
+        f"{part} {','.join(f'{n:g}' for n in value) if isinstance(value, list) else f'{value:g}'}"
+        for part, value in expected.items()
+    )
+
+
+def _rounded(place: str) -> str:
+    """A place that somebody stands at, to half a block."""
+    return ",".join(f"{round(2 * float(part)) / 2:g}" for part in place.split(",") if part)
 
 
 def _is_of(row: Mapping[str, Any], claim: _Claim) -> bool:
@@ -127,16 +157,18 @@ def _is_of(row: Mapping[str, Any], claim: _Claim) -> bool:
 
 
 _HEADINGS = (
-    *("experiment", "the paper's claim", "our result", "copies as expected", "run time"),
-    "where we differ",
+    *("experiment", "belief asked", "the paper's claim, or what a control changes"),
+    *("expected", "our result", "copies as expected", "run time", "where we differ"),
 )
 
 
 def _cells(line: Mapping[str, Any]) -> tuple[str, ...]:
     return (
         f"{line['section']}, condition {line['condition']}",
+        line["path"],
         line["text"],
-        line["result"],
+        line["expected"],
+        line["result"] if line["ok"] else f"NO: {line['result']}",
         f"{line['copies_ok']} of {line['copies']}",
         f"{line['seconds']:.1f} s",
         line["differs"],

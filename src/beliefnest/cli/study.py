@@ -23,7 +23,6 @@ from beliefnest.studies.study import Study
 
 __all__ = ["StudyOptions", "run_study"]
 
-_BY = ("scenario", "condition", "model")
 _MOST_TOLD = 10
 
 
@@ -121,7 +120,7 @@ def _report(result: StudyResult) -> dict[str, Any]:
     return {
         "study_dir": str(result.folder.path),
         "cells": len(result.plan["cells"]),
-        "summary": count_rows(result.rows, _BY),
+        "summary": count_rows(result.rows, result.groups),
         "rows": result.rows,
         "invalid": result.invalid,
     }
@@ -129,7 +128,7 @@ def _report(result: StudyResult) -> dict[str, Any]:
 
 def _print(result: StudyResult) -> None:
     console = stdout()
-    console.print(_table(count_rows(result.rows, _BY)))
+    console.print(_table(result.groups, count_rows(result.rows, result.groups)))
     failed = {row["cell"]: row["why_not"] for row in result.rows if row["outcome"] == "error"}
     told = [f"no result: {why}" for why in dict.fromkeys(failed.values())]
     told += [f"no scenario: {_invalid_text(each)}" for each in result.invalid]
@@ -147,9 +146,9 @@ def _invalid_text(invalid: Mapping[str, Any]) -> str:
     return f"{invalid['scenario']}{condition}, {varied}: {invalid['why']}"
 
 
-def _table(groups: Sequence[Mapping[str, Any]]) -> Table:
+def _table(by: Sequence[str], groups: Sequence[Mapping[str, Any]]) -> Table:
     table = Table(box=box.SIMPLE_HEAVY)
-    for heading in _BY:
+    for heading in by:
         table.add_column(heading)
     for heading in ("right", "accuracy", "95 % interval", "not ok", "tokens", "cost"):
         table.add_column(heading, justify="right")
@@ -158,7 +157,7 @@ def _table(groups: Sequence[Mapping[str, Any]]) -> Table:
         faults = [f"{group[name]} {name.replace('_', ' ')}" for name in names if group[name]]
         judged = group["judged"]
         table.add_row(
-            *(printable("-" if group[name] is None else str(group[name])) for name in _BY),
+            *(printable("-" if group[name] is None else str(group[name])) for name in by),
             f"{group['right']} of {judged}",
             f"{group['accuracy']:.0%}" if judged else "-",
             f"{group['low']:.0%} to {group['high']:.0%}" if judged else "-",

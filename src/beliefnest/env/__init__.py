@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 from beliefnest.errors import MissingExtraError
 
 if TYPE_CHECKING:
-    from beliefnest.env.environment import BeliefEnv
+    from beliefnest.env.environment import BeliefEnv, Options
     from beliefnest.env.layout import Phrases
     from beliefnest.nest.face.nest import Nest
     from beliefnest.nest.past.setting import Senses
@@ -68,17 +68,8 @@ def parallel_env(
         PathError: There is no such agent or belief.
         InputError: An argument is of no use.
     """
-    try:
-        from beliefnest.env.environment import BeliefEnv, Options
-    except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] not in ("pettingzoo", "gymnasium"):
-            raise
-        raise MissingExtraError(f"environments need {error.name}", "pettingzoo") from None
-    from beliefnest.scenarios.scenario import Scenario
-
-    if isinstance(scenario, str):
-        scenario = Scenario.load(scenario, condition)
-    options = Options(
+    made, described = _classes()
+    options = described(
         world=world,
         actions=actions,
         observations=observations,
@@ -95,4 +86,21 @@ def parallel_env(
         senses=senses,
         seed=seed,
     )
-    return BeliefEnv(scenario, options)
+    return made(_loaded(scenario, condition), options)
+
+
+def _classes() -> "tuple[type[BeliefEnv], type[Options]]":
+    """What needs PettingZoo: the environment, and how it is."""
+    try:
+        from beliefnest.env.environment import BeliefEnv, Options
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in ("pettingzoo", "gymnasium"):
+            raise
+        raise MissingExtraError(f"environments need {error.name}", "pettingzoo") from None
+    return BeliefEnv, Options
+
+
+def _loaded(scenario: "str | Scenario", condition: int | None) -> "Scenario":
+    from beliefnest.scenarios.scenario import Scenario
+
+    return Scenario.load(scenario, condition) if isinstance(scenario, str) else scenario

@@ -122,7 +122,13 @@ def _cell_row(recorded: Recorded) -> Row:
 
 def _recorded(source: Source, rows: Any) -> Iterator[Row]:
     """The rows of every recorded cell, each read at one moment."""
-    for each in cells_of(source):
+    cells = list(cells_of(source))
+    if cells and all(each.file is None for each in cells):
+        raise InputError(
+            "no cell of the study was recorded, so that only cells and probes are known; play it "
+            "in another folder with record=True, or `beliefnest study --record`"
+        )
+    for each in cells:
         if each.file is None:
             continue
         if not Path(each.file).is_file():

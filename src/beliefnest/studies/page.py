@@ -41,7 +41,9 @@ def page_text(plan: Mapping[str, Any], rows: Sequence[Mapping[str, Any]], by: Se
         groups=groups,
         figure=_figure(groups, by),
         differences=[
-            (name, each) for name in ("condition", "model") for each in _pairs(rows, name)
+            (name, each)
+            for name in ("condition", "model", "template")
+            for each in _pairs(rows, name)
         ],
         columns=[*first, *_ROWS],
         rows=rows[:_MOST_ROWS],

@@ -72,19 +72,25 @@ class StudyResult:
         """
         return _frame(self.rows, ["scenario", "condition", *variation_columns(self._plan)])
 
-    def summary(self, by: Sequence[str] | str = _BY) -> "pandas.DataFrame":
+    @property
+    def groups(self) -> tuple[str, ...]:
+        """The columns that summaries are made by where nothing else is asked for."""
+        several = len({row["template"] for row in self.rows}) > 1
+        return (*_BY, "template") if several else _BY
+
+    def summary(self, by: Sequence[str] | str | None = None) -> "pandas.DataFrame":
         """For each group its accuracy with the 95 % interval of Wilson, and all outcomes' counts.
 
         `accuracy` is of what was judged: rows with the outcome `error` are counted, not judged.
 
         Args:
-            by: Columns of `frame` that tell the groups apart.
+            by: Columns of `frame` that tell the groups apart; None: `groups`.
 
         Raises:
             InputError: There is no such column.
             MissingExtraError: pandas is not installed.
         """
-        names = self._columns(by)
+        names = self._columns(self.groups if by is None else by)
         return _pandas().DataFrame.from_records(count_rows(self.rows, names))
 
     def differences(self, between: str) -> "pandas.DataFrame":
@@ -144,8 +150,8 @@ class StudyResult:
         names = self._columns(by)
         return plot_accuracy(count_rows(self.rows, names), names)
 
-    def write_page(self, file: str | Path, by: Sequence[str] | str = _BY) -> Path:
-        """Write all of it as one HTML page that needs no network.
+    def write_page(self, file: str | Path, by: Sequence[str] | str | None = None) -> Path:
+        """Write all of it as one HTML page that needs no network; `by` as for `summary`.
 
         Raises:
             InputError: There is no such column, or the file cannot be written.
@@ -153,7 +159,7 @@ class StudyResult:
         from beliefnest.studies.page import page_text
 
         path = Path(file)
-        text = page_text(self._plan, self.rows, self._columns(by))
+        text = page_text(self._plan, self.rows, self._columns(self.groups if by is None else by))
         try:
             path.write_text(text, encoding="utf-8")
         except OSError as error:
