@@ -114,6 +114,8 @@ class Ground:
         self._shape = (int(width), int(height), int(depth))
         self._steps: dict[Position, tuple[Position, ...]] = {}
         self._ways: dict[tuple[Position, Goal], tuple[Position, ...] | None] = {}
+        self._areas: list[frozenset[Position]] = []
+        self._met: dict[tuple[int, Goal], bool] = {}
 
     def stands(self, cell: Position) -> bool:
         """Whether somebody can stand in a cell."""
@@ -174,8 +176,30 @@ class Ground:
         if wanted not in self._ways:
             if len(self._ways) >= _MOST_WAYS:
                 self._ways.clear()
-            self._ways[wanted] = find_way(self, start, goal)
+            found = self._is_met_somewhere(start, goal)
+            self._ways[wanted] = find_way(self, start, goal) if found else None
         return self._ways[wanted]
+
+    def _is_met_somewhere(self, start: Position, goal: Goal) -> bool:
+        """Whether a goal is met in a part of the ground that has all cells to be got to in it."""
+        number = next((n for n, area in enumerate(self._areas) if start in area), None)
+        if number is None:
+            number = len(self._areas)
+            self._areas.append(self._area(start))
+        asked = (number, goal)
+        if asked not in self._met:
+            self._met[asked] = any(goal.is_met(cell) for cell in self._areas[number])
+        return self._met[asked]
+
+    def _area(self, start: Position) -> frozenset[Position]:
+        """All cells that can be got to from one, as far as ways are looked for."""
+        area, waiting = {start}, [start]
+        while waiting and len(area) < _MOST_CELLS:
+            for cell in self.steps(waiting.pop()):
+                if cell not in area:
+                    area.add(cell)
+                    waiting.append(cell)
+        return frozenset(area)
 
     def _steps_from(self, cell: Position) -> Iterator[Position]:
         x, y, z = cell

@@ -7,6 +7,7 @@ import msgspec
 
 from beliefnest.episodes.goals import (
     AgentAt,
+    AgentsAt,
     BlockIs,
     BlocksAlike,
     Condition,
@@ -32,7 +33,7 @@ class _Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defau
 
 
 class ConditionEntry(_Entry, frozen=True):
-    """A condition: `container` or `agent` with `items`, `agent` with `at`, or `block`."""
+    """A condition: `container` or `agent` with `items`, `agent` or `agents` at places, `block`."""
 
     path: Annotated[str, _note("Where it is to be the case; / is reality.")] = "/"
     container: Annotated[Position | None, _note("A container that holds `items`.")] = None
@@ -43,6 +44,9 @@ class ConditionEntry(_Entry, frozen=True):
     block: Annotated[Position | None, _note("A block that is in a state.")] = None
     state: Annotated[str | None, _note("name or name[property=value,...].")] = None
     like: Annotated[Position | None, _note("A block that it is to be like.")] = None
+    agents: Annotated[list[str], _note("Agents that stand on the plates of a site at once.")] = []
+    sites: Annotated[list[list[Position]], _note("Where one stands on the plates of each.")] = []
+    plate: Annotated[str, _note("Name of the block below.")] = "lodestone"
     property: Annotated[str, _note("The property in which these are to agree.")] = "open"
 
 
@@ -90,14 +94,17 @@ def goal_of(entry: GoalEntry, agents: Mapping[str, Any]) -> Goal:
 
 def _conditions(entry: ConditionEntry, agents: Mapping[str, Any]) -> list[Condition]:
     path = parse_path(entry.path, agents)
-    if entry.agent is not None and entry.agent not in agents:
-        raise ScenarioError(f"a condition is about {entry.agent!r}, who is no agent")
+    for name in (*entry.agents, *([] if entry.agent is None else [entry.agent])):
+        if name not in agents:
+            raise ScenarioError(f"a condition is about {name!r}, who is no agent")
+    if any(len(site) != len(entry.agents) for site in entry.sites):
+        raise ScenarioError("a site of a condition has not as many places as there are `agents`")
     facts = _facts(entry)
     if not facts:
         plain = msgspec.to_builtins(entry)
         raise ScenarioError(
             f"the condition {plain} makes no sense; give container and items, agent and items, "
-            "agent and at, block and state, or block and like"
+            "agent and at, agents and sites, block and state, or block and like"
         )
     return [Condition(fact, path) for fact in facts]
 
@@ -108,10 +115,17 @@ def _facts(entry: ConditionEntry) -> list[Fact]:
             return [ItemsIn(place, item, count) for item, count in entry.items.items()]
         case ConditionEntry(agent=agent, at=place) if agent is not None and place is not None:
             return [AgentAt(agent, place, entry.within)]
+        case ConditionEntry(agents=[_, *_], sites=[_, *_]):
+            sites = tuple(tuple(site) for site in entry.sites)
+            return [AgentsAt(tuple(entry.agents), sites, entry.plate)]
         case ConditionEntry(agent=agent) if agent is not None:
             return [ItemsWith(agent, item, count) for item, count in entry.items.items()]
-        case ConditionEntry(block=place, state=state) if place is not None and state is not None:
-            return [BlockIs(place, state)]
-        case ConditionEntry(block=place, like=model) if place is not None and model is not None:
-            return [BlocksAlike(place, model, entry.property)]
-    return []
+    return _block_facts(entry)
+
+
+def _block_facts(entry: ConditionEntry) -> list[Fact]:
+    if entry.block is None:
+        return []
+    if entry.state is not None:
+        return [BlockIs(entry.block, entry.state)]
+    return [] if entry.like is None else [BlocksAlike(entry.block, entry.like, entry.property)]

@@ -1,8 +1,10 @@
 """Goals: conditions on reality and on beliefs, and when they came true."""
 
+import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Protocol
 
 from beliefnest.belief.view import State
@@ -12,6 +14,7 @@ from beliefnest.world.values import Items, Point, Position
 
 __all__ = [
     "AgentAt",
+    "AgentsAt",
     "BlockIs",
     "BlocksAlike",
     "Condition",
@@ -27,6 +30,8 @@ __all__ = [
 ]
 
 Path = tuple[str, ...]
+
+_NOWHERE = 80.0
 
 
 class Facts(Protocol):
@@ -175,7 +180,50 @@ class BlocksAlike:
         return f"{self.property} at {self.place} as at {self.model}"
 
 
-Fact = ItemsIn | ItemsWith | AgentAt | BlockIs | BlocksAlike
+@dataclass(frozen=True, slots=True)
+class AgentsAt:
+    """Agents stand on all the plates of one site at once, whoever on which.
+
+    A site is one where the block below each of its places is known to be a plate.
+
+    Attributes:
+        agents: As many as a site has places.
+        sites: Block positions in which to stand, of each site.
+        plate: Name of the block.
+    """
+
+    agents: tuple[str, ...]
+    sites: tuple[tuple[Position, ...], ...]
+    plate: str
+
+    def holds(self, facts: Facts) -> bool:
+        """Whether they do."""
+        return any(self.off(facts, site) == 0 for site in self.known(facts))
+
+    def known(self, facts: Facts) -> list[tuple[Position, ...]]:
+        """The sites whose plates are known."""
+        return [
+            site
+            for site in self.sites
+            if all(_is_named(facts.block((x, y - 1, z)), self.plate) for x, y, z in site)
+        ]
+
+    def off(self, facts: Facts, site: tuple[Position, ...]) -> float:
+        """How far the agents are from the places of a site, all together, in blocks."""
+        return min(
+            sum(
+                _from_place(facts.feet_of(agent), place)
+                for agent, place in zip(self.agents, places, strict=True)
+            )
+            for places in itertools.permutations(site)
+        )
+
+    def __str__(self) -> str:
+        sites = " or ".join(str(list(site)) for site in self.sites)
+        return f"{' and '.join(self.agents)} at once on the plates at {sites}"
+
+
+Fact = ItemsIn | ItemsWith | AgentAt | AgentsAt | BlockIs | BlocksAlike
 
 
 @dataclass(frozen=True, slots=True)
@@ -295,6 +343,7 @@ def looking_at(states: Mapping[Path, State]) -> Look:
     return lambda path: StateFacts(states[path])
 
 
+@cache
 def _agrees(there: str, wanted: str) -> bool:
     registry = Registry.load()
     name, _, stated = wanted.partition("[")
@@ -306,6 +355,21 @@ def _agrees(there: str, wanted: str) -> bool:
     return all(str(properties.get(key)) == value for key, _, value in pairs)
 
 
+def _is_named(text: str | None, name: str) -> bool:
+    return text is not None and text.partition("[")[0] == name
+
+
+def _from_place(feet: Point | None, place: Position) -> float:
+    """Blocks between somebody and a place; 0 for who stands in it."""
+    if feet is None:
+        return _NOWHERE
+    if tuple(math.floor(value) for value in feet) == place:
+        return 0.0
+    x, y, z = place
+    return max(1.0, math.dist(feet, (x + 0.5, float(y), z + 0.5)))
+
+
+@cache
 def _property(text: str | None, name: str) -> str | None:
     if text is None:
         return None

@@ -8,6 +8,7 @@ and changes nothing.
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from copy import copy
 from dataclasses import replace
 from typing import Any
 
@@ -116,6 +117,13 @@ class ScriptedWorld:
         world = cls((snapshot.box.low, snapshot.box.high), tick=snapshot.tick)
         world.set_state(snapshot)
         return world
+
+    def again(self) -> "ScriptedWorld":
+        """Another world that is as this one is now; nobody listens to it."""
+        other = copy(self)
+        other._listeners, other._pending = [], None
+        other._facts = self._facts.copied()
+        return other
 
     @property
     def box(self) -> Box:
@@ -240,6 +248,11 @@ class ScriptedWorld:
     def agents(self) -> Mapping[str, AgentState]:
         """What is the case about all agents."""
         return dict(self._facts.agents)
+
+    @property
+    def containers(self) -> Mapping[Position, Items]:
+        """What all containers hold; not to be written to."""
+        return self._facts.containers
 
     def contents(self, position: Position) -> Items:
         """What a container holds.

@@ -4,12 +4,14 @@ from collections.abc import Iterator, Sequence
 
 from beliefnest.episodes.goals import (
     AgentAt,
+    AgentsAt,
     BlockIs,
     BlocksAlike,
     Goal,
     ItemsIn,
     ItemsWith,
 )
+from beliefnest.episodes.policies.distance import MindFacts
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.programs.calls import Call
 from beliefnest.world.claims import Claim
@@ -28,7 +30,8 @@ def items_of(goals: Sequence[Goal]) -> list[str]:
 
 def calls_of(mind: Imagination, agent: str, goals: Sequence[Goal]) -> list[Call]:
     """Deeds that bear on goals, in an order that depends on nothing else; none is an utterance."""
-    return [*_moving_items(mind, agent, goals), *_places(agent, goals), *_doors(mind, goals)]
+    places = _places(mind, agent, goals)
+    return [*_moving_items(mind, agent, goals), *places, *_doors(mind, goals)]
 
 
 def claims_of_mind(mind: Imagination, goals: Sequence[Goal], *, lies: bool) -> Iterator[Claim]:
@@ -39,19 +42,19 @@ def claims_of_mind(mind: Imagination, goals: Sequence[Goal], *, lies: bool) -> I
         goals: Of everybody.
         lies: Whether claims that the speaker does not believe are among them.
     """
-    held = mind.view().containers
+    held = sorted(mind.world.containers.items())
     for item in items_of(goals):
-        for place, content in held.items():
-            if content.items.get(item, 0):
+        for place, items in held:
+            if items.get(item, 0):
                 yield Claim.located(item, place)
         if lies:
-            for place, content in held.items():
-                if not content.items.get(item, 0):
+            for place, items in held:
+                if not items.get(item, 0):
                     yield Claim.located(item, place)
     registry, box = Registry.load(), mind.world.box
     for place in _block_places(goals):
-        state = int(mind.view().blocks[box.index(place)])
-        if state >= 0:
+        state = int(mind.world.blocks[box.index(place)])
+        if not mind.is_unknown(place):
             name, properties = registry.name(state), registry.properties(state)
             if "open" in properties:
                 yield Claim.block(place, f"{name}[open={properties['open']}]")
@@ -87,10 +90,10 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
     if agent not in world.agents:
         return
     mine = world.agents[agent].inventory
-    containers = sorted(mind.view().containers.items())
+    containers = sorted(world.containers.items())
     for item in items_of(goals):
-        for place, content in containers:
-            if content.items.get(item, 0):
+        for place, items in containers:
+            if items.get(item, 0):
                 yield Call("getItemFromChest", (place, {item: 1}))
         if mine.get(item, 0):
             for place, _ in containers:
@@ -100,9 +103,14 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
                     yield Call("giveItemToOther", (other, item, 1))
 
 
-def _places(agent: str, goals: Sequence[Goal]) -> Iterator[Call]:
-    facts = [condition.fact for goal in goals for condition in goal.conditions]
-    places = {f.place: f.within for f in facts if isinstance(f, AgentAt) and f.agent == agent}
+def _places(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[Call]:
+    facts = MindFacts(mind)
+    places: set[Position] = set()
+    for fact in (condition.fact for goal in goals for condition in goal.conditions):
+        if isinstance(fact, AgentAt) and fact.agent == agent:
+            places.add(fact.place)
+        elif isinstance(fact, AgentsAt) and agent in fact.agents:
+            places |= {place for site in fact.known(facts) for place in site}
     for place in sorted(places):
         yield Call("goToPosition", (place, 0))
 

@@ -9,6 +9,7 @@ from collections.abc import Iterable
 
 from beliefnest.episodes.goals import (
     AgentAt,
+    AgentsAt,
     BlockIs,
     BlocksAlike,
     Condition,
@@ -18,10 +19,11 @@ from beliefnest.episodes.goals import (
     ItemsWith,
 )
 from beliefnest.nest.acting.imagination import Imagination
+from beliefnest.world.paths import normalised
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Point, Position
 
-__all__ = ["MindFacts", "distance", "held", "is_visible"]
+__all__ = ["BeliefFacts", "MindFacts", "distance", "held", "is_visible"]
 
 Path = tuple[str, ...]
 
@@ -31,14 +33,53 @@ _FAR = 80.0
 
 
 class MindFacts:
-    """The facts of an imagination at its latest tick.
+    """What is the case in an imagination at its latest tick."""
+
+    def __init__(self, mind: Imagination) -> None:
+        self._mind = mind
+        self._world = mind.world
+        self._agents = mind.world.agents
+
+    def items_in(self, place: Position) -> Items:
+        """Items known to be in a container."""
+        return self._world.containers.get(place, {})
+
+    def items_of(self, agent: str) -> Items:
+        """Items that an agent is known to have."""
+        there = self._agents.get(agent)
+        return {} if there is None else there.inventory
+
+    def feet_of(self, agent: str) -> Point | None:
+        """Where an agent stands."""
+        there = self._agents.get(agent)
+        return None if there is None else there.position
+
+    def block(self, place: Position) -> str | None:
+        """Block state text."""
+        state = int(self._world.blocks[self._world.box.index(place)])
+        unknown = state == 0 and self._mind.is_unknown(place)
+        return None if unknown else Registry.load().text(state)
+
+    @property
+    def containers(self) -> Iterable[Position]:
+        """Known containers."""
+        return self._world.containers
+
+    @property
+    def agents(self) -> Iterable[str]:
+        """The agents whose places are known."""
+        return self._agents
+
+
+class BeliefFacts:
+    """What is believed in an imagination at its latest tick.
 
     Args:
         mind: The imagination.
-        path: Agents below its root; `()` is what is the case in it.
+        path: Agents below its root.
     """
 
-    def __init__(self, mind: Imagination, path: Path = ()) -> None:
+    def __init__(self, mind: Imagination, path: Path) -> None:
         self._mind = mind
         self._view = mind.view(path)
 
@@ -60,16 +101,6 @@ class MindFacts:
         state = int(self._view.blocks[self._mind.world.box.index(place)])
         return None if state < 0 else Registry.load().text(state)
 
-    @property
-    def containers(self) -> Iterable[Position]:
-        """Known containers, in order."""
-        return self._view.containers
-
-    @property
-    def agents(self) -> Iterable[str]:
-        """All agents."""
-        return self._view.agents
-
 
 def is_visible(condition: Condition, mind: Imagination) -> bool:
     """Whether a mind reaches as deep as a condition."""
@@ -78,7 +109,9 @@ def is_visible(condition: Condition, mind: Imagination) -> bool:
 
 def held(condition: Condition, mind: Imagination) -> bool:
     """Whether a condition that is visible holds in a mind."""
-    return condition.fact.holds(MindFacts(mind, condition.path))
+    if normalised((*mind.root, *condition.path)) == mind.root:
+        return condition.fact.holds(MindFacts(mind))
+    return condition.fact.holds(BeliefFacts(mind, condition.path))
 
 
 def distance(goal: Goal, mind: Imagination) -> float:
@@ -104,6 +137,9 @@ def _still_to_do(fact: Fact, facts: MindFacts) -> float:
         case AgentAt(agent=agent):
             feet = facts.feet_of(agent)
             return 1.0 + (_FAR if feet is None else fact.distance(feet)) * _PER_BLOCK
+        case AgentsAt():
+            off = [fact.off(facts, site) for site in fact.known(facts)]
+            return 1.0 + min(off, default=2 * _FAR) * _PER_BLOCK
         case BlocksAlike():
             return 1.0 if fact.wanted(facts) is not None else 1.5
         case BlockIs():

@@ -121,11 +121,13 @@ class Planner:
 
     Attributes:
         tried: How many branches were tried so far.
+        guesses: What others were taken to do, by what they were taken to believe.
     """
 
     def __init__(self, brief: Brief) -> None:
         self._brief = brief
         self.tried = 0
+        self.guesses: dict[tuple[object, ...], tuple[Call, ...]] = {}
 
     def plan(self, mind: Imagination, agent: str, order: int, ticks: int, bounds: Bounds) -> Plan:
         """The best course that is found; of equals the first and shortest.
@@ -162,7 +164,7 @@ class _Planning:
         self._speaks = agent in brief.talk and order > 0
 
     def best(self, mind: Imagination) -> Plan:
-        first = _Node(mind.fork(), {})
+        first = _Node(mind.fork() if self._order else mind.bare(), {})
         first.others = {
             name: _Course(Performer(self._guess(mind, name, 0)), 0, self._bounds.changes)
             for name in self._imagined(mind)
@@ -180,7 +182,7 @@ class _Planning:
             if beam[0].score < best.score:
                 best = beam[0]
         if not best.calls and best.score[0] == _OPEN:
-            return Plan(self._exploring(first), best.score)
+            return Plan(self._exploring(mind), best.score)
         return Plan(best.calls, best.score)
 
     def _imagined(self, mind: Imagination) -> list[str]:
@@ -191,9 +193,14 @@ class _Planning:
 
     def _guess(self, mind: Imagination, other: str, elapsed: int) -> tuple[Call, ...]:
         """What another is taken to do, planning in what it is believed to believe."""
-        below = mind.below(other, self._order - 1)
-        left = self._horizon - elapsed
-        return self._planner.plan(below, other, self._order - 1, left, self._bounds.lower()).calls
+        order, left = self._order - 1, self._horizon - elapsed
+        known, seen = self._planner.guesses, mind.print_of(other, order)
+        key = (other, order, left, self._bounds, seen)
+        if seen is None or key not in known:
+            below = mind.below(other, order)
+            plan = self._planner.plan(below, other, order, left, self._bounds.lower())
+            known[key] = plan.calls
+        return known[key]
 
     def _expanded(self, node: _Node) -> list[_Node]:
         """The node with each of the calls that can be done next."""
@@ -248,16 +255,22 @@ class _Planning:
         return (_OPEN, round(distance(self._goal, end.mind), 6), cost)
 
     def _pass(self, node: _Node, mine: Performer | None) -> bool:
-        """Let time pass up to the end of a round; whether anybody does anything."""
-        self._change_minds(node)
+        """Let time pass up to the end of a round at most; whether there is any reason to."""
+        passed = node.elapsed % self._brief.round_ticks
+        if not passed:
+            self._change_minds(node)
         performers = {name: each.performer for name, each in node.others.items()}
         if mine is not None:
             performers[self._agent] = mine
         performers = dict(sorted(performers.items()))
+        ticks = min(self._brief.round_ticks - passed, self._horizon - node.elapsed)
         if all(each.is_done for each in performers.values()):
-            return False
-        ticks = self._brief.round_ticks - node.elapsed % self._brief.round_ticks
-        ticks = min(ticks, self._horizon - node.elapsed)
+            if not passed or not any(self._may_change(node, name) for name in node.others):
+                return False
+            # They decide anew when the next round begins.
+            node.mind.world.step(ticks)
+            node.elapsed += ticks
+            return True
 
         def ends() -> bool:
             over = all(each.is_done for each in performers.values())
@@ -282,22 +295,26 @@ class _Planning:
             node.reached = node.elapsed
 
     def _change_minds(self, node: _Node) -> None:
-        """Let the others plan anew who are done or have learnt of something."""
-        happened = node.mind.happened
+        """Let the others plan anew who are done or may have learnt of something."""
         for name, course in node.others.items():
-            news = any(
-                event.actor != name and _is_notable(event.kind)
-                for _, event in happened[course.read :]
-            )
-            done = course.performer.is_done and len(happened) > course.read
-            if course.changes and (news or done or course.performer.failed):
-                course.performer = Performer(self._guess(node.mind, name, node.elapsed))
+            if not self._may_change(node, name):
+                continue
+            course.read = len(node.mind.happened)
+            calls = self._guess(node.mind, name, node.elapsed)
+            if calls != tuple(course.performer.calls):
+                course.performer = Performer(calls)
                 course.changes -= 1
-                course.read = len(happened)
 
-    def _exploring(self, node: _Node) -> tuple[Call, ...]:
+    def _may_change(self, node: _Node, name: str) -> bool:
+        course = node.others[name]
+        since = node.mind.happened[course.read :]
+        news = any(event.actor != name and _is_notable(event.kind) for _, event in since)
+        done = course.performer.is_done and bool(since)
+        return course.changes > 0 and (news or done or course.performer.failed)
+
+    def _exploring(self, mind: Imagination) -> tuple[Call, ...]:
         """A look into the nearest container that may hold what is wanted, if that is nowhere."""
-        world, mind = node.mind.world, node.mind
+        world = mind.world
         me = world.agents.get(self._agent)
         known = mind.view().containers
         wanted = [
@@ -311,7 +328,7 @@ class _Planning:
         unknown = [place for place, content in known.items() if not content.complete]
         for place in sorted(unknown, key=lambda at: (_apart(me.position, at), at)):
             call = Call("openContainer", (place,))
-            trial, mine = mind.fork(), Performer([call])
+            trial, mine = mind.bare(), Performer([call])
             trial.play({self._agent: mine}, self._horizon, lambda: mine.is_done)  # noqa: B023
             if not mine.failed:
                 return (call,)

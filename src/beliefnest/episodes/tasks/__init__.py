@@ -11,7 +11,14 @@ from beliefnest.errors import InputError, UnknownNameError
 __all__ = ["builtin_tasks", "generated", "parameters_of"]
 
 _TASKS: Mapping[str, str] = {
+    "blueprint": "blueprint",
     "help-find": "help_find",
+    "hide-and-seek": "hide_and_seek",
+    "joint-lift": "joint_lift",
+    "kitchen": "kitchen",
+    "recipe": "recipe",
+    "tell-what-is-needed": "tell_what_is_needed",
+    "watchman": "watchman",
 }
 
 

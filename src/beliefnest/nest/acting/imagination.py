@@ -22,8 +22,9 @@ from beliefnest.errors import BeliefNestError, PathError
 from beliefnest.programs.calls import Call
 from beliefnest.world.frames import BlockGrid, Frame
 from beliefnest.world.paths import normalised, path_text
+from beliefnest.world.registry import Registry
 from beliefnest.world.scripted import ScriptedWorld
-from beliefnest.world.values import Event
+from beliefnest.world.values import Event, Position
 
 __all__ = ["Imagination", "Performer", "nodes_below"]
 
@@ -85,7 +86,7 @@ class Imagination:
     """A belief as a world of its own, and what is believed in it.
 
     Args:
-        forest: The nodes, the believer's own first; nobody else's.
+        forest: The nodes, the believer's own first; nobody else's. None: beliefs are not followed.
         root: The believer's path.
         unknown: Blocks that are unknown to it, in which one can be and on which one can stand.
         world: What is the case in it.
@@ -100,7 +101,7 @@ class Imagination:
 
     def __init__(
         self,
-        forest: Forest,
+        forest: Forest | None,
         root: Path,
         unknown: "np.ndarray[tuple[int, int, int], np.dtype[np.bool_]]",
         world: ScriptedWorld,
@@ -115,10 +116,12 @@ class Imagination:
         self._grounds = grounds
         self._ground: tuple[BlockGrid, Ground] | None = None
         self._news = news
-        context = forest.context
-        self._columns = Columns(context.box, context.agents, context.holds, context.number)
+        self._columns: Columns | None = None
         self._held = 0
-        forest.enter(self._columns)
+        if forest is not None:
+            context = forest.context
+            self._columns = Columns(context.box, context.agents, context.holds, context.number)
+            forest.enter(self._columns)
         world.listen(self._take)
 
     @classmethod
@@ -149,18 +152,21 @@ class Imagination:
         return cls(forest, root, believed.blocks < 0, world, known, news)
 
     @property
-    def agents(self) -> tuple[str, ...]:
-        """Names of all agents, those of unknown place included."""
-        return self._forest.context.agents
-
-    @property
     def tick(self) -> int:
         """The latest tick."""
         return self.world.now
 
+    def is_unknown(self, place: Position) -> bool:
+        """Whether the believer does not know the block at a position of the box."""
+        index = self.world.box.index(place)
+        return bool(self._unknown[index]) and int(self.world.blocks[index]) == 0
+
     def knows(self, path: Path) -> bool:
         """Whether beliefs are followed as deep as a path below the root."""
-        return normalised((*self.root, *path)) in self._forest.table.index
+        whole = normalised((*self.root, *path))
+        return whole == self.root or (
+            self._forest is not None and whole in self._forest.table.index
+        )
 
     def view(self, path: Path = ()) -> NodeView:
         """What a node holds; read it before time goes on.
@@ -172,29 +178,61 @@ class Imagination:
             PathError: Beliefs are not followed that deep.
         """
         whole = normalised((*self.root, *path))
-        self._fold()
-        if whole not in self._forest.table.index:
+        forest = self._fold()
+        if forest is None or whole not in forest.table.index:
             raise PathError(f"{path_text(whole)} is deeper than this imagination goes")
-        return NodeView(self._forest, whole)
+        return NodeView(forest, whole)
+
+    def print_of(self, agent: str, depth: int) -> tuple[object, ...] | None:
+        """What a plan of an agent in it could depend on; equal ones lead to equal plans.
+
+        Args:
+            agent: The agent, whose belief it plans in.
+            depth: How deep below that belief it looks.
+
+        Returns:
+            None: it depends on more, as on when somebody could last learn of something.
+        """
+        forest = self._fold()
+        root = normalised((*self.root, agent))
+        if forest is None or (depth and forest.context.options.testimony == "informed"):
+            return None
+        nodes = nodes_below(root, depth, forest.context.agents)
+        return tuple(_print(NodeView(forest, node)) for node in nodes)
 
     def fork(self) -> "Imagination":
         """The same once more, to go another way."""
-        self._fold()
-        news = _News()
-        nodes = [path for path in self._forest.table.index if path != self.root]
-        forest = forked_forest(
-            self._forest, news, self.root, self.root, self.world.now, further=nodes
+        forest, news = self._fold(), _News()
+        if forest is not None:
+            nodes = [path for path in forest.table.index if path != self.root]
+            forest = forked_forest(
+                forest, news, self.root, self.root, self.world.now, further=nodes
+            )
+        made = Imagination(
+            forest, self.root, self._unknown, self.world.again(), self._grounds, news
         )
-        world = ScriptedWorld.from_snapshot(self.world.snapshot())
-        made = Imagination(forest, self.root, self._unknown, world, self._grounds, news)
+        made.happened += self.happened
+        return made
+
+    def bare(self) -> "Imagination":
+        """A fork in which beliefs are not followed: only what the believer takes for real."""
+        made = Imagination(
+            None, self.root, self._unknown, self.world.again(), self._grounds, _News()
+        )
         made.happened += self.happened
         return made
 
     def below(self, agent: str, depth: int) -> "Imagination":
-        """What an agent in it believes, as a world of its own."""
-        self._fold()
+        """What an agent in it believes, as a world of its own.
+
+        Raises:
+            PathError: Beliefs are not followed that deep.
+        """
         root = normalised((*self.root, agent))
-        return Imagination.of(self._forest, root, depth, self.world.now, self._grounds)
+        forest = self._fold()
+        if forest is None or root not in forest.table.index:
+            raise PathError(f"{path_text(root)} is deeper than this imagination goes")
+        return Imagination.of(forest, root, depth, self.world.now, self._grounds)
 
     def play(
         self,
@@ -256,24 +294,38 @@ class Imagination:
             if key not in self._grounds:
                 if len(self._grounds) >= _MOST_GROUNDS:
                     self._grounds.clear()
-                registry = self._forest.context.registry
-                self._grounds[key] = Ground(registry, self.world.box, grid)
+                self._grounds[key] = Ground(Registry.load(), self.world.box, grid)
             self._ground = (blocks, self._grounds[key])
         return self._ground[1]
 
     def _take(self, frame: Frame) -> None:
-        if not frame.is_empty:
+        if frame.is_empty:
+            return
+        events = [(frame.tick, event) for event in frame.events]
+        self.happened += events
+        if self._columns is not None:
             self._columns.extend([frame])
-            events = [(frame.tick, event) for event in frame.events]
             self._news.happened += events
-            self.happened += events
 
-    def _fold(self) -> None:
-        columns = self._columns
-        if self._forest.position < columns.end:
-            self._forest.context.track(columns.held[self._held :])
+    def _fold(self) -> Forest | None:
+        forest, columns = self._forest, self._columns
+        if forest is not None and columns is not None and forest.position < columns.end:
+            forest.context.track(columns.held[self._held :])
             self._held = len(columns.held)
-            self._forest.advance(columns.end)
+            forest.advance(columns.end)
+        return forest
+
+
+def _print(view: NodeView) -> tuple[object, ...]:
+    contents = [
+        (place, tuple(sorted(each.items.items())), each.complete)
+        for place, each in view.containers.items()
+    ]
+    agents = [
+        (name, each.position, each.yaw, each.pitch, each.current, *sorted(each.inventory.items()))
+        for name, each in view.agents.items()
+    ]
+    return (view.numbers.tobytes(), tuple(contents), tuple(agents))
 
 
 def _advance(performer: Performer) -> bool:

@@ -1,0 +1,100 @@
+"""A joint lift without a word (Sebanz, Bekkering and Knoblich 2006; Tomasello 2014).
+
+A lift rises when both of its plates are stood on at once. There are several; Bob cannot see them
+all, and Anne, who can, stands nearest to one that he does not know of. They do not talk: who
+reckons with what the other sees goes where the other will be.
+"""
+
+import random
+from typing import Any
+
+from beliefnest.episodes.tasks.building import FLOOR, WALL, hall, wall
+
+PARAMETERS = {"lifts": (2, 2, 4), "far": (14, 12, 20)}
+
+
+def instance(chance: random.Random, lifts: int, far: int) -> dict[str, Any]:
+    """An instance.
+
+    Args:
+        chance: Draws the side and the places.
+        lifts: How many lifts there are; Bob sees one.
+        far: Blocks between the lifts that he does not see and the one that he does.
+    """
+    hidden = [(2 + 3 * number, 0) for number in range(lifts - 1)]
+    corner = hidden[-1][0] + 3
+    width, depth = corner + far + 5, 12
+    seen = (corner + far + chance.randint(0, 2), chance.randint(7, 9))
+    sites = [[(x, 1, z), (x, 1, z + 2)] for x, z in [*hidden, seen]]
+    # Behind these walls, with a gap at their corner, are the lifts that Bob does not see.
+    blocks = [
+        wall((corner, 1, 0), (corner, 2, 5)),
+        wall((0, 1, 7), (corner, 2, 7)),
+    ]
+    # Both stand nearer to those than to the other one.
+    anne, bob = (corner - 1.5, 1, 4.5), (corner + 2.5, 1, 10.5)
+    mirrored = chance.random() < 0.5
+    plates = [place for site in sites for place in site]
+    content = {
+        "description": (
+            "A lift rises when somebody stands on both of its plates at once. Anne and Bob do not "
+            "talk."
+        ),
+        "order": 1,
+        "scenario": {
+            "name": "joint-lift",
+            **hall(
+                width,
+                depth,
+                [
+                    *blocks,
+                    *(wall((x, 0, z), (x, 0, z), "lodestone") for x, _, z in plates),
+                ],
+            ),
+            "agents": {
+                "anne": {"position": list(anne), "facing": "north"},
+                "bob": {"position": list(bob), "facing": "north"},
+            },
+            "perception": {"max_visible_distance": 64},
+            "static_blocks": [FLOOR, WALL],
+            "initial_beliefs": [
+                {
+                    "path": path,
+                    "blocks": [{"block": "lodestone", "at": [x, 0, z]} for x, _, z in known],
+                    "agents": {"anne": list(anne), "bob": list(bob)},
+                }
+                for path, known in (("/anne", plates), ("/**", [tuple(p) for p in sites[-1]]))
+            ],
+        },
+        "goal": {
+            "reach": [
+                {
+                    "agents": ["anne", "bob"],
+                    "sites": [[list(place) for place in site] for site in sites],
+                }
+            ]
+        },
+        "players": ["anne"],
+        "policies": {"bob": "search:0"},
+        "round_ticks": 5,
+        "rounds": -(-(far + 11) // 5),
+    }
+    return _mirror(content, width) if mirrored else content
+
+
+def _mirror(content: dict[str, Any], width: int) -> dict[str, Any]:
+    """The instance with east and west exchanged."""
+
+    def swapped(value: Any) -> Any:
+        if isinstance(value, dict):
+            return {key: swapped(each) for key, each in value.items()}
+        if isinstance(value, list | tuple):
+            items = list(value)
+            if len(items) == 3 and all(isinstance(each, int | float) for each in items):
+                x = width + 1 - items[0] if isinstance(items[0], float) else width - items[0]
+                return [x, *items[1:]]
+            return [swapped(each) for each in items]
+        return value
+
+    mirrored: dict[str, Any] = swapped(content)
+    return mirrored

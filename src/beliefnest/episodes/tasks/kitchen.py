@@ -1,0 +1,72 @@
+"""A kitchen with orders and narrow ways (Carroll and others 2019, Overcooked).
+
+What is ordered lies in the pantry, where only the cook can go; tables are where only the waiter can
+go. Between them are hatches. The waiter sees only some of them, and does not look into the others:
+who reckons with what the waiter sees puts what is ordered where it is noticed.
+"""
+
+import random
+from typing import Any
+
+from beliefnest.episodes.tasks.building import belief, chest, hall, wall
+
+PARAMETERS = {"orders": (1, 1, 2), "hatches": (2, 2, 3)}
+
+_DISHES = ("bread", "apple", "cookie", "pumpkin_pie")
+
+
+def instance(chance: random.Random, orders: int, hatches: int) -> dict[str, Any]:
+    """An instance.
+
+    Args:
+        chance: Draws places, dishes, and which hatch can be seen.
+        orders: How many dishes are ordered.
+        hatches: How many hatches there are; the waiter sees the cook at one of them.
+    """
+    width, depth = 6 + 6 * hatches, 12
+    dishes = chance.sample(_DISHES, orders)
+    places = [(3 + 6 * number, 1, 6) for number in range(hatches)]
+    seen = chance.randrange(hatches)
+    # A wall of stone between pantry and room; glass where the cook is seen.
+    glass = places[seen][0]
+    blocks = [
+        wall((0, 1, 6), (width, 3, 6)),
+        wall((glass - 1, 1, 6), (glass + 1, 3, 6), "glass"),
+        # Niches, so that one sees through the glass only from in front of it.
+        *(
+            wall((x, 1, 3), (x, 3, 5))
+            for number, (x, _, _) in enumerate((p[0] + 3, 0, 0) for p in places[:-1])
+        ),
+    ]
+    # The nearest hatch is none at which the cook is seen.
+    near = chance.choice([x for x, _, _ in places if x != glass])
+    store, table = (near, 1, 1), (width - 2, 1, 11)
+    first: dict[tuple[int, int, int], dict[str, int]] = {place: {} for place in places}
+    first |= {table: {}, store: dict.fromkeys(dishes, 1)}
+    return {
+        "description": (
+            f"Ordered: {', '.join(dishes)}. The cook fetches it from the store and puts it into a "
+            "hatch; the waiter brings it from there to the table. They do not talk."
+        ),
+        "order": 1,
+        "scenario": {
+            "name": "kitchen",
+            **hall(width, depth, blocks),
+            "containers": [
+                chest(store, dict.fromkeys(dishes, 1), "store"),
+                chest(table, label="table"),
+                *(chest(place, label="hatch") for place in places),
+            ],
+            "agents": {
+                "cook": {"position": [near + 0.5, 1, 2.5], "facing": "south"},
+                "waiter": {"position": [glass + 0.5, 1, 9.5], "facing": "north"},
+            },
+            "perception": {"max_visible_distance": 64},
+            "initial_beliefs": [belief("/**", first)],
+        },
+        "goal": {"reach": [{"container": list(table), "items": dict.fromkeys(dishes, 1)}]},
+        "players": ["cook"],
+        "policies": {"waiter": "search:0"},
+        "round_ticks": 10,
+        "rounds": 5 + 4 * orders + hatches,
+    }

@@ -1,0 +1,74 @@
+"""A watchman who must not learn that one knows (Perner and Wimmer 1985, second-order belief).
+
+The watchman knows what is in the coffers and takes it that the spy does not. The spy knows, and
+wants gold. Taken where the watchman looks on, it would tell him that the spy knows what is in them
+now. Whoever does not reckon with what the watchman believes about the spy's own beliefs takes the
+nearest.
+"""
+
+import random
+from typing import Any
+
+from beliefnest.episodes.tasks.building import belief, chest, hall, wall
+
+PARAMETERS = {"coffers": (3, 2, 5), "reach": (10, 8, 16)}
+
+
+def instance(chance: random.Random, coffers: int, reach: int) -> dict[str, Any]:
+    """An instance.
+
+    Args:
+        chance: Draws places and sides.
+        coffers: How many coffers there are; one of them the watchman cannot see.
+        reach: Blocks from the middle of the hall to its ends.
+    """
+    width, depth = 2 * reach, 10
+    mirrored = chance.random() < 0.5
+    spots = [(x, 1, 1) for x in chance.sample(range(4, reach), coffers - 1)]
+    hidden = (width - 1, 1, chance.randint(1, 3))
+    screen = wall((width - 5, 1, 0), (width - 5, 3, 6))
+
+    def turned(x: float, *, feet: bool = False) -> float:
+        if not mirrored:
+            return x
+        return width + 1 - x if feet else width - x
+
+    places = [(int(turned(x)), y, z) for x, y, z in [*spots, hidden]]
+    contents = {place: {"gold_ingot": 3} for place in places}
+    (low, high) = sorted((screen["fill"][0][0], screen["fill"][1][0]))
+    screen = wall((int(turned(low)), 1, 0), (int(turned(high)), 3, 6))
+    nothing: dict[tuple[int, int, int], dict[str, int]] = {place: {} for place in places}
+    return {
+        "description": (
+            "The spy wants a gold ingot. The watchman must not find out that the spy knows what is "
+            "in any of the coffers."
+        ),
+        "order": 2,
+        "scenario": {
+            "name": "watchman",
+            **hall(width, depth, [screen]),
+            "containers": [chest(place, contents[place], "coffer") for place in places],
+            "agents": {
+                "spy": {"position": [turned(reach + 0.5, feet=True), 1, 5.5], "facing": "north"},
+                "watchman": {"position": [turned(1.5, feet=True), 1, 5.5], "facing": "north"},
+            },
+            "perception": {"max_visible_distance": 64},
+            "initial_beliefs": [
+                belief("/**", contents),
+                belief("/watchman/spy/**", nothing, complete=False),
+                belief("/spy/watchman/spy/**", nothing, complete=False),
+            ],
+        },
+        "goal": {
+            "reach": [{"agent": "spy", "items": {"gold_ingot": 1}}],
+            "never": [
+                {"path": "/watchman/spy", "container": list(place), "items": {"gold_ingot": 1}}
+                for place in places
+            ],
+        },
+        "goals": {"watchman": {}},
+        "players": ["spy"],
+        "policies": {"watchman": "search:0"},
+        "round_ticks": 10,
+        "rounds": -(-(2 * reach + 20) // 10),
+    }
