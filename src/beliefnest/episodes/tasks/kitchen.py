@@ -23,26 +23,24 @@ def instance(chance: random.Random, orders: int, hatches: int) -> dict[str, Any]
         orders: How many dishes are ordered.
         hatches: How many hatches there are; the waiter sees the cook at one of them.
     """
-    width, depth = 6 + 6 * hatches, 12
+    width, depth = 10 * hatches, 12
     dishes = chance.sample(_DISHES, orders)
-    places = [(3 + 6 * number, 1, 6) for number in range(hatches)]
+    places = [(4 + 10 * number, 1, 6) for number in range(hatches)]
     seen = chance.randrange(hatches)
     # A wall of stone between pantry and room; glass where the cook is seen.
     glass = places[seen][0]
     blocks = [
         wall((0, 1, 6), (width, 3, 6)),
-        wall((glass - 1, 1, 6), (glass + 1, 3, 6), "glass"),
-        # Niches, so that one sees through the glass only from in front of it.
-        *(
-            wall((x, 1, 3), (x, 3, 5))
-            for number, (x, _, _) in enumerate((p[0] + 3, 0, 0) for p in places[:-1])
-        ),
+        wall((glass - 3, 1, 6), (glass + 3, 3, 6), "glass"),
+        # Between hatches, so that through the glass one does not see as far as the next one.
+        *(wall((x + 5, 1, 3), (x + 5, 3, 5)) for x, _, _ in places[:-1]),
     ]
     # The nearest hatch is none at which the cook is seen.
     near = chance.choice([x for x, _, _ in places if x != glass])
     store, table = (near, 1, 1), (width - 2, 1, 11)
     first: dict[tuple[int, int, int], dict[str, int]] = {place: {} for place in places}
     first |= {table: {}, store: dict.fromkeys(dishes, 1)}
+    feet = {"cook": [near + 0.5, 1, 2.5], "waiter": [glass + 0.5, 1, 9.5]}
     return {
         "description": (
             f"Ordered: {', '.join(dishes)}. The cook fetches it from the store and puts it into a "
@@ -57,12 +55,9 @@ def instance(chance: random.Random, orders: int, hatches: int) -> dict[str, Any]
                 chest(table, label="table"),
                 *(chest(place, label="hatch") for place in places),
             ],
-            "agents": {
-                "cook": {"position": [near + 0.5, 1, 2.5], "facing": "south"},
-                "waiter": {"position": [glass + 0.5, 1, 9.5], "facing": "north"},
-            },
+            "agents": {name: {"position": at} for name, at in feet.items()},
             "perception": {"max_visible_distance": 64},
-            "initial_beliefs": [belief("/**", first)],
+            "initial_beliefs": [{**belief("/**", first), "agents": feet}],
         },
         "goal": {"reach": [{"container": list(table), "items": dict.fromkeys(dishes, 1)}]},
         "players": ["cook"],

@@ -1,0 +1,96 @@
+"""The built-in tasks: their instances are solved at the order they need, and at none below."""
+
+import pytest
+from tests.profiles import at_night
+
+import beliefnest as bn
+from beliefnest.episodes.tasks import parameters_of, source_of
+
+SEEDS = at_night(50, 2)
+
+
+def played(task: bn.Task, order: int) -> bool:
+    with bn.Episode(task, dict.fromkeys(task.players, f"search:{order}")) as episode:
+        return episode.play().success
+
+
+@pytest.mark.parametrize("seed", range(SEEDS))
+@pytest.mark.parametrize("name", bn.Task.names())
+def test_a_task_is_solved_at_its_order_and_not_below(name: str, seed: int) -> None:
+    task = bn.Task.load(name, seed=seed)
+    assert task.order > 0
+    assert played(task, task.order)
+    assert not played(task, task.order - 1)
+
+
+@pytest.mark.parametrize("name", bn.Task.names())
+def test_an_instance_depends_on_its_seed_alone(name: str) -> None:
+    one, same = bn.Task.load(name, seed=5), bn.Task.load(name, seed=5)
+    assert one.plain() == same.plain()
+    assert any(bn.Task.load(name, seed=seed).plain() != one.plain() for seed in range(6, 12))
+    assert bn.Task.from_mapping(one.plain()).plain() == one.plain()
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "value"),
+    [
+        (name, key, value)
+        for name in bn.Task.names()
+        for key, (_, low, high) in parameters_of(name).items()
+        for value in sorted({low, high})
+    ],
+)
+def test_a_task_of_any_size_makes_sense(name: str, key: str, value: int) -> None:
+    task = bn.Task.load(name, seed=1, **{key: value})
+    # Nothing is reached before anybody has done anything.
+    with bn.Episode(task, dict.fromkeys(task.agents, "random")) as episode:
+        episode.play(0)
+        assert not episode.success
+
+
+@pytest.mark.parametrize("name", bn.Task.names())
+def test_a_task_names_its_source(name: str) -> None:
+    first = source_of(name).splitlines()[0]
+    assert any(year in first for year in map(str, range(1970, 2026)))
+
+
+def test_a_task_is_read_from_a_file(tmp_path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text(
+        """
+name: mine
+scenario:
+  name: mine
+  box: [[0, 0, 0], [6, 3, 6]]
+  blocks: [{block: stone, fill: [[0, 0, 0], [6, 0, 6]]}]
+  containers: [{at: [5, 1, 5], items: {apple: 1}}]
+  agents: {ann: {position: [1.5, 1, 1.5]}}
+goal:
+  reach: [{agent: ann, items: {apple: 1}}]
+"""
+    )
+    task = bn.Task.load(str(file))
+    with bn.Episode(task, {"ann": "search:0"}) as episode:
+        # She looks into the chest, then knows and takes.
+        assert episode.play().success
+    file.write_text(file.read_text().replace("reach", "raech"))
+    with pytest.raises(bn.ScenarioError, match="raech"):
+        bn.Task.load(str(file))
+
+
+def test_a_goal_that_speaks_of_nobody_is_refused() -> None:
+    plain = bn.Task.load("help-find").plain()
+    plain["goal"] = {"reach": [{"agent": "zoe", "items": {"apple": 1}}]}
+    with pytest.raises(bn.ScenarioError, match="zoe"):
+        bn.Task.from_mapping(plain)
+    plain["goal"] = {"reach": [{"items": {"apple": 1}}]}
+    with pytest.raises(bn.ScenarioError, match="container and items"):
+        bn.Task.from_mapping(plain)
+
+
+def test_a_liar_is_counted() -> None:
+    with bn.Episode(bn.Task.load("hide-and-seek", seed=1)) as episode:
+        measures = episode.play().measures
+    assert measures.success
+    assert measures.claims == measures.false_claims == measures.lies == measures.messages > 0
+    assert measures.taken_up >= 1
