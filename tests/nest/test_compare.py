@@ -161,3 +161,15 @@ def test_unknown_paths_and_ticks_are_errors():
         nest.false_beliefs("a")
     with pytest.raises(TickError):
         nest.at(7).false_beliefs("/a")
+
+
+def test_a_recorded_nest_is_compared_as_the_live_one(tmp_path):
+    world = bn.ScriptedWorld(((0, 0, 0), (10, 2, 10)), CORNER, {"a": WEST, "b": GAP})
+    nest = bn.Nest(world, store=tmp_path / "run.bn")
+    world.place_agent("b", EAST_2)
+    false, every = nest.false_beliefs("/a"), nest.compare("/", "/a")
+    assert [d.kind for d in false] == ["agent"]
+    nest.close()
+    with bn.Nest.read(tmp_path / "run.bn") as recorded:
+        assert recorded.false_beliefs("/a") == false
+        assert recorded.compare("/", "/a") == every

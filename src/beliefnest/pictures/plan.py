@@ -296,6 +296,8 @@ class _Sheet:
                 self.kinds.add(_device_kind(shown.name))
                 if shown.says and self._holds((x + 0.5, z + 0.5)):
                     self._quote(shown.says, self._place(x, z))
+                (x0, y0), (x1, y1) = self._place(x, z), self._place(x + 1, z + 1)
+                self._room.avoid((x0, y0, x1, y1))
         for store in self._scene.stores:
             if self._holds((store.position[0] + 0.5, store.position[2] + 0.5)):
                 self._store(store)

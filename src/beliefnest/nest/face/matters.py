@@ -114,7 +114,7 @@ class Owned:
     @property
     def title(self) -> str:
         """What the plot is about."""
-        return f"What is believed of what {self.agent} has" + _and(self.item)
+        return f"What {self.agent} is believed to have: {_plain(self.item)}"
 
     def value(self, held: NodeView) -> Contents | None:
         """What the agent has of it."""
