@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from tests.profiles import at_night
 
 import beliefnest as bn
+from beliefnest.bodies import messages
 from beliefnest.bodies.node_files import node_path
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.world.values import Point
@@ -174,6 +175,50 @@ def test_what_is_too_far_or_behind_one_s_back_changes_no_value_that_is_read(
     changed, _ = played(worlds, ann, bob, items=items, blocks=[FLOOR, *hidden], **room)
     assert plain.error is None, plain.error
     assert (changed.log, changed.ticks) == (plain.log, plain.ticks)
+
+
+@pytest.mark.parametrize("world", ["embedded", "scripted"])
+@pytest.mark.parametrize("walls", [(WALL,), (WALL, GAP)], ids=["wall", "gap"])
+def test_who_sees_nothing_gropes_along_what_the_body_bumps_into(
+    worlds: Worlds, world: str, walls: tuple[dict[str, Any], ...]
+) -> None:
+    room = {"perception": {"max_visible_distance": 0.3}, "blocks": [FLOOR, *walls]}
+    scenario = bn.Scenario.from_mapping({**ROOM, **room})
+    code = "await goToPosition(bot, new Vec3(7, 1, 3), 0)"
+    with bn.Nest.open(scenario, world=world, worlds=worlds) as nest:
+        result = nest["/"].run("ann", code, 1200, senses="percepts")
+        there = nest["/"].state.agents["ann"].position
+    assert there is not None
+    if GAP in walls:
+        assert result.ok, result.error
+        assert there[0] > 7
+    else:
+        assert result.error is not None
+        assert result.error.reason == "no_way"
+        assert there[0] < WALL["fill"][0][0]
+
+
+def test_a_fault_in_telling_percepts_leaves_everything_as_it_was(
+    worlds: Worlds, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scenario = bn.Scenario.from_mapping({**ROOM, "blocks": [FLOOR]})
+    walk = "await goToPosition(bot, new Vec3(7, 1, 1), 0)"
+    with bn.Nest.open(scenario, worlds=worlds) as nest:
+        before = nest["/"].state.agents["ann"]
+        told = messages.percepts_changes
+
+        def failing(*sensed: Any) -> Any:
+            if len(failed) < 3:
+                failed.append(told(*sensed))
+                return failed[-1]
+            raise RuntimeError("no more")
+
+        failed: list[Any] = []
+        with monkeypatch.context() as patched, pytest.raises(RuntimeError, match="no more"):
+            patched.setattr(messages, "percepts_changes", failing)
+            nest["/"].run("ann", walk, senses="percepts")
+        assert nest["/"].state.agents["ann"] == before
+        assert nest["/"].run("ann", walk, senses="percepts").ok
 
 
 def test_with_the_whole_world_the_same_program_reads_it(worlds: Worlds) -> None:

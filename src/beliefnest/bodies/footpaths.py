@@ -3,6 +3,7 @@
 import heapq
 import math
 from collections.abc import Iterator, Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -170,8 +171,12 @@ class Ground:
         around = ((step[0], cell[1], cell[2]), (cell[0], cell[1], step[2]))
         return 0 in moved or not any(at in self._doorways for at in around)
 
-    def way(self, start: Position, goal: Goal) -> tuple[Position, ...] | None:
-        """The way that `find_way` finds, looked for once."""
+    def way(
+        self, start: Position, goal: Goal, avoiding: AbstractSet[Position] = frozenset()
+    ) -> tuple[Position, ...] | None:
+        """The way that `find_way` finds, looked for once where nothing is to be avoided."""
+        if avoiding:
+            return find_way(self, start, goal, avoiding)
         wanted = (start, goal)
         if wanted not in self._ways:
             if len(self._ways) >= _MOST_WAYS:
@@ -242,13 +247,16 @@ def _widened(flags: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
     return wide
 
 
-def find_way(ground: Ground, start: Position, goal: Goal) -> tuple[Position, ...] | None:
+def find_way(
+    ground: Ground, start: Position, goal: Goal, avoiding: AbstractSet[Position] = frozenset()
+) -> tuple[Position, ...] | None:
     """The shortest way on foot; of several the same one each time.
 
     Args:
         ground: Where one can stand.
         start: The cell one stands in.
         goal: Where the way is to lead.
+        avoiding: Cells that it must not lead through.
 
     Returns:
         The cells after `start`, in order; None: there is no way.
@@ -267,7 +275,7 @@ def find_way(ground: Ground, start: Position, goal: Goal) -> tuple[Position, ...
         done.add(cell)
         for following in ground.steps(cell):
             cost = costs[cell] + math.dist(cell, following)
-            if cost < costs.get(following, math.inf):
+            if following not in avoiding and cost < costs.get(following, math.inf):
                 costs[following], came[following] = cost, cell
                 order += 1
                 heapq.heappush(waiting, (cost + goal.steps_left(following), order, following))

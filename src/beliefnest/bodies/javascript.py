@@ -43,7 +43,8 @@ class JavaScriptProgram:
         self._context.set_max_stack_size(_STACK_BYTES)
         self._context.set_time_limit(_SECONDS)
         scope = json.dumps([sorted(skills), username])
-        self._context.eval(f"const __made = ({_prelude()})(({_vec3()})(), ...{scope})")
+        given = f"({_shared('vec3', 'env.Vec3')})(), ({_shared('hints', 'module.exports')})()"
+        self._context.eval(f"const __made = ({_prelude()})({given}, ...{scope})")
         parts = ("names", "start", "take", "settle", "see")
         self._calls = {name: self._context.eval(f"__made.{name}") for name in parts}
         self._fault: Fault | None = None
@@ -129,12 +130,12 @@ def _prelude() -> str:
 
 
 @cache
-def _vec3() -> str:
-    """A function that gives the class that programs in Minecraft have as well."""
-    built = Path(str(files("beliefnest"))) / "_bundle" / "vec3.js"
+def _shared(name: str, given: str) -> str:
+    """A function that gives what a module of the bots' sandbox does, too."""
+    built = Path(str(files("beliefnest"))) / "_bundle" / f"{name}.js"
     text = built.read_text(encoding="utf-8")
-    define = f"const module = {{}}, env = {{}};\n{text}\nmodule.exports(env)\nreturn env.Vec3"
-    return f"() => {{ {define} }}"
+    made = "if (typeof module.exports === 'function') module.exports(env)"
+    return f"() => {{ const module = {{}}, env = {{}};\n{text}\n{made}\nreturn {given} }}"
 
 
 def _fault_of(text: str, kind: str) -> Fault:

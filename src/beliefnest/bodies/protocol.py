@@ -93,6 +93,11 @@ class Unfinished:
     what: str
     line: int | None = None
 
+    @property
+    def is_call(self) -> bool:
+        """Whether it is a skill or a call of the bot, which `await` would have waited for."""
+        return " " not in self.what and self.what not in ("setTimeout", "setInterval")
+
     def __str__(self) -> str:
         return self.what if self.line is None else f"{self.what} of line {self.line}"
 
@@ -130,7 +135,16 @@ class ProgramResult:
         ended = "ended well" if self.ok else f"failed: {self.error}"
         deeds = f"{len(self.actions)} action{'s' * (len(self.actions) != 1)}"
         moved = f", {', '.join(self.placed)} moved at first" if self.placed else ""
-        return f"<program of {self.agent}, {self.ticks} ticks, {deeds}{moved}: {ended}>"
+        hint = "" if self.hint is None else f"; {self.hint}"
+        return f"<program of {self.agent}, {self.ticks} ticks, {deeds}{moved}: {ended}{hint}>"
+
+    @property
+    def hint(self) -> str | None:
+        """Says so if it ended well while calls went on that nothing waited for; else None."""
+        calls = [str(each) for each in self.unfinished if each.is_call]
+        if not self.ok or not calls:
+            return None
+        return f"nothing waited for {', '.join(calls)}, stopped at its end: was await forgotten?"
 
     @property
     def events(self) -> tuple[Event, ...]:

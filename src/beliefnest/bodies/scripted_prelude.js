@@ -1,6 +1,6 @@
-// What programs of the scripted world find in scope. Evaluates to a function of (Vec3, names of skills) that gives
+// What programs of the scripted world find in scope. Evaluates to a function of (Vec3, hints, skills, username) that gives
 // what Python calls: start, take, settle, see. Nothing here calls Python: it takes what is asked for after each turn.
-(function (Vec3, skills, username) {
+(function (Vec3, hints, skills, username) {
   'use strict'
   const { parse, stringify } = JSON
   const waiting = new Map()
@@ -12,6 +12,19 @@
   let seen = null
   let grid = null
 
+  // Calls that failed, whose errors the program may still be about to hear of.
+  const failed = []
+
+  /** What a call gives; it knows whether anything waits for it. */
+  class Answer extends Promise {
+    static get [Symbol.species] () { return Promise }
+
+    then (...listeners) {
+      this.isHeard = true
+      return super.then(...listeners)
+    }
+  }
+
   const failure = (message, more) => Object.assign(new Error(message), more)
   const refuse = what => { throw failure(`the scripted world has no ${what}; open the nest with world="embedded" for that`, { kind: 'refused' }) }
   const offering = (object, what) => new Proxy(object, {
@@ -22,10 +35,11 @@
   })
 
   function ask (name, args) {
-    return new Promise((resolve, reject) => {
-      waiting.set(next, { resolve, reject, name, place: new Error('').stack })
-      calls.push([next++, name, args])
-    })
+    const waiter = { name, place: new Error('').stack }
+    const answer = new Answer((resolve, reject) => Object.assign(waiter, { resolve, reject }))
+    waiting.set(next, { ...waiter, answer })
+    calls.push([next++, name, args])
+    return answer
   }
 
   function skill (name) {
@@ -101,8 +115,10 @@
   Vec3.prototype.toJSON = function () { return [this.x, this.y, this.z] }
 
   function ended (error) {
-    const { message, name, stack, skill = null, reason = null, kind = null, place = '' } = error instanceof Error ? error : { message: `the program threw ${shown(error)}` }
-    done = { ok: false, message: String(message), name: String(name ?? 'Error'), stack: `${place}${stack ?? ''}`, skill, reason, kind }
+    const { message, name, stack, skill = null, reason = null, kind = null, place = '', slip = '' } = error instanceof Error ? error : { message: `the program threw ${shown(error)}` }
+    const whole = `${name}: ${message}`
+    const hint = hints.nearName(whole, Object.keys(scope)) + hints.notAwaited(whole, Array.from(waiting.values(), each => each.name))
+    done = { ok: false, message: `${message}${hint}${slip}`, name: String(name ?? 'Error'), stack: `${place}${stack ?? ''}`, skill, reason, kind }
   }
 
   return {
@@ -112,16 +128,21 @@
       Promise.resolve().then(program).then(() => { done ??= { ok: true } }, ended)
     },
     take () {
+      for (const { answer, error } of failed.splice(0)) {
+        if (!answer.isHeard && done?.ok !== false) ended(Object.assign(error, { slip: hints.NOT_AWAITED }))
+      }
       const taken = stringify({ calls, log, done, waiting: waiting.size })
       calls = []
       return taken
     },
     settle (id, ok, text) {
-      const { resolve, reject, name, place } = waiting.get(id)
+      const { resolve, reject, name, place, answer } = waiting.get(id)
       waiting.delete(id)
       const value = parse(text)
-      if (ok) resolve(value ?? undefined)
-      else reject(failure(`${name}: ${value.message}`, { skill: name, reason: value.reason, place }))
+      if (ok) return resolve(value ?? undefined)
+      const error = failure(`${name}: ${value.message}`, { skill: name, reason: value.reason, place })
+      failed.push({ answer, error })
+      reject(error)
     },
     see (text, blocks) {
       if (seen === null || blocks !== seen.blocks) grid = null

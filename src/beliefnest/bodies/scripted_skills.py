@@ -6,6 +6,7 @@ take one tick each.
 
 import math
 from collections.abc import Callable, Generator, Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from typing import Any
 
@@ -268,12 +269,14 @@ def _doors(value: Any) -> _Doors:
     return _Doors(given.get("openDoors", True), given.get("closeDoors", False))
 
 
-def _way(hand: Hand, goal: Goal, doors: _Doors) -> tuple[Position, ...] | None:
-    """A way that opens no door, or one that does."""
+def _way(
+    hand: Hand, goal: Goal, doors: _Doors, bumped: AbstractSet[Position]
+) -> tuple[Position, ...] | None:
+    """A way that opens no door, or one that does; round what the body has bumped into."""
     known = hand.known()
-    way = known.way(hand.cell, goal)
+    way = known.way(hand.cell, goal, bumped)
     if way is None and doors.opens and known.with_doors_opened.has_doorways:
-        way = known.with_doors_opened.way(hand.cell, goal)
+        way = known.with_doors_opened.way(hand.cell, goal, bumped)
     return way
 
 
@@ -298,8 +301,8 @@ def _walk(hand: Hand, target: Point, goal: Goal, what: str, doors: _Doors = _ANY
     moved = False
     bumped: set[Position] = set()
     while not goal.is_met(hand.cell):
-        way = _way(hand, goal, doors)
-        if way is None or bumped & set(way):
+        way = _way(hand, goal, doors, bumped)
+        if way is None:
             far = math.dist(hand.feet, target)
             raise SkillError(
                 f"could not reach {what} at {tuple(target)}: there is no way to it on foot; now at "

@@ -23,8 +23,9 @@ async function build (outdir) {
   fs.writeFileSync(
     path.join(outdir, `registry-${MINECRAFT_VERSION}.msgpack`), encode(buildRegistry(MINECRAFT_VERSION)))
   fs.writeFileSync(path.join(outdir, INTERPRETER), interpreterBytes())
-  // Programs in the scripted world have the same class.
+  // Programs in the scripted world have the same class, and are told the same names.
   fs.copyFileSync(path.join(SOURCE, 'sandbox', 'guest', 'vec3.js'), path.join(outdir, 'vec3.js'))
+  fs.copyFileSync(path.join(SOURCE, 'sandbox', 'hints.js'), path.join(outdir, 'hints.js'))
   const folders = packageFolders(inputs)
   fs.writeFileSync(path.join(outdir, 'packages.json'), `${JSON.stringify(packageList(folders), null, 1)}\n`)
   fs.writeFileSync(path.join(outdir, 'licenses.txt'), licenseTexts(folders))

@@ -74,7 +74,7 @@ async function observe (session, guest, program, { fuel, memory, signal, names }
   signal?.removeEventListener('abort', abort)
   return {
     ok: outcome.ok,
-    error: describeOutcome(outcome, program, { fuel, memory }, guest.lastStatement, names),
+    error: describeOutcome(outcome, program, { fuel, memory }, guest.lastStatement, names, session.underWay),
     lines: program.linesOf(guest.statements),
     log: session.log,
     unfinished: session.unfinished.map(({ what, statement }) => ({ what, line: program.statement(statement)?.line ?? null })),

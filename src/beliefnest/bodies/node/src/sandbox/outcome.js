@@ -1,7 +1,7 @@
 'use strict'
 /** What a run is reported as: for the program's writer, in places of the program's own text. */
 
-const { nearest } = require('./nearest')
+const { NOT_AWAITED, nearName, notAwaited } = require('./hints')
 const { cut } = require('./text')
 
 const MAX_MESSAGE = 4000
@@ -10,8 +10,6 @@ const MAX_NAME = 100
 const MAX_STACK = 20_000
 const MAX_FRAMES = 100
 const SKILL = /^[\w. ]{1,80}$/
-const NOT_AWAITED = ' (nothing waited for this promise: write await, or catch its error)'
-const UNDEFINED = /^ReferenceError: '?([\w$]{1,80})'? is not defined$/
 const PLACE = /\(?program\.js:(\d+):(\d+)\)?/
 
 /**
@@ -21,26 +19,20 @@ const PLACE = /\(?program\.js:(\d+):(\d+)\)?/
  * @param {{fuel: number, memory: number}} limits
  * @param {number} last number of the statement that ran last, 0 for none
  * @param {string[]} [names] what the program finds in scope
+ * @param {string[]} [under] names of calls that were under way at the end
  * @returns {?{message: string, line: ?number, column: ?number, skill: ?string, kind: string}}
  */
-function describeOutcome ({ ok, error, stray, ended }, program, limits, last, names = []) {
+function describeOutcome ({ ok, error, stray, ended }, program, limits, last, names = [], under = []) {
   if (ok) return null
   const { message, skill, kind, reason, stack } = ended ? ofEnd(ended, limits) : ofError(error, limits)
   const { place, callee } = placeIn(stack, program)
   const { line, column } = place ?? program.statement(last) ?? { line: null, column: null }
-  return { message: cut(named(message, callee) + nearName(message, names), MAX_MESSAGE) + (stray ? NOT_AWAITED : ''), line, column, skill, kind, ...(reason && { reason }) }
+  return { message: cut(named(message, callee) + nearName(message, names) + notAwaited(message, under), MAX_MESSAGE) + (stray ? NOT_AWAITED : ''), line, column, skill, kind, ...(reason && { reason }) }
 }
 
 // The interpreter does not say what is not a function.
 function named (message, callee) {
   return message === 'TypeError: not a function' && callee !== null ? `TypeError: ${callee} is not a function` : message
-}
-
-// A name that is not there, if one that is looks like it.
-function nearName (message, names) {
-  const found = UNDEFINED.exec(message)
-  const near = found === null ? null : nearest(found[1], names)
-  return near === null ? '' : `; did you mean ${near}?`
 }
 
 function ofEnd ({ kind, message, guestStack }, limits) {

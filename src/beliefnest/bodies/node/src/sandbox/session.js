@@ -44,6 +44,7 @@ class Session {
     this.logRoom = LIMITS.logCharacters
     this.outcome = null
     this.unfinished = []
+    this.underWay = []
     this.finished = new Promise((resolve) => { this.resolve = resolve })
   }
 
@@ -79,6 +80,7 @@ class Session {
   finish (outcome) {
     if (this.outcome !== null) return
     this.outcome = outcome
+    this.underWay = Array.from(this.calls.values(), ({ what }) => what)
     this.unfinished = [...this.calls.values(), ...this.timers.values()].map(({ what, statement }) => ({ what, statement }))
     for (const { stop } of this.timers.values()) stop()
     this.timers.clear()
