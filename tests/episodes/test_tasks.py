@@ -94,3 +94,13 @@ def test_a_liar_is_counted() -> None:
     assert measures.success
     assert measures.claims == measures.false_claims == measures.lies == measures.messages > 0
     assert measures.taken_up >= 1
+
+
+def test_a_task_is_played_in_minecraft_as_in_the_scripted_world() -> None:
+    # Whom the other hears, what it then walks to and takes, with programs that read percepts.
+    task = bn.Task.load("help-find", seed=1)
+    with bn.Episode(task, world="embedded") as helped:
+        measures = helped.play().measures
+    assert (measures.success, measures.messages, measures.taken_up) == (True, 1, 1)
+    with bn.Episode(task, {"anne": "search:0"}, world="embedded") as idle:
+        assert not idle.play().success

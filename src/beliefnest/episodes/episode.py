@@ -24,6 +24,9 @@ __all__ = ["Budget", "Episode", "Moment"]
 
 _TASK, _DECISIONS = "episode", "episode decisions"
 
+_ON_FOOT = 5
+"""Ticks that Minecraft's players take for a block, 4.3 blocks a second, rounded up."""
+
 
 class Budget(msgspec.Struct, frozen=True, omit_defaults=True):
     """What an episode may take; None: as much as it needs.
@@ -63,7 +66,7 @@ class Episode:
     unless another one is named. Close it, or use it in a `with` block.
 
     Args:
-        task: What is played.
+        task: What is played; where one walks as people do, its rounds are as much longer.
         policies: By agent, as on the command line or any object with `act`; who is left out is
             played by the task's own policy, a player by `search` of the task's order.
         world: Where it is played.
@@ -88,6 +91,8 @@ class Episode:
         budget: Budget | None = None,
         patience_s: float | None = None,
     ) -> None:
+        if world != "scripted" and task.form.pace == 1:
+            task = task.at_pace(_ON_FOOT)
         self.task = task
         self.seed = seed
         self._names, self._policies = _chosen(task, policies or {})
@@ -334,12 +339,12 @@ class Episode:
         task = self.task
         return Brief(
             task=task.name,
-            description=task.form.description,
             goals={agent: task.goal_of(agent) for agent in task.agents},
             talk=tuple(task.form.talk),
             rounds=task.form.rounds,
             round_ticks=task.form.round_ticks,
             turns=task.form.play == "turns",
+            pace=task.form.pace,
             places=task.scenario.setting.places,
             seed=self.seed,
         )

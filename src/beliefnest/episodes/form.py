@@ -65,7 +65,7 @@ class TaskForm(_Entry, frozen=True):
     scenario: Annotated[dict[str, Any], _note("As in a scenario file.")]
     goal: Annotated[GoalEntry, _note("What makes the episode a success; the players' goal.")]
     order: Annotated[int, msgspec.Meta(ge=0, description="Order of Theory of Mind it needs.")] = 0
-    description: Annotated[str, _note("What it is about, for people and models.")] = ""
+    description: Annotated[str, _note("What it is about, for people; who plays is not told.")] = ""
     players: Annotated[list[str], _note("Whose policies are put to the test; empty: all.")] = []
     goals: Annotated[dict[str, GoalEntry], _note("Of agents who are after something else.")] = {}
     policies: Annotated[dict[str, str], _note("Policies of agents who are no players.")] = {}
@@ -74,6 +74,9 @@ class TaskForm(_Entry, frozen=True):
         "together"
     )
     rounds: Annotated[int, msgspec.Meta(ge=1, description="Rounds until it is over.")] = 10
+    pace: Annotated[
+        int, msgspec.Meta(ge=1, le=100, description="Ticks that one block on foot takes.")
+    ] = 1
     round_ticks: Annotated[
         int, msgspec.Meta(ge=1, le=12_000, description="Ticks after which programs are cut.")
     ] = 20

@@ -1,7 +1,7 @@
 """Tasks: a scenario, what its agents are after, and the rules of play."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path as FilePath
 from typing import Any, Self
@@ -130,6 +130,15 @@ class Task:
         """What an agent is after."""
         entry = self.form.goals.get(agent, self.form.goal)
         return goal_of(entry, self.form.scenario["agents"])
+
+    def at_pace(self, pace: int) -> "Task":
+        """The same with as much longer rounds as it takes longer to walk a block.
+
+        Args:
+            pace: Ticks that one block on foot takes: 1 in the scripted world, about 5 in Minecraft.
+        """
+        ticks = self.form.round_ticks * pace // self.form.pace
+        return replace(self, form=msgspec.structs.replace(self.form, pace=pace, round_ticks=ticks))
 
     def plain(self) -> dict[str, Any]:
         """As plain values; `from_mapping` is the inverse."""

@@ -37,27 +37,27 @@ class Ended:
 
 @dataclass(frozen=True, slots=True)
 class Brief:
-    """What everybody knows of the task.
+    """What everybody knows of the task; what it is about is not for those who play it.
 
     Attributes:
         task: Its name.
-        description: What it is about, in words.
         goals: What each agent is after.
         talk: Who may speak.
         rounds: How many there are.
         round_ticks: Ticks after which programs are cut.
         turns: Whether agents act one after the other in a round, each for `round_ticks`.
+        pace: Ticks that one block on foot takes.
         places: What people call places.
         seed: Drives the random numbers of policies.
     """
 
     task: str
-    description: str
     goals: Mapping[str, Goal]
     talk: tuple[str, ...]
     rounds: int
     round_ticks: int
     turns: bool
+    pace: int
     places: Mapping[str, Position]
     seed: int
 
@@ -150,13 +150,30 @@ class AgentView:
         """
         return self._imagine(depth)
 
-    def render(self, template: str, **variables: object) -> str:
+    def render(self, template: str, depth: int = 0, **variables: object) -> str:
         """The text of a prompt template, filled from its belief.
+
+        Args:
+            template: Its text. `branch` is the belief, `view` what else is known (`Told`), and
+                `about` has, by text such as `bob` or `bob/anne`, what others are believed to
+                believe; the filters take these as they take `branch`.
+            depth: How deep `about` goes.
+            variables: Further variables.
 
         Raises:
             TemplateError: The template is wrong.
         """
-        return self._own.render(template, view=Told.of(self), **variables)
+        about: dict[str, ShownSimulator] = {}
+        level: list[tuple[tuple[str, ...], ShownSimulator]] = [((), self._own)]
+        for _ in range(depth):
+            level = [
+                ((*path, name), simulator.child(name))
+                for path, simulator in level
+                for name in self.brief.goals
+                if name != (path[-1] if path else self._own.owner)
+            ]
+            about |= {"/".join(path): simulator for path, simulator in level}
+        return self._own.render(template, view=Told.of(self), about=about, **variables)
 
     def noting(self, model: "Model") -> "Model":
         """A model whose conversation is kept in the run."""
@@ -171,7 +188,6 @@ class Told:
         agent: Whose view it is.
         goal: What it is after, in words.
         goals: What everybody is after, in words.
-        description: What the task is about.
         may_speak: Whether what it says is heard.
         round: The round, from 1.
         rounds: How many there are.
@@ -182,7 +198,6 @@ class Told:
     agent: str
     goal: str
     goals: Mapping[str, str]
-    description: str
     may_speak: bool
     round: int
     rounds: int
@@ -197,7 +212,6 @@ class Told:
             view.agent,
             str(view.goal),
             {name: str(goal) for name, goal in brief.goals.items()},
-            brief.description,
             view.may_speak,
             view.round + 1,
             brief.rounds,

@@ -51,4 +51,20 @@ def _code(value: Any) -> str:
     """A value in a program."""
     if isinstance(value, tuple):
         return f"new Vec3({', '.join(map(str, value))})"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_code, value))}]"
+    if isinstance(value, dict) and "kind" in value:
+        return _claim_code(value)
     return json.dumps(value)
+
+
+def _claim_code(claim: dict[str, Any]) -> str:
+    """A claim, as plain data, made by the function that programs have for it."""
+    place = _code(tuple(claim["place"]))
+    match claim["kind"]:
+        case "position":
+            return f"positionOf({_code(claim['agent'])}, {place})"
+        case "block":
+            return f"blockAt({place}, {_code(claim['state'])})"
+        case kind:
+            return f"{kind}({_code(claim['item'])}, {place})"

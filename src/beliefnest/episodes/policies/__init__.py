@@ -1,5 +1,7 @@
 """Policies: who decides what agents do."""
 
+import os
+from collections.abc import Mapping
 from pathlib import Path
 
 from beliefnest.episodes.policies.simple import Program, Random, Scripted
@@ -12,6 +14,8 @@ __all__ = ["POLICIES", "Program", "Random", "Scripted", "resolve_policy"]
 POLICIES = (
     "search:ORDER",
     "omniscient:search",
+    "model:MODEL:ORDER",
+    "model:MODEL:omniscient",
     "random",
     "program:FILE",
     "scripted:FILE",
@@ -21,11 +25,13 @@ POLICIES = (
 _HIGHEST = 4
 
 
-def resolve_policy(name: str) -> Policy:
+def resolve_policy(name: str, environment: Mapping[str, str] | None = None) -> Policy:
     """The policy of a name.
 
     Args:
-        name: As in `POLICIES`. A file of `scripted` has programs between lines of `---`.
+        name: As in `POLICIES`. A file of `scripted` has programs between lines of `---`; a model is
+            `offline` or `PROVIDER:NAME`.
+        environment: Holds keys and base URLs of models; None: that of the process.
 
     Raises:
         UnknownNameError: There is no such policy.
@@ -38,6 +44,8 @@ def resolve_policy(name: str) -> Policy:
         case "program" | "scripted" if rest:
             text = _text(rest)
             return Program(text) if kind == "program" else Scripted(_programs(text))
+        case "model" if rest:
+            return _model(rest, name, os.environ if environment is None else environment)
         case "search" if rest:
             from beliefnest.episodes.policies.search import Search
 
@@ -47,6 +55,19 @@ def resolve_policy(name: str) -> Policy:
 
             return Omniscient()
     raise UnknownNameError(f"no policy {name!r}; write one of {', '.join(POLICIES)}")
+
+
+def _model(rest: str, name: str, environment: Mapping[str, str]) -> Policy:
+    from beliefnest.episodes.policies.model import ModelPolicy, OmniscientModelPolicy
+    from beliefnest.llm.resolve import Connection, open_model
+
+    model_name, colon, order = rest.rpartition(":")
+    if not colon:
+        raise InputError(f"{name!r} is not complete; write model:MODEL:ORDER")
+    if order == "omniscient":
+        return OmniscientModelPolicy(open_model(model_name, environment, Connection()), 2)
+    number = order_of(order, name)
+    return ModelPolicy(open_model(model_name, environment, Connection()), number)
 
 
 def order_of(text: str, name: str) -> int:

@@ -159,6 +159,7 @@ class _Planning:
         self._planner, self._brief = planner, brief
         self._agent, self._order = agent, order
         self._horizon, self._bounds = horizon, bounds
+        self._round = max(1, brief.round_ticks // brief.pace)
         self._goal: Goal = brief.goals[agent]
         self._conflict = any(goal != self._goal for goal in brief.goals.values())
         self._speaks = agent in brief.talk and order > 0
@@ -256,14 +257,14 @@ class _Planning:
 
     def _pass(self, node: _Node, mine: Performer | None) -> bool:
         """Let time pass up to the end of a round at most; whether there is any reason to."""
-        passed = node.elapsed % self._brief.round_ticks
+        passed = node.elapsed % self._round
         if not passed:
             self._change_minds(node)
         performers = {name: each.performer for name, each in node.others.items()}
         if mine is not None:
             performers[self._agent] = mine
         performers = dict(sorted(performers.items()))
-        ticks = min(self._brief.round_ticks - passed, self._horizon - node.elapsed)
+        ticks = min(self._round - passed, self._horizon - node.elapsed)
         if all(each.is_done for each in performers.values()):
             if not passed or not any(self._may_change(node, name) for name in node.others):
                 return False
@@ -351,7 +352,9 @@ class Search:
         """The calls of its plan, as a program."""
         mind = view.imagine(self.order)
         planner = Planner(view.brief)
-        plan = planner.plan(mind, view.agent, self.order, view.ticks_left, self.bounds)
+        # Imagined is a scripted world, in which a block on foot takes one tick.
+        ticks = view.ticks_left // view.brief.pace
+        plan = planner.plan(mind, view.agent, self.order, ticks, self.bounds)
         return program_of(plan.calls)
 
 

@@ -1,0 +1,108 @@
+"""Policies that ask a model, which is told as much of others' minds as its order allows."""
+
+from dataclasses import dataclass, field
+from importlib.resources import files
+
+from beliefnest.episodes.goals import Goal, ItemsWith
+from beliefnest.episodes.rounds import Spent
+from beliefnest.episodes.view import AgentView
+from beliefnest.llm.asking import NoUsableProgramError, ask_for_program
+from beliefnest.llm.messages import Model, Sampling, Usage
+from beliefnest.programs import skills
+from beliefnest.prompts import built_in_template
+
+__all__ = ["ModelPolicy", "OmniscientModelPolicy"]
+
+
+@dataclass
+class ModelPolicy:
+    """Asks a model for each round's program.
+
+    What it is told: of order 0 what the agent believes; of order 1 also what it takes the others to
+    believe; of order 2 also what it takes them to believe that it believes.
+
+    Attributes:
+        model: Who is asked.
+        order: Order of Theory of Mind.
+        attempts: How often at most in a round; an answer without a program is sent back.
+        spent: What it has taken so far.
+    """
+
+    model: Model
+    order: int
+    attempts: int = 2
+    spent: Spent = field(default_factory=Spent)
+
+    def act(self, view: AgentView) -> str:
+        """The program that the model answers with.
+
+        Raises:
+            ModelError: The model failed, or gave no program.
+            TemplateError: The prompt cannot be made.
+        """
+        prompt = self.prompt(view)
+        system = view.render(built_in_template("instructions").text, skills=skills())
+        try:
+            answer = ask_for_program(
+                view.noting(self.model),
+                prompt,
+                lambda _: None,
+                self.attempts,
+                system=system,
+                sampling=Sampling(seed=view.brief.seed),
+            )
+        except NoUsableProgramError as error:
+            self._spend(sum((each.answer.usage for each in error.attempts), Usage()))
+            raise
+        self._spend(answer.usage)
+        return answer.program
+
+    def prompt(self, view: AgentView) -> str:
+        """What the model is told in a round."""
+        others = [name for name in view.brief.goals if name != view.agent]
+        return view.render(
+            _template(),
+            depth=self.order,
+            order=self.order,
+            others=others,
+            instructed=True,
+            task=_sentence(view.goal, view.agent),
+            tasks={name: _sentence(view.brief.goals[name], name) for name in others},
+            places=view.brief.places,
+            last_code=view.last.program or None,
+            last_error=view.last.message or None,
+        )
+
+    def _spend(self, usage: Usage) -> None:
+        self.spent += Spent(usage.requests, usage.tokens, usage.cost)
+
+
+@dataclass
+class OmniscientModelPolicy(ModelPolicy):
+    """The same, told what is the case and what the others really believe: an upper bound."""
+
+    sees_all: bool = True
+
+    def prompt(self, view: AgentView) -> str:
+        """What the model is told in a round; `branch` is reality, of which nobody is the owner."""
+        return view.render(
+            (files(__package__) / "texts" / "omniscient.txt").read_text(encoding="utf-8"),
+            depth=1,
+            agents=list(view.brief.goals),
+            task=_sentence(view.goal, view.agent),
+        )
+
+
+def _template() -> str:
+    return (files(__package__) / "texts" / "model.txt").read_text(encoding="utf-8")
+
+
+def _sentence(goal: Goal, agent: str) -> str:
+    """A goal as one would ask for it; the simplest ones as a wish."""
+    facts = [each.fact for each in goal.reach if not each.path]
+    if len(facts) == 1 and not goal.never and isinstance(facts[0], ItemsWith):
+        wanted = facts[0]
+        if wanted.agent == agent:
+            return f"Get {wanted.count} {wanted.item} from a chest."
+        return f"Help {wanted.agent}."
+    return f"See to it: {goal}."
