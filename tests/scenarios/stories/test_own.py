@@ -6,7 +6,9 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
+from beliefnest.scenarios.stories.explaining import explain_answer
 from beliefnest.scenarios.stories.own import read_own
+from beliefnest.scenarios.stories.playing import PlayedStory
 from beliefnest.scenarios.stories.suite import answer_story
 
 TOLD = {
@@ -105,3 +107,60 @@ def test_a_door_that_is_open_already_is_a_fault(file) -> None:
     events = ["Sally entered the den.", "Sally opened the door of the den."]
     with pytest.raises(bn.InputError, match=r"line 2: .*is open already"):
         read_own(file({"events": events, "questions": []}))
+
+
+SIGNS = {
+    "name": "a note",
+    "events": [
+        "Sally and Anne entered the den.",
+        "The pear is in the box.",
+        'Anne wrote "pears" on the sign of the den.',
+        "Sally exited the den.",
+        {"event": "write", "agent": "Anne", "room": "den", "text": "no\npears"},
+        "Anne exited the den.",
+        "Cid entered the attic.",
+    ],
+    "questions": [
+        {"question": "What does the sign of the den really say?", "answer": "no\npears"},
+        {"question": "What does Sally think the sign of the den says?", "answer": "pears"},
+        {"believers": ["Anne", "Sally"], "sign": "den", "answer": "pears"},
+        {"believers": ["Cid"], "sign": "den", "answer": None},
+    ],
+}
+
+
+LONG = f'Anne wrote "{"x" * 46}" on the sign of the den.'
+
+
+@pytest.mark.parametrize("world", ["scripted", "embedded"])
+def test_what_is_written_on_a_sign_is_known_to_who_saw_it(tmp_path, world):
+    file = tmp_path / "stories.jsonl"
+    file.write_text(json.dumps(SIGNS))
+    (told,) = read_own(file)
+    asked = [item.question for item in told.items]
+    with PlayedStory.play(told.story, world, asked=asked) as played:
+        for item in told.items:
+            answer = played.answer(item.question)
+            assert answer.text == item.expected, item.question.text
+        wrong = told.items[1]
+        lines = explain_answer(played, wrong.question, played.answer(wrong.question), "no\npears")
+        assert lines[0] == ('the sign of the den says "pears" in /Sally, expected "no / pears"')
+
+
+@pytest.mark.parametrize(
+    ("change", "fault"),
+    [
+        ({"events": ['Anne wrote "x" on the sign of the den.']}, "Anne is in no room"),
+        ({"questions": [{"sign": "attic", "answer": "x"}]}, "nobody writes on a sign of the attic"),
+        ({"questions": [{"sign": "den", "answer": "x"}]}, "the answer 'x' is none; there are "),
+        (
+            {"events": [*SIGNS["events"][:2], f'Anne wrote "{"x" * 46}" on the sign of the den.']},
+            "46",
+        ),
+    ],
+)
+def test_what_cannot_be_on_a_sign_is_named(tmp_path, change, fault):
+    file = tmp_path / "stories.jsonl"
+    file.write_text(json.dumps(SIGNS | change))
+    with pytest.raises(bn.InputError, match=fault):
+        read_own(file)

@@ -4,7 +4,7 @@ import json
 from collections.abc import Sequence
 
 from beliefnest.scenarios.stories.plan import FloorPlan, feet
-from beliefnest.scenarios.stories.story import Act, Come, Go, Look, Move, Tell, UseDoor
+from beliefnest.scenarios.stories.story import Act, Come, Go, Look, Move, Tell, UseDoor, Write
 from beliefnest.world.claims import Claim
 from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.values import Position
@@ -28,6 +28,8 @@ def tell(world: ScriptedWorld, plan: FloorPlan, act: Act) -> None:
                 world.deposit(agent, plan.places[target], item)
             case UseDoor(agent, room, opens):
                 world.use_door(agent, plan.doors[room], open=opens)
+            case Write(agent, room, text):
+                world.write_sign(agent, plan.signs[room], text)
             case Look(agent, place):
                 world.open(agent, plan.places[place])
             case Tell(agent, None):
@@ -45,13 +47,13 @@ def programs_of(act: Act, plan: FloorPlan) -> dict[str, str]:
             return {agent: _walk(plan.stands[room, agent], act.shuts) for agent in agents}
         case Go(agents):
             return {agent: _walk(plan.apart[agent], act.shuts) for agent in agents}
-        case Move() | UseDoor() | Look() | Tell():
+        case Move() | UseDoor() | Write() | Look() | Tell():
             return {act.agent: _program(act, plan)}
         case _:
             return {}
 
 
-def _program(act: Move | UseDoor | Look | Tell, plan: FloorPlan) -> str:
+def _program(act: Move | UseDoor | Write | Look | Tell, plan: FloorPlan) -> str:
     """What one agent does; at the end it is at its stand, in nobody's way."""
     match act:
         case Move(agent, thing, source, target):
@@ -64,6 +66,9 @@ def _program(act: Move | UseDoor | Look | Tell, plan: FloorPlan) -> str:
             return f"await {skill}(bot, {_vec3(plan.doors[room])})\n" + _walk(
                 plan.stands[room, agent]
             )
+        case Write(agent, room, text):
+            sign = f"await writeSign(bot, {_vec3(plan.signs[room])}, {json.dumps(text)})\n"
+            return sign + _walk(plan.stands[room, agent])
         case Look(agent, place):
             where = _vec3(plan.places[place])
             return (

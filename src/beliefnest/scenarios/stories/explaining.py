@@ -4,6 +4,7 @@ from beliefnest.belief.entries import Basis
 from beliefnest.scenarios.stories.playing import Answer, PlayedStory
 from beliefnest.scenarios.stories.questions import Question
 from beliefnest.scenarios.stories.story import Place
+from beliefnest.world.signs import sign_words
 
 __all__ = ["explain_answer"]
 
@@ -19,8 +20,8 @@ def explain_answer(
         answer: What the nest said.
         expected: Name of the container expected; None: none.
     """
-    if question.door is not None:
-        return _door(played, question, answer, expected)
+    if question.door is not None or question.sign is not None:
+        return _block(played, question, answer, expected)
     said = "in no container" if answer.text is None else f"in the {answer.text}"
     wanted = "in no container" if expected is None else f"the {expected}"
     lines = [f"the {question.thing} is {said} in {answer.path}, expected {wanted}"]
@@ -35,16 +36,23 @@ def explain_answer(
     return (*lines, *_perceptions(played, question, answer, expected))
 
 
-def _door(
+def _block(
     played: PlayedStory, question: Question, answer: Answer, expected: str | None
 ) -> tuple[str, ...]:
-    room = str(question.door)
-    lines = [
-        f"the door of the {room} is {answer.text or 'unknown'} in {answer.path}, expected "
-        f"{expected or 'unknown'}"
-    ]
-    explained = played.asked(question).explain(block=played.plan.doors[room])
-    return (*lines, *str(explained).splitlines())
+    """Of a door or a sign."""
+    if question.door is not None:
+        what, place = f"the door of the {question.door} is", played.plan.doors[question.door]
+        found, wanted = (text or "unknown" for text in (answer.text, expected))
+    else:
+        room = str(question.sign)
+        what, place = f"the sign of the {room} says", played.plan.signs[room]
+        found, wanted = map(_saying, (answer.text, expected))
+    line = f"{what} {found} in {answer.path}, expected {wanted}"
+    return (line, *str(played.asked(question).explain(block=place)).splitlines())
+
+
+def _saying(text: str | None) -> str:
+    return "what is unknown" if text is None else f'"{sign_words(text)}"' if text else "nothing"
 
 
 def _perceptions(

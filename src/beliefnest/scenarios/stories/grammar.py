@@ -23,6 +23,7 @@ __all__ = [
     "Sentence",
     "Stayed",
     "Told",
+    "Wrote",
     "parse_line",
     "parse_lines",
 ]
@@ -79,6 +80,15 @@ class DoorUsed:
 
 
 @dataclass(frozen=True, slots=True)
+class Wrote:
+    """An agent in a room writes on its sign, over what is there."""
+
+    agent: str
+    room: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Opened:
     """An agent opens a container, looks into it and shuts it."""
 
@@ -110,7 +120,7 @@ class Remark:
     """Something that changes neither the world nor what anyone knows of it."""
 
 
-Sentence = Entered | Exited | Stayed | Located | Moved | DoorUsed | Opened | Told | Remark
+Sentence = Entered | Exited | Stayed | Located | Moved | DoorUsed | Wrote | Opened | Told | Remark
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,6 +198,11 @@ _FORMS: tuple[tuple[str, Callable[[re.Match[str]], Sentence]], ...] = (
         lambda match: DoorUsed(match["agent"], match["room"], match["how"] == "opened"),
     ),
     (
+        rf'(?P<agent>{_AGENT}) wrote "(?P<text>[^"]*)" on the sign of '
+        rf"(?:the )?(?P<room>{_NAME})",
+        lambda match: Wrote(match["agent"], match["room"], match["text"]),
+    ),
+    (
         rf"(?P<agent>{_AGENT}) (?:opened|looked into) (?:the )?(?P<container>{_NAME})",
         lambda match: Opened(match["agent"], match["container"]),
     ),
@@ -238,6 +253,7 @@ def _parse(number: int, line: str) -> Sentence:
     raise InputError(
         f"line {number}: {line!r} is no sentence of a story; write that someone entered, exited "
         "or stayed in a room, moved a thing to a container, opened a container, opened or shut "
-        "the door of a room, said or whispered to someone that a thing is in a container, likes "
+        'the door of a room, wrote "..." on the sign of a room, said or whispered to someone that '
+        "a thing is in a container, likes "
         "or dislikes something, or that a thing is in a container"
     )

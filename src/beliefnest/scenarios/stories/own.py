@@ -14,7 +14,7 @@ from beliefnest.scenarios.stories.data import Item, StoryItems
 from beliefnest.scenarios.stories.grammar import Line, Sentence, parse_line
 from beliefnest.scenarios.stories.playing import Knowing, check_question
 from beliefnest.scenarios.stories.questions import Question, parse_question
-from beliefnest.scenarios.stories.story import Story, story_of
+from beliefnest.scenarios.stories.story import Story, Write, story_of
 
 __all__ = ["read_own"]
 
@@ -77,6 +77,15 @@ class _Door(_Event, frozen=True, tag="door"):
         return grammar.DoorUsed(self.agent, self.room, self.open)
 
 
+class _Write(_Event, frozen=True, tag="write"):
+    agent: _Agent
+    room: _Name
+    text: str
+
+    def sentence(self) -> Sentence:
+        return grammar.Wrote(self.agent, self.room, self.text)
+
+
 class _Tell(_Event, frozen=True, tag="tell"):
     agent: _Agent
     thing: _Name
@@ -103,17 +112,18 @@ class _Wait(_Event, frozen=True, tag="wait"):
         return grammar.Remark()
 
 
-_Happening = _Enter | _Leave | _Is | _Move | _Open | _Door | _Tell | _Whisper | _Wait
+_Happening = _Enter | _Leave | _Is | _Move | _Open | _Door | _Write | _Tell | _Whisper | _Wait
 
 
 class _Asked(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A question: as a sentence, or as `believers` and `thing` or `door`."""
+    """A question: as a sentence, or as `believers` and `thing`, `door` or `sign`."""
 
     answer: str | None
     question: str | None = None
     believers: list[_Agent] = []
     thing: str | None = None
     door: str | None = None
+    sign: str | None = None
     at_beginning: bool = False
 
 
@@ -175,18 +185,24 @@ def _line(number: int, event: str | _Happening) -> Line:
 
 
 def _question(asked: _Asked) -> Question:
-    parts = [part for part in (asked.question, asked.thing, asked.door) if part is not None]
+    asks = (asked.question, asked.thing, asked.door, asked.sign)
+    parts = [part for part in asks if part is not None]
     if len(parts) != 1 or (asked.question is not None and asked.believers):
         raise InputError(
             f"the question {parts!r} has to be one of: 'question', a sentence; 'believers' and "
-            "'thing'; 'believers' and 'door', the name of its room"
+            "'thing'; 'believers' and 'door' or 'sign', the name of its room"
         )
     if asked.question is not None:
         return parse_question(asked.question)
     names = " ".join(f"{name} thinks" for name in asked.believers)
-    what = f"the door of the {asked.door} is" if asked.thing is None else f"the {asked.thing} is in"
+    what = f"the {asked.thing} is in"
+    if asked.thing is None:
+        what = f"the door of the {asked.door} is"
+    if asked.sign is not None:
+        what = f"the sign of the {asked.sign} says"
     text = f"{names} {what} ...".strip()
-    return Question(tuple(asked.believers), asked.thing or "", asked.at_beginning, text, asked.door)
+    believers, thing = tuple(asked.believers), asked.thing or ""
+    return Question(believers, thing, asked.at_beginning, text, asked.door, asked.sign)
 
 
 def _check_answer(story: Story, item: Item) -> None:
@@ -194,6 +210,8 @@ def _check_answer(story: Story, item: Item) -> None:
         return
     names = {place.container for place in story.places}
     there = {"open", "shut"} if item.question.door is not None else names
+    if item.question.sign is not None:
+        there = {act.text for act in story.acts if isinstance(act, Write)} | {""}
     if item.expected not in there:
         raise InputError(
             f"{item.question.text!r}: the answer {item.expected!r} is none; there are "

@@ -41,6 +41,7 @@ WALL = "stone"
 
 _CONTAINER = "barrel"
 _DOOR = "oak_door"
+_SIGN = "oak_sign[rotation=8]"
 _HEIGHT = 3
 _CELL, _CORRIDOR, _ROOM, _STANDS, _BARRELS, _DEPTH = 1, 4, 8, 9, 10, 12
 """Rows along z."""
@@ -60,6 +61,7 @@ class FloorPlan:
         stands: Where each agent stands in each room, by (room, agent), block of the feet.
         doors: Where the door of each room that has one is, its lower half.
         items: The Minecraft item that stands for each thing; no two share one.
+        signs: Where the sign of each room that has one is.
     """
 
     snapshot: Snapshot
@@ -68,6 +70,7 @@ class FloorPlan:
     stands: Mapping[tuple[str, str], Position]
     items: Mapping[str, str]
     doors: Mapping[str, Position]
+    signs: Mapping[str, Position]
 
     def place_at(self, position: Position) -> Place:
         """The container at a position of one."""
@@ -112,6 +115,14 @@ def lay_out(story: Story) -> FloorPlan:
             grid[x, y + height, z] = registry.state_id(
                 f"{_DOOR}[facing=north,half={half},open=true]"
             )
+    # Above a container if there is one: who stands in the room sees both.
+    signs = {
+        room: (start, 2 if any(place.room == room for place in story.places) else 1, _BARRELS)
+        for room, (start, _) in zip(story.rooms, spans, strict=False)
+        if room in story.signs
+    }
+    for position in signs.values():
+        grid[position] = registry.state_id(_SIGN)
     grid.flags.writeable = False
     items = item_names(tuple(story.things), registry)
     contents: dict[Position, Items] = {position: {} for position in places.values()}
@@ -119,7 +130,8 @@ def lay_out(story: Story) -> FloorPlan:
         contents[places[place]] = {**contents[places[place]], items[thing]: 1}
     apart = apart or cells
     agents = {name: AgentState(feet(block)) for name, block in apart.items()}
-    return FloorPlan(Snapshot(0, box, grid, contents, agents), places, apart, stands, items, doors)
+    snapshot = Snapshot(0, box, grid, contents, agents)
+    return FloorPlan(snapshot, places, apart, stands, items, doors, signs)
 
 
 def feet(block: Position) -> Point:

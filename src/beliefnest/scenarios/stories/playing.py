@@ -40,6 +40,7 @@ class Answer:
         place: The container that holds it there; None: none does.
         basis: What that rests on; None: nothing.
         is_open: For a door, whether it is open; None: that is unknown, or it is no door.
+        says: For a sign, what is written on it; None: that is unknown, or it is no sign.
     """
 
     path: str
@@ -48,10 +49,16 @@ class Answer:
     place: Place | None
     basis: Basis | None
     is_open: bool | None = None
+    says: str | None = None
 
     @property
     def text(self) -> str | None:
-        """Name of the container, `open` or `shut`; None: no container holds it, or unknown."""
+        """Name of the container, `open` or `shut`, or what a sign says.
+
+        None: no container holds it, or unknown.
+        """
+        if self.says is not None:
+            return self.says
         if self.is_open is not None:
             return "open" if self.is_open else "shut"
         return None if self.place is None else self.place.container
@@ -151,6 +158,8 @@ class PlayedStory:
         """
         if question.door is not None:
             return self._door(self.asked(question), question.door)
+        if question.sign is not None:
+            return self._sign(self.asked(question), question.sign)
         return self._find(self.asked(question), question.thing)
 
     def asked(self, question: Question) -> Simulator | PastSimulator:
@@ -186,6 +195,10 @@ class PlayedStory:
         is_open = None if block is None else "open=true" in block
         return Answer(simulator.path, simulator.tick, "", None, None, is_open)
 
+    def _sign(self, simulator: Simulator | PastSimulator, room: str) -> Answer:
+        says = simulator.state.signs.get(self.plan.signs[room])
+        return Answer(simulator.path, simulator.tick, "", None, None, says=says)
+
     def _find(self, simulator: Simulator | PastSimulator, thing: str) -> Answer:
         item = self.plan.items[thing]
         containers = simulator.state.containers
@@ -218,6 +231,14 @@ def check_question(story: Story, question: Question) -> None:
             raise InputError(
                 f"{question.text!r}: nobody opens or shuts a door of the {question.door}; there "
                 f"are doors of: {there}"
+            )
+        return
+    if question.sign is not None:
+        if question.sign not in story.signs:
+            there = ", ".join(story.signs) or "none"
+            raise InputError(
+                f"{question.text!r}: nobody writes on a sign of the {question.sign}; there are "
+                f"signs of: {there}"
             )
         return
     if question.thing not in story.things:

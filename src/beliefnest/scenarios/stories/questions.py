@@ -10,14 +10,15 @@ __all__ = ["Question", "parse_question"]
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """Where a thing is, or is believed to be; or whether a door is open.
+    """Where a thing is, or is believed to be; whether a door is open, or what a sign says.
 
     Attributes:
         believers: Agent names from the outermost believer inwards; empty: where it is.
-        thing: What is asked for; empty where it is a door.
+        thing: What is asked for; empty where it is a door or a sign.
         at_beginning: Whether the beginning of the story is meant, and not its end.
         text: The question as it is written.
-        door: The room whose door is asked for; None: it is about a thing.
+        door: The room whose door is asked for; None: it is about none.
+        sign: The room whose sign is asked for; None: it is about none.
     """
 
     believers: tuple[str, ...]
@@ -25,6 +26,7 @@ class Question:
     at_beginning: bool
     text: str
     door: str | None = None
+    sign: str | None = None
 
     @property
     def order(self) -> int:
@@ -53,6 +55,11 @@ _DOOR_REALITY = re.compile(rf"Is {_DOOR} (?:really )?open")
 _DOOR_BELIEF = re.compile(
     rf"Does (?P<chain>{_AGENT} {_THINK}(?: {_AGENT} {_THINK})*) {_DOOR} is open"
 )
+_SIGN = r"the sign of (?:the )?(?P<room>[A-Za-z0-9][\w' -]*?)"
+_SIGN_REALITY = re.compile(rf"What does {_SIGN} (?:really )?say")
+_SIGN_BELIEF = re.compile(
+    rf"What does (?P<chain>{_AGENT} {_THINK}(?: {_AGENT} {_THINK})*) {_SIGN} says"
+)
 _BELIEVER = re.compile(rf"({_AGENT}) {_THINK}(?: |$)")
 
 
@@ -63,13 +70,14 @@ def parse_question(text: str) -> Question:
         InputError: It is none of the questions known.
     """
     words = " ".join(text.split()).removesuffix("?").rstrip()
-    found = _about_a_thing(words, text) or _about_a_door(words, text)
+    found = _about_a_thing(words, text) or _about_a_door(words, text) or _about_a_sign(words, text)
     if found is not None:
         return found
     raise InputError(
         f"{text!r} is no question about a story; ask 'Where is the X really?', 'Where was the X "
         "at the beginning?', 'Where will A look for the X?', 'Where does A think B thinks the "
-        "X is?' or 'Does A think the door of the R is open?'"
+        "X is?', 'Does A think the door of the R is open?' or 'What does A think the sign of the "
+        "R says?'"
     )
 
 
@@ -93,4 +101,13 @@ def _about_a_door(words: str, text: str) -> Question | None:
         return Question((), "", False, text, match["room"])
     if match := _DOOR_BELIEF.fullmatch(words):
         return Question(tuple(_BELIEVER.findall(match["chain"])), "", False, text, match["room"])
+    return None
+
+
+def _about_a_sign(words: str, text: str) -> Question | None:
+    if match := _SIGN_REALITY.fullmatch(words):
+        return Question((), "", False, text, sign=match["room"])
+    if match := _SIGN_BELIEF.fullmatch(words):
+        chain = tuple(_BELIEVER.findall(match["chain"]))
+        return Question(chain, "", False, text, sign=match["room"])
     return None

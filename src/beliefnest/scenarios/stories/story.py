@@ -19,8 +19,10 @@ from beliefnest.scenarios.stories.grammar import (
     Remark,
     Stayed,
     Told,
+    Wrote,
     parse_lines,
 )
+from beliefnest.world.signs import sign_fault
 
 __all__ = [
     "WAITING_ROOM",
@@ -34,6 +36,7 @@ __all__ = [
     "Tell",
     "UseDoor",
     "Wait",
+    "Write",
     "read_story",
     "story_of",
 ]
@@ -107,6 +110,15 @@ class UseDoor:
 
 
 @dataclass(frozen=True, slots=True)
+class Write:
+    """An agent in a room writes on its sign."""
+
+    agent: str
+    room: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Tell:
     """An agent says something, with a claim.
 
@@ -131,7 +143,7 @@ class Tell:
         return f"The {self.thing} {link} in the {self.place.container}."
 
 
-Act = Come | Go | Move | Look | UseDoor | Tell | Wait
+Act = Come | Go | Move | Look | UseDoor | Write | Tell | Wait
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,6 +158,7 @@ class Story:
         agents: Who acts in it, in order of mention; each is in no room at first.
         things: Where each thing is at first, in order of mention.
         doors: Rooms that have a door, open at first, in order of mention.
+        signs: Rooms that have a sign, with nothing on it at first, in order of mention.
     """
 
     lines: tuple[Line, ...]
@@ -155,6 +168,7 @@ class Story:
     agents: tuple[str, ...]
     things: dict[str, Place]
     doors: tuple[str, ...] = ()
+    signs: tuple[str, ...] = ()
 
     @property
     def tells(self) -> bool:
@@ -192,13 +206,15 @@ def story_of(lines: Sequence[Line]) -> Story:
         agents=tuple(reader.whereabouts),
         things=reader.first,
         doors=tuple(reader.is_open),
+        signs=tuple(dict.fromkeys(act.room for act in acts if isinstance(act, Write))),
     )
 
 
 def _rooms(lines: Sequence[Line]) -> tuple[str, ...]:
     """Names of the rooms: what is gone into, and what containers are in."""
     sentences = [line.sentence for line in lines]
-    visited = [s.room for s in sentences if isinstance(s, Entered | Exited | Stayed | DoorUsed)]
+    named = Entered | Exited | Stayed | DoorUsed | Wrote
+    visited = [s.room for s in sentences if isinstance(s, named)]
     located = [s for s in sentences if isinstance(s, Located)]
     holders = {s.place for s in located if s.place not in visited}
     holders |= {s.container for s in sentences if isinstance(s, Moved)}
@@ -243,8 +259,8 @@ class _Reader:
             case Opened(agent, container):
                 room = self._room_of(line, agent)
                 return Look(agent, self._place(line, self._here(line, room, container), container))
-            case DoorUsed():
-                return self._use_door(line, line.sentence)
+            case DoorUsed() | Wrote():
+                return self._use(line, line.sentence)
             case Told():
                 return self._tell(line, line.sentence)
             case Stayed(agents, room):
@@ -265,6 +281,14 @@ class _Reader:
             return Go(agents, shuts)
         self.whereabouts.update(dict.fromkeys(agents, room))
         return Go(agents, shuts) if room == WAITING_ROOM else Come(agents, room, shuts)
+
+    def _use(self, line: Line, used: DoorUsed | Wrote) -> UseDoor | Write:
+        if isinstance(used, DoorUsed):
+            return self._use_door(line, used)
+        self._check_inside(line, (used.agent,), used.room)
+        if fault := sign_fault(used.text):
+            raise line.fault(fault)
+        return Write(used.agent, used.room, used.text.rstrip("\n"))
 
     def _use_door(self, line: Line, used: DoorUsed) -> UseDoor:
         self._check_inside(line, (used.agent,), used.room)
