@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from functools import cache
 
 from beliefnest.pictures import icons
-from beliefnest.pictures.lettering import ASCENT, DESCENT, text_width
+from beliefnest.pictures.labels import LINE, Label, Put, leader, put_labels
+from beliefnest.pictures.lettering import ASCENT, text_width
 from beliefnest.pictures.marks import XY, Bounds, Lines, Polygon, Rectangle, Text
 from beliefnest.pictures.marks import Mark as Drawn
 from beliefnest.pictures.palette import INK, MARKS, PAPER, QUIET, AgentLook, Mark, age_text, mix
@@ -22,10 +23,6 @@ _GROUND = "#f0ece3"
 _GRID = "#e4dfd4"
 _WALL = "#706c6a"
 _HATCH = 4.2
-_LINE = ASCENT + DESCENT
-"""From line to line of a label, to the size of its text."""
-_MANY = 1000
-_TRIES = 4
 _SMALLEST = 3.9
 """Least radius of an agent, in points, at which its letters can be read."""
 _KINDS: Mapping[str, str] = {
@@ -116,38 +113,6 @@ def hatching(bounds: Bounds, number: int, step: float = _HATCH) -> tuple[tuple[X
     return tuple(segments)
 
 
-@dataclass(frozen=True, slots=True)
-class _Label:
-    """A name, and what else stands below it, before it has its place.
-
-    Attributes:
-        icon: What it belongs to.
-        lines: Texts, and whether they are bold.
-        sizes: Of the lines, in points.
-        size: Width and height of all of it.
-    """
-
-    icon: Bounds
-    lines: tuple[tuple[str, bool], ...]
-    sizes: tuple[float, ...]
-    size: tuple[float, float]
-
-
-@dataclass(frozen=True, slots=True)
-class _Put:
-    """A label that has its place.
-
-    Attributes:
-        label: The label.
-        at: Its left upper corner; None: there is no room for it.
-        beside: Whether that is beside its icon.
-    """
-
-    label: _Label
-    at: XY | None
-    beside: bool
-
-
 class _Sheet:
     """A plan under way."""
 
@@ -169,7 +134,7 @@ class _Sheet:
                 at[1] + down * cell - inset,
             )
         )
-        self._labels: list[_Label] = []
+        self._labels: list[Label] = []
         self.marks: list[Drawn] = []
         self.unnamed: list[str] = []
         self.kinds: set[str] = set()
@@ -390,74 +355,25 @@ class _Sheet:
             text_width(text, high, bold=bold)
             for (text, bold), high in zip(lines, sizes, strict=True)
         )
-        self._labels.append(_Label(icon, lines, sizes, (width, sum(sizes) * _LINE)))
+        self._labels.append(Label(icon, lines, sizes, (width, sum(sizes) * LINE)))
 
     def names(self) -> None:
-        """The names beside their icons, when all icons have their places.
-
-        A name for which there is no room at its icon stands where there is some, with a line
-        that leads to it; those that came off so badly choose before the others in the next try.
-        """
-        best: list[_Put] = []
-        first: list[_Label] = []
-        for number in range(_TRIES):
-            put = self._arranged(first)
-            away = [each.label for each in put if not each.beside]
-            if not number or len(away) < sum(not each.beside for each in best):
-                best = put
-            if not away:
-                break
-            first = [*away, *(label for label in first if label not in away)]
-        for each in best:
+        """The names, when all icons have their places."""
+        for each in put_labels(self._labels, self._room):
             self._write(each)
 
-    def _arranged(self, first: list[_Label]) -> list[_Put]:
-        """Names with their places; then whoever has the least choice chooses first."""
-        room = self._room.copy()
-        waiting = [*first, *(label for label in self._labels if label not in first)]
-        put: list[_Put] = []
-        while waiting:
-            places = [room.beside(label.icon, *label.size) for label in waiting]
-            chooses = len(put) >= len(first)
-            number = (
-                min(range(len(waiting)), key=lambda n: (len(places[n]) or _MANY, n))
-                if chooses
-                else 0
-            )
-            label, found = waiting.pop(number), places[number]
-            wide, high = label.size
-            if found:
-                room.take((*found[0], found[0][0] + wide, found[0][1] + high))
-                put.append(_Put(label, found[0], beside=True))
-                continue
-            x0, y0, x1, y1 = label.icon
-            spot = room.spot(((x0 + x1) / 2, (y0 + y1) / 2), wide, high)
-            at = None if spot is None else (spot[0] - wide / 2, spot[1] - high / 2)
-            put.append(_Put(label, at, beside=False))
-        return put
-
-    def _write(self, put: _Put) -> None:
+    def _write(self, put: Put) -> None:
         label = put.label
         if put.at is None:
             self.unnamed.append(" ".join(text for text, _ in label.lines))
             return
         if not put.beside:
-            self.marks.append(Lines((_between(label.icon, put.at, label.size),), INK, 0.5))
+            self.marks.append(Lines((leader(put),), INK, 0.5))
         x, y = put.at
         for (text, bold), size in zip(label.lines, label.sizes, strict=True):
             base, middle = y + ASCENT * size, x + label.size[0] / 2
             self.marks.append(Text(middle, base, text, size, INK, bold, "middle", halo=PAPER))
-            y += _LINE * size
-
-
-def _between(icon: Bounds, at: XY, size: tuple[float, float]) -> tuple[XY, XY]:
-    """A line from an icon to a label."""
-    x0, y0, x1, y1 = icon
-    end = (
-        min(max((x0 + x1) / 2, at[0]), at[0] + size[0]),
-        min(max((y0 + y1) / 2, at[1]), at[1] + size[1]),
-    )
-    return (min(max(end[0], x0), x1), min(max(end[1], y0), y1)), end
+            y += LINE * size
 
 
 def _with_height(name: str, above: int) -> str:

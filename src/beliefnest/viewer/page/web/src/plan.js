@@ -9,6 +9,8 @@ const DARK = { wall: '#9a979c', nowhere: '#17161b', unknown: '#2b2930', hatch: '
 const LEAST = 6
 const MOST_SHOWN = 24
 const LETTER = 7
+const BOLD = 7.6
+const RING = 1.4
 const LINE = 14
 
 /** Draws plans into an element that it fills. */
@@ -37,7 +39,7 @@ export class Plan {
       part.style.width = `${w}px`
       part.style.height = `${d}px`
     }
-    this.labelled = []
+    this.labelled = this.discs(scene)
     refill(this.over,
       ...this.wrongBlocks(scene), ...this.ray(scene), ...this.containers(scene), ...this.signs(scene), ...this.items(scene), ...this.agents(scene))
   }
@@ -70,9 +72,23 @@ export class Plan {
     return [(x - this.low[0]) * this.size, (z - this.low[2]) * this.size]
   }
 
+  /** What of the plan agents take, which no text is to lie on. */
+  discs ({ things }) {
+    const r = this.radius()
+    return things.agents.filter(each => each.pose !== null).map(({ pose }) => {
+      const [x, y] = this.at(pose.x, pose.z)
+      // A ring around it is wider; its own name begins just below it.
+      return { left: x - RING * r, top: y - r, width: 2 * RING * r, height: 2 * r - 1 }
+    })
+  }
+
+  radius () {
+    return Math.max(7, 0.42 * this.size)
+  }
+
   /** A text near a thing, moved up or down where it would lie over another one. */
   label (x, y, text, wrong) {
-    const width = LETTER * text.length
+    const width = (wrong ? BOLD : LETTER) * text.length
     const free = apart(this.labelled, { left: x - width / 2, top: y - LINE, width, height: LINE })
     this.labelled.push(free)
     return svg('text', { class: `label${wrong ? ' false' : ''}`, x, y: free.top + LINE }, text)
@@ -123,7 +139,7 @@ export class Plan {
     return things.agents.filter(each => each.pose !== null).map(each => {
       const { pose, look } = each
       const [x, y] = this.at(pose.x, pose.z)
-      const r = Math.max(7, 0.42 * this.size)
+      const r = this.radius()
       const [dx, dy] = [-Math.sin(pose.yaw), -Math.cos(pose.yaw)]
       const far = Math.abs(pose.y - storey) > 1.5
       const wrong = each.marks.includes('false')

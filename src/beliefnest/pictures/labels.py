@@ -1,0 +1,101 @@
+"""Where names stand on a plan: at what they belong to, or with a line that leads there."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from beliefnest.pictures.lettering import ASCENT, DESCENT
+from beliefnest.pictures.marks import XY, Bounds
+from beliefnest.pictures.room import Room
+
+__all__ = ["LINE", "Label", "Put", "leader", "put_labels"]
+
+LINE = ASCENT + DESCENT
+"""From line to line of a label, to the size of its text."""
+_MANY = 1000
+_TRIES = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A name, and what else stands below it, before it has its place.
+
+    Attributes:
+        icon: What it belongs to.
+        lines: Texts, and whether they are bold.
+        sizes: Of the lines, in points.
+        size: Width and height of all of it.
+    """
+
+    icon: Bounds
+    lines: tuple[tuple[str, bool], ...]
+    sizes: tuple[float, ...]
+    size: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Put:
+    """A label that has its place.
+
+    Attributes:
+        label: The label.
+        at: Its left upper corner; None: there is no room for it.
+        beside: Whether that is beside its icon.
+    """
+
+    label: Label
+    at: XY | None
+    beside: bool
+
+
+def put_labels(labels: Sequence[Label], room: Room) -> list[Put]:
+    """Labels with their places.
+
+    One for which there is no room at its icon stands where there is some; those that came off so
+    badly choose before the others in the next try.
+    """
+    best: list[Put] = []
+    first: list[Label] = []
+    for number in range(_TRIES):
+        put = _arranged(labels, first, room)
+        away = [each.label for each in put if not each.beside]
+        if not number or len(away) < sum(not each.beside for each in best):
+            best = put
+        if not away:
+            break
+        first = [*away, *(label for label in first if label not in away)]
+    return best
+
+
+def _arranged(labels: Sequence[Label], first: Sequence[Label], free: Room) -> list[Put]:
+    """Names with their places; then whoever has the least choice chooses first."""
+    room = free.copy()
+    waiting = [*first, *(label for label in labels if label not in first)]
+    put: list[Put] = []
+    while waiting:
+        places = [room.beside(label.icon, *label.size) for label in waiting]
+        chooses = len(put) >= len(first)
+        number = (
+            min(range(len(waiting)), key=lambda n: (len(places[n]) or _MANY, n)) if chooses else 0
+        )
+        label, found = waiting.pop(number), places[number]
+        wide, high = label.size
+        if found:
+            room.take((*found[0], found[0][0] + wide, found[0][1] + high))
+            put.append(Put(label, found[0], beside=True))
+            continue
+        x0, y0, x1, y1 = label.icon
+        spot = room.spot(((x0 + x1) / 2, (y0 + y1) / 2), wide, high)
+        at = None if spot is None else (spot[0] - wide / 2, spot[1] - high / 2)
+        put.append(Put(label, at, beside=False))
+    return put
+
+
+def leader(put: Put) -> tuple[XY, XY]:
+    """A line from an icon to its label."""
+    assert put.at is not None
+    (x0, y0, x1, y1), at, size = put.label.icon, put.at, put.label.size
+    end = (
+        min(max((x0 + x1) / 2, at[0]), at[0] + size[0]),
+        min(max((y0 + y1) / 2, at[1]), at[1] + size[1]),
+    )
+    return (min(max(end[0], x0), x1), min(max(end[1], y0), y1)), end
