@@ -235,7 +235,7 @@ def _found(outcome: ExpectationOutcome, state: State, scenario: Scenario) -> tup
             found = ", ".join(f"{count} {name}" for name, count in sorted(held.items.items()))
     elif isinstance(content, Reads):
         text = state.signs.get(content.sign)
-        what = f"sign {point_text(content.sign)}"
+        what = f"sign ({', '.join(map(str, content.sign))})"
         found = "unknown" if text is None else escape(sign_words(text) or "nothing")
     elif isinstance(content, Hears):
         heard = any(content.text in text for _, _, text in state.chat)
