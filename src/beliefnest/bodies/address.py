@@ -7,7 +7,7 @@ from urllib.parse import parse_qsl, urlsplit
 
 from beliefnest.errors import InputError
 
-__all__ = ["SCHEME", "ServerAddress", "is_server"]
+__all__ = ["SCHEME", "ServerAddress", "is_server", "overwriting"]
 
 SCHEME = "minecraft"
 
@@ -21,6 +21,19 @@ _FORM = "write minecraft://HOST:PORT, with options as ?version=1.20.4&at=0,160&o
 def is_server(world: str) -> bool:
     """Whether the name of a world is the address of a server."""
     return world.startswith(f"{SCHEME}://")
+
+
+def overwriting(world: str) -> str:
+    """The address of a server whose box's blocks may be replaced.
+
+    Raises:
+        InputError: The world is no server.
+    """
+    if not is_server(world):
+        raise InputError(f"nothing is overwritten in the world {world!r}; it is none of a server")
+    if ServerAddress.parse(world).overwrite:
+        return world
+    return f"{world}{'&' if '?' in world else '?'}overwrite=yes"
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from beliefnest.bodies.address import SCHEME, ServerAddress, is_server
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.protocol import Body, Sink, World
 from beliefnest.bodies.scripted import ScriptedBodies
-from beliefnest.errors import UnknownNameError
+from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.world.frames import Snapshot
 
 __all__ = ["WORLDS", "LazyWorld", "Worlds", "check_world", "open_world"]
@@ -47,8 +47,12 @@ def open_world(name: str, seed: int, limits: ProcessLimits | None = None) -> Wor
             raise AssertionError(f"{name} is listed in WORLDS and cannot be started")
 
 
-def check_world(name: str) -> None:
+def check_world(name: str, *, servers: bool = True) -> None:
     """Refuse the name of a world that there is not, before anything is started.
+
+    Args:
+        name: The name.
+        servers: Whether it may be the address of a server, on which one run plays at a time.
 
     Raises:
         UnknownNameError: There is no world of that name.
@@ -56,6 +60,12 @@ def check_world(name: str) -> None:
     """
     if is_server(name):
         ServerAddress.parse(name)
+        if not servers:
+            raise InputError(
+                f"{name} is a server, on which one run plays at a time, in real time; "
+                "`beliefnest run` and Nest.open play on servers, all else in the worlds "
+                f"{', '.join(WORLDS)}"
+            )
     elif name not in WORLDS:
         raise UnknownNameError(
             f"there is no world {name!r}; there are {', '.join(WORLDS)}, {SCHEME}://HOST:PORT"

@@ -83,7 +83,12 @@ def run(
     condition: Annotated[
         list[int] | None, typer.Option(help="Run only this one; can be repeated.")
     ] = None,
-    world: Annotated[str, typer.Option(help="Where it plays.")] = "embedded",
+    world: Annotated[
+        str, typer.Option(help="Where it plays: embedded, scripted, minecraft://HOST:PORT.")
+    ] = "embedded",
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace what stands in a server's box meanwhile.")
+    ] = False,
     model: Annotated[
         str, typer.Option(help="Who answers: offline, PROVIDER:MODEL, replay: or scripted:FILE.")
     ] = "offline",
@@ -116,6 +121,7 @@ def run(
     json: Json = False,
 ) -> int:
     """Play a scenario, follow the beliefs, ask the model, and say whether all is as expected."""
+    from beliefnest.bodies.address import overwriting
     from beliefnest.cli.run import ModelOptions, RunOptions, run_scenarios
     from beliefnest.llm.budget import RunLimits
 
@@ -124,7 +130,7 @@ def run(
         RunOptions(
             scenario=scenario,
             conditions=tuple(condition or ()),
-            world=world,
+            world=overwriting(world) if overwrite else world,
             models=tuple(models.split(",")) if models is not None else (model,),
             repeat=repeat,
             out=out,

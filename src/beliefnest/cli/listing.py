@@ -6,6 +6,7 @@ import sys
 from rich import box
 from rich.table import Table
 
+from beliefnest.bodies.address import SCHEME
 from beliefnest.bodies.worlds import WORLDS
 from beliefnest.cli.console import folded, stdout
 from beliefnest.llm.resolve import model_names
@@ -43,5 +44,6 @@ def print_installed(*, as_json: bool) -> None:
             table.add_row("", str(number), text)
     console = stdout()
     console.print(folded(table))
-    console.print(f"worlds: {', '.join(WORLDS)}", highlight=False)
+    worlds = (*WORLDS, f"{SCHEME}://HOST:PORT")
+    console.print(f"worlds: {', '.join(worlds)}", highlight=False)
     console.print(f"models: {', '.join(model_names())}", highlight=False)

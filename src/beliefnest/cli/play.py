@@ -54,7 +54,7 @@ def play_task(options: PlayOptions) -> int:
     Raises:
         BeliefNestError: The input is wrong, or a world failed.
     """
-    check_world(options.world)
+    check_world(options.world, servers=False)
     policies = _pairs(options.agents, "--agent", "NAME=POLICY")
     numbers = _pairs(options.parameters, "--set", "NAME=NUMBER")
     for name, value in numbers.items():

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import msgspec
 
+from beliefnest.bodies.address import is_server
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.cli.folder import stores_in
 from beliefnest.errors import InputError
@@ -53,6 +54,11 @@ def _replayed(store: Path, worlds: dict[int, Worlds], ended: ExitStack) -> Itera
                 f"{store} holds no programs that could be run again: what happens in a scripted "
                 "world, a suite's story or an imported trace is told by its user, so that nothing "
                 "could differ; only runs in the embedded world can be replayed"
+            )
+        if is_server(name):
+            raise InputError(
+                f"{store} was played on a server, whose time is not repeated; "
+                "only runs in the embedded world can be replayed"
             )
         if run.seed not in worlds:
             worlds[run.seed] = ended.enter_context(Worlds(run.seed))

@@ -52,7 +52,7 @@ class Options:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        check_world(self.world)
+        check_world(self.world, servers=False)
         if self.senses not in ("world", "percepts"):
             raise InputError(f"senses is {self.senses!r}; it is 'world' or 'percepts'")
         if self.actions not in ("skills", "programs"):

@@ -73,7 +73,7 @@ class Design:
                 raise InputError(f"{name} is {number!r}; it must be a whole number, at least 1")
         if not isinstance(self.seed, int) or isinstance(self.seed, bool):
             raise InputError(f"seed is {self.seed!r}; it must be a whole number")
-        check_world(self.world)
+        check_world(self.world, servers=False)
         self._check_variations()
 
     def _check_variations(self) -> None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from beliefnest.bodies.protocol import Body, Sense, World
 from beliefnest.errors import BodyError, BranchError, WorldError
-from beliefnest.nest.acting.frame_recorder import FrameRecorder
+from beliefnest.nest.acting.frame_recorder import ChatListener, FrameRecorder
 from beliefnest.nest.acting.hearsay import ClaimReader, Hearsay
 from beliefnest.nest.acting.lives import Lives
 from beliefnest.nest.acting.sensing import Sensing, believer_of
@@ -45,6 +45,7 @@ class Bodies:
     Attributes:
         world: Where they live.
         others: Further worlds of the kind, for programs that run at the same time.
+        chat_listeners: Called on what is said in the real world.
     """
 
     def __init__(
@@ -52,6 +53,7 @@ class Bodies:
     ) -> None:
         self.world = world
         self.others: list[World] = []
+        self.chat_listeners: list[ChatListener] = []
         self._recording = recording
         self._hearsay = None
         if reader is not None:
@@ -92,7 +94,12 @@ class Bodies:
 
     def _recorder(self, key: TimelineKey) -> FrameRecorder:
         recording = self._recording
-        return FrameRecorder(recording.journal, recording.history, key, self._hearsay)
+        on_chat = self._tell_chat if key.path == () else None
+        return FrameRecorder(recording.journal, recording.history, key, self._hearsay, on_chat)
+
+    def _tell_chat(self, tick: int, speaker: str, text: str) -> None:
+        for listener in self.chat_listeners:
+            listener(tick, speaker, text)
 
     def seed_of(self, path: Path) -> str:
         """Seed of a simulator's body."""
@@ -162,6 +169,13 @@ class Bodies:
         finally:
             recorder.batched = False
         recorder.keep_up()
+
+    def catch_up(self, path: Path) -> None:
+        """Record what has happened in a body that goes on by itself since the last call on it."""
+        embodied = self._embodied.get(path)
+        if embodied is not None and embodied.body.goes_on:
+            with self.acting(path) as body:
+                body.step(0)
 
     def sense_of(self, path: Path, agent: str) -> Sense:
         """What an agent of a simulator perceives or remembers, while programs run in its body.

@@ -77,6 +77,7 @@ class Engine:
     def fork(self, path: Path, name: str, tick: int | None) -> None:
         """Begin a branch at the current tick, or at a past one, and select it."""
         recording, journal = self.recording, self.recording.journal
+        self.bodies.catch_up(recording.controller(path).path)
         base = present(journal, recording.controller(path))
         if tick is not None:
             if tick > base.tick:
@@ -95,6 +96,7 @@ class Engine:
     def select(self, key: TimelineKey) -> None:
         """Put a simulator on a timeline it has, in the world too."""
         if self.recording.selected.get(key.path) != key:
+            self.bodies.catch_up(key.path)
             with self.bodies.selecting(key, self.bodies.recorded(key)):
                 self.recording.journal.records.select(key.path, key.branch)
 
@@ -176,6 +178,7 @@ class Engine:
         senses: Senses,
     ) -> Mapping[str, ProgramResult]:
         self.bodies.of(path)
+        self.bodies.catch_up(path)
         limited = {}
         if senses == "percepts":
             limited = {agent: self.bodies.sense_of(path, agent) for agent in programs}
@@ -250,6 +253,7 @@ class Engine:
         containers: Mapping[Position, Items],
     ) -> None:
         """Record a change by hand; where there is a body, it becomes what is recorded then."""
+        self.bodies.catch_up(path)
         journal, info = self.recording.journal, self.recording.info(path)
         with self.bodies.changing(path):
             # What goes on in the body goes on after an edit.

@@ -1,11 +1,20 @@
 """The recorder of one body: appends its frames to the timeline that the body is on."""
 
+from collections.abc import Callable, Iterator
+
 from beliefnest.nest.acting.hearsay import Hearsay, has_unread
 from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import Journal, TimelineKey
 from beliefnest.world.frames import Frame
+from beliefnest.world.values import EventKind
 
-__all__ = ["FrameRecorder"]
+__all__ = ["ChatListener", "FrameRecorder"]
+
+Utterance = tuple[int, str, str]
+"""Tick, speaker, text."""
+
+ChatListener = Callable[[int, str, str], None]
+"""Takes tick, speaker and text of what was said, or whispered, in the real world."""
 
 _BATCH = 256
 
@@ -20,12 +29,20 @@ class FrameRecorder:
         history: What follows the journal.
         key: The timeline.
         hearsay: Completes frames in which something is said; None: they are recorded as they are.
+        on_chat: Is called with what was said, once it is recorded; None: nobody is.
     """
 
     def __init__(
-        self, journal: Journal, history: History, key: TimelineKey, hearsay: Hearsay | None = None
+        self,
+        journal: Journal,
+        history: History,
+        key: TimelineKey,
+        hearsay: Hearsay | None = None,
+        on_chat: ChatListener | None = None,
     ) -> None:
         self.key = key
+        self._on_chat = on_chat
+        self._said: list[Utterance] = []
         self.batched = False
         self._journal = journal
         self._history = history
@@ -41,6 +58,8 @@ class FrameRecorder:
         self._tick = frame.tick
         if not frame.is_empty:
             self._frames.append(frame)
+        if self._on_chat is not None:
+            self._said.extend(_said_in(frame))
         if not self.batched:
             self.flush()
             self.keep_up()
@@ -55,9 +74,19 @@ class FrameRecorder:
             self._journal.append(self.key, frames, head)
 
     def keep_up(self) -> None:
-        """Let the history follow what was written, once that is safe."""
+        """Let the history follow what was written, once that is safe, and tell what was said."""
         self._history.note(self.key)
+        said, self._said = self._said, []
+        if self._on_chat is not None:
+            for utterance in said:
+                self._on_chat(*utterance)
 
     def drop(self) -> None:
         """Forget what was taken, because nothing of it is kept."""
-        self._frames, self._tick = [], None
+        self._frames, self._tick, self._said = [], None, []
+
+
+def _said_in(frame: Frame) -> Iterator[Utterance]:
+    for event in frame.events:
+        if event.kind is EventKind.CHAT and event.actor is not None:
+            yield frame.tick, event.actor, event.detail["text"]

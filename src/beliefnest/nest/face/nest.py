@@ -25,6 +25,7 @@ from beliefnest.nest.face.telling import Telling
 from beliefnest.nest.face.ticks import tick_of
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.face.viewing import Viewing
+from beliefnest.nest.face.waiting import Waiting
 from beliefnest.nest.past.over_time import each_tick
 from beliefnest.nest.past.setting import Setting
 from beliefnest.perception.options import Perception
@@ -38,7 +39,7 @@ from beliefnest.world.values import Position
 __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 
 
-class Nest(Looking, Viewing, Telling, Comparing):
+class Nest(Looking, Viewing, Telling, Comparing, Waiting):
     """The real world and every belief in it; each node is made on first use.
 
     `Nest(world)` wraps a `ScriptedWorld` and follows what happens in it; `Nest.open` opens a
@@ -93,7 +94,7 @@ class Nest(Looking, Viewing, Telling, Comparing):
 
         Args:
             scenario: What to start from.
-            world: `embedded`, or `scripted`.
+            world: `embedded`, `scripted`, or the address of a server (docs/servers.md).
             store: File to record in; None: memory.
             seed: Drives every random number.
             worlds: Lends the world, to one nest after the other; None: one is started.

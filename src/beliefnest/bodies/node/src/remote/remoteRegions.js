@@ -89,6 +89,8 @@ class RemoteRegions {
     await setup.write(signs)
     await setup.lay(items)
     await open.agents.add(agents, this.server.patience * 1000)
+    const [someone] = Object.keys(agents)
+    if (someone !== undefined) await setup.requireUse(open.agents.bot(someone))
   }
 
   async save ({ scene, setup }, present) {

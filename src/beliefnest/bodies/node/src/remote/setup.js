@@ -16,6 +16,9 @@ const COLUMNS_MS = 20_000
 const MOST_TOLD = 5
 const ABOVE = 3
 const LINES = 4
+const EYE_HEIGHT = 1.62
+const USE_MS = 3000
+const BESIDE = [[0, -1], [1, 0], [0, 1], [-1, 0]]
 
 class Setup {
   /**
@@ -171,6 +174,31 @@ class Setup {
     if (await operator.until(() => flaws().length === 0)) return
     const [[position, text]] = flaws()
     throw new BadRequest(`the sign at (${position.join(', ')}) does not show ${JSON.stringify(text)} on the server; it said last: ${operator.lines.at(-1) ?? 'nothing'}`)
+  }
+
+  /**
+   * Lets an agent open a gate beside its eyes, which is there for no longer.
+   * @throws {Unplayable} if the server does not let it
+   */
+  async requireUse (bot) {
+    const { operator, scene, region: { box } } = this
+    const eye = bot.entity.position.offset(0, EYE_HEIGHT, 0).floored()
+    const cell = BESIDE.map(([x, z]) => eye.offset(x, 0, z)).find(({ x, y, z }) => box.contains(x, y, z) && scene.at({ x, y, z }).name === 'air')
+    if (cell === undefined) return
+    const [low, high] = [cell, cell].map(({ x, y, z }) => [x, y, z])
+    const [shut, air] = ['oak_fence_gate', 'air'].map(name => this.registry.blocksByName[name].defaultState)
+    const isGate = () => scene.at(cell).name === 'oak_fence_gate'
+    operator.type(this.commands.blocks({ state: shut, low, high }))
+    await operator.until(isGate)
+    await bot.tabComplete('/', true, false).catch(() => {})
+    bot._client.write('block_place', {
+      location: cell, direction: 1, hand: 0, cursorX: 0.5, cursorY: 0.5, cursorZ: 0.5, insideBlock: false, sequence: 0
+    })
+    const opened = await operator.until(() => scene.at(cell).properties.open === true, USE_MS)
+    operator.type(this.commands.blocks({ state: air, low, high }))
+    await operator.settled()
+    await operator.until(() => !isGate())
+    if (!opened) throw reasons.spawnProtected(operator.server)
   }
 
   /** Lets exactly these items lie in the box. */

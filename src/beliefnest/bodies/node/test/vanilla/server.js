@@ -1,8 +1,8 @@
 'use strict'
 /**
  * A Minecraft server of the project's own plugins that does what an operator bot asks of a vanilla one, as a process of
- * its own: `node server.js [OPTIONS]`, a JSON object: `port` (0: any), `ops`, `lacking` (commands it is without), `age`,
- * `latency` (milliseconds each way), `tickMs`, `isProtected`, `maxPlayers`, `online`. It prints `{"port": N}` and then
+ * its own: `node server.js [OPTIONS]`, a JSON object: `port` (0: any), `ops`, `age`,
+ * `latency` (milliseconds each way), `tickMs`. It prints `{"port": N}` and then
  * takes lines on its standard input as a console does (world.js); it ends with that input.
  */
 require('../../src/prepare').prepare()
@@ -16,7 +16,7 @@ const { openDelayed } = require('../tcp/delay')
 const { OpenWorld, TICK_MS } = require('./world')
 
 const DEFAULTS = {
-  port: 0, ops: ['BeliefNest'], lacking: [], age: 1000, latency: 0, tickMs: TICK_MS, isProtected: false, maxPlayers: 100, online: false
+  port: 0, ops: ['BeliefNest'], age: 1000, latency: 0, tickMs: TICK_MS
 }
 
 async function main (options) {
@@ -25,8 +25,9 @@ async function main (options) {
   rememberBlocks(registry)
   const world = new OpenWorld(createServer(registry), options)
   const listening = minecraft.createServer({
-    host: '127.0.0.1', port: options.port, version: versions.minecraft, 'online-mode': options.online, maxPlayers: options.maxPlayers, motd: 'BeliefNest', hideErrors: true
+    host: '127.0.0.1', port: options.port, version: versions.minecraft, 'online-mode': false, maxPlayers: 100, motd: 'BeliefNest', hideErrors: true, beforeLogin: client => world.admit(client)
   })
+  listening.onlineModeExceptions = world.verified
   listening.on('playerJoin', client => world.join(client))
   await once(listening, 'listening')
   const inner = listening.socketServer.address().port

@@ -24,15 +24,16 @@ class OpenWorld {
    * @param {object} serv from createServer
    * @param {object} options
    * @param {string[]} options.ops names of the operators
-   * @param {string[]} options.lacking commands that this server does not have
    * @param {number} options.age in ticks
-   * @param {boolean} options.isProtected whether only operators may use blocks
    */
-  constructor (serv, { ops, lacking, age, isProtected }) {
+  constructor (serv, { ops, age }) {
     this.serv = serv
     this.ops = new Set(ops)
-    this.lacking = new Set(lacking)
-    this.isProtected = isProtected
+    // Set on the console: commands that are not there, whether only operators may use blocks, how many may come in, who is to be verified.
+    this.lacking = new Set()
+    this.isProtected = false
+    this.room = Infinity
+    this.verified = {}
     this.known = new Map()
     this.region = openRegion(age)
     serv.region = this.region
@@ -62,6 +63,11 @@ class OpenWorld {
     player.on('disconnected', () => this.known.set(player.username, {
       position: region.toScenario(player.position), ...player.pose, on_ground: player.onGround, health: player.health, food: player.food, gameMode: player.gameMode
     }))
+  }
+
+  /** Refuses who does not find room, as the game does. */
+  admit (client) {
+    if (this.serv.players.length >= this.room) client.end('full', JSON.stringify({ translate: 'multiplayer.disconnect.server_full' }))
   }
 
   commandsOf ({ username }) {
@@ -105,7 +111,12 @@ class OpenWorld {
   console (line) {
     const [word, name] = line.split(' ')
     const player = this.serv.players.find(({ username }) => username === name)
-    if (word === 'op') this.ops.add(name)
+    if (word === 'lack') this.lacking = new Set(name ? [name] : [])
+    else if (word === 'protect') this.isProtected = name === 'yes'
+    else if (word === 'room') this.room = Number(name)
+    else if (word === 'verify') this.verified[name.toLowerCase()] = true
+    else if (word === 'trust') delete this.verified[name.toLowerCase()]
+    else if (word === 'op') this.ops.add(name)
     else if (word === 'deop') this.ops.delete(name)
     else if (word === 'kick') player?._client.end(JSON.stringify({ text: 'Kicked by an operator' }))
     else if (word === 'drop') player?._client.client.socket.destroy()

@@ -8,6 +8,8 @@ const WINDOW_9X3 = 2
 const WINDOW_9X6 = 5
 const TITLES = { chest: 'Chest', trapped_chest: 'Trapped Chest', barrel: 'Barrel' }
 const LID_ACTION = 1
+/** Who watches only lifts no lid. */
+const SPECTATOR = 3
 
 const isFullCube = ({ shapes }) => shapes.length === 1 &&
   shapes[0].every((edge, i) => edge === (i < 3 ? 0 : 1))
@@ -20,7 +22,7 @@ function isBlocked (serv, position) {
 /** Shows whether somebody looks in. */
 function showLid (serv, position) {
   const block = serv.blocks.at(position)
-  const count = serv.containers.viewers(position).length
+  const count = serv.containers.viewers(position).filter(({ gameMode }) => gameMode !== SPECTATOR).length
   if (block.name === 'barrel') {
     serv.blocks.set(position, serv.blocks.stateWith(block, { open: count > 0 }))
     return

@@ -1,0 +1,153 @@
+"""What a server lacks is said before anything is played, with what to do about it."""
+
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.servers import GameServer
+
+from beliefnest.bodies.address import ServerAddress, overwriting
+from beliefnest.bodies.protocol import World
+from beliefnest.bodies.worlds import check_world, open_world
+from beliefnest.errors import BeliefNestError, BodyError, InputError, WorldError
+from beliefnest.world.frames import Snapshot
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import AgentState, Box
+
+BOX = Box((0, 0, 0), (6, 4, 6))
+CHEST, FOREIGN = (2, 1, 2), (5, 2, 5)
+
+
+def start() -> Snapshot:
+    registry = Registry.load()
+    blocks = np.zeros(BOX.shape, dtype=np.int32)
+    blocks[:, 0, :] = registry.state_id("stone")
+    blocks[BOX.index(CHEST)] = registry.state_id("chest")
+    agents = {"sally": AgentState((1.5, 1.0, 3.5), inventory={"diamond": 2})}
+    return Snapshot(0, BOX, blocks, {CHEST: {"emerald": 2}}, agents)
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[GameServer]:
+    with GameServer(ops=["BeliefNest", "Second"]) as running:
+        yield running
+
+
+@contextmanager
+def on_console(server: GameServer, lines: tuple[str, str] | None) -> Iterator[None]:
+    """The server after one line is typed; the other one takes that back."""
+    if lines is None:
+        yield
+        return
+    server.type(lines[0])
+    try:
+        yield
+    finally:
+        server.type(lines[1])
+
+
+def opened(world: World, snapshot: Snapshot | None = None) -> None:
+    world.open_body("/", "seed", snapshot or start(), lambda frame: None)
+
+
+@pytest.mark.parametrize(
+    ("lines", "query", "said"),
+    [
+        (("deop BeliefNest", "op BeliefNest"), {}, r"not use /fill, /setblock.*: op BeliefNest"),
+        (("lack item", "lack"), {}, r"BeliefNest may not use /item"),
+        (("verify BeliefNest", "trust BeliefNest"), {}, r"asks Microsoft.*online-mode=false"),
+        (("room 0", "room 9"), {}, r"is full.*raise max-players"),
+        (None, {"version": "1.21.8"}, r"speaks Minecraft 1\.21\.8; this build has 1\.20\.4"),
+    ],
+)
+def test_what_the_operator_lacks_is_said(server, lines, query, said):
+    with on_console(server, lines), pytest.raises(BodyError, match=said):
+        open_world(server.address(**query), 0)
+
+
+def test_nobody_answers():
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        address = f"minecraft://127.0.0.1:{free.getsockname()[1]}"
+        with pytest.raises(BodyError, match=r"does not answer \(ECONNREFUSED\); start it"):
+            open_world(address, 0)
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        (("protect yes", "protect no"), "spawn-protection=0"),
+        (("room 1", "room 9"), "no room for the 1 agents"),
+    ],
+)
+def test_what_agents_lack_is_said(server, lines, said):
+    with on_console(server, lines):
+        world = open_world(server.address(), 0)
+        with pytest.raises(BodyError, match=said):
+            opened(world)
+        world.close()
+
+
+def test_what_stands_in_the_box_is_not_touched_unless_asked_and_put_back(server):
+    server.type("setblock 5 2 5 minecraft:barrel[facing=up]")
+    server.type("item replace block 5 2 5 container.4 with minecraft:bread 3")
+    world = open_world(server.address(), 0)
+    with pytest.raises(WorldError, match=r"holds 1 other blocks, as barrel at \(5, 2, 5\).*--over"):
+        opened(world)
+    world.close()
+    world = open_world(overwriting(server.address(operator="Second")), 0)
+    opened(world)
+    body = world.open_body("/sally", "seed", start(), lambda frame: None)
+    assert body.snapshot().containers == start().containers
+    world.close()
+    # What is there now is what was there before.
+    registry = Registry.load()
+    blocks = np.zeros(BOX.shape, dtype=np.int32)
+    blocks[BOX.index(FOREIGN)] = registry.state_id("barrel[facing=up]")
+    world = open_world(server.address(), 0)
+    opened(world, Snapshot(0, BOX, blocks, {FOREIGN: {"bread": 3}}, {}))
+    world.close()
+    server.type("setblock 5 2 5 minecraft:air")
+
+
+def test_an_agent_whose_name_is_taken_is_not_let_in(server):
+    first, second = (
+        open_world(server.address(), 0),
+        open_world(server.address(operator="Second"), 0),
+    )
+    opened(first)
+    with pytest.raises(WorldError, match="a player called sally is on the server already"):
+        opened(second, replace(start(), agents={"sally": AgentState((4.5, 1.0, 4.5))}))
+    second.close()
+    first.close()
+
+
+@pytest.mark.parametrize(
+    ("address", "said"),
+    [
+        ("minecraft://", "no address of a server"),
+        ("minecraft://host:port", "no port that there is"),
+        ("minecraft://host/world", "no address of a server"),
+        ("minecraft://user:secret@host", "no name or password"),
+        ("minecraft://host?at=1,16", "multiples of 16"),
+        ("minecraft://host?operator=a-b", "1 to 16 letters"),
+        ("minecraft://host?patience=0", "from 1 to 3600"),
+        ("minecraft://host?keep=perhaps", "yes or no"),
+        ("minecraft://host?where=here", "there are version, operator, at"),
+    ],
+)
+def test_addresses_are_checked_before_anything_is_started(address, said):
+    with pytest.raises(BeliefNestError, match=said) as raised:
+        check_world(address)
+    assert "secret" not in str(raised.value)
+
+
+def test_addresses():
+    found = ServerAddress.parse("minecraft://example.org?at=-32,160&overwrite=yes&version=1.20.4")
+    assert (found.host, found.port, found.at) == ("example.org", 25565, (-32, 160))
+    assert (found.overwrite, found.keep, found.version) == (True, False, "1.20.4")
+    with pytest.raises(InputError, match="one run plays at a time"):
+        check_world("minecraft://example.org", servers=False)
