@@ -1,6 +1,5 @@
 'use strict'
 /** The agents of a place on a server elsewhere: their connections, and how they are put where they are to be. */
-const { setTimeout: sleep } = require('node:timers/promises')
 const { isDeepStrictEqual } = require('node:util')
 const { BadRequest } = require('../channel/errors')
 const { ground, stopBot } = require('../bots/bot')
@@ -177,7 +176,7 @@ class Agents {
     await Promise.all(here.map(({ name }) => this.answered(name)))
     const from = this.region.now()
     await this.operator.until(() => this.region.now() >= from + 2 || !this.operator.link.isHere, ANSWER_MS)
-    if (this.operator.link.isHere) await this.operator.settled().catch(() => {})
+    await this.operator.settled()
     await this.operator.until(() => this.scene.isQuiet)
   }
 
@@ -186,14 +185,9 @@ class Agents {
     await this.bot(agent).tabComplete('/', true, false, ANSWER_MS).catch(() => {})
   }
 
-  /** Resolves when all agents are connected. @throws {Unplayable} if one was given up */
+  /** Resolves when all agents and the operator are connected. @throws {Unplayable} if one was given up */
   async present () {
-    for (const link of this.links.values()) {
-      while (!link.isHere) {
-        if (link.failure !== null) throw link.failure
-        await sleep(20)
-      }
-    }
+    for (const link of [this.operator.link, ...this.links.values()]) await link.present()
   }
 
   async close () {

@@ -7,8 +7,10 @@ const reasons = require('./reasons')
 
 const REAL_TIME = { charge () {} }
 const FIRST_PAUSE_MS = 250
+const POLL_MS = 20
 const LONGEST_PAUSE_MS = 8000
 const LOGIN_MS = 15_000
+const GOODBYE_MS = 1000
 // Milliseconds a bot may search for a way: on a busy machine most of them pass without it.
 const THINKING_MS = 60_000
 
@@ -103,12 +105,24 @@ class Link extends EventEmitter {
     }
   }
 
+  /** Resolves when the player is connected. @throws {Unplayable} if it was given up */
+  async present () {
+    while (!this.isHere) {
+      if (this.failure !== null) throw this.failure
+      await sleep(POLL_MS)
+    }
+  }
+
   async close () {
     this.closed = true
     if (!this.isHere) return
+    const { _client: client } = this.bot
     const ended = once(this.bot, 'end')
-    this.bot._client.end('the world is given up')
+    client.end('the world is given up')
+    // A server that stands still does not say goodbye.
+    const late = setTimeout(() => client.socket.destroy(), GOODBYE_MS)
     await ended
+    clearTimeout(late)
   }
 }
 

@@ -48,9 +48,19 @@ class Operator {
     if (lacking.length > 0) throw reasons.noOperator(this.server, lacking)
   }
 
-  /** Resolves when the server has done what was typed before and has told of it. */
+  /**
+   * Resolves when the server has done what was typed before and has told of it.
+   * @throws {Unplayable} if the server does not answer within its patience
+   */
   async settled () {
-    await this.bot.tabComplete('/', true, false, ANSWER_MS)
+    const patience = this.server.patience * 1000
+    const end = performance.now() + patience
+    while (performance.now() < end) {
+      await this.link.present()
+      const answer = await this.bot.tabComplete('/', true, false, Math.min(patience, ANSWER_MS)).catch(() => null)
+      if (answer !== null) return
+    }
+    throw reasons.stalled(this.server, this.server.patience)
   }
 
   /** @returns {Promise<boolean>} whether the condition held in time */

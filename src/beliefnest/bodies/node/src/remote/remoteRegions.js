@@ -33,8 +33,10 @@ class RemoteRegions {
     this.registry = registry
     this.send = send
     this.open = null
+    // Why the place was given up, if it was.
+    this.failure = null
     // What a Runner asks of regions.
-    this.bodies = { rest: (_, agents) => this.open.agents.rest(agents) }
+    this.bodies = { rest: (_, agents) => this.open.agents.rest(agents).catch(error => this.fail(error)) }
     this.clock = { advance: () => new Promise(resolve => { setImmediate(resolve) }), charge () {} }
   }
 
@@ -46,6 +48,7 @@ class RemoteRegions {
 
   /** @returns {Promise<object>} SNAPSHOT, once every agent stands there */
   async create ({ region: name, box: corners, tick, blocks, containers, agents, items, signs = [], known = Object.keys(agents) }) {
+    if (this.failure !== null) throw this.failure
     if (this.open !== null) throw new BadRequest(`${this.open.region.name} is played on this server; there can be one place at a time`)
     const [x, z] = this.server.at
     const region = new RemotePlace({ name, box: new Box(...corners), origin: { x, z }, tick, known }, this.serverClock)
@@ -143,8 +146,7 @@ class RemoteRegions {
 
   /** Runs a call on a region: its ticks are then the call's to take. */
   async resumed (region, action) {
-    const { agents } = this.open
-    await agents.present()
+    await this.present()
     region.faults.length = 0
     region.isDriven = true
     try {
@@ -161,14 +163,25 @@ class RemoteRegions {
   async tick (region, before) {
     const { operator: { link }, server } = this
     while (region.now() <= region.tick) {
-      if (link.failure !== null) throw link.failure
-      if (link.isHere && this.serverClock.silence > server.patience * 1000) throw reasons.stalled(server, server.patience)
+      if (link.failure !== null) this.fail(link.failure)
+      if (link.isHere && this.serverClock.silence > server.patience * 1000) this.fail(reasons.stalled(server, server.patience))
       await sleep(POLL_MS)
     }
     region.tick = region.now()
     await before?.()
     region.tick = region.now()
     return this.makeFrame(this.open)
+  }
+
+  fail (error) {
+    this.failure = error
+    throw error
+  }
+
+  /** Resolves when all players are connected. @throws {Unplayable} if the place was, or has to be, given up */
+  async present () {
+    if (this.failure !== null) throw this.failure
+    await this.open.agents.present().catch(error => this.fail(error))
   }
 
   async step (name, ticks) {
@@ -185,7 +198,7 @@ class RemoteRegions {
     const { scene, setup } = this.open
     region.isDriven = true
     try {
-      await this.open.agents.present()
+      await this.present()
       const wanted = scene.blocks.slice()
       for (const [x, y, z, state] of blocks) wanted[region.box.index(x, y, z)] = state
       scene.settle(await setup.build(wanted))
@@ -215,6 +228,8 @@ class RemoteRegions {
   async destroy (name) {
     this.get(name)
     await this.giveUp(this.open)
+    // Nothing more can be played in this session.
+    if (this.failure !== null) throw this.failure
   }
 
   /** Lets agents leave and puts back what was there, unless it is to be kept. */
@@ -224,7 +239,7 @@ class RemoteRegions {
     if (open.back !== undefined) this.operator.link.off('back', open.back)
     this.open = null
     await agents.close()
-    if (saved === null || !this.operator.link.isHere) return
+    if (saved === null || this.failure !== null || !this.operator.link.isHere) return
     if (!this.server.keep) {
       await setup.lay({})
       open.scene.settle(await setup.build(saved.states))

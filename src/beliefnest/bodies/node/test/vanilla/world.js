@@ -34,6 +34,8 @@ class OpenWorld {
     this.isProtected = false
     this.room = Infinity
     this.verified = {}
+    // Lines of the console that are typed at a tick.
+    this.later = []
     this.known = new Map()
     this.region = openRegion(age)
     serv.region = this.region
@@ -102,6 +104,7 @@ class OpenWorld {
     const { serv, region } = this
     region.tick += 1
     serv.tickCount = region.tick
+    for (const { line } of this.later.filter(({ tick }) => tick === region.tick)) this.console(line)
     serv.tickRegion(() => true)
     serv.emit('tick', TICK_MS / 1000, region.tick, region)
     if (region.tick % AGE_EVERY === 0) this.tellAge(serv.players)
@@ -109,7 +112,15 @@ class OpenWorld {
 
   /** What is typed on the console: one line. */
   console (line) {
-    const [word, name] = line.split(' ')
+    const [word, name, ...more] = line.split(' ')
+    if (word === 'after') {
+      this.later.push({ tick: this.region.tick + Number(name), line: more.join(' ') })
+      return
+    }
+    if (word === 'stall') {
+      stall(Number(name))
+      return
+    }
     const player = this.serv.players.find(({ username }) => username === name)
     if (word === 'lack') this.lacking = new Set(name ? [name] : [])
     else if (word === 'protect') this.isProtected = name === 'yes'
@@ -123,6 +134,11 @@ class OpenWorld {
     else if (player === undefined) runCommand(this.serv, line, null)
     if (player !== undefined && word.endsWith('op')) this.tellCommands(player)
   }
+}
+
+/** Stands still, as a server does that is busy with something else. */
+function stall (milliseconds) {
+  Atomics.wait(new Int32Array(new SharedArrayBuffer(4)), 0, 0, milliseconds)
 }
 
 /** A region that records nothing: what happens here nobody writes down. */

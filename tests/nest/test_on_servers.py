@@ -1,0 +1,180 @@
+"""The paper's experiments on a server, in real time, and what may go wrong with one meanwhile."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.profiles import NIGHTLY
+from tests.servers import GameServer
+
+from beliefnest import Nest, Scenario
+from beliefnest.cli.app import run_command_line
+from beliefnest.errors import BodyError
+from beliefnest.world.values import EventKind
+
+PATIENCE = 4
+NEAR = 1.0
+LEFT, RIGHT = (-2, -51, -4), (2, -51, -4)
+PUT = "await depositItemIntoChest(bot, new Vec3(-2, -51, -4), {diamond: 1})"
+FAR = """
+await goToPosition(bot, new Vec3(10, -51, -10), 1)
+await goToPosition(bot, new Vec3(-10, -51, 10), 1)
+"""
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[GameServer]:
+    with GameServer(latency=15) as running:
+        yield running
+
+
+def ran(arguments: list[str], folder: Path, capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
+    assert run_command_line([*arguments, "--out", str(folder), "--json"]) == 0
+    report: dict[str, Any] = json.loads(capsys.readouterr().out)
+    return report
+
+
+def same_place(one: list[float] | None, other: list[float] | None) -> bool:
+    if one is None or other is None:
+        return one is other
+    return max(abs(a - b) for a, b in zip(one, other, strict=True)) <= NEAR
+
+
+@pytest.mark.parametrize(
+    ("name", "conditions"),
+    [("sally-anne", (1, 2, 3)), ("ice-cream-van", (1, 2, 3) if NIGHTLY else (1,))],
+)
+def test_the_experiments_come_out_as_in_the_embedded_world(
+    name, conditions, server, tmp_path, capsys
+):
+    chosen = [text for number in conditions for text in ("--condition", str(number))]
+    embedded = ran(["run", name, *chosen], tmp_path / "embedded", capsys)
+    played = ran(["run", name, *chosen, "--world", server.address()], tmp_path / "server", capsys)
+    for here, there in zip(embedded["runs"], played["runs"], strict=True):
+        assert there["ok"]
+        assert here["beliefs"].keys() == there["beliefs"].keys()
+        states = [(here["reality"], there["reality"])]
+        states += [(here["beliefs"][path], there["beliefs"][path]) for path in here["beliefs"]]
+        for mine, its in states:
+            assert mine["containers"] == its["containers"]
+            assert [words[1:] for words in mine["chat"]] == [words[1:] for words in its["chat"]]
+            for agent, known in mine["agents"].items():
+                assert known["current"] == its["agents"][agent]["current"], agent
+                assert same_place(known["position"], its["agents"][agent]["position"]), agent
+        for mine, its in zip(here["probes"], there["probes"], strict=True):
+            assert (mine["opened"], mine["ok"]) == (its["opened"], its["ok"])
+            assert same_place(mine["arrived"], its["arrived"])
+
+
+def test_what_others_do_between_calls_is_recorded_with_the_next(server, tmp_path):
+    store = tmp_path / "run.bn"
+    heard = []
+    with Nest.open(Scenario.load("sally-anne", 1), server.address(), store) as nest:
+        nest.on_chat(lambda tick, speaker, text: heard.append((speaker, text)))
+        nest["/"].run("sally", "bot.chat('hello'); await whisper(bot, 'anne', 'psst')")
+        assert heard == [("sally", "hello"), ("sally", "psst")]
+        server.type("setblock 4 -51 4 minecraft:stone")
+        assert nest.wait(lambda: nest["/"].state.blocks[(4, -51, 4)] == "stone")
+        told = [e for e in nest["/"].state.events if e.kind is EventKind.BLOCK_UPDATE]
+        assert [(e.actor, e.detail["position"]) for e in told] == [(None, (4, -51, 4))]
+        before = nest.tick
+        assert not nest.wait(lambda: False, timeout_s=0.5)
+        assert before + 10 <= nest.tick
+        # An edit is made in the server's world too, after what happened there before.
+        server.type("setblock 5 -51 4 minecraft:stone")
+        nest["/"].edit(blocks={(4, -51, 4): "air"}, containers={LEFT: {"emerald": 2}})
+        nest["/"].run("anne", "await getItemFromChest(bot, new Vec3(-2, -51, -4), {emerald: 1})")
+        state = nest["/"].state
+        assert state.containers[LEFT].items == {"emerald": 1}
+        assert state.blocks[(4, -51, 4)] == "air"
+        ticks = [event.tick for event in state.events]
+        assert ticks == sorted(ticks)
+
+
+def test_a_fork_of_the_real_world_goes_back_to_where_it_was(server):
+    with Nest.open(Scenario.load("sally-anne", 1), server.address()) as nest:
+        first = nest["/"].branch
+        nest["/"].run("sally", PUT)
+        nest["/"].switch("other")
+        taken = "await getItemFromChest(bot, new Vec3(-2, -51, -4), {diamond: 1})"
+        assert nest["/"].run("anne", taken).ok
+        assert nest["/"].state.containers[LEFT].items == {}
+        nest["/"].switch(first)
+        assert nest["/"].state.containers[LEFT].items == {"diamond": 1}
+        assert nest["/"].run("anne", taken).ok
+
+
+def test_a_bot_that_is_sent_away_comes_back(server):
+    with Nest.open(Scenario.load("sally-anne", 1), server.address(patience=PATIENCE)) as nest:
+        nest["/"].run("sally", PUT)
+        before = nest["/"].state.agents["sally"]
+        for line in ("kick sally", "drop sally", "drop BeliefNest"):
+            server.type(line)
+            nest.wait(timeout_s=0.5)
+            looked = nest["/"].run("sally", "bot.chat(String(bot.inventory.items().length))")
+            assert looked.ok, looked.error
+            assert looked.said[-1][1] == "0"
+            after = nest["/"].state.agents["sally"]
+            assert same_place(list(before.position), list(after.position))
+        # What changes while the operator is away is found when it is back.
+        server.type("drop BeliefNest")
+        server.type("setblock 4 -51 4 minecraft:stone")
+        assert nest.wait(lambda: nest["/"].state.blocks[(4, -51, 4)] == "stone", timeout_s=5)
+
+
+def test_a_program_whose_bot_is_sent_away_fails_and_the_next_one_runs(server):
+    with Nest.open(Scenario.load("sally-anne", 1), server.address(patience=PATIENCE)) as nest:
+        server.type("after 30 kick sally")
+        result = nest["/"].run("sally", FAR)
+        assert not result.ok
+        assert result.error is not None
+        assert result.error.kind == "bot"
+        assert "lost its connection" in result.error.message
+        assert nest["/"].run("sally", PUT).ok
+
+
+def test_a_server_that_stands_still_for_a_moment_is_waited_for(server):
+    with Nest.open(Scenario.load("sally-anne", 1), server.address(patience=PATIENCE)) as nest:
+        server.type("stall 1500")
+        assert nest["/"].run("sally", PUT).ok
+        ticks = [event.tick for event in nest["/"].state.events]
+        assert ticks == sorted(ticks)
+        assert nest["/"].state.containers[LEFT].items == {"diamond": 1}
+
+
+@pytest.mark.parametrize(("fault", "said"), [("kill", "was lost"), ("freeze", "not gone on")])
+def test_a_server_that_ends_leaves_a_run_that_can_be_resumed(fault, said, tmp_path):
+    store = tmp_path / "run.bn"
+    with GameServer() as first:
+        port = first.port
+        nest = Nest.open(Scenario.load("sally-anne", 1), first.address(patience=2), store)
+        nest["/"].run("sally", PUT)
+        tick = nest.tick
+        getattr(first, fault)()
+        with pytest.raises(BodyError, match=said):
+            nest["/"].run("anne", "await goToPosition(bot, new Vec3(2, -51, -3), 0)")
+        with pytest.raises(BodyError):
+            nest["/"].step(1)
+        nest.close()
+    with Nest.read(store) as read:
+        assert read.at(tick)["/"].state.containers[LEFT].items == {"diamond": 1}
+    with GameServer(port=port), Nest.resume(store) as nest:
+        assert nest["/"].state.containers[LEFT].items == {"diamond": 1}
+        moved = "await getItemFromChest(bot, new Vec3(-2, -51, -4), {diamond: 1})"
+        assert nest["/"].run("anne", moved).ok
+        assert nest["/observer"].state.containers[LEFT].items == {}
+        assert nest.tick > tick
+
+
+def test_a_slow_server_corrupts_neither_order_nor_stamps():
+    with (
+        GameServer(tickMs=100) as slow,
+        Nest.open(Scenario.load("sally-anne", 1), slow.address()) as nest,
+    ):
+        assert nest["/"].run("sally", PUT).ok
+        ticks = [event.tick for event in nest["/"].state.events]
+        assert ticks == sorted(ticks)
+        assert ticks[-1] <= nest.tick
+        assert nest["/sally"].state.containers[LEFT].items == {"diamond": 1}
