@@ -30,7 +30,9 @@ class Link extends EventEmitter {
     this.patienceMs = patienceMs
     this.arrive = arrive
     this.bot = null
+    // Connected; and, moreover, after `arrive`.
     this.isHere = false
+    this.isReady = false
     this.failure = null
     this.closed = false
   }
@@ -43,16 +45,20 @@ class Link extends EventEmitter {
     bot.physicsEnabled = false
     // Whoever waits listens for itself; an error that nobody hears would end the process.
     bot.on('error', () => {})
+    const ended = reason => this.lost(bot.lastReason ?? reason)
     try {
       await this.spawned(bot, client)
       bot.pathfinder.thinkTimeout = THINKING_MS
       this.bot = bot
       this.isHere = true
-      bot.once('end', reason => this.lost(bot.lastReason ?? reason))
+      bot.once('end', ended)
       bot.on('kicked', reason => { bot.lastReason = reasonOf(bot, reason).text })
       await this.arrive(this)
+      this.isReady = this.isHere
     } catch (error) {
       this.isHere = false
+      // Whoever opened it knows.
+      bot.off('end', ended)
       client.end('given up')
       throw error
     }
@@ -81,7 +87,7 @@ class Link extends EventEmitter {
   }
 
   lost (reason) {
-    this.isHere = false
+    this.isHere = this.isReady = false
     if (this.closed) return
     this.emit('lost', reason)
     this.again(reason).catch(error => {
@@ -105,9 +111,9 @@ class Link extends EventEmitter {
     }
   }
 
-  /** Resolves when the player is connected. @throws {Unplayable} if it was given up */
+  /** Resolves when the player is connected and has arrived. @throws {Unplayable} if it was given up */
   async present () {
-    while (!this.isHere) {
+    while (!this.isReady) {
       if (this.failure !== null) throw this.failure
       await sleep(POLL_MS)
     }

@@ -56,7 +56,7 @@ class Operator {
     const patience = this.server.patience * 1000
     const end = performance.now() + patience
     while (performance.now() < end) {
-      await this.link.present()
+      if (!this.link.isHere) await this.link.present()
       const answer = await this.bot.tabComplete('/', true, false, Math.min(patience, ANSWER_MS)).catch(() => null)
       if (answer !== null) return
     }

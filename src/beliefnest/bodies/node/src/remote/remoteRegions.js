@@ -75,14 +75,16 @@ class RemoteRegions {
     region.recorder = new Recorder(region, {
       agents: () => agents.states(), items: () => items.states(), changedContainers: () => contents.drain(), blockText: state => states.text(state), signText: ([x, y, z]) => scene.signText({ x, y, z })
     })
-    return { region, scene, setup, agents, saved: null }
+    return { region, scene, setup, agents, saved: null, attach: (bot, client) => scene.attach(bot, client) }
   }
 
   async fill (open, { blocks, containers, agents, items, signs }) {
     const { region, scene, setup } = open
     const wanted = statesOf(blocks, region.box)
     await setup.arrive()
-    scene.attach(this.operator.bot, this.operator.bot._client)
+    const { link, bot } = this.operator
+    open.attach(bot, bot._client)
+    link.on('begun', open.attach)
     const present = this.operator.readStates(region.box)
     if (!this.server.overwrite) setup.requireFree(present, wanted)
     open.saved = await this.save(open, present)
@@ -108,7 +110,7 @@ class RemoteRegions {
     const { region } = open
     region.rebase(tick)
     this.know(open, agents)
-    this.operator.link.on('back', open.back = () => this.lookAgain(open).catch(error => { this.operator.link.failure = error }))
+    this.operator.link.arrive = () => this.lookAgain(open)
     region.pulse = setInterval(() => this.tickUndriven(open), POLL_MS)
   }
 
@@ -122,7 +124,6 @@ class RemoteRegions {
   /** The operator has been away: what changed meanwhile it finds by looking. */
   async lookAgain ({ region, scene, setup }) {
     await setup.arrive()
-    scene.attach(this.operator.bot, this.operator.bot._client)
     const present = this.operator.readStates(region.box)
     region.box.forEach((x, y, z, index) => scene.blockChanged(vecOf({ x, y, z }), present[index]))
   }
@@ -236,7 +237,8 @@ class RemoteRegions {
   async giveUp (open) {
     const { region, setup, agents, saved } = open
     clearInterval(region.pulse)
-    if (open.back !== undefined) this.operator.link.off('back', open.back)
+    this.operator.link.arrive = async () => {}
+    this.operator.link.off('begun', open.attach)
     this.open = null
     await agents.close()
     if (saved === null || this.failure !== null || !this.operator.link.isHere) return
