@@ -5,6 +5,7 @@ import re
 import subprocess
 from collections.abc import Iterator
 from functools import cache
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +13,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import at_night
+from tests.servers import GameServer
 
 import beliefnest as bn
 from beliefnest.bodies import messages
 from beliefnest.bodies.node_files import node_path
 from beliefnest.bodies.worlds import Worlds
+from beliefnest.cli.app import run_command_line
 from beliefnest.world.values import Point
 
 NODE = Path(bn.__file__).parent / "bodies" / "node"
@@ -228,6 +231,86 @@ def test_with_the_whole_world_the_same_program_reads_it(worlds: Worlds) -> None:
         seen = nest["/"].run("ann", code)
         kept = nest["/"].run("ann", code, senses="percepts")
     assert (seen.log, kept.log) == (("false false",), ("true true",))
+
+
+HEARS = """
+const heard = []
+for (const event of ['chat', 'whisper', 'messagestr']) {
+  bot.on(event, (...told) => heard.push([event, ...told].join(' ')))
+}
+await bot.waitForTicks(12)
+console.log(heard.join('; '))"""
+SAYS = "await say(bot, 'hi'); await whisper(bot, 'ann', 'psst'); await doNothing(bot)"
+WHISPERED = "whisper bob psst; messagestr bob whispers to you: psst"
+
+
+@pytest.mark.parametrize(
+    ("hearing", "walls", "heard"),
+    [
+        ("sight", (WALL,), WHISPERED),
+        ("sight", (), f"chat bob hi; messagestr <bob> hi; {WHISPERED}"),
+        ("global", (WALL,), f"chat bob hi; messagestr <bob> hi; {WHISPERED}"),
+    ],
+)
+def test_a_program_hears_what_its_agent_hears(
+    worlds: Worlds, hearing: str, walls: tuple[dict[str, Any], ...], heard: str
+) -> None:
+    room = {"perception": {"hearing": hearing}, "blocks": [FLOOR, *walls]}
+    result, _ = played(worlds, HEARS, SAYS, **room)
+    assert result.log == (heard,)
+
+
+def test_in_a_belief_one_reads_what_is_believed_there(worlds: Worlds) -> None:
+    look = """
+      const names = [new Vec3(8, 1, 5), new Vec3(5, 1, 0)].map(place => bot.blockAt(place)?.name)
+      const there = ['bob', 'ann'].map(name => Boolean(bot.players[name]?.entity))
+      console.log(names.join(), ...there)"""
+    scenario = bn.Scenario.from_mapping({**ROOM, "blocks": [FLOOR, WALL]})
+    wall = [(4, y, z) for y in (1, 2, 3) for z in range(7)]
+    with bn.Nest.open(scenario, worlds=worlds) as nest:
+        nest["/ann"].switch("before")
+        assert nest["/ann"].run("ann", look).log == ("air,air false true",)
+        # In her own belief what she knows is all there is, and what she does not is unknown.
+        assert nest["/ann"].run("ann", look, senses="percepts").log == (", false true",)
+        for name in ("air", "bricks"):
+            nest["/"].edit(blocks=dict.fromkeys(wall, name))
+            nest["/"].step(1)
+        nest["/ann"].switch("follow")
+        nest["/ann"].switch("after")
+        # She knows where Bob was; that he sees her there, behind the wall, she does not believe.
+        assert nest["/ann"].run("ann", look, senses="percepts").log == ("air,air true true",)
+        assert nest["/ann"].run("bob", look, senses="percepts").log == ("air,air true false",)
+
+
+@pytest.mark.parametrize("world", ["embedded", "scripted"])
+def test_an_experiment_comes_out_the_same(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], world: str
+) -> None:
+    built_in = resources.files("beliefnest.scenarios").joinpath("builtin", "sally-anne.yaml")
+    file = tmp_path / "careful.yaml"
+    file.write_text(f"senses: percepts\n{built_in.read_text(encoding='utf-8')}")
+    assert run_command_line(["run", str(file), "--condition", "3", "--world", world]) == 0
+    assert "NO" not in capsys.readouterr().out
+
+
+def test_on_a_server_elsewhere_programs_read_no_more() -> None:
+    low = -50
+    blocks = [
+        {**each, "fill": [[x, y + low, z] for x, y, z in each["fill"]]}
+        for each in (FLOOR, WALL, GAP)
+    ]
+    agents = {"ann": {"position": [1.5, low + 1, 3.5]}, "bob": {"position": [8.5, low + 1, 4.5]}}
+    room = {"box": [[0, low, 0], [9, low + 3, 6]], "blocks": blocks, "agents": agents}
+    code = f"""
+      console.log(bot.players.bob.entity === null)
+      await goToPosition(bot, new Vec3(7, {low + 1}, 3), 0)
+      console.log(bot.players.bob.entity === null)"""
+    with (
+        GameServer() as server,
+        bn.Nest.open(bn.Scenario.from_mapping({**ROOM, **room}), world=server.address()) as nest,
+    ):
+        result = nest["/"].run("ann", code, senses="percepts")
+    assert result.log == ("true", "false")
 
 
 PROGRAMS = {

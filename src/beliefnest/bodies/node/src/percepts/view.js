@@ -122,9 +122,9 @@ class View {
   }
 
   hearing ([speaker, text, to]) {
-    if (to === null) return [['messagestr', `<${speaker}> ${text}`], ['chat', speaker, text]]
+    if (to === null) return [['chat', speaker, text], ['messagestr', `<${speaker}> ${text}`]]
     if (to !== this.body.username) return [['messagestr', `You whisper to ${to}: ${text}`]]
-    return [['messagestr', `${speaker} whispers to you: ${text}`], ['whisper', speaker, text]]
+    return [['whisper', speaker, text], ['messagestr', `${speaker} whispers to you: ${text}`]]
   }
 
   /** Lets go of the bot; @returns {object} it */
