@@ -20,7 +20,7 @@ from mkdocs.structure.pages import Page
 import beliefnest
 from beliefnest import errors
 from beliefnest.cli.app import app
-from beliefnest.scenarios.format import schema
+from beliefnest.scenarios.schema import schema
 from beliefnest.world.values import EventKind
 
 ROOT = Path(__file__).parents[1]

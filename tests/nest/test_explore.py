@@ -3,6 +3,7 @@
 import os
 import signal
 import sqlite3
+from contextlib import closing
 
 import pytest
 from tests.nest.comparing import everything
@@ -43,10 +44,10 @@ def deadly(monkeypatch):
     """Let Node die of one of the programs, in whichever process."""
     request = Channel.request
 
-    def asking(self, op, on_frame=None, **arguments):
+    def asking(self, op, *handlers, **arguments):
         if DEADLY in arguments.get("programs", {}).values():
             self.kill()
-        return request(self, op, on_frame, **arguments)
+        return request(self, op, *handlers, **arguments)
 
     monkeypatch.setattr(Channel, "request", asking)
 
@@ -63,7 +64,7 @@ def explored(worlds, store, path, score, processes, programs=PROGRAMS):
         told = [(a.program, a.branch, a.result, a.score, everything(a.state)) for a in attempts]
         held = everything(nest[path].state)
         used = len(nest._engine.bodies.others)
-    with sqlite3.connect(store) as file:
+    with closing(sqlite3.connect(store)) as file:
         dump = list(file.iterdump())
     return (told, branch, results, held, dump), used
 
@@ -129,11 +130,11 @@ def test_an_agent_who_is_not_there(worlds):
 def test_an_interrupted_exploration_has_not_happened(worlds, monkeypatch):
     request, interrupted = Channel.request, []
 
-    def asking(self, op, on_frame=None, **arguments):
+    def asking(self, op, *handlers, **arguments):
         if op == "run" and not interrupted:
             interrupted.append(self.pid)
             os.kill(os.getpid(), signal.SIGINT)
-        return request(self, op, on_frame, **arguments)
+        return request(self, op, *handlers, **arguments)
 
     with bn.Nest.open(bn.Scenario.from_mapping(ROOM), seed=7, worlds=worlds) as nest:
         with monkeypatch.context() as patched, pytest.raises(KeyboardInterrupt):

@@ -90,7 +90,7 @@ WRONG = {
     "a mapping as a key": (BASE + "? {a: 1}\n: x", 6, "a key is no text"),
     "nested lists as a key": (BASE + "places:\n  [1, [2]]: x", 7, "a key is no text"),
     "a date as a key": (BASE + "places:\n  2020-01-01: x", 7, "a key is no text"),
-    "a template with a zero": (BASE + PROBE + 'template: "a\\0"}]', 6, "null byte"),
+    "a template with a zero": (BASE + PROBE + 'template: "a\\0"}]', 6, "cannot be read"),
 }
 
 

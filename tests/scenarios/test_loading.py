@@ -9,10 +9,10 @@ import pytest
 import beliefnest as bn
 from beliefnest.errors import ScenarioError, UnknownNameError
 from beliefnest.scenarios.expected import Arrives, Holds, Opens, Stands
-from beliefnest.scenarios.format import schema
 from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.reading import parse_yaml
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.scenarios.schema import schema
 from beliefnest.world.registry import Registry
 
 ROOT = Path(__file__).parents[2]

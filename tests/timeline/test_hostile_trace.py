@@ -172,8 +172,8 @@ def test_what_is_imported_teaches_of_what_is_there_alone(registry, tmp_path_fact
         for event in entry.events
         if "items" in event.detail or event.kind == "open_container"
     }
-    nest = bn.Nest.read(path)
-    for name in ("/sally", "/sally/anne", "/anne"):
-        for place, content in nest[name].state.containers.items():
-            assert place in told.first.box
-            assert not (content.items or content.complete) or place in opened
+    with bn.Nest.read(path) as nest:
+        for name in ("/sally", "/sally/anne", "/anne"):
+            for place, content in nest[name].state.containers.items():
+                assert place in told.first.box
+                assert not (content.items or content.complete) or place in opened

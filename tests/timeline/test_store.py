@@ -7,6 +7,7 @@ import sqlite3
 import subprocess
 import sys
 import tempfile
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -192,7 +193,7 @@ def test_entries_are_packed_however_they_come(tmp_path, step):
         for at in range(0, len(frames), step):
             part = frames[at : at + step]
             journal.append(MAIN, part, part[-1].tick)
-    with sqlite3.connect(path) as other:
+    with closing(sqlite3.connect(path)) as other:
         packed = other.execute("SELECT count FROM piece WHERE compressed").fetchall()
         loose = other.execute("SELECT sum(count) FROM piece WHERE NOT compressed").fetchone()
     other.close()
@@ -250,7 +251,7 @@ def test_a_file_that_cannot_grow_keeps_what_was_acknowledged(run_file):
 
 
 def test_a_full_database_is_told_and_nothing_is_kept(run_file):
-    with sqlite3.connect(run_file) as other:
+    with closing(sqlite3.connect(run_file)) as other:
         pages = other.execute("PRAGMA page_count").fetchone()[0]
     other.close()
     with SqliteJournal.open(run_file) as journal:
@@ -265,7 +266,7 @@ def test_a_full_database_is_told_and_nothing_is_kept(run_file):
 
 
 UNPRIVILEGED = """
-import os, sys
+import os, sys, urllib.parse  # loaded while it can be read
 from beliefnest.errors import StoreError
 from beliefnest.timeline.chunks import CHUNK_ENTRIES
 from beliefnest.timeline.store import SqliteJournal
@@ -345,7 +346,7 @@ def test_a_folder_is_no_run(tmp_path):
 
 def test_another_programs_database_is_named_and_left_alone(tmp_path):
     path = tmp_path / "places.sqlite"
-    with sqlite3.connect(path) as other:
+    with closing(sqlite3.connect(path)) as other, other:
         other.execute("CREATE TABLE bookmarks (id)")
     other.close()
     before = path.read_bytes()
@@ -356,7 +357,7 @@ def test_another_programs_database_is_named_and_left_alone(tmp_path):
 
 
 def test_a_newer_format_is_refused_and_left_alone(run_file):
-    with sqlite3.connect(run_file) as other:
+    with closing(sqlite3.connect(run_file)) as other, other:
         other.execute(f"PRAGMA user_version = {SCHEMA_VERSION + 1}")
     other.close()
     before = run_file.read_bytes()
@@ -392,7 +393,7 @@ def sound(tmp_path_factory):
         journal.records.add_program(PROGRAM)
         journal.records.add_prompt(PROMPT)
         journal.records.select(("sally",), "plan")
-    with sqlite3.connect(path) as other:
+    with closing(sqlite3.connect(path)) as other, other:
         other.execute("VACUUM")
     other.close()
     return path
@@ -475,7 +476,7 @@ def test_a_missing_end_is_noticed_where_nothing_lay(run_file):
 )
 def test_rows_that_were_tampered_with_are_found(sound, tmp_path, harm):
     path = Path(shutil.copy(sound, tmp_path))
-    with sqlite3.connect(path) as other:
+    with closing(sqlite3.connect(path)) as other, other:
         other.execute(harm)
     other.close()
     with pytest.raises(StoreError, match="damaged"), SqliteJournal.open(path) as journal:

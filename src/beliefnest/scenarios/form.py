@@ -7,7 +7,8 @@ import msgspec
 
 from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.document import Document, KeyPath, Node, plain
-from beliefnest.scenarios.format import ScenarioFile, allowed_keys, allowed_values
+from beliefnest.scenarios.format import ScenarioFile
+from beliefnest.scenarios.schema import allowed_keys, allowed_values
 from beliefnest.world.texts import is_well_formed
 
 __all__ = ["check_form"]

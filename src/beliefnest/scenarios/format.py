@@ -4,7 +4,6 @@ These types are the single source of the published JSON schema (`docs/scenario.s
 and of the check of a file's form. Whether the content makes sense is checked in `build`.
 """
 
-from collections.abc import Iterable
 from typing import Annotated, Any, Literal
 
 import msgspec
@@ -30,9 +29,6 @@ __all__ = [
     "ScenarioFile",
     "SignEntry",
     "StepEntry",
-    "allowed_keys",
-    "allowed_values",
-    "schema",
 ]
 
 
@@ -379,122 +375,3 @@ class ScenarioFile(_Entry, frozen=True):
 
 LABELLED = ("script", "probes", "expectations")
 """Lists whose entries a condition may change one by one, by label."""
-
-
-_HOLE = {
-    "description": "What a parameter stands for, or an expression of parameters.",
-    "type": "string",
-    "pattern": r"^\$\{[^{}]*\}$",
-}
-_AS_WRITTEN = ("ParameterEntry",)
-"""Definitions in which `${...}` stands for nothing."""
-_DECLARING = ("parameters", "constraints", "conditions")
-"""Keys that are written as they are."""
-
-
-def schema() -> dict[str, Any]:
-    """The JSON schema of a scenario file for editors, descriptions included.
-
-    Anything that is no text may also be `${...}`, which a parameter's value takes the place of.
-    """
-    published = _form()
-    definitions = {
-        name: entry if name in _AS_WRITTEN else _with_holes(entry)
-        for name, entry in published["$defs"].items()
-    }
-    return {**published, "$defs": {**definitions, "Hole": _HOLE}}
-
-
-def _with_holes(entry: dict[str, Any]) -> dict[str, Any]:
-    """An object's definition whose properties may be holes, and what is in them."""
-    properties = {
-        key: value if key in _DECLARING else _or_hole(value)
-        for key, value in entry.get("properties", {}).items()
-    }
-    return {**entry, "properties": properties}
-
-
-def _or_hole(value: dict[str, Any]) -> dict[str, Any]:
-    told: dict[str, Any] = {k: value[k] for k in ("description", "default") if k in value}
-    bare = {key: part for key, part in value.items() if key not in told}
-    forms = [_holes_inside(form) for form in bare.get("anyOf", [bare] if bare else [])]
-    if forms and all(form.get("type") != "string" for form in forms):
-        forms.append({"$ref": "#/$defs/Hole"})
-    return {**told, **({"anyOf": forms} if len(forms) > 1 else bare)}
-
-
-def _holes_inside(form: dict[str, Any]) -> dict[str, Any]:
-    """A list or a mapping whose values may be holes; any other form as it is."""
-    inner = dict(form)
-    for key in ("items", "additionalProperties"):
-        if isinstance(inner.get(key), dict):
-            inner[key] = _or_hole(inner[key])
-    if "prefixItems" in inner:
-        inner["prefixItems"] = [_or_hole(each) for each in inner["prefixItems"]]
-    return inner
-
-
-def _form() -> dict[str, Any]:
-    """The JSON schema of a scenario file whose parameters have their values in place."""
-    published: dict[str, Any] = msgspec.json.schema(ScenarioFile)
-    definitions = published["$defs"]
-    overriding = {
-        key: dict(value)
-        for key, value in definitions["ScenarioFile"]["properties"].items()
-        if key != "conditions"
-    }
-    overriding["agents"] = _mapping_of(_override_of("AgentEntry", definitions))
-    overriding["perception"] = _override_of("PerceptionEntry", definitions)
-    for key in LABELLED:
-        entry = overriding[key]["items"]["$ref"].rpartition("/")[2]
-        by_label = _mapping_of(_override_of(entry, definitions))
-        overriding[key] = {"anyOf": [overriding[key], by_label]}
-    condition = _override_of("ScenarioFile", definitions)
-    definitions["ScenarioFileOverride"]["properties"] = overriding
-    definitions["ScenarioFile"]["properties"]["conditions"]["additionalProperties"] = condition
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **published}
-
-
-def _override_of(name: str, definitions: dict[str, Any]) -> dict[str, str]:
-    """Define the same object with nothing required, and refer to it."""
-    override = f"{name}Override"
-    definitions[override] = {**definitions[name], "title": override, "required": []}
-    return {"$ref": f"#/$defs/{override}"}
-
-
-def _mapping_of(values: dict[str, str]) -> dict[str, Any]:
-    return {"type": "object", "additionalProperties": values}
-
-
-def allowed_keys(path: Iterable[str | int]) -> list[str]:
-    """The keys that the object at a place of a scenario file may have; none if it is no object."""
-    return sorted({key for place in _places(path) for key in place.get("properties", {})})
-
-
-def allowed_values(path: Iterable[str | int]) -> list[str]:
-    """The words that may stand at a place of a scenario file, if they are listed."""
-    return sorted({str(value) for place in _places(path) for value in place.get("enum", [])})
-
-
-def _places(path: Iterable[str | int]) -> list[dict[str, Any]]:
-    """What the schema says of a place of a scenario file, one entry for each form it may have."""
-    definitions = _form()["$defs"]
-    found = [definitions["ScenarioFile"]]
-    for key in path:
-        inner = [_inside(definition, key) for definition in found]
-        found = [leaf for choice in inner for leaf in _choices(choice, definitions)]
-    return found
-
-
-def _inside(definition: dict[str, Any], key: str | int) -> dict[str, Any]:
-    if isinstance(key, str) and key in definition.get("properties", {}):
-        return dict(definition["properties"][key])
-    inner = definition.get("items" if "items" in definition else "additionalProperties")
-    return inner if isinstance(inner, dict) else {}
-
-
-def _choices(definition: dict[str, Any], definitions: dict[str, Any]) -> list[dict[str, Any]]:
-    if "$ref" in definition:
-        return [definitions[definition["$ref"].rpartition("/")[2]]]
-    choices = definition.get("anyOf", [])
-    return [leaf for choice in choices for leaf in _choices(choice, definitions)] or [definition]

@@ -14,7 +14,7 @@ module.exports = {
   async run (context, name, type) {
     const { bot, fail, emit } = context
     if (!Object.keys(bot.players).includes(name)) {
-      fail(`name must be the name of an agent; it is ${show(name)}, here are: ${Object.keys(bot.players).join(', ')}`)
+      fail(`name must be the name of an agent; it is ${show(name)}, here are: ${Object.keys(bot.players).toSorted().join(', ')}`)
     }
     const detail = { name: utterance(context, 'type', type) }
     emit({ kind: 'emote', detail: name === bot.username ? detail : { ...detail, other: name } })
