@@ -72,3 +72,24 @@ def test_a_model_that_is_not_there_is_told_before_anything_is_run(
     assert run_command_line(["run", "room.yaml", "--claims-from", "openay:x", "--out", "r"]) != 0
     assert "no model 'openay:x'; did you mean openai" in capsys.readouterr().err
     assert not Path("r").exists()
+
+
+def test_a_study_lets_a_model_read_in_every_cell() -> None:
+    asks = [{"path": "/ann", "acts_in": "/ann", "agent": "ann", "task": "Get the apple."}]
+    scenario = f"{ROOM}probes: {json.dumps(asks)}\n"
+    Path("room.yaml").write_text(scenario, encoding="utf-8")
+    study = "scenarios: [room.yaml]\nworld: scripted\nclaims_from: scripted:found.json\n"
+    Path("study.yaml").write_text(study, encoding="utf-8")
+    result = bn.Study.load("study.yaml").run("with", jobs=1)
+    assert [each["ok"] for each in told_in("with")] == [True]
+    bn.Study("room.yaml", world="scripted").run("without", jobs=1)
+    assert [each["ok"] for each in told_in("without")] == [False]
+    assert len(result.frame()) == 1
+    with pytest.raises(bn.BeliefNestError, match="nobody"):
+        bn.Study("room.yaml", claims_from="nobody:x").run("never", jobs=1)
+
+
+def told_in(folder: str) -> list[dict[str, bool]]:
+    """What was expected of the belief in the cells of a study."""
+    cells = sorted(Path(folder, "cells").glob("*.json"))
+    return [each for cell in cells for each in json.loads(cell.read_text())["expectations"]]

@@ -46,6 +46,7 @@ class Design:
         attempts: How often a model is asked for one probe at most.
         temperature: How answers are drawn; None leaves it to the provider.
         limits: What the whole study may spend.
+        claims_from: Name of the model that reads claims out of what is said; None: nobody.
     """
 
     scenarios: tuple[str, ...]
@@ -60,6 +61,7 @@ class Design:
     attempts: int = 3
     temperature: float | None = 0.0
     limits: RunLimits = field(default_factory=RunLimits)
+    claims_from: str | None = None
 
     def __post_init__(self) -> None:
         for name, values in (("scenarios", self.scenarios), ("models", self.models)):
@@ -100,6 +102,7 @@ class Design:
             "world": self.world,
             "attempts": self.attempts,
             "temperature": self.temperature,
+            **({} if self.claims_from is None else {"claims_from": self.claims_from}),
         }
 
     def broken_constraint(
@@ -141,6 +144,7 @@ class _StudyFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     temperature: float | None = 0.0
     max_tokens: int | None = 1_000_000
     max_cost: float | None = 5.0
+    claims_from: str | None = None
 
 
 def read_design(path: Path) -> Design:
@@ -168,6 +172,7 @@ def read_design(path: Path) -> Design:
             attempts=found.attempts,
             temperature=found.temperature,
             limits=RunLimits(found.max_tokens, found.max_cost),
+            claims_from=found.claims_from,
         )
     except BeliefNestError as error:
         key = next((key for key in _StudyFile.__struct_fields__ if key in str(error)), None)

@@ -31,7 +31,7 @@ class CellKey:
         model: Name of the model.
         template: Name of the prompt template; empty: what the scenario says.
         repeat: Number of the repeat, from 1.
-        setting: What else decides about results: seed, world, attempts, temperature.
+        setting: What else decides about results: seed, world, attempts, temperature, and so on.
     """
 
     scenario: str

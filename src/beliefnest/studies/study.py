@@ -43,6 +43,7 @@ class Study:
         temperature: How answers are drawn; None leaves it to the provider.
         max_tokens: What the whole study may use; None: no limit.
         max_cost: US dollars that it may cost; None: no limit.
+        claims_from: Name of a model that reads claims out of what is said; None: nobody.
 
     Raises:
         InputError: An argument is not of the form that it should have.
@@ -67,6 +68,7 @@ class Study:
         temperature: float | None = 0.0,
         max_tokens: int | None = 1_000_000,
         max_cost: float | None = 5.0,
+        claims_from: str | None = None,
     ) -> None:
         self._hold(
             Design(
@@ -82,6 +84,7 @@ class Study:
                 attempts=attempts,
                 temperature=temperature,
                 limits=RunLimits(max_tokens, max_cost),
+                claims_from=claims_from,
             )
         )
 
@@ -184,7 +187,8 @@ class Study:
 
     def _check_models(self, backend: str) -> None:
         """Refuse a model that there is not, or that lacks a key, before anything is played."""
-        for name in self._design.models:
+        readers = () if self._design.claims_from is None else (self._design.claims_from,)
+        for name in (*self._design.models, *readers):
             try:
                 resolve_model(name, os.environ)
             except ModelError:

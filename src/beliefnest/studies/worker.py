@@ -12,6 +12,7 @@ from typing import Any
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.errors import BeliefNestError
 from beliefnest.llm.budget import RunLimits
+from beliefnest.llm.hearsay import claims_from_model
 from beliefnest.llm.messages import Sampling
 from beliefnest.llm.remote import RemoteModel
 from beliefnest.llm.resolve import Connection, open_model, resolve_model
@@ -96,8 +97,18 @@ class Worker:
             store.parent.mkdir(parents=True, exist_ok=True)
             for left in store.parent.glob(f"{key.name}.bn*"):
                 left.unlink()
+        reader = key.setting.get("claims_from")
+        claims_from = None
+        if reader is not None:
+            claims_from = claims_from_model(open_model(reader, environment, connection), sampling)
         with Nest.open(
-            scenario, key.setting["world"], store, key.seed, self._worlds, renderer=self._renderer
+            scenario,
+            key.setting["world"],
+            store,
+            key.seed,
+            self._worlds,
+            claims_from=claims_from,
+            renderer=self._renderer,
         ) as nest:
             outcome = run_scenario(nest, scenario, model, key.seed, 0.0, _say_nothing, asking)
         return {
