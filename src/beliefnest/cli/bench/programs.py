@@ -13,6 +13,7 @@ from beliefnest.cli.bench import restore
 from beliefnest.cli.bench.figures import Figure, median_seconds
 from beliefnest.errors import BodyError
 from beliefnest.nest.face.nest import Nest
+from beliefnest.nest.past.setting import Senses
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.values import TICKS_PER_SECOND
 
@@ -32,7 +33,8 @@ _CORNERS = ((15, 15), (-15, 10), (-10, -17), (17, -12))
 
 def measure() -> Sequence[Figure]:
     """All figures of programs, as users run them: `Nest.open`, `Simulator.run` and `run_all`."""
-    return [_empty(), *_containment(), _walk(4, 100.0), _walk(16, 20.0), *restore.measure()]
+    walks = [_walk(4, 100.0), _walk(16, 20.0), _walk(4, None, "percepts")]
+    return [_empty(), *_containment(), *walks, *restore.measure()]
 
 
 def _empty() -> Figure:
@@ -78,7 +80,7 @@ def _call() -> float:
         return median_seconds(lambda: _speed(nest, programs), _PAIRS)
 
 
-def _walk(agents: int, target: float) -> Figure:
+def _walk(agents: int, target: float | None, senses: Senses = "world") -> Figure:
     """Everybody walks around the hall, recorded in a run file; the median of some rounds."""
     programs = {f"agent{number}": _round(number) for number in range(agents)}
     with (
@@ -86,16 +88,17 @@ def _walk(agents: int, target: float) -> Figure:
         Nest.open(_hall(agents), store=Path(folder) / "run.bn") as nest,
     ):
         # Node compiles what it runs most.
-        ratios = [_speed(nest, programs) for _ in range(1 + _WALKS)][1:]
-    name = f"{agents} agents walking, Minecraft seconds per second"
+        ratios = [_speed(nest, programs, senses) for _ in range(1 + _WALKS)][1:]
+    what = "" if senses == "world" else f" by their {senses}"
+    name = f"{agents} agents walking{what}, Minecraft seconds per second"
     return Figure(name, statistics.median(ratios), "x", target, at_least=True)
 
 
-def _speed(nest: Nest, programs: dict[str, str]) -> float:
+def _speed(nest: Nest, programs: dict[str, str], senses: Senses = "world") -> float:
     """Minecraft seconds per second."""
     before = nest.tick
     started = time.perf_counter()
-    results = nest["/"].run_all(programs)
+    results = nest["/"].run_all(programs, senses=senses)
     seconds = time.perf_counter() - started
     if not all(result.ok for result in results.values()):
         raise BodyError("an agent did not get around the hall")
