@@ -148,8 +148,7 @@ class Simulator(ShownSimulator):
             agent: Whose bot runs it.
             code: JavaScript: the body of an async function, or one whole async function.
             timeout_ticks: Ticks after which the program is stopped, at most those of a day.
-            senses: `percepts`: it reads no more than its agent perceives or remembers; in the
-                scripted world alone.
+            senses: `percepts`: it reads no more than its agent perceives or remembers.
 
         Raises:
             InputError: The code is no text, or the ticks are no such number.
