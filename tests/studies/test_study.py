@@ -54,6 +54,15 @@ def test_one_row_for_each_probe_of_each_cell(whole):
     assert str(frame["ticks"].dtype) == "int64[pyarrow]"
 
 
+def test_conditions_that_are_not_there_are_listed_and_alone_are_refused(tmp_path):
+    told = "there is no condition 9; conditions are 1, 2, 3"
+    plan = bn.Study("sally-anne", conditions=[1, 9]).plan()
+    assert len(plan.cells) == 1
+    assert [(each.condition, told in each.why) for each in plan.invalid] == [(9, True)]
+    with pytest.raises(bn.InputError, match=told):
+        bn.Study("sally-anne", conditions=[9]).run(tmp_path / "out", jobs=1)
+
+
 def test_several_templates_are_told_apart_everywhere(tmp_path):
     study = bn.Study(small_in(tmp_path), templates=["default", "paper"])
     result = study.run(tmp_path / "out", jobs=1)

@@ -142,6 +142,7 @@ def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan:
     for name in design.scenarios:
         document = documents[name]
         conditions = _conditions(design, document)
+        invalid += _unknown_conditions(design, name, document)
         for variation in _variations(design, document):
             for condition in conditions:
                 try:
@@ -172,6 +173,16 @@ def _conditions(design: Design, document: Document) -> Sequence[int | None]:
     if design.conditions is None or numbers == (None,):
         return numbers
     return [number for number in numbers if number in design.conditions]
+
+
+def _unknown_conditions(design: Design, name: str, document: Document) -> Iterator[Invalid]:
+    """Conditions that are asked for, and that a scenario with conditions does not have."""
+    numbers = condition_numbers(document)
+    for number in design.conditions or () if numbers != (None,) else ():
+        if number not in numbers:
+            there = ", ".join(map(str, numbers))
+            why = f"{document.source}: there is no condition {number}; conditions are {there}"
+            yield Invalid(name, number, {}, why)
 
 
 def _scenario(
