@@ -1,5 +1,5 @@
 # Shortcuts for working on BeliefNest, inside an environment with `pip install -e ".[dev]"`.
-.PHONY: help test nightly check format schema notices picture pages docs bench ci
+.PHONY: help test nightly check format schema notices picture notebooks pages docs bench ci
 
 help: ## What can be made
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /: /' | column -t -s: -o '  '
@@ -35,6 +35,9 @@ pages: ## The pictures of docs/page.md, taken in a real browser
 
 picture: ## The pictures of README and docs, by the program itself
 	python tools/pictures.py
+
+notebooks: ## What the notebook of a study shows, by executing it
+	python tools/notebooks.py
 
 docs: ## The documentation site, in build/site; a broken link is an error
 	NO_MKDOCS_2_WARNING=1 mkdocs build --quiet --strict

@@ -6,6 +6,7 @@ from pathlib import Path
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.cli.folder import STORE
+from beliefnest.studies.plot import svg_of
 
 IMAGES = Path(__file__).parents[1] / "docs" / "img"
 CHEST = (-2, -51, -4)
@@ -39,6 +40,15 @@ def write_pictures(images: Path) -> None:
             if run_command_line(["run", name, "--out", str(run)]) != 0:
                 raise SystemExit(f"{name} is not as expected: mend that first")
             (images / f"{name}.png").write_bytes((run / "picture.png").read_bytes())
+        write_study(images, Path(folder, "study"))
+
+
+def write_study(images: Path, folder: Path) -> None:
+    """Write the figure of a study, which docs/studies.md tells how to make."""
+    study = bn.Study("sally-anne", variations=20, world="scripted")
+    result = study.run(folder, jobs=1)
+    text = svg_of(result.plot(by=["condition", "model"]))
+    (images / "study.svg").write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,26 @@
+"""Execute the study's notebook, and keep what it shows in it. Run by `make notebooks`."""
+
+import tempfile
+from pathlib import Path
+
+import nbclient
+import nbformat
+
+NOTEBOOK = Path(__file__).parents[1] / "docs" / "notebooks" / "study.ipynb"
+
+if __name__ == "__main__":
+    notebook = nbformat.read(NOTEBOOK, as_version=4)
+    with tempfile.TemporaryDirectory() as folder:
+        resources = {"metadata": {"path": folder}}
+        client = nbclient.NotebookClient(notebook, resources=resources, record_timing=False)
+        client.execute()
+    for cell in notebook.cells:
+        # What Python wrote it says nothing to a reader.
+        cell.pop("execution_count", None)
+        if cell.cell_type == "code":
+            cell.execution_count = None
+            for output in cell.outputs:
+                if "execution_count" in output:
+                    output.execution_count = None
+    notebook.metadata.pop("language_info", None)
+    NOTEBOOK.write_text(nbformat.writes(notebook) + "\n", encoding="utf-8")
