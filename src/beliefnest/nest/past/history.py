@@ -6,6 +6,7 @@ every few thousand entries it is saved as a checkpoint; further forests, for the
 folded from the checkpoint before, or from the timeline's beginning where there is none.
 """
 
+import functools
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -34,13 +35,18 @@ _STRETCHES = 8
 
 def context_of(setting: Setting) -> BeliefContext:
     """What the nodes of a nest with this setting stand on."""
-    registry = Registry.load()
     options = setting.perception
-    sight = Sight(
-        registry, options.max_visible_distance, options.field_of_view, options.transparent_blocks
+    sight = _sight(
+        options.max_visible_distance, options.field_of_view, tuple(options.transparent_blocks)
     )
     agents = tuple(sorted({*setting.snapshot.agents, *setting.absent}))
-    return BeliefContext(setting.snapshot.box, agents, options, registry, sight)
+    return BeliefContext(setting.snapshot.box, agents, options, sight.registry, sight)
+
+
+@functools.lru_cache(maxsize=8)
+def _sight(far: float | None, field: float, transparent: tuple[str, ...]) -> Sight:
+    """How agents see; its tables of shapes are worked out once for nests that are alike."""
+    return Sight(Registry.load(), far, field, transparent)
 
 
 @dataclass
