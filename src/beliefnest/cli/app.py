@@ -323,7 +323,7 @@ def study(
 
 @app.command()
 def play(
-    task: Annotated[str, typer.Argument(help="A built-in task, or a task file.")],
+    task: Annotated[str | None, typer.Argument(help="A built-in task, or a task file.")] = None,
     agent: Annotated[
         list[str] | None,
         typer.Option(help="Who plays an agent, as anne=search:1; can be repeated."),
@@ -345,9 +345,26 @@ def play(
     patience: Annotated[
         float | None, typer.Option(help="Seconds after which a policy has lost its round.")
     ] = None,
+    baselines: Annotated[
+        bool, typer.Option("--baselines", help="Play the task, or all, by all baselines instead.")
+    ] = False,
+    seeds: Annotated[int, typer.Option(help="Instances of each task, for --baselines.")] = 50,
+    jobs: Annotated[int, typer.Option(help="Episodes at the same time, for --baselines.")] = 1,
+    page: Annotated[
+        Path | None, typer.Option(help="Markdown file to write, for --baselines.")
+    ] = None,
     json: Json = False,
 ) -> int:
     """Let agents act round after round, each by what it believes; say whether they succeed."""
+    if baselines:
+        from beliefnest.cli.baselines import BaselineOptions, run_baselines
+
+        return run_baselines(BaselineOptions(task, seeds, jobs, page, json))
+    if task is None:
+        from beliefnest.episodes.task import Task
+        from beliefnest.errors import InputError
+
+        raise InputError(f"name a task: {', '.join(Task.names())}, or a file")
     from beliefnest.cli.play import PlayOptions, play_task
     from beliefnest.episodes.episode import Budget
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from beliefnest.episodes.tasks.building import belief, chest, hall, wall
 
-PARAMETERS = {"coffers": (3, 2, 5), "reach": (10, 8, 16)}
+PARAMETERS = {"coffers": (5, 2, 6), "reach": (10, 8, 16)}
 
 
 def instance(chance: random.Random, coffers: int, reach: int) -> dict[str, Any]:
