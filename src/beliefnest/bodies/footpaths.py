@@ -181,12 +181,15 @@ class Ground:
         if wanted not in self._ways:
             if len(self._ways) >= _MOST_WAYS:
                 self._ways.clear()
-            found = self._is_met_somewhere(start, goal)
+            found = self.may_lead(start, goal)
             self._ways[wanted] = find_way(self, start, goal) if found else None
         return self._ways[wanted]
 
-    def _is_met_somewhere(self, start: Position, goal: Goal) -> bool:
-        """Whether a goal is met in a part of the ground that has all cells to be got to in it."""
+    def may_lead(self, start: Position, goal: Goal) -> bool:
+        """Whether a way may lead somewhere; False: none does.
+
+        The goal is met in a part of the ground that has all cells in it that can be got to.
+        """
         number = next((n for n, area in enumerate(self._areas) if start in area), None)
         if number is None:
             number = len(self._areas)

@@ -20,9 +20,10 @@ from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.signs import sign_fault
 from beliefnest.world.values import EYE_HEIGHT, AgentState, Point, Position
 
-__all__ = ["CALLS", "SKILLS", "Doing", "Hand", "SkillError"]
+__all__ = ["CALLS", "REACH", "SKILLS", "Doing", "Hand", "SkillError"]
 
-_REACH = 4.0
+REACH = 4.0
+"""Blocks between the eyes of somebody and the middle of a block that it can use."""
 _NEAR = 2.0
 
 Doing = Generator[None, None, Any]
@@ -225,7 +226,7 @@ def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:
         yield from _walk_to_use(hand, place)
     yield
     _check_container(hand, place)
-    if not InReach(place, _REACH).is_met(hand.cell):
+    if not InReach(place, REACH).is_met(hand.cell):
         raise SkillError(f"the container at {place} is too far away to open it; go nearer")
     hand.world.open(hand.name, place)
 
@@ -238,7 +239,7 @@ def _check_container(hand: Hand, place: Position) -> None:
 
 
 def _walk_to_use(hand: Hand, place: Position) -> Doing:
-    yield from _walk(hand, place, InReach(place, _REACH), "the block")
+    yield from _walk(hand, place, InReach(place, REACH), "the block")
 
 
 @dataclass(frozen=True, slots=True)

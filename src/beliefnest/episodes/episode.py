@@ -296,6 +296,23 @@ class Episode:
             self._finish_part()
         return self
 
+    def view(self, agent: str) -> AgentView:
+        """What the policy of an agent would be given now."""
+        nest = self.nest
+        policy = self._policies[agent]
+        # An upper bound may see everything; nobody else can.
+        path = "/" if getattr(policy, "sees_all", False) else path_text((agent,))
+        own = nest[path]
+        return AgentView(
+            agent,
+            self._brief,
+            len(self._parts) // len(self._slots),
+            self._ended(agent),
+            nest.at(nest.tick)[path],
+            own.imagine,
+            own.noting,
+        )
+
     def at(self, round: int) -> "Moment":
         """The beginning of a round that was played.
 
@@ -382,7 +399,7 @@ class Episode:
     def _decide(self) -> None:
         """Ask for a part's programs, and keep them before they are run."""
         slot = self._slots[len(self._parts) % len(self._slots)]
-        self._parts.append(Part({agent: self._asker.ask(self._view(agent)) for agent in slot}))
+        self._parts.append(Part({agent: self._asker.ask(self.view(agent)) for agent in slot}))
         self._keep()
 
     def _finish_part(self) -> None:
@@ -444,22 +461,6 @@ class Episode:
     def _said_at(self, tick: int, reality: State) -> int:
         players = self.task.players
         return sum(1 for when, who, _ in reality.chat if when == tick and who in players)
-
-    def _view(self, agent: str) -> AgentView:
-        nest = self.nest
-        policy = self._policies[agent]
-        # An upper bound may see everything; nobody else can.
-        path = "/" if getattr(policy, "sees_all", False) else path_text((agent,))
-        own = nest[path]
-        return AgentView(
-            agent,
-            self._brief,
-            len(self._parts) // len(self._slots),
-            self._ended(agent),
-            nest.at(nest.tick)[path],
-            own.imagine,
-            own.noting,
-        )
 
     def _ended(self, agent: str) -> Ended:
         return next((p.ended[agent] for p in reversed(self._parts) if agent in p.ended), Ended())

@@ -21,6 +21,7 @@ BENCHES: Mapping[str, str] = {
     "pictures": "beliefnest.cli.bench.pictures",
     "viewer": "beliefnest.cli.bench.viewer",
     "studies": "beliefnest.cli.bench.studies",
+    "episodes": "beliefnest.cli.bench.episodes",
     "pettingzoo": "beliefnest.cli.bench.pettingzoo",
 }
 """Name to the module whose `measure()` it is; loaded when it is run."""

@@ -89,18 +89,23 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
     world = mind.world
     if agent not in world.agents:
         return
-    mine = world.agents[agent].inventory
-    containers = sorted(world.containers.items())
+    mine, others = world.agents[agent].inventory, [n for n in sorted(world.agents) if n != agent]
+    near = [
+        (at, held) for at, held in sorted(world.containers.items()) if mind.may_reach(agent, at)
+    ]
+    wanted = {c.fact.place for g in goals for c in g.conditions if isinstance(c.fact, ItemsIn)}
     for item in items_of(goals):
-        for place, items in containers:
+        for place, items in near:
             if items.get(item, 0):
                 yield Call("getItemFromChest", (place, {item: 1}))
-        if mine.get(item, 0):
-            for place, _ in containers:
+        if not mine.get(item, 0):
+            continue
+        for place, _ in near:
+            # It is of use where it belongs, or where somebody else can take it.
+            if place in wanted or any(mind.may_reach(other, place) for other in others):
                 yield Call("depositItemIntoChest", (place, {item: 1}))
-            for other in sorted(world.agents):
-                if other != agent:
-                    yield Call("giveItemToOther", (other, item, 1))
+        for other in others:
+            yield Call("giveItemToOther", (other, item, 1))
 
 
 def _places(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[Call]:

@@ -29,6 +29,8 @@ Path = tuple[str, ...]
 
 _PER_BLOCK = 0.01
 _UNKNOWN = 6.0
+_HANDED_OVER = 1.5
+"""For what somebody else has to take over, since whoever has it cannot get to where it belongs."""
 _FAR = 80.0
 
 
@@ -59,6 +61,10 @@ class MindFacts:
         state = int(self._world.blocks[self._world.box.index(place)])
         unknown = state == 0 and self._mind.is_unknown(place)
         return None if unknown else Registry.load().text(state)
+
+    def may_reach(self, agent: str, place: Position) -> bool:
+        """Whether an agent may get to where it can use a block."""
+        return self._mind.may_reach(agent, place)
 
     @property
     def containers(self) -> Iterable[Position]:
@@ -151,22 +157,26 @@ def _to_agent(facts: MindFacts, agent: str, item: str) -> float:
     ways = [_UNKNOWN]
     for place in facts.containers:
         if facts.items_in(place).get(item, 0):
-            ways.append(2.0 + _way(feet, place))
+            handed = 0.0 if facts.may_reach(agent, place) else _HANDED_OVER
+            ways.append(2.0 + handed + _way(feet, place))
     for other in facts.agents:
         if other != agent and facts.items_of(other).get(item, 0):
-            ways.append(1.5 + _between(facts.feet_of(other), feet))
+            ways.append(_HANDED_OVER + _between(facts.feet_of(other), feet))
     return min(ways)
 
 
 def _to_container(facts: MindFacts, goal: Position, item: str) -> float:
     ways = [_UNKNOWN]
+    able = {agent for agent in facts.agents if facts.may_reach(agent, goal)}
     for agent in facts.agents:
         if facts.items_of(agent).get(item, 0):
-            ways.append(1.0 + _way(facts.feet_of(agent), goal))
+            handed = 0.0 if agent in able else _HANDED_OVER
+            ways.append(1.0 + handed + _way(facts.feet_of(agent), goal))
     middle = (goal[0] + 0.5, float(goal[1]), goal[2] + 0.5)
     for place in facts.containers:
         if place != goal and facts.items_in(place).get(item, 0):
-            ways.append(2.0 + _way(middle, place))
+            direct = any(facts.may_reach(agent, place) for agent in able)
+            ways.append(2.0 + (0.0 if direct else _HANDED_OVER) + _way(middle, place))
     return min(ways)
 
 

@@ -35,9 +35,9 @@ def instance(chance: random.Random, orders: int, hatches: int) -> dict[str, Any]
         # Between hatches, so that through the glass one does not see as far as the next one.
         *(wall((x + 5, 1, 3), (x + 5, 3, 5)) for x, _, _ in places[:-1]),
     ]
-    # The nearest hatch is none at which the cook is seen.
+    # The nearest hatch, and the one nearest to the table, is none at which the cook is seen.
     near = chance.choice([x for x, _, _ in places if x != glass])
-    store, table = (near, 1, 1), (width - 2, 1, 11)
+    store, table = (near, 1, 1), (near, 1, 11)
     first: dict[tuple[int, int, int], dict[str, int]] = {place: {} for place in places}
     first |= {table: {}, store: dict.fromkeys(dishes, 1)}
     feet = {"cook": [near + 0.5, 1, 2.5], "waiter": [glass + 0.5, 1, 9.5]}

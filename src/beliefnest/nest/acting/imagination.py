@@ -6,6 +6,7 @@ anything. A fork takes well under a millisecond, so that a planner can try hundr
 Of whatever lies above the believer nothing is in it.
 """
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -16,8 +17,8 @@ from beliefnest.belief.entries import PerceivedEvent
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.initial import forked_forest
 from beliefnest.belief.node_view import NodeView
-from beliefnest.bodies.footpaths import Ground
-from beliefnest.bodies.scripted_skills import CALLS, SKILLS, Doing, Hand
+from beliefnest.bodies.footpaths import Ground, InReach
+from beliefnest.bodies.scripted_skills import CALLS, REACH, SKILLS, Doing, Hand
 from beliefnest.errors import BeliefNestError, PathError
 from beliefnest.programs.calls import Call
 from beliefnest.world.frames import BlockGrid, Frame
@@ -160,6 +161,17 @@ class Imagination:
         """Whether the believer does not know the block at a position of the box."""
         index = self.world.box.index(place)
         return bool(self._unknown[index]) and int(self.world.blocks[index]) == 0
+
+    def may_reach(self, agent: str, place: Position) -> bool:
+        """Whether an agent may get to where it can use the block at a position; False: it cannot.
+
+        Nobody whose place is unknown can.
+        """
+        there = self.world.agents.get(agent)
+        if there is None:
+            return False
+        x, y, z = (math.floor(value) for value in there.position)
+        return self._standing().may_lead((x, y, z), InReach(place, REACH))
 
     def knows(self, path: Path) -> bool:
         """Whether beliefs are followed as deep as a path below the root."""
