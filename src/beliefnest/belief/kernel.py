@@ -8,10 +8,8 @@ where the believer's belief differs from what there is.
 """
 
 import math
-from collections.abc import Callable
-from typing import Any, TypeVar, cast
+from typing import Any
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
@@ -39,7 +37,7 @@ from beliefnest.perception.eyes import (
     eye_sees_point,
     set_code,
 )
-from beliefnest.perception.rays import Cell, Scene, compiled, inlined
+from beliefnest.perception.rays import Cell, Scene, allocating, compiled, inlined, inner
 from beliefnest.world.values import EYE_HEIGHT
 
 __all__ = ["fold", "put", "put_all", "refresh_pending", "sees_cells", "sees_place", "sees_point"]
@@ -53,15 +51,6 @@ _Number = int | np.signedinteger[Any]
 def _whole(number: _Number) -> int:
     """The number as int64, so that kernels are compiled for one kind of integer only."""
     return np.int64(number)  # type: ignore[return-value]  # Python's int, once compiled
-
-
-F = TypeVar("F", bound=Callable[..., object])
-
-
-def inner(function: F) -> F:
-    """Compile a kernel that only kernels of this module call; all integers are int64."""
-    options: dict[str, Any] = {"no_cpython_wrapper": True, "nogil": True}
-    return cast(F, numba.njit(error_model="numpy", **options)(function))
 
 
 @inlined
@@ -344,6 +333,13 @@ def _update_absent(
             changes.perceived[event - first_event, node] = heard
 
 
+@inlined
+def _copy(row: npt.NDArray[np.int32], to: npt.NDArray[np.int32]) -> None:
+    """Copy a row; an assignment would be compiled with all that it could say of wrong shapes."""
+    for place in range(len(row)):
+        to[place] = row[place]
+
+
 @inner
 def _count_to(nodes: Nodes, node: int, tick: int) -> None:
     """Count ticks whom the owner of a node misses, all being as it was last (section 8)."""
@@ -356,10 +352,10 @@ def _count_to(nodes: Nodes, node: int, tick: int) -> None:
             nodes.missed[node, who] += passed
     for spot in range(len(nodes.tracked)):
         if nodes.watched[node, spot]:
-            nodes.watch_missed[node, spot, :] = nodes.missed[node, :]
+            _copy(nodes.missed[node], nodes.watch_missed[node, spot])
     for who in range(nodes.missed.shape[1]):
         if nodes.meets[node, who]:
-            nodes.met_missed[node, who, :] = nodes.missed[node, :]
+            _copy(nodes.missed[node], nodes.met_missed[node, who])
 
 
 @inner
@@ -400,7 +396,7 @@ def _watch(
         if changes.perceived[event - first_event, node]:
             for spot in range(len(nodes.tracked)):
                 if nodes.tracked[spot] == cell:
-                    nodes.watch_missed[node, spot, :] = nodes.missed[node, :]
+                    _copy(nodes.missed[node], nodes.watch_missed[node, spot])
 
 
 @inner
@@ -473,7 +469,7 @@ def fold(
     return stop
 
 
-@compiled
+@allocating
 def sees_place(
     space: Space,
     poses: Poses,
@@ -492,7 +488,7 @@ def sees_place(
     return seen
 
 
-@compiled
+@allocating
 def sees_cells(
     space: Space,
     poses: Poses,

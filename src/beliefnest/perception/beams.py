@@ -21,6 +21,7 @@ from beliefnest.perception.rays import (
     compiled,
     hidden_by,
     inlined,
+    inlined_allocating,
     is_inside,
     main_axis,
     may_lie_in_face,
@@ -73,7 +74,7 @@ def beam_room() -> Beam:
     return Beam(np.ones((4, _SAMPLES)), np.empty(_SAMPLES, dtype=np.int64))
 
 
-new_beam = inlined(beam_room)
+new_beam = inlined_allocating(beam_room)
 """`beam_room` for kernels."""
 
 

@@ -31,12 +31,15 @@ __all__ = [
     "Scene",
     "Starts",
     "Vector",
+    "allocating",
     "at",
     "block_entry",
     "cell_at",
     "compiled",
     "hidden_by",
     "inlined",
+    "inlined_allocating",
+    "inner",
     "is_inside",
     "main_axis",
     "may_lie_in_face",
@@ -86,16 +89,50 @@ _SPARE = 1e-11
 _RIM = 1e-3
 
 
+_KERNEL: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
+# Without numba's counting of references: atomic steps at every use of an array, two thirds of a
+# tick's time and a fifth of the compilation's. Arrays are kept alive by who calls a kernel.
+_BORROWING: dict[str, Any] = {**_KERNEL, "_nrt": False}
+
+
 def compiled(function: F) -> F:
-    """Compile a kernel on first use and keep the machine code for the next process.
+    """Compile a kernel that makes no arrays on first use, and keep it for the next process.
 
     It is kept beside the package, or in the user's cache folder, or in NUMBA_CACHE_DIR. A
     process that can write to none of them compiles for itself.
     """
+    return _kept(function, _BORROWING)
+
+
+def allocating(function: F) -> F:
+    """`compiled` for a kernel that makes arrays."""
+    return _kept(function, _KERNEL)
+
+
+def inner(function: F) -> F:
+    """Compile a kernel that makes no arrays for those kernels of its module that call it."""
+    return _jit(function, _BORROWING | {"no_cpython_wrapper": True})
+
+
+def inlined(function: F) -> F:
+    """Compile a kernel that makes no arrays into each kernel that calls it."""
+    return _jit(function, _BORROWING | {"forceinline": True})
+
+
+def inlined_allocating(function: F) -> F:
+    """`inlined` for a kernel that makes arrays."""
+    return _jit(function, _KERNEL | {"forceinline": True})
+
+
+def _kept(function: F, options: dict[str, Any]) -> F:
     try:
-        return cast(F, numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+        return _jit(function, options | {"cache": True})
     except RuntimeError:  # raised at once, by the search for a folder; compiling comes later
-        return cast(F, numba.njit(nogil=True, error_model="numpy")(function))
+        return _jit(function, options)
+
+
+def _jit(function: F, options: dict[str, Any]) -> F:
+    return cast(F, numba.njit(**options)(function))
 
 
 def is_compiled(function: Callable[..., object]) -> bool:
@@ -111,11 +148,6 @@ def is_compiled(function: Callable[..., object]) -> bool:
     version = f"py{sys.version_info.major}{sys.version_info.minor}"
     names = f"{source.stem}.{kernel.py_func.__qualname__}-*.{version}.nbi"
     return any(kept.stat().st_mtime >= changed for kept in Path(folder).glob(names))
-
-
-def inlined(function: F) -> F:
-    """Compile a kernel into each kernel that calls it."""
-    return cast(F, numba.njit(forceinline=True, nogil=True, error_model="numpy")(function))
 
 
 @inlined

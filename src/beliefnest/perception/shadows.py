@@ -18,9 +18,11 @@ from beliefnest.perception.rays import (
     Cell,
     Scene,
     Vector,
+    allocating,
     at,
     compiled,
     inlined,
+    inlined_allocating,
     sloped,
     span,
     turned,
@@ -229,7 +231,7 @@ def _cast_box(
         layer += step
 
 
-@inlined
+@inlined_allocating
 def _outward(e: float, size: int) -> npt.NDArray[np.int64]:
     """The cells of a grid along an axis, without margin, from the eye outwards."""
     order = np.empty(size - 2, dtype=np.int64)
@@ -245,7 +247,7 @@ def _outward(e: float, size: int) -> npt.NDArray[np.int64]:
     return order
 
 
-@compiled
+@allocating
 def cast_shadows(scene: Scene, reaches: Reaches, eye: Vector) -> Shadows:
     """The shadows of all blocks, near ones first: the hidden cast none."""
     codes, sizes, starts, boxes = scene

@@ -11,8 +11,8 @@ from beliefnest.perception.eyes import eye_sees_agent
 from beliefnest.perception.rays import (
     Cell,
     Scene,
+    allocating,
     cell_at,
-    compiled,
     hidden_by,
     inlined,
 )
@@ -21,7 +21,7 @@ from beliefnest.perception.shadows import CLEAR, HIDDEN, UNSURE, Shadows
 __all__ = ["Eye", "seen_agents", "seen_blocks", "seen_points"]
 
 
-@compiled
+@allocating
 def seen_blocks(
     scene: Scene, eye: Eye, cells: npt.NDArray[np.int64], shadows: Shadows
 ) -> npt.NDArray[np.bool_]:
@@ -57,7 +57,7 @@ def _is_margin(sizes: Cell, cell: Cell) -> bool:
     return i == 0 or j == 0 or k == 0 or i == sizes[0] - 1 or j == sizes[1] - 1 or k == sizes[2] - 1
 
 
-@compiled
+@allocating
 def seen_agents(scene: Scene, eye: Eye, feet: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
     """Which of the agents with feet at (n, 3) are seen."""
     seen = np.zeros(len(feet), dtype=np.bool_)
@@ -66,7 +66,7 @@ def seen_agents(scene: Scene, eye: Eye, feet: npt.NDArray[np.float64]) -> npt.ND
     return seen
 
 
-@compiled
+@allocating
 def seen_points(
     scene: Scene, eye: Eye, points: npt.NDArray[np.float64], target: Cell
 ) -> npt.NDArray[np.bool_]:
