@@ -37,7 +37,7 @@ from beliefnest.perception.eyes import (
     eye_sees_point,
     set_code,
 )
-from beliefnest.perception.rays import Cell, Scene, allocating, compiled, inlined, inner
+from beliefnest.perception.rays import Cell, Scene, allocating, compiled, inlined, inner, merged
 from beliefnest.world.values import EYE_HEIGHT
 
 __all__ = ["fold", "put", "put_all", "refresh_pending", "sees_cells", "sees_place", "sees_point"]
@@ -167,7 +167,7 @@ def refresh_pending(nodes: Nodes, node: int) -> None:
         _mark(nodes, node, cell)
 
 
-@inner
+@merged
 def _apply_entry(space: Space, facts: Facts, nodes: Nodes, changes: Changes, entry: int) -> None:
     """An entry in node 0, where everything known is current."""
     for row in range(facts.pose_at[entry], facts.pose_at[entry + 1]):
@@ -188,7 +188,7 @@ def _apply_entry(space: Space, facts: Facts, nodes: Nodes, changes: Changes, ent
             nodes.basis_source[0, spot] = SOURCE_SEEN
 
 
-@inner
+@merged
 def _propagate_bases(space: Space, nodes: Nodes, node: int, eye: Eye, moved: bool) -> None:
     """Hand on what tracked cells rest on, where the owner of a node sees them."""
     parent = _whole(nodes.parent[node])
@@ -201,7 +201,7 @@ def _propagate_bases(space: Space, nodes: Nodes, node: int, eye: Eye, moved: boo
             nodes.basis_source[node, spot] = nodes.basis_source[parent, spot]
 
 
-@inner
+@merged
 def _observe_agents(
     space: Space, poses: Poses, nodes: Nodes, node: int, eye: Eye, moved: bool
 ) -> None:
@@ -232,7 +232,7 @@ def _observe_agents(
             nodes.pose[node, who] = UNKNOWN
 
 
-@inner
+@merged
 def _observe_blocks(
     space: Space, nodes: Nodes, changes: Changes, entry: int, node: int, eye: Eye
 ) -> None:
@@ -277,7 +277,7 @@ def _hears(senses: Senses, poses: Poses, nodes: Nodes, node: int, speaker: int) 
     return math.sqrt(x * x + z * z + y * y) <= senses.radius
 
 
-@inner
+@merged
 def _perceive_events(
     space: Space,
     poses: Poses,
@@ -399,7 +399,7 @@ def _watch(
                     _copy(nodes.missed[node], nodes.watch_missed[node, spot])
 
 
-@inner
+@merged
 def _update_node(
     space: Space,
     poses: Poses,

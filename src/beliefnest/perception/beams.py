@@ -18,13 +18,14 @@ from beliefnest.perception.rays import (
     Vector,
     at,
     cell_at,
-    compiled,
     hidden_by,
     inlined,
     inlined_allocating,
+    inner,
     is_inside,
     main_axis,
     may_lie_in_face,
+    merged,
     neighbour,
     turned,
     turned_back,
@@ -125,7 +126,7 @@ def _offset(eye: Vector, cell: Cell, number: int) -> Vector:
     return turned((face, u, v), (3 - axis) % 3)
 
 
-@inlined
+@merged
 def _block_box(eye: Vector, low: Vector, high: Vector, beam: Beam) -> bool:
     """Close the rays that enter a box; whether any is left open."""
     slopes, opens = beam
@@ -143,7 +144,7 @@ def _block_box(eye: Vector, low: Vector, high: Vector, beam: Beam) -> bool:
     return left != 0
 
 
-@compiled
+@inner
 def _block_cell(scene: Scene, eye: Vector, cell: Cell, beam: Beam) -> bool:
     """Close the rays that enter the shape of a cell's own block; whether any is left open."""
     i, j, k = cell
@@ -173,7 +174,7 @@ def _bounds(
     return math.floor(first - _SPARE), math.floor(last + _SPARE)
 
 
-@compiled
+@inner
 def _beam_ends(scene: Scene, eye: Vector, target: Cell, beam: Beam) -> bool:
     """Whether any ray of a beam gets to the target, layer by layer along its longest axis."""
     codes, sizes = scene.codes, scene.sizes
@@ -213,7 +214,7 @@ def _beam_ends(scene: Scene, eye: Vector, target: Cell, beam: Beam) -> bool:
     return True
 
 
-@inlined
+@merged
 def _fill_axis(slopes: npt.NDArray[np.float64], axis: int, d: float, e: float, low: int) -> None:
     """Write the slopes of a beam's rays along one axis; d leads to the block's middle."""
     level, inner, outer = _inverse(d), _inverse(d - _CORNER), _inverse(d + _CORNER)
@@ -228,7 +229,7 @@ def _fill_axis(slopes: npt.NDArray[np.float64], axis: int, d: float, e: float, l
         slopes[axis, 1 + 5 * ((axis + 1) % 3) + corner] = outer if corner & 2 else inner
 
 
-@inlined
+@merged
 def _take_middles(opens: npt.NDArray[np.int64], levels: int) -> int:
     """Close the rays that may lie in the plane of a face; bit n of the result: ray n was open.
 
@@ -244,7 +245,7 @@ def _take_middles(opens: npt.NDArray[np.int64], levels: int) -> int:
     return taken
 
 
-@inlined
+@merged
 def _aim(eye: Eye, cell: Cell, beam: Beam) -> int:
     """Set up the beam from an eye to a block; rays in the plane of a face go to the result."""
     slopes, opens = beam
@@ -272,7 +273,7 @@ def _aim(eye: Eye, cell: Cell, beam: Beam) -> int:
     return _take_middles(opens, levels) if levels != 0 else 0
 
 
-@compiled
+@inner
 def sees_block(
     scene: Scene, eye: Eye, cell: Cell, beam: Beam, shadows: Shadows, index: int
 ) -> bool:

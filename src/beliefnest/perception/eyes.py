@@ -17,6 +17,7 @@ from beliefnest.perception.rays import (
     hidden_by,
     inlined,
     is_inside,
+    merged,
     neighbour,
 )
 from beliefnest.perception.shadows import Shadows
@@ -27,7 +28,7 @@ __all__ = ["Eye", "eye_at", "eye_sees_agent", "eye_sees_block", "eye_sees_point"
 _HEIGHTS = np.array(AGENT_SAMPLE_HEIGHTS)
 
 
-@compiled
+@merged
 def eye_sees_block(scene: Scene, eye: Eye, cell: Cell, beam: Beam, shadows: Shadows) -> bool:
     """Whether a block is seen; the beam is room to work in, the shadows are `no_shadows()`."""
     x, y, z = eye[0]
@@ -36,7 +37,7 @@ def eye_sees_block(scene: Scene, eye: Eye, cell: Cell, beam: Beam, shadows: Shad
     return sees_block(scene, eye, cell, beam, shadows, -1)
 
 
-@compiled
+@merged
 def _sees_sample(scene: Scene, eye: Eye, d: Vector) -> bool:
     if not in_field(eye, d[0], d[1], d[2]):
         return False
@@ -53,7 +54,7 @@ def eye_sees_point(scene: Scene, eye: Eye, point: Vector) -> bool:
     return in_reach(eye, d[0], d[1], d[2]) and _sees_sample(scene, eye, d)
 
 
-@compiled
+@merged
 def eye_sees_agent(scene: Scene, eye: Eye, feet: Vector) -> bool:
     """Whether an agent with its feet at a point is seen by one of its sample points."""
     place = eye[0]
@@ -66,7 +67,7 @@ def eye_sees_agent(scene: Scene, eye: Eye, feet: Vector) -> bool:
     return False
 
 
-@inlined
+@merged
 def _update_intruded(codes: Codes, sizes: Cell, reaches: Reaches, cell: Cell) -> None:
     """Set or clear a cell's `INTRUDED` from the shapes of its neighbours."""
     intruded = False
