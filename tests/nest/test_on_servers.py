@@ -1,6 +1,7 @@
 """The paper's experiments on a server, in real time, and what may go wrong with one meanwhile."""
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -66,6 +67,17 @@ def test_the_experiments_come_out_as_in_the_embedded_world(
         for mine, its in zip(here["probes"], there["probes"], strict=True):
             assert (mine["opened"], mine["ok"]) == (its["opened"], its["ok"])
             assert same_place(mine["arrived"], its["arrived"])
+
+
+def test_the_example_of_the_page_runs(server, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    page = (Path(__file__).parents[2] / "docs" / "servers.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    example = example.replace("minecraft://localhost:25565", server.address())
+    exec(compile(example, "servers.md", "exec"), {"__name__": "example"})
+    *_, said, believed = capsys.readouterr().out.splitlines()
+    assert said.endswith("sally I am back.")
+    assert believed == "{'diamond': 1}"
 
 
 def test_what_others_do_between_calls_is_recorded_with_the_next(server, tmp_path):
