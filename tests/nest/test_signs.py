@@ -3,11 +3,15 @@
 import pytest
 
 import beliefnest as bn
+from beliefnest.belief.columns import cell_of
 from beliefnest.belief.entries import Source
+from beliefnest.nest.past.forest_codec import restored, saved
+from beliefnest.nest.past.history import context_of
 from beliefnest.nest.past.setting import Setting
 from beliefnest.prompts.templates import built_in_template
+from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.frames import Snapshot
-from beliefnest.world.values import EventKind
+from beliefnest.world.values import EventKind, Sign
 
 SIGN = (5, 1, 5)
 DEFAULT = built_in_template("default").text
@@ -160,3 +164,19 @@ def test_prompts_say_what_signs_say_and_explanations_who_wrote_it(world, nest):
     assert "\nSigns:\n(5, 1, 5) oak_sign" in prompt
     assert "writeSign;anne" in prompt
     assert nest["/sally"].render("{{ branch | mechanisms }}") == "Not observed"
+
+
+def test_a_saved_forest_is_read_where_other_texts_were_met_first(world):
+    with bn.Nest(world) as nest:
+        world.write_sign("anne", SIGN, "one")
+        history = nest._recording.history
+        forest = history.walk(TimelineKey((), "main"), [(), ("sally",)])
+        history.advance(TimelineKey((), "main"), forest, 1)
+        other = context_of(nest._recording.setting)
+        other.number(Sign(history.context.registry.state_id("oak_wall_sign"), "else"))
+        again = restored(other, forest._events, saved(forest))
+        for node in (0, 1):
+            assert set(other.texts(again.table.blocks(node)).values()) == {"one"}
+        assert other.block_text(again.table.block(1, cell_of(other.box, SIGN))) == (
+            'oak_sign[rotation=0,waterlogged=false] that says "one"'
+        )
