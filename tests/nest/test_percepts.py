@@ -101,3 +101,13 @@ def test_a_body_bumps_into_what_its_agent_does_not_know() -> None:
         assert result.error is not None
         assert result.error.reason == "no_way"
         assert nest["/"].state.agents["ann"].position[0] < 2
+
+
+def test_what_is_imagined_meanwhile_is_not_what_is_perceived() -> None:
+    scenario = bn.Scenario.from_mapping({**ROOM, "blocks": [FLOOR]})
+    with bn.Nest.open(scenario, world="scripted") as nest:
+        nest["/ann"].switch("what if")
+        nest["/ann"].edit(blocks={(2, 1, 2): "bricks"})
+        seen = "console.log(bot.blockAt(new Vec3(2, 1, 2)).name)"
+        assert nest["/"].run("ann", seen, senses="percepts").log == ("air",)
+        assert nest["/ann"].run("ann", seen, senses="percepts").log == ("bricks",)

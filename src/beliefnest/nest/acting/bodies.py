@@ -180,17 +180,21 @@ class Bodies:
     def sense_of(self, path: Path, agent: str) -> Sense:
         """What an agent of a simulator perceives or remembers, while programs run in its body.
 
-        Beliefs are worked out from what has been recorded so far, as they always are. Where the
-        agent is, and what it has on it, it knows from its own body.
+        Beliefs are worked out from what has been recorded so far, as they always are, and follow
+        this simulator, whatever branch the agent's own one is on. Where the agent is, and what
+        it has on it, it knows from its own body.
         """
         embodied, recording = self._embodied[path], self._recording
+        key = recording.controller(path)
 
         def entries() -> int:
             embodied.recorder.flush(embodied.body.tick)
-            return recording.info(path).entries
+            return recording.journal.info(key).entries
 
         believer = believer_of(path, agent)
-        return Sensing(agent, entries, lambda _: recording.reading(believer))
+        return Sensing(
+            agent, entries, lambda count: recording.history.reading(key, believer, count)
+        )
 
     @contextmanager
     def changing(self, path: Path, unless: type[BaseException] | tuple[()] = ()) -> Iterator[None]:
