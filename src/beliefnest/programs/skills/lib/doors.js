@@ -4,7 +4,7 @@
  * through the door that lies best, and looks for the way again. Iron doors are gone through where they are open.
  */
 const { answered } = require('./answers')
-const { until } = require('./waiting')
+const { stepUntil } = require('./stepping')
 
 const DOORWAY = /(_door|_fence_gate)$/
 const FAR = 48
@@ -34,21 +34,7 @@ async function stepThrough (context, far, near) {
   const { bot } = context
   const centre = far.offset(0.5, 0, 0.5)
   await bot.lookAt(centre.offset(0, bot.entity.eyeHeight, 0), true)
-  let arrived = false
-  // Judged step by step: a busy machine takes many steps at once, and who looks after them is far beyond.
-  const stop = context.listen('physicsTick', () => {
-    if (bot.entity.position.xzDistanceTo(centre) >= near) return
-    arrived = true
-    bot.setControlState('forward', false)
-  })
-  try {
-    bot.setControlState('forward', true)
-    await until(() => arrived, STEP_TICKS)
-  } finally {
-    stop()
-    bot.setControlState('forward', false)
-  }
-  return arrived
+  return stepUntil(context, () => bot.entity.position.xzDistanceTo(centre) < near, STEP_TICKS)
 }
 
 /** Opens or shuts the door at a position, if it is not so and moves by hand; @returns {Promise<boolean>} whether it is so */

@@ -4,6 +4,7 @@ const { until } = require('./waiting')
 const { show } = require('./arguments')
 const { passOneDoor } = require('./doors')
 const { hindranceOf, sees, shapesOf } = require('./sight')
+const { stepUntil } = require('./stepping')
 
 const REACH = 4
 const EYES = 1.62
@@ -112,13 +113,13 @@ function viewpoint ({ bot, goals }, block, accepts) {
  * What can be used from the middle of the block somebody stands on cannot always be from its edge: goes there
  * if the server would refuse it from here.
  */
-async function stepToView ({ bot }, block) {
+async function stepToView (context, block) {
+  const { bot } = context
   const middle = bot.entity.position.floored().offset(0.5, 0, 0.5)
   if (hindranceOf(bot, block) === null || hindranceOf(bot, block, middle) !== null) return
   const near = () => bot.entity.position.xzDistanceTo(middle) < MIDDLE || hindranceOf(bot, block) === null
   await bot.lookAt(middle.offset(0, EYES, 0), true)
-  bot.setControlState('forward', true)
-  await until(near, STEP_TICKS)
+  await stepUntil(context, near, STEP_TICKS)
   await settle(bot)
 }
 

@@ -26,3 +26,21 @@ test('a skill does nothing more once its program has ended', async () => {
     assert.deepEqual([await world.has('sally'), world.emitted, sally.currentWindow], [held, [], null])
   })
 })
+
+test('who is stopped in a doorway stands there, and the world goes on', async () => {
+  const abort = new AbortController()
+  const high = [0, FLOOR + 2, 3, 'stone']
+  const wall = Array.from({ length: 23 }, (_, i) => i - 11).filter(x => x !== 0)
+    .flatMap(x => [0, 1, 2].map(up => [x, FLOOR + up, 3, 'stone']))
+  const door = ['lower', 'upper'].map((half, up) => [0, FLOOR + up, 3, 'oak_door', { half, open: false, facing: 'north' }])
+  await withSkills({ signal: abort.signal, blocks: [high, ...wall, ...door] }, async world => {
+    const { bots: { sally }, skills: { sally: own } } = world
+    const going = assert.rejects(own.goToPosition(sally, new Vec3(0, FLOOR, 7), 1), { message: /program that called it has ended/ })
+    await world.until(async () => sally.getControlState('forward') && (await world.block(0, FLOOR, 3)).properties.open)
+    abort.abort()
+    stopBot(sally)
+    await world.ticks(60)
+    await world.during(going)
+    assert.ok(sally.entity.position.z < 5)
+  })
+})
