@@ -1,5 +1,5 @@
 # Shortcuts for working on BeliefNest, inside an environment with `pip install -e ".[dev]"`.
-.PHONY: help test nightly check format schema notices picture notebooks pages docs bench ci
+.PHONY: help test nightly check format schema notices picture notebooks pages baselines docs bench ci
 
 help: ## What can be made
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /: /' | column -t -s: -o '  '
@@ -38,6 +38,9 @@ picture: ## The pictures of README and docs, by the program itself
 
 notebooks: ## What the notebook of a study shows, by executing it
 	python tools/notebooks.py
+
+baselines: ## docs/tasks.md: all tasks by all baselines, over 50 seeds; takes an hour
+	beliefnest play --baselines --seeds 50 --jobs 2 --page docs/tasks.md
 
 docs: ## The documentation site, in build/site; a broken link is an error
 	NO_MKDOCS_2_WARNING=1 mkdocs build --quiet --strict
