@@ -5,58 +5,32 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-import msgspec
-
 from beliefnest.belief.view import State
-from beliefnest.bodies.protocol import NO_WAY, Fault, ProgramResult
+from beliefnest.bodies.protocol import ProgramResult
+from beliefnest.episodes.choosing import chosen, name_of
 from beliefnest.episodes.goals import Look, Progress, looking_at
 from beliefnest.episodes.measures import Measures, measured
-from beliefnest.episodes.policies import resolve_policy
-from beliefnest.episodes.rounds import Asker, Decision, Part, Replayed, Spent, slots_of
+from beliefnest.episodes.record import (
+    Branch,
+    Budget,
+    Start,
+    ended_as,
+    keep_branch,
+    keep_start,
+    kept_in,
+)
+from beliefnest.episodes.rounds import Asker, Part, Replayed, Spent, slots_of
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.view import AgentView, Brief, Ended, Policy
-from beliefnest.errors import BeliefNestError, InputError, StoreError
+from beliefnest.errors import InputError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.setting import MAIN
 from beliefnest.world.paths import path_text
 
 __all__ = ["Budget", "Episode", "Moment"]
 
-_TASK, _DECISIONS = "episode", "episode decisions"
-
 _ON_FOOT = 5
 """Ticks that Minecraft's players take for a block, 4.3 blocks a second, rounded up."""
-
-
-class Budget(msgspec.Struct, frozen=True, omit_defaults=True):
-    """What an episode may take; None: as much as it needs.
-
-    Attributes:
-        ticks: Ticks of the world.
-        tokens: Sent to models and received.
-        cost: US dollars.
-    """
-
-    ticks: int | None = None
-    tokens: int | None = None
-    cost: float | None = None
-
-
-class _Kept(msgspec.Struct, frozen=True):
-    """What a run keeps of its episode at the beginning."""
-
-    task: dict[str, Any]
-    seed: int
-    task_seed: int | None
-    start: int
-    budget: Budget
-
-
-class _Branch(msgspec.Struct, frozen=True):
-    """What a run keeps of an episode's branch: policies in words, and what was decided."""
-
-    policies: dict[str, str]
-    parts: list[Part]
 
 
 class Episode:
@@ -95,7 +69,7 @@ class Episode:
             task = task.at_pace(_ON_FOOT)
         self.task = task
         self.seed = seed
-        self._names, self._policies = _chosen(task, policies or {})
+        self._names, self._policies = chosen(task, policies or {})
         self._world, self._store = world, store
         self._budget = budget or Budget()
         self._patience_s = patience_s
@@ -129,7 +103,7 @@ class Episode:
         """
         nest = Nest.resume(store)
         try:
-            kept, branches = _kept(nest)
+            kept, branches = kept_in(nest)
             branch = nest["/"].branch
             known = branches[branch]
             given = {**known.policies, **(policies or {})}
@@ -137,6 +111,7 @@ class Episode:
             episode = cls(
                 task,
                 given,
+                world=kept.world,
                 store=store,
                 seed=kept.seed,
                 budget=kept.budget,
@@ -161,14 +136,16 @@ class Episode:
         """
         nest = Nest.read(recorded)
         with nest:
-            kept, branches = _kept(nest)
+            kept, branches = kept_in(nest)
             branch = branches[nest.branch("/")]
         policies = {
             agent: Replayed([p.decisions[agent] for p in branch.parts if agent in p.decisions])
             for agent in branch.policies
         }
         task = Task.from_mapping(kept.task, kept.task_seed)
-        episode = cls(task, policies, store=store, seed=kept.seed, budget=kept.budget)
+        episode = cls(
+            task, policies, world=kept.world, store=store, seed=kept.seed, budget=kept.budget
+        )
         # It is the same episode, and is recorded as it was.
         episode._names = dict(branch.policies)
         return episode
@@ -219,6 +196,11 @@ class Episode:
         return -(-len(self._parts) // len(self._slots))
 
     @property
+    def beginnings(self) -> Sequence[int]:
+        """The ticks at which the rounds began that were played."""
+        return range(self._start, self.nest.tick, self._brief.whole_round)
+
+    @property
     def ticks(self) -> int:
         """Ticks since the first round began; until success, if there was one."""
         goal = self._progress.get("")
@@ -234,7 +216,7 @@ class Episode:
         progress = self._watch()
         if progress.reached is not None or progress.violated is not None:
             return True
-        return self.rounds >= self.task.form.rounds or self._is_spent()
+        return len(self._parts) >= self.task.form.rounds * len(self._slots) or self._is_spent()
 
     @property
     def success(self) -> bool:
@@ -291,7 +273,7 @@ class Episode:
         self._opened()
         self._finish_part()
         last = self.task.form.rounds if rounds is None else self.rounds + rounds
-        while not self.is_over and (self.rounds < last or len(self._parts) % len(self._slots)):
+        while not self.is_over and len(self._parts) < last * len(self._slots):
             self._decide()
             self._finish_part()
         return self
@@ -335,11 +317,12 @@ class Episode:
         fork = Episode(
             self.task,
             given,
+            world=self._world,
             seed=self.seed,
             budget=self._budget,
             patience_s=self._patience_s,
         )
-        fork._names = {**self._names, **{a: _name_of(p) for a, p in policies.items()}}
+        fork._names = {**self._names, **{a: name_of(p) for a, p in policies.items()}}
         nest["/"].switch(f"fork {number}", at=tick)
         before = self._parts[: round * len(self._slots)]
         fork._take(nest, f"fork {number}", self._start, list(before))
@@ -372,8 +355,15 @@ class Episode:
             try:
                 nest.play()
                 _look_around(nest)
-                kept = _Kept(self.task.plain(), self.seed, self.task.seed, nest.tick, self._budget)
-                nest.keep(_TASK, msgspec.json.encode(kept))
+                start = Start(
+                    task=self.task.plain(),
+                    seed=self.seed,
+                    task_seed=self.task.seed,
+                    world=self._world,
+                    start=nest.tick,
+                    budget=self._budget,
+                )
+                keep_start(nest, start)
                 self._take(nest, nest["/"].branch, nest.tick, [])
                 self._keep()
             except BaseException:
@@ -390,11 +380,7 @@ class Episode:
         self._progress = {name: Progress.begun(goal) for name, goal in goals.items()}
 
     def _keep(self) -> None:
-        nest = self._opened()
-        kept = nest.kept(_DECISIONS)
-        branches = {} if kept is None else msgspec.json.decode(kept, type=dict[str, _Branch])
-        branches[self._branch] = _Branch(self._names, self._parts)
-        nest.keep(_DECISIONS, msgspec.json.encode(branches))
+        keep_branch(self._opened(), self._branch, Branch(self._names, self._parts))
 
     def _decide(self) -> None:
         """Ask for a part's programs, and keep them before they are run."""
@@ -419,7 +405,7 @@ class Episode:
                 nest["/"].step(end - nest.tick)
             _look_around(nest)
             ended = {
-                agent: _ended(each, results.get(agent)) for agent, each in part.decisions.items()
+                agent: ended_as(each, results.get(agent)) for agent, each in part.decisions.items()
             }
             self._parts[-1] = Part(part.decisions, ended)
             self._keep()
@@ -498,57 +484,3 @@ class Moment:
             UnknownNameError: There is no such policy.
         """
         return self.episode.forked(self.round, policies)
-
-
-def _ended(decision: Decision, result: ProgramResult | None) -> Ended:
-    """How a program ended, without what its agent could not perceive.
-
-    What a skill says of the world may rest on what the agent does not see: it learns only that the
-    skill did not work. Ways are looked for on ground that it knows.
-    """
-    if decision.fault:
-        return Ended("", "lost", "no program came in time, so nothing was done")
-    fault = None if result is None else result.error
-    if fault is None:
-        return Ended(decision.program, "ok" if decision.program else "none")
-    if fault.kind == "timeout":
-        return Ended(decision.program, "cut", "the round was over before the program was")
-    if fault.reason == NO_WAY:
-        return Ended(decision.program, "no_way", str(fault))
-    if fault.skill is not None:
-        told = Fault(f"{fault.skill} did not work", line=fault.line)
-        return Ended(decision.program, "failed", str(told))
-    return Ended(decision.program, "failed", str(fault))
-
-
-def _chosen(
-    task: Task, policies: Mapping[str, "str | Policy"]
-) -> tuple[dict[str, str], dict[str, Policy]]:
-    for agent in policies:
-        if agent not in task.agents:
-            raise InputError(f"{agent!r} is none of the agents: {', '.join(task.agents)}")
-    names: dict[str, str] = {}
-    chosen: dict[str, Policy] = {}
-    for agent in task.agents:
-        own = task.form.policies.get(agent, f"search:{task.order}")
-        given = policies.get(agent, own)
-        names[agent] = _name_of(given)
-        chosen[agent] = resolve_policy(given) if isinstance(given, str) else given
-    return names, chosen
-
-
-def _name_of(policy: "str | Policy") -> str:
-    return policy if isinstance(policy, str) else f"object:{type(policy).__name__}"
-
-
-def _kept(nest: Any) -> tuple[_Kept, dict[str, _Branch]]:
-    kept, decided = nest.kept(_TASK), nest.kept(_DECISIONS)
-    if kept is None or decided is None:
-        raise StoreError("there is no episode in this run; it was made by another command")
-    try:
-        return (
-            msgspec.json.decode(kept, type=_Kept),
-            msgspec.json.decode(decided, type=dict[str, _Branch]),
-        )
-    except msgspec.MsgspecError as fault:
-        raise BeliefNestError(f"the episode in this run cannot be read: {fault}") from None

@@ -7,6 +7,7 @@ from typing import Any, Protocol
 from beliefnest.episodes.rounds import Part, Spent
 from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest
+from beliefnest.world.values import EventKind
 
 __all__ = ["Measures", "measured"]
 
@@ -29,9 +30,13 @@ class Measures:
         false_claims: Those that were not so in reality when they were made.
         lies: Those that their speaker did not believe.
         taken_up: Times a hearer took up a claim of a player.
+        superfluous: Claims of players that nobody took up.
+        acted_on_false: Times somebody opened a container in which it believed something that was
+            not in it.
         lost_rounds: Times a policy gave no program, or failed.
         failed_programs: Programs that failed, other than by being cut.
-        false_beliefs: Things that players and others hold wrongly in the end, each belief counted.
+        false_beliefs: Things that agents hold wrongly in the end, each agent's counted.
+        false_beliefs_mean: The same, as mean over the beginnings of rounds and the end.
         requests: Requests to models.
         tokens: Sent to models and received.
         cost: US dollars; None where a price is not known.
@@ -50,9 +55,12 @@ class Measures:
     false_claims: int
     lies: int
     taken_up: int
+    superfluous: int
+    acted_on_false: int
     lost_rounds: int
     failed_programs: int
     false_beliefs: int
+    false_beliefs_mean: float
     requests: int
     tokens: int
     cost: float | None
@@ -89,6 +97,10 @@ class Played(Protocol):
         """Whether the goal was reached."""
 
     @property
+    def beginnings(self) -> Sequence[int]:
+        """The ticks at which rounds began."""
+
+    @property
     def ticks(self) -> int:
         """Ticks until success or now."""
 
@@ -107,9 +119,11 @@ def measured(episode: Played) -> Measures:
     players, start = set(task.players), episode.start
     said = [line for line in nest["/"].state.chat if line[0] > start and line[1] in players]
     claims = [each for each in nest.claims() if each.tick > start and each.speaker in players]
-    taken = sum(
-        each.taken_up(f"/{name}") for each in claims for name in nest.agents if name != each.speaker
-    )
+    taken = [
+        sum(each.taken_up(f"/{name}") for name in nest.agents if name != each.speaker)
+        for each in claims
+    ]
+    wrong = _false_beliefs(episode)
     ended = [each for part in episode.parts for each in part.ended.values()]
     return Measures(
         task=task.name,
@@ -124,11 +138,40 @@ def measured(episode: Played) -> Measures:
         claims=len(claims),
         false_claims=sum(each.false for each in claims),
         lies=sum(each.lie for each in claims),
-        taken_up=taken,
+        taken_up=sum(taken),
+        superfluous=taken.count(0),
+        acted_on_false=_acted_on_false(episode),
         lost_rounds=sum(bool(d.fault) for p in episode.parts for d in p.decisions.values()),
         failed_programs=sum(each.how in ("failed", "no_way") for each in ended),
-        false_beliefs=sum(len(nest.false_beliefs(f"/{name}")) for name in nest.agents),
+        false_beliefs=wrong[-1],
+        false_beliefs_mean=sum(wrong) / len(wrong),
         requests=episode.spent.requests,
         tokens=episode.spent.tokens,
         cost=episode.spent.cost,
     )
+
+
+def _false_beliefs(episode: Played) -> list[int]:
+    """How many things agents held wrongly, at the beginnings of rounds and now."""
+    nest = episode.nest
+    return [
+        sum(len(nest.at(tick).false_beliefs(f"/{name}")) for name in nest.agents)
+        for tick in (*episode.beginnings, nest.tick)
+    ]
+
+
+def _acted_on_false(episode: Played) -> int:
+    """How often somebody opened a container and believed more of an item in it than there was."""
+    nest, count = episode.nest, 0
+    opened = [
+        event
+        for event in nest["/"].state.events
+        if event.kind is EventKind.OPEN_CONTAINER and event.tick > episode.start
+    ]
+    for event in opened:
+        before, place = nest.at(event.tick - 1), event.detail["position"]
+        believed = before[f"/{event.actor}"].state.containers.get(place)
+        real = before["/"].state.containers[place].items
+        if believed is not None:
+            count += any(n > real.get(item, 0) for item, n in believed.items.items())
+    return count

@@ -1,0 +1,41 @@
+"""Who plays whom."""
+
+from collections.abc import Mapping
+
+from beliefnest.episodes.policies import resolve_policy
+from beliefnest.episodes.task import Task
+from beliefnest.episodes.view import Policy
+from beliefnest.errors import InputError
+
+__all__ = ["chosen", "name_of"]
+
+
+def chosen(
+    task: Task, policies: Mapping[str, "str | Policy"]
+) -> tuple[dict[str, str], dict[str, Policy]]:
+    """Policies of all agents of a task, in words and as they act.
+
+    Args:
+        task: The task, which says who plays those that are left out.
+        policies: By agent.
+
+    Raises:
+        InputError: There is a policy for nobody.
+        UnknownNameError: There is no such policy.
+    """
+    for agent in policies:
+        if agent not in task.agents:
+            raise InputError(f"{agent!r} is none of the agents: {', '.join(task.agents)}")
+    names: dict[str, str] = {}
+    chosen: dict[str, Policy] = {}
+    for agent in task.agents:
+        own = task.form.policies.get(agent, f"search:{task.order}")
+        given = policies.get(agent, own)
+        names[agent] = name_of(given)
+        chosen[agent] = resolve_policy(given) if isinstance(given, str) else given
+    return names, chosen
+
+
+def name_of(policy: "str | Policy") -> str:
+    """What a run calls a policy."""
+    return policy if isinstance(policy, str) else f"object:{type(policy).__name__}"

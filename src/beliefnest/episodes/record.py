@@ -1,0 +1,115 @@
+"""What a run keeps of its episode, and how programs ended as their agents could tell."""
+
+from typing import Any, Protocol
+
+import msgspec
+
+from beliefnest.bodies.protocol import NO_WAY, Fault, ProgramResult
+from beliefnest.episodes.rounds import Decision, Part
+from beliefnest.episodes.view import Ended
+from beliefnest.errors import StoreError
+
+__all__ = ["Branch", "Budget", "Start", "ended_as", "keep_branch", "keep_start", "kept_in"]
+
+_START, _BRANCHES = "episode", "episode branches"
+
+
+class Keeps(Protocol):
+    """A run that bytes were kept in."""
+
+    def kept(self, name: str) -> bytes | None:
+        """The bytes last kept under a name."""
+
+
+class Writes(Keeps, Protocol):
+    """A run that bytes can be kept in."""
+
+    def keep(self, name: str, value: bytes) -> None:
+        """Keep bytes under a name."""
+
+
+class Budget(msgspec.Struct, frozen=True, omit_defaults=True):
+    """What an episode may take; None: as much as it needs.
+
+    Attributes:
+        ticks: Ticks of the world.
+        tokens: Sent to models and received.
+        cost: US dollars.
+    """
+
+    ticks: int | None = None
+    tokens: int | None = None
+    cost: float | None = None
+
+
+class Start(msgspec.Struct, frozen=True):
+    """What a run keeps of its episode at the beginning."""
+
+    task: dict[str, Any]
+    seed: int
+    task_seed: int | None
+    world: str
+    start: int
+    budget: Budget
+
+
+class Branch(msgspec.Struct, frozen=True):
+    """What a run keeps of an episode's branch: policies in words, and what was decided."""
+
+    policies: dict[str, str]
+    parts: list[Part]
+
+
+def keep_start(nest: Writes, start: Start) -> None:
+    """Keep what an episode begins with."""
+    nest.keep(_START, msgspec.json.encode(start))
+
+
+def keep_branch(nest: Writes, name: str, branch: Branch) -> None:
+    """Keep what has been decided on a branch by now."""
+    kept = nest.kept(_BRANCHES)
+    branches = {} if kept is None else msgspec.json.decode(kept, type=dict[str, Branch])
+    branches[name] = branch
+    nest.keep(_BRANCHES, msgspec.json.encode(branches))
+
+
+def ended_as(decision: Decision, result: ProgramResult | None) -> Ended:
+    """How a program ended, without what its agent could not perceive.
+
+    What a skill says of the world may rest on what the agent does not see: it learns only that the
+    skill did not work. Ways are looked for on ground that it knows.
+    """
+    if decision.fault:
+        return Ended("", "lost", "no program came in time, so nothing was done")
+    fault = None if result is None else result.error
+    if fault is None:
+        return Ended(decision.program, "ok" if decision.program else "none")
+    if fault.kind == "timeout":
+        return Ended(decision.program, "cut", "the round was over before the program was")
+    if fault.reason == NO_WAY:
+        return Ended(decision.program, "no_way", str(fault))
+    if fault.skill is not None:
+        told = Fault(f"{fault.skill} did not work", line=fault.line)
+        return Ended(decision.program, "failed", str(told))
+    return Ended(decision.program, "failed", str(fault))
+
+
+def kept_in(nest: Keeps) -> tuple[Start, dict[str, Branch]]:
+    """What a run's episode began with, and its branches by name.
+
+    Raises:
+        StoreError: There is no episode in it, or it cannot be read.
+    """
+    kept, decided = nest.kept(_START), nest.kept(_BRANCHES)
+    if kept is None or decided is None:
+        raise StoreError(
+            "there is no episode in this run: it was made by another command, or was stopped "
+            "before the first round began; play it anew"
+        )
+    try:
+        return (
+            msgspec.json.decode(kept, type=Start),
+            msgspec.json.decode(decided, type=dict[str, Branch]),
+        )
+    except msgspec.MsgspecError as fault:
+        raise StoreError(f"the episode in this run cannot be read: {fault}") from None

@@ -1,0 +1,116 @@
+"""Rules of play: turns, budgets, goals that must never come true, what is measured."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import beliefnest as bn
+from beliefnest.cli.app import run_command_line
+from beliefnest.episodes.record import Budget
+
+HALL: dict[str, Any] = {
+    "name": "hall",
+    "box": [[0, 0, 0], [12, 3, 6]],
+    "blocks": [{"block": "stone", "fill": [[0, 0, 0], [12, 0, 6]]}],
+    "static_blocks": ["stone"],
+    "containers": [{"at": [1, 1, 1], "items": {"apple": 2}}, {"at": [11, 1, 5]}],
+    "agents": {"ann": {"position": [4.5, 1, 3.5]}, "bob": {"position": [8.5, 1, 3.5]}},
+}
+GOAL = {"reach": [{"container": [11, 1, 5], "items": {"apple": 1}}]}
+
+
+def task(**more: Any) -> bn.Task:
+    return bn.Task.from_mapping({"name": "hall", "scenario": HALL, "goal": GOAL, **more})
+
+
+class Says:
+    """Says the same in every round, and notes when it was asked."""
+
+    def __init__(self) -> None:
+        self.asked: list[int] = []
+
+    def act(self, view: bn.AgentView) -> str:
+        self.asked.append(view.tick)
+        return f"await say(bot, 'I am {view.agent}')"
+
+
+def test_in_turns_one_acts_after_the_other() -> None:
+    ann, bob = Says(), Says()
+    with bn.Episode(
+        task(play="turns", rounds=2, round_ticks=7), {"ann": ann, "bob": bob}
+    ) as played:
+        played.play()
+        assert (ann.asked, bob.asked) == ([0, 14], [7, 21])
+        assert [speaker for _, speaker, _ in played.nest["/"].state.chat] == ["ann", "bob"] * 2
+        assert (played.rounds, played.nest.tick) == (2, 28)
+
+
+def test_together_all_are_asked_before_anybody_acts() -> None:
+    ann, bob = Says(), Says()
+    with bn.Episode(task(rounds=3, round_ticks=7), {"ann": ann, "bob": bob}) as played:
+        assert played.play(2).rounds == 2
+        assert ann.asked == bob.asked == [0, 7]
+        assert played.play().rounds == 3
+
+
+def test_who_says_too_much_has_failed() -> None:
+    goal = {**GOAL, "messages": 3}
+    with bn.Episode(task(goal=goal, rounds=6), {"ann": Says(), "bob": Says()}) as played:
+        played.play()
+        assert (played.success, played.rounds, played.messages) == (False, 2, 4)
+
+
+def test_what_must_never_be_is_checked_at_every_tick() -> None:
+    goal = {"never": [{"agent": "ann", "items": {"apple": 1}}]}
+    takes_and_returns = """
+    await getItemFromChest(bot, new Vec3(1, 1, 1), {apple: 1})
+    await depositItemIntoChest(bot, new Vec3(1, 1, 1), {apple: 1})
+    """
+    policies: dict[str, Any] = {"bob": Says()}
+    with bn.Episode(task(goal=goal, rounds=2), {**policies, "ann": Says()}) as played:
+        assert played.play().success
+    from beliefnest.episodes.policies import Scripted
+
+    scripted = Scripted([takes_and_returns])
+    with bn.Episode(task(goal=goal, rounds=2), {**policies, "ann": scripted}) as played:
+        assert not played.play().success
+        assert played.rounds == 1
+        assert played.nest["/"].state.agents["ann"].inventory == {}
+
+
+def test_a_budget_of_ticks_ends_an_episode() -> None:
+    policies = {"ann": Says(), "bob": Says()}
+    with bn.Episode(task(rounds=9, round_ticks=10), policies, budget=Budget(ticks=25)) as played:
+        assert played.play().rounds == 3
+
+
+def test_what_was_believed_wrongly_and_acted_on_is_counted() -> None:
+    helped = bn.Task.load("help-find", seed=1)
+    with bn.Episode(helped, {"anne": "search:0"}) as alone, bn.Episode(helped) as together:
+        wrong, right = alone.play().measures, together.play().measures
+    assert (wrong.acted_on_false, right.acted_on_false) == (1, 0)
+    assert (right.taken_up, right.superfluous, right.false_beliefs) == (1, 0, 0)
+    assert right.false_beliefs_mean > 0
+    # She has learnt it when she has looked, at last.
+    assert wrong.false_beliefs_mean > right.false_beliefs_mean
+
+
+def test_the_command_plays_and_goes_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["play", "help-find", "--seed", "1", "--out", str(tmp_path / "run")]
+    assert run_command_line([*arguments, "--rounds", "2"]) == 1
+    assert run_command_line(arguments) == 0
+    assert "goal reached after 25 ticks, 5 rounds, 1 messages" in capsys.readouterr().out
+    assert run_command_line(["play", "help-find", "--agent", "anne=search:0", "--seed", "1"]) == 1
+    assert run_command_line(["show", str(tmp_path / "run" / "run.bn"), "--path", "/anne"]) == 0
+    for wrong in (["play"], ["play", "x"], ["play", "help-find", "--agent", "anne"]):
+        assert run_command_line(wrong) == 2
+
+
+def test_the_command_tells_if_a_task_is_not_what_it_claims(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    command = ["play", "watchman", "--baselines", "--seeds", "1", "--json"]
+    assert run_command_line(command) == 0
+    told = capsys.readouterr().out
+    assert '"policy": "search:2"' in told
