@@ -90,7 +90,7 @@ def page_of(names: Sequence[str], found: Sequence[Baseline], seeds: int) -> str:
         "of one order less does not: tests hold that. This page is written by",
         "`beliefnest play --baselines --seeds 50 --page docs/tasks.md` (`make baselines`).",
         "",
-        f"Players by policy, {seeds} instance{'s' * (seeds > 1)} each, in the scripted world; who is no player acts",
+        f"Players by policy, over {seeds} seeds, in the scripted world; who is no player acts",
         "as the task says. Success with its 95 % interval of Wilson; mean ticks of those that",
         "succeeded; mean utterances of players.",
         "",
