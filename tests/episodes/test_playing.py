@@ -100,7 +100,9 @@ def test_the_command_plays_and_goes_on(tmp_path: Path, capsys: pytest.CaptureFix
     arguments = ["play", "help-find", "--seed", "1", "--out", str(tmp_path / "run")]
     assert run_command_line([*arguments, "--rounds", "2"]) == 1
     assert run_command_line(arguments) == 0
-    assert "goal reached after 25 ticks, 5 rounds, 1 messages" in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert "goal reached after 25 ticks, 5 rounds, 1 messages" in printed
+    assert "[located(" in printed
     assert run_command_line(["play", "help-find", "--agent", "anne=search:0", "--seed", "1"]) == 1
     assert run_command_line(["show", str(tmp_path / "run" / "run.bn"), "--path", "/anne"]) == 0
     for wrong in (["play"], ["play", "x"], ["play", "help-find", "--agent", "anne"]):

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rich import box
+from rich.markup import escape
 from rich.table import Table
 
 from beliefnest.bodies.worlds import check_world
@@ -135,7 +136,7 @@ def _print(report: Mapping[str, Any]) -> None:
     for number, part in enumerate(report["rounds"], start=1):
         for agent, told in part["agents"].items():
             shown = told["program"] or (f"none: {told['fault']}" if told["fault"] else "")
-            table.add_row(str(number), agent, shown, told["ended"])
+            table.add_row(str(number), agent, escape(shown), told["ended"])
     console = stdout()
     console.print(folded(table))
     for condition in report["goal"]:

@@ -4,9 +4,18 @@ from beliefnest.frames.tables import (
     beliefs_df,
     cells_df,
     claims_df,
+    episodes_df,
     events_df,
     probes_df,
     requests_df,
 )
 
-__all__ = ["beliefs_df", "cells_df", "claims_df", "events_df", "probes_df", "requests_df"]
+__all__ = [
+    "beliefs_df",
+    "cells_df",
+    "claims_df",
+    "episodes_df",
+    "events_df",
+    "probes_df",
+    "requests_df",
+]

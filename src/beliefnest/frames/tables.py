@@ -1,11 +1,12 @@
 """What runs and studies hold, as tables of pandas, with ids to join them on."""
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from beliefnest.belief.plain import belief_json
+from beliefnest.episodes.measures import Measures
 from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.frames.sources import Recorded, Source, cells_of
 from beliefnest.nest.face.recorded import RecordedNest
@@ -18,7 +19,15 @@ from beliefnest.world.registry import Registry
 if TYPE_CHECKING:
     import pandas
 
-__all__ = ["beliefs_df", "cells_df", "claims_df", "events_df", "probes_df", "requests_df"]
+__all__ = [
+    "beliefs_df",
+    "cells_df",
+    "claims_df",
+    "episodes_df",
+    "events_df",
+    "probes_df",
+    "requests_df",
+]
 
 Row = dict[str, Any]
 
@@ -34,6 +43,18 @@ def cells_df(source: Source) -> "pandas.DataFrame":
         MissingExtraError: pandas is not installed.
     """
     return _frame((_cell_row(each) for each in cells_of(source)), ["cell"])
+
+
+def episodes_df(measures: Iterable[Measures]) -> "pandas.DataFrame":
+    """One row for each episode: what it was, success, ticks, messages and all other measures.
+
+    Args:
+        measures: As `Episode.measures` and `play_cells` give them.
+
+    Raises:
+        MissingExtraError: pandas is not installed.
+    """
+    return _frame((each.row() for each in measures), ["task", "task_seed", "policies"])
 
 
 def probes_df(source: Source) -> "pandas.DataFrame":
