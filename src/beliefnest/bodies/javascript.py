@@ -42,36 +42,32 @@ class JavaScriptProgram:
         self._context.set_memory_limit(_MEMORY_BYTES)
         self._context.set_max_stack_size(_STACK_BYTES)
         self._context.set_time_limit(_SECONDS)
-        scope = json.dumps([sorted(skills), username])
-        given = f"({_shared('vec3', 'env.Vec3')})(), ({_shared('hints', 'module.exports')})()"
-        self._context.eval(f"const __made = ({_prelude()})({given}, ...{scope})")
-        parts = ("names", "start", "take", "settle", "see")
-        self._calls = {name: self._context.eval(f"__made.{name}") for name in parts}
+        self._call = self._context.eval(_engine())(json.dumps([sorted(skills), username]))
         self._fault: Fault | None = None
         self._taken: dict[str, Any] = {"calls": [], "log": [], "done": None, "waiting": 0}
 
     def start(self, code: str) -> None:
         """Begin a program, and run it until it waits."""
-        names = ", ".join(json.loads(self._calls["names"]()))
+        names = ", ".join(json.loads(self._call("names")))
         whole = _WHOLE.match(code) is not None
         lines = "\n" * _FIRST_LINE
         head = f"({'' if whole else 'async '}function ({names}) {{ 'use strict'; "
         body = f"return ({lines}{code}\n)" if whole else f"{lines}{code}\n"
         try:
             main = self._context.eval(f"{head}{body}}})")
-            self._calls["start"](main, whole)
+            self._call("start", main, whole)
             self._drain()
         except self._failed as error:
             self._fault = _fault_of(str(error), kind="syntax")
 
     def see(self, told: Mapping[str, object], blocks: str) -> None:
         """Tell what the program reads of the world from now on."""
-        self._calls["see"](json.dumps(told), blocks)
+        self._call("see", json.dumps(told), blocks)
 
     def settle(self, number: int, *, ok: bool, value: object) -> None:
         """Answer a call, and run until the program waits again."""
         try:
-            self._calls["settle"](number, ok, json.dumps(value))
+            self._call("settle", number, ok, json.dumps(value))
             self._drain()
         except self._failed as error:
             self._fault = _fault_of(str(error), kind="error")
@@ -120,16 +116,28 @@ class JavaScriptProgram:
             if jobs > _MOST_JOBS:
                 self._fault = Fault("the program goes on without ever waiting", "fuel")
                 break
-        taken = json.loads(self._calls["take"]())
+        taken = json.loads(self._call("take"))
         self._taken = {**taken, "calls": [*self._taken["calls"], *taken["calls"]]}
 
 
 @cache
-def _prelude() -> str:
-    return (files("beliefnest.bodies") / "scripted_prelude.js").read_text(encoding="utf-8")
+def _engine() -> str:
+    """A function of skills and username, as JSON, that gives what calls a part of the prelude.
+
+    No function is in brackets: those that open with one are read twice, to see whether an arrow
+    comes after them.
+    """
+    prelude = (files("beliefnest.bodies") / "scripted_prelude.js").read_text(encoding="utf-8")
+    return f"""{{
+const vec3 = {_shared("vec3", "env.Vec3")}
+const hints = {_shared("hints", "module.exports")}
+const prelude = {prelude}
+given => {{
+  const parts = prelude(vec3(), hints(), ...JSON.parse(given))
+  return (part, one, two, three) => parts[part](one, two, three)
+}} }}"""
 
 
-@cache
 def _shared(name: str, given: str) -> str:
     """A function that gives what a module of the bots' sandbox does, too."""
     built = Path(str(files("beliefnest"))) / "_bundle" / f"{name}.js"

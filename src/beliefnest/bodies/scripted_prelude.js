@@ -1,6 +1,6 @@
 // What programs of the scripted world find in scope. Evaluates to a function of (Vec3, hints, skills, username) that gives
 // what Python calls: start, take, settle, see. Nothing here calls Python: it takes what is asked for after each turn.
-(function (Vec3, hints, skills, username) {
+(Vec3, hints, skills, username) => {
   'use strict'
   const { parse, stringify } = JSON
   const waiting = new Map()
@@ -149,4 +149,4 @@
       seen = { ...parse(text), blocks }
     }
   }
-})
+}

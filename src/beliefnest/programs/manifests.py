@@ -1,5 +1,6 @@
 """What the skills say of themselves, as generated beside their code."""
 
+from functools import cache
 from importlib.resources import files
 
 import msgspec
@@ -39,7 +40,8 @@ class Skill(msgspec.Struct, frozen=True):
     example: str
 
 
+@cache
 def skills() -> tuple[Skill, ...]:
-    """Every skill, in the order of the manifests."""
+    """Every skill, in the order of the manifests, which are read once."""
     file = files("beliefnest") / "programs" / "skills" / "manifests.json"
     return msgspec.json.decode(file.read_bytes(), type=tuple[Skill, ...])

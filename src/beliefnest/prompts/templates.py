@@ -1,6 +1,7 @@
 """Prompt templates: a text with a name that messages can quote, and the ones we ship."""
 
 from dataclasses import dataclass
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
@@ -29,8 +30,9 @@ class Template:
     text: str
 
 
+@cache
 def built_in_template(name: str) -> Template:
-    """A template that comes with the package.
+    """A template that comes with the package, which is read once.
 
     Raises:
         TemplateError: There is none of that name.
