@@ -13,10 +13,13 @@ const OUTSIDE = -999
 const OUTPUT = 2
 const RESULT = 0
 const DROP_MODE = 4
+// Ticks within which a server takes a click back.
+const ANSWERED_WITHIN = 20
 
 class Windows {
   /**
-   * @param {object} witness of the agent: `emitEvent`, `countAct`, `threw(item)`, `lookedAt()` where it used something last
+   * @param {object} witness of the agent: `emitEvent`, `countAct`, `threw(item)`, `lookedAt()` where it used something last,
+   *   `tick`
    * @param {object} scene `at(position)`, `halvesAt(position)`, `contents`
    * @param {object} Item class of the version
    */
@@ -87,12 +90,23 @@ class Windows {
     if (windowId === -1 && slot === -1) this.cursor = stack
     const { opened } = this
     if (windowId !== opened?.id) return
+    if (this.isEcho(slot, stack)) return
     const set = () => { opened.slots[slot] = stack }
-    const isTakenBack = opened.own.has(slot) && equal(opened.own.get(slot), stack) && slot < this.size(opened)
+    const clicks = opened.own.get(slot)
     opened.own.delete(slot)
-    if (isTakenBack) opened.ledger.record(set)
+    if (clicks !== undefined && equal(clicks.before, stack) && slot < this.size(opened)) opened.ledger.record(set)
     else set()
     this.tellContents()
+  }
+
+  /** Whether the server only says what a click of the agent's led to; further clicks may have followed meanwhile. */
+  isEcho (slot, stack) {
+    const clicks = this.opened.own.get(slot)
+    const index = clicks?.after.findIndex(each => equal(each, stack)) ?? -1
+    if (index < 0) return false
+    clicks.after.splice(0, index + 1)
+    if (clicks.after.length === 0) this.opened.own.delete(slot)
+    return true
   }
 
   click (packet) {
@@ -114,7 +128,12 @@ class Windows {
   move ({ changedSlots }, before, apply) {
     const { opened } = this
     opened.ledger.record(apply)
-    for (const { location } of changedSlots) opened.own.set(location, before.slots[location] ?? null)
+    for (const { location } of changedSlots) {
+      const clicks = opened.own.get(location) ?? { before: before.slots[location] ?? null, after: [] }
+      clicks.after.push(opened.slots[location] ?? null)
+      clicks.tick = this.witness.tick
+      opened.own.set(location, clicks)
+    }
     this.tellContents()
   }
 
@@ -135,7 +154,10 @@ class Windows {
 
   /** What was moved on balance, once nothing is on its way between container and inventory. */
   settle () {
-    if (this.cursor !== null || this.opened === null) return
+    if (this.opened === null) return
+    // A server that agrees says nothing of a click.
+    for (const [slot, { tick }] of this.opened.own) if (this.witness.tick - tick > ANSWERED_WITHIN) this.opened.own.delete(slot)
+    if (this.cursor !== null) return
     for (const fact of this.opened.ledger.settle()) this.witness.emitEvent(fact)
   }
 

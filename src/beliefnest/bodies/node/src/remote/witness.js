@@ -38,6 +38,10 @@ class Witness extends EventEmitter {
     reports.player(this, scene.serv)
   }
 
+  get tick () {
+    return this.region.tick
+  }
+
   get position () {
     return this.bot.entity.position
   }
