@@ -63,11 +63,14 @@ class Windows {
 
   show ({ windowId, items, carriedItem }) {
     const stacks = items.map(item => this.Item.fromNotch(item))
-    this.cursor = this.Item.fromNotch(carriedItem)
     if (windowId === OWN) this.own = stacks
-    if (windowId !== this.opened?.id) return
-    this.opened.slots = stacks
-    this.opened.own.clear()
+    if (windowId !== this.opened?.id) {
+      if (this.opened === null) this.cursor = this.Item.fromNotch(carriedItem)
+      return
+    }
+    // It may have been sent before the latest clicks were handled.
+    if (this.opened.own.size === 0) this.cursor = this.Item.fromNotch(carriedItem)
+    stacks.forEach((stack, slot) => { this.hear(slot, stack) })
     this.tellContents()
     if (this.opened.isTold) return
     this.opened.isTold = true
@@ -90,23 +93,39 @@ class Windows {
     if (windowId === -1 && slot === -1) this.cursor = stack
     const { opened } = this
     if (windowId !== opened?.id) return
-    if (this.isEcho(slot, stack)) return
-    const set = () => { opened.slots[slot] = stack }
-    const clicks = opened.own.get(slot)
-    opened.own.delete(slot)
-    if (clicks !== undefined && equal(clicks.before, stack) && slot < this.size(opened)) opened.ledger.record(set)
-    else set()
+    this.hear(slot, stack)
     this.tellContents()
   }
 
-  /** Whether the server only says what a click of the agent's led to; further clicks may have followed meanwhile. */
-  isEcho (slot, stack) {
-    const clicks = this.opened.own.get(slot)
-    const index = clicks?.after.findIndex(each => equal(each, stack)) ?? -1
-    if (index < 0) return false
-    clicks.after.splice(0, index + 1)
-    if (clicks.after.length === 0) this.opened.own.delete(slot)
-    return true
+  /**
+   * What the server says of a slot of the opened window. Where the agent has just clicked, it may be of before that or
+   * between two clicks; it is looked at again when that time is over.
+   */
+  hear (slot, stack) {
+    const { own, slots } = this.opened
+    const clicks = own.get(slot)
+    const isKnown = clicks !== undefined && [clicks.before, ...clicks.after].some(each => equal(each, stack))
+    if (isKnown) {
+      clicks.told = stack
+      return
+    }
+    own.delete(slot)
+    slots[slot] = stack
+  }
+
+  /** What the server said last of a slot that the agent clicked on holds: other clicks it has taken back. */
+  forgetClicks () {
+    const { opened, witness } = this
+    for (const [slot, { tick, told }] of opened.own) {
+      if (witness.tick - tick <= ANSWERED_WITHIN) continue
+      opened.own.delete(slot)
+      if (told === undefined || equal(told, opened.slots[slot])) continue
+      const set = () => { opened.slots[slot] = told }
+      // What is put into a fire is gone by itself.
+      if (slot < this.size(opened) && !isFurnace(opened.kind)) opened.ledger.record(set)
+      else set()
+      this.tellContents()
+    }
   }
 
   click (packet) {
@@ -132,6 +151,7 @@ class Windows {
       const clicks = opened.own.get(location) ?? { before: before.slots[location] ?? null, after: [] }
       clicks.after.push(opened.slots[location] ?? null)
       clicks.tick = this.witness.tick
+      clicks.told = undefined
       opened.own.set(location, clicks)
     }
     this.tellContents()
@@ -155,8 +175,7 @@ class Windows {
   /** What was moved on balance, once nothing is on its way between container and inventory. */
   settle () {
     if (this.opened === null) return
-    // A server that agrees says nothing of a click.
-    for (const [slot, { tick }] of this.opened.own) if (this.witness.tick - tick > ANSWERED_WITHIN) this.opened.own.delete(slot)
+    this.forgetClicks()
     if (this.cursor !== null) return
     for (const fact of this.opened.ledger.settle()) this.witness.emitEvent(fact)
   }

@@ -182,14 +182,12 @@ class PlayerWindows {
     }
   }
 
-  /** A client that has not seen the last changes is told all it touched once more. */
-  answer (window, { slot, changedSlots = [], cursorItem }, stale) {
-    if (!equal(this.serv.Item.fromNotch(cursorItem), this.cursor)) {
+  /** A client that has not seen the last changes is told all, as in the game: what it was told before may have undone what it touched. */
+  answer (window, { slot, cursorItem }, stale) {
+    if (stale || !equal(this.serv.Item.fromNotch(cursorItem), this.cursor)) {
       this.sendAll()
       return
     }
-    const touched = changedSlots.map(({ location }) => location).filter((location) => shows(window, location))
-    if (stale) touched.forEach((location) => this.sendSlot(window, location))
     if (slot >= 0 && slot <= window.menu.craftSlots) this.sendSlot(window, 0)
     this.player.inventoryChanged()
   }
