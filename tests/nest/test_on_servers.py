@@ -25,6 +25,50 @@ await goToPosition(bot, new Vec3(-10, -51, 10), 1)
 """
 
 
+WORKSHOP = """
+name: workshop
+description: Much can be done here.
+box: [[0, 0, 0], [12, 5, 12]]
+blocks:
+  - {block: stone, fill: [[0, 0, 0], [12, 0, 12]]}
+  - {block: "lever[face=floor,facing=north]", at: [4, 1, 4]}
+  - {block: "stone_button[face=floor,facing=north]", at: [4, 1, 6]}
+  - {block: "oak_door[half=lower,facing=north]", at: [6, 1, 4]}
+  - {block: "oak_door[half=upper,facing=north]", at: [6, 2, 4]}
+  - {block: "oak_fence_gate", at: [8, 1, 4]}
+  - {block: "oak_trapdoor", at: [9, 1, 4]}
+  - {block: crafting_table, at: [2, 1, 9]}
+  - {block: dirt, at: [9, 1, 9]}
+containers:
+  - {label: furnace, at: [4, 1, 9], block: furnace}
+  - {label: chest, at: [6, 1, 9], block: "chest[facing=south]", items: {apple: 3, bread: 2}}
+  - {label: barrel, at: [8, 1, 11], block: barrel}
+agents:
+  sally: {position: [1.5, 1, 1.5], inventory: {oak_planks: 20, iron_pickaxe: 1,
+    raw_iron: 2, coal: 2, diamond: 3, cobblestone: 5, iron_helmet: 1}}
+  anne: {position: [1.5, 1, 6.5]}
+"""
+WORK = [
+    (
+        "sally",
+        "await turnOnLever(bot, new Vec3(4, 1, 4)); await pressButton(bot, new Vec3(4, 1, 6))",
+    ),
+    ("sally", "await openDoor(bot, new Vec3(6, 1, 4)); await closeDoor(bot, new Vec3(6, 1, 4))"),
+    ("sally", "await openDoor(bot, new Vec3(8, 1, 4)); await openDoor(bot, new Vec3(9, 1, 4))"),
+    ("sally", "await mineBlock(bot, new Vec3(9, 1, 9), 'dirt')"),
+    ("sally", "await placeItem(bot, 'cobblestone', new Vec3(9, 1, 9))"),
+    ("sally", "await craftItem(bot, 'chest', new Vec3(2, 1, 9), 1)"),
+    ("sally", "await placeItem(bot, 'chest', new Vec3(10, 1, 6))"),
+    ("sally", "await depositItemIntoChest(bot, new Vec3(10, 1, 6), {diamond: 2})"),
+    ("anne", "await getItemFromChest(bot, new Vec3(6, 1, 9), {apple: 2, bread: 1})"),
+    ("anne", "await depositItemIntoChest(bot, new Vec3(8, 1, 11), {apple: 1})"),
+    ("sally", "await smeltItem(bot, 'raw_iron', 'coal', new Vec3(4, 1, 9), 1)"),
+    ("sally", "await giveItemToOther(bot, 'anne', 'diamond', 1)"),
+    ("anne", "await mineBlock(bot, new Vec3(10, 1, 6), 'chest')"),
+    ("sally", "await equip(bot, 'iron_helmet', 'head')"),
+]
+
+
 @pytest.fixture(scope="module")
 def server() -> Iterator[GameServer]:
     with GameServer(latency=15) as running:
@@ -67,6 +111,30 @@ def test_the_experiments_come_out_as_in_the_embedded_world(
         for mine, its in zip(here["probes"], there["probes"], strict=True):
             assert (mine["opened"], mine["ok"]) == (its["opened"], its["ok"])
             assert same_place(mine["arrived"], its["arrived"])
+
+
+def worked(scenario: Scenario, world: str) -> list[Any]:
+    """What came of each program: its deeds, all contents, what everybody has."""
+    told = []
+    with Nest.open(scenario, world) as nest:
+        for agent, program in WORK:
+            result = nest["/"].run(agent, program)
+            assert result.ok, result.error
+            deeds = sorted((e.kind.value, e.actor or "", str(e.detail)) for e in result.events)
+            state = nest["/"].state
+            contents = {place: dict(held.items) for place, held in state.containers.items()}
+            has = {name: dict(each.inventory) for name, each in state.agents.items()}
+            told.append((program, deeds, contents, has))
+    return told
+
+
+def test_skills_do_and_are_told_as_in_the_embedded_world(server, tmp_path):
+    path = tmp_path / "workshop.yaml"
+    path.write_text(WORKSHOP, encoding="utf-8")
+    scenario = Scenario.load(str(path))
+    played = worked(scenario, server.address())
+    for here, there in zip(worked(scenario, "embedded"), played, strict=True):
+        assert here == there
 
 
 def test_the_example_of_the_page_runs(server, tmp_path, monkeypatch, capsys):

@@ -102,10 +102,11 @@ class Windows {
    * between two clicks; it is looked at again when that time is over.
    */
   hear (slot, stack) {
-    const { own, slots } = this.opened
+    const { own, slots, kind } = this.opened
     const clicks = own.get(slot)
     const isKnown = clicks !== undefined && [clicks.before, ...clicks.after].some(each => equal(each, stack))
-    if (isKnown) {
+    // What is put into a fire is gone by itself, at any moment.
+    if (isKnown && !isFurnace(kind ?? '')) {
       clicks.told = stack
       return
     }
@@ -121,8 +122,7 @@ class Windows {
       opened.own.delete(slot)
       if (told === undefined || equal(told, opened.slots[slot])) continue
       const set = () => { opened.slots[slot] = told }
-      // What is put into a fire is gone by itself.
-      if (slot < this.size(opened) && !isFurnace(opened.kind)) opened.ledger.record(set)
+      if (slot < this.size(opened)) opened.ledger.record(set)
       else set()
       this.tellContents()
     }
