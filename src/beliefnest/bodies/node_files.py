@@ -9,7 +9,15 @@ from pathlib import Path
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.errors import BodyError
 
-__all__ = ["EMBEDDED", "OLDEST_NODE", "REALTIME", "bundle_path", "node_command", "node_path"]
+__all__ = [
+    "EMBEDDED",
+    "HOSTING",
+    "OLDEST_NODE",
+    "REALTIME",
+    "bundle_path",
+    "node_command",
+    "node_path",
+]
 
 OLDEST_NODE = 24
 """Major version from which on Node is that of the packaged one, with its permissions and flags."""
@@ -19,6 +27,9 @@ EMBEDDED = "main.js"
 
 REALTIME = "realtime.js"
 """The program that plays on a Minecraft server elsewhere."""
+
+HOSTING = "hosting.js"
+"""The program with the embedded world in real time, which people join."""
 
 _BUNDLE = Path(__file__).parents[1] / "_bundle"
 

@@ -5,16 +5,19 @@ from types import TracebackType
 from typing import Self
 
 from beliefnest.bodies.address import SCHEME, ServerAddress, is_server
+from beliefnest.bodies.hosted import HostedWorld
 from beliefnest.bodies.limits import ProcessLimits
+from beliefnest.bodies.listening import DEFAULT_PORT, ListenAddress, is_hosted
 from beliefnest.bodies.protocol import Body, Sink, World
 from beliefnest.bodies.scripted import ScriptedBodies
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.world.frames import Snapshot
 
-__all__ = ["WORLDS", "LazyWorld", "Worlds", "check_world", "open_world"]
+__all__ = ["WORLDS", "LazyWorld", "Worlds", "check_world", "hosted_of", "open_world", "world_name"]
 
 WORLDS = ("embedded", "scripted")
-"""Names of the worlds; any other one is the address of a server, `minecraft://HOST:PORT`."""
+"""Names of the worlds; any other one is the address of a server, `minecraft://HOST:PORT`, or of
+the embedded world in real time, `embedded://HOST:PORT`."""
 
 _WITHOUT_PHYSICS = frozenset({"scripted"})
 
@@ -36,6 +39,8 @@ def open_world(name: str, seed: int, limits: ProcessLimits | None = None) -> Wor
         from beliefnest.bodies.minecraft import MinecraftWorld
 
         return MinecraftWorld.start(ServerAddress.parse(name), seed, limits)
+    if is_hosted(name):
+        return HostedWorld.start(ListenAddress.parse(name), seed, limits)
     match name:
         case "embedded":
             from beliefnest.bodies.embedded import EmbeddedWorld
@@ -52,24 +57,52 @@ def check_world(name: str, *, servers: bool = True) -> None:
 
     Args:
         name: The name.
-        servers: Whether it may be the address of a server, on which one run plays at a time.
+        servers: Whether it may be one in real time, in which one run plays at a time.
 
     Raises:
         UnknownNameError: There is no world of that name.
         InputError: It is the address of a server and not of the right form.
     """
-    if is_server(name):
-        ServerAddress.parse(name)
+    if is_server(name) or is_hosted(name):
+        if is_server(name):
+            ServerAddress.parse(name)
+        else:
+            ListenAddress.parse(name)
         if not servers:
             raise InputError(
-                f"{name} is a server, on which one run plays at a time, in real time; "
-                "`beliefnest run` and Nest.open play on servers, all else in the worlds "
-                f"{', '.join(WORLDS)}"
+                f"in {name} one run plays at a time, in real time; `beliefnest run` and "
+                f"Nest.open play there, all else in the worlds {', '.join(WORLDS)}"
             )
     elif name not in WORLDS:
         raise UnknownNameError(
             f"there is no world {name!r}; there are {', '.join(WORLDS)}, {SCHEME}://HOST:PORT"
         )
+
+
+def world_name(world: str, *, realtime: bool, listen: int | str | None) -> str:
+    """The name of a world, in real time if that is asked for; `listen` says where people join.
+
+    Raises:
+        InputError: It is not the embedded one, or `listen` is no port, or no use.
+    """
+    if not realtime:
+        if listen is not None:
+            raise InputError("people join worlds in real time only: give realtime=True as well")
+        return world
+    if world != "embedded":
+        raise InputError(f"the world {world!r} has no choice of time; realtime is for embedded")
+    return ListenAddress.of(DEFAULT_PORT if listen is None else listen).world
+
+
+def hosted_of(world: World) -> HostedWorld | None:
+    """The world that people can join, also if it is lent; None if it is of another kind."""
+    match world:
+        case HostedWorld():
+            return world
+        case LazyWorld() | _SharedWorld():
+            return None if world.inner is None else hosted_of(world.inner)
+        case _:
+            return None
 
 
 class LazyWorld:
@@ -100,6 +133,11 @@ class LazyWorld:
     def versions(self) -> Mapping[str, str]:
         """Program to version, of what runs; nothing runs before the first body."""
         return {} if self._world is None else self._world.versions
+
+    @property
+    def inner(self) -> World | None:
+        """The world itself, if it was started."""
+        return self._world
 
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> Body:
         """Make a body, in a world that is started if it is the first.
@@ -184,6 +222,11 @@ class _SharedWorld:
     def versions(self) -> Mapping[str, str]:
         """Program to version, of what runs."""
         return self._world.versions
+
+    @property
+    def inner(self) -> World:
+        """The world itself."""
+        return self._world
 
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> Body:
         """Make a body that is given up with the nest at the latest."""

@@ -89,6 +89,13 @@ def run(
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace what stands in a server's box meanwhile.")
     ] = False,
+    realtime: Annotated[
+        bool, typer.Option("--realtime", help="Play in real time, so that people can join.")
+    ] = False,
+    listen: Annotated[
+        str | None,
+        typer.Option(help="Where they do: a port, or HOST:PORT; 25565 of this machine if none."),
+    ] = None,
     model: Annotated[
         str, typer.Option(help="Who answers: offline, PROVIDER:MODEL, replay: or scripted:FILE.")
     ] = "offline",
@@ -122,15 +129,18 @@ def run(
 ) -> int:
     """Play a scenario, follow the beliefs, ask the model, and say whether all is as expected."""
     from beliefnest.bodies.address import overwriting
+    from beliefnest.bodies.worlds import world_name
     from beliefnest.cli.run import ModelOptions, RunOptions, run_scenarios
     from beliefnest.llm.budget import RunLimits
 
     limits = RunLimits(max_tokens, max_cost)
+    where = f"127.0.0.1:{listen}" if listen is not None and listen.isdecimal() else listen
+    named = world_name(world, realtime=realtime, listen=where)
     return run_scenarios(
         RunOptions(
             scenario=scenario,
             conditions=tuple(condition or ()),
-            world=overwriting(world) if overwrite else world,
+            world=overwriting(named) if overwrite else named,
             models=tuple(models.split(",")) if models is not None else (model,),
             repeat=repeat,
             out=out,

@@ -151,6 +151,7 @@ class _Builder:
             labels={entry.at: entry.label for entry in file.containers if entry.label},
             prompt_labels=_prompt_labels(file) if file.labels else {},
             places=dict(file.places),
+            people=frozenset(n for n, entry in file.agents.items() if entry.type == "human"),
         )
 
     def probe(self, number: int, entry: ProbeEntry) -> Probe:

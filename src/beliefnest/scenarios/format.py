@@ -115,7 +115,7 @@ class EquipmentEntry(_Entry, frozen=True):
 
 
 class AgentEntry(_Entry, frozen=True):
-    """An agent, which is a Mineflayer bot in a Minecraft world."""
+    """An agent: a Mineflayer bot in a Minecraft world, or a person."""
 
     position: Annotated[world.Point, _note("Middle of the feet, in blocks.")]
     facing: Annotated[
@@ -131,6 +131,10 @@ class AgentEntry(_Entry, frozen=True):
     equipment: EquipmentEntry = EquipmentEntry()
     health: Annotated[float, msgspec.Meta(gt=0, le=20, description="Half hearts.")] = 20.0
     food: Annotated[float, msgspec.Meta(ge=0, le=20, description="Half drumsticks.")] = 20.0
+    type: Annotated[
+        Literal["bot", "human"],
+        _note("Who acts: a bot by programs, or a person who joins by the agent's name."),
+    ] = "bot"
 
 
 class RadiusEntry(_Entry, frozen=True):

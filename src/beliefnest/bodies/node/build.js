@@ -17,9 +17,9 @@ const DEFAULT_OUTDIR = path.join(__dirname, '..', '..', '_bundle')
 async function build (outdir) {
   fs.rmSync(outdir, { recursive: true, force: true })
   fs.mkdirSync(outdir, { recursive: true })
-  // Two programs: what opens sockets is no part of the one that opens none.
-  const inputs = await bundle(outdir, ['main.js', path.join('channel', 'lifeline.js')], false)
-  Object.assign(inputs, await bundle(outdir, ['realtime.js'], true))
+  // Three programs: what opens sockets is no part of the one that opens none.
+  const inputs = await bundle(outdir, ['main.js', path.join('channel', 'lifeline.js')], 'memory')
+  Object.assign(inputs, await bundle(outdir, ['realtime.js'], 'client'), await bundle(outdir, ['hosting.js'], 'host'))
   fs.writeFileSync(
     path.join(outdir, `registry-${MINECRAFT_VERSION}.msgpack`), encode(buildRegistry(MINECRAFT_VERSION)))
   fs.writeFileSync(path.join(outdir, INTERPRETER), interpreterBytes())
@@ -32,7 +32,7 @@ async function build (outdir) {
 }
 
 /** @returns {Promise<object>} what programs were made of, by file */
-async function bundle (outdir, programs, overTcp) {
+async function bundle (outdir, programs, connections) {
   const { metafile } = await esbuild.build({
     entryPoints: programs.map(program => path.join(SOURCE, program)),
     entryNames: '[name]',
@@ -46,7 +46,7 @@ async function bundle (outdir, programs, overTcp) {
     metafile: true,
     logLevel: 'warning',
     define: { BUNDLED: 'true' },
-    plugins: [replacements(MINECRAFT_VERSION, outdir, overTcp)]
+    plugins: [replacements(MINECRAFT_VERSION, outdir, connections)]
   })
   return metafile.inputs
 }

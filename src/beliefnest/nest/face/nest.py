@@ -10,12 +10,13 @@ from beliefnest.belief.entries import InitialBelief
 from beliefnest.belief.view import State
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.scripted import ScriptedBodies
-from beliefnest.bodies.worlds import Worlds, open_world
+from beliefnest.bodies.worlds import Worlds, open_world, world_name
 from beliefnest.errors import InputError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.script import Progress, play_script
 from beliefnest.nest.face.comparing import Comparing
 from beliefnest.nest.face.exploration import Attempt, Exploration, Score
+from beliefnest.nest.face.joining import Joining
 from beliefnest.nest.face.looking import Looking
 from beliefnest.nest.face.opening import HasSetting, Start, begun, resumed
 from beliefnest.nest.face.past_simulator import Past
@@ -39,7 +40,7 @@ from beliefnest.world.values import Position
 __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 
 
-class Nest(Looking, Viewing, Telling, Comparing, Waiting):
+class Nest(Looking, Viewing, Telling, Comparing, Waiting, Joining):
     """The real world and every belief in it; each node is made on first use.
 
     `Nest(world)` wraps a `ScriptedWorld` and follows what happens in it; `Nest.open` opens a
@@ -89,6 +90,9 @@ class Nest(Looking, Viewing, Telling, Comparing, Waiting):
         limits: ProcessLimits | None = None,
         claims_from: ClaimsFrom | None = None,
         renderer: Renderer | None = None,
+        *,
+        realtime: bool = False,
+        listen: int | str | None = None,
     ) -> Self:
         """Open a scenario in a world.
 
@@ -101,12 +105,18 @@ class Nest(Looking, Viewing, Telling, Comparing, Waiting):
             limits: What the world's process may take, if one is started.
             claims_from: Reads claims out of what is said without any; None: nobody.
             renderer: Fills prompts, for one nest after the other; None: one of its own.
+            realtime: Whether the embedded world goes on in real time, so that people can join
+                (docs/people.md).
+            listen: Where they do: a port of this machine alone, or HOST:PORT; 0: any free port;
+                None: Minecraft's own, 25565.
 
         Raises:
             BodyError: The world could not be started.
             UnknownNameError: There is no such world.
+            InputError: There are people in the scenario and none can join the world.
             StoreError: The store exists already, or cannot be written.
         """
+        world = world_name(world, realtime=realtime, listen=listen)
         start = Start.of(scenario, world, seed)
         opened = open_world(world, seed, limits) if worlds is None else worlds.lend(world)
         try:
@@ -337,9 +347,13 @@ class Nest(Looking, Viewing, Telling, Comparing, Waiting):
     def play(self, on_progress: Progress | None = None) -> None:
         """Play the scenario's script in the real world, from the first step not played there.
 
+        People in the scenario are waited for first, as by `wait_for_people`.
+
         Raises:
+            WorldError: A person did not come.
             ProgramError: A program failed; the message says which step, where it is
                 written, and the program's line.
             BodyError: The Minecraft side died again and again under a step.
         """
+        self.wait_for_people(on_progress=on_progress)
         play_script(self._engine, on_progress)

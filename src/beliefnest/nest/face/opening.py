@@ -6,8 +6,10 @@ from pathlib import Path
 from typing import Protocol, Self
 
 from beliefnest.bodies.limits import ProcessLimits
+from beliefnest.bodies.listening import is_hosted
 from beliefnest.bodies.protocol import World
-from beliefnest.bodies.worlds import LazyWorld, Worlds
+from beliefnest.bodies.worlds import LazyWorld, Worlds, hosted_of, open_world
+from beliefnest.errors import InputError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.face.hearing_model import reader_of
 from beliefnest.nest.past.recording import Recording, read_recording
@@ -99,7 +101,9 @@ def begun(
     Raises:
         StoreError: The file exists already, or cannot be written.
         BodyError: The world could not be started.
+        InputError: People are to be in it, and cannot join this world.
     """
+    _invite(start.setting, world)
     if store is None:
         recording = Recording(start.setting, MemoryJournal(), start.seed, renderer)
         recording.journal.records.add_versions(own_versions())
@@ -129,9 +133,29 @@ def resumed(
     journal = SqliteJournal.open(store)
     try:
         recording, name = read_recording(journal)
-        lazy = LazyWorld(name, recording.seed, limits) if worlds is None else worlds.lend(name)
+        if worlds is not None:
+            world = worlds.lend(name)
+        elif is_hosted(name):
+            # People may join before anything else needs it.
+            world = open_world(name, recording.seed, limits)
+        else:
+            world = LazyWorld(name, recording.seed, limits)
+        _invite(recording.setting, world)
         journal.records.add_versions(own_versions())
-        return Engine(recording, lazy, reader_of(claims_from, recording))
+        return Engine(recording, world, reader_of(claims_from, recording))
     except BaseException:
         journal.close()
         raise
+
+
+def _invite(setting: Setting, world: World) -> None:
+    """Let the people of a setting join, or refuse a world that they cannot."""
+    host = hosted_of(world)
+    if host is not None:
+        host.invite(setting.people)
+    elif setting.people:
+        raise InputError(
+            f"{' and '.join(sorted(setting.people))} in {setting.name!r} is of type human, and "
+            "people cannot join this world; open it with "
+            "Nest.open(..., realtime=True, listen=25565), or run it with --realtime --listen 25565"
+        )

@@ -58,6 +58,7 @@ class Setting:
         initial_beliefs: Further priors, at any depth.
         script: What happens in the real world, in order.
         absent: Agents who are not in the world at its first tick and may come later.
+        people: Agents who are people with a Minecraft client, for whom no program acts.
         labels: What people call containers.
         places: What people call other places.
         prompt_labels: What containers are called and look as if they held, for prompts.
@@ -70,6 +71,7 @@ class Setting:
     initial_beliefs: tuple[InitialBelief, ...] = ()
     script: tuple[Step, ...] = ()
     absent: frozenset[str] = frozenset()
+    people: frozenset[str] = frozenset()
     labels: Mapping[Position, str] = field(default_factory=dict)
     places: Mapping[str, Position] = field(default_factory=dict)
     prompt_labels: Mapping[Position, str] = field(default_factory=dict)
@@ -85,7 +87,7 @@ class Setting:
             fault = fault or agent_name_fault(name)
         for belief in self.initial_beliefs:
             fault = fault or _belief_fault(belief, self.snapshot.box, registry)
-        fault = fault or self._text_fault()
+        fault = fault or self._people_fault() or self._text_fault()
         if fault:
             raise InputError(f"setting {self.name!r}: {fault}")
         seen: set[tuple[str, ...]] = set()
@@ -100,6 +102,15 @@ class Setting:
             seen.add(belief.path)
             for name in belief.agents:
                 parse_path(path_text((name,)), agents)
+
+    def _people_fault(self) -> str | None:
+        for name in sorted(self.people):
+            if name not in self.snapshot.agents:
+                return f"{name} is to be a person and is not in the world at its first tick"
+            label = next((step.label for step in self.script if name in step.programs), None)
+            if label is not None:
+                return f"{name} is a person; no program can act for them, as one does in {label!r}"
+        return None
 
     def _text_fault(self) -> str | None:
         texts = [self.name, *self.labels.values(), *self.places, *self.prompt_labels.values()]

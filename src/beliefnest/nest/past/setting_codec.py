@@ -45,6 +45,7 @@ class _Start(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
     labels: tuple[tuple[Position, str], ...] = ()
     places: tuple[tuple[str, Position], ...] = ()
     prompt_labels: tuple[tuple[Position, str], ...] = ()
+    people: tuple[str, ...] = ()
 
 
 def _names_first(static: str | Position) -> tuple[bool, str | Position]:
@@ -71,6 +72,7 @@ def encode_start(setting: Setting, world: str) -> bytes:
             labels=tuple(sorted(setting.labels.items())),
             places=tuple(sorted(setting.places.items())),
             prompt_labels=tuple(sorted(setting.prompt_labels.items())),
+            people=tuple(sorted(setting.people)),
         )
     )
 
@@ -99,6 +101,7 @@ def decode_start(data: bytes) -> tuple[Setting, str]:
         labels=dict(start.labels),
         places=dict(start.places),
         prompt_labels=dict(start.prompt_labels),
+        people=frozenset(start.people),
     )
     return setting, start.world
 

@@ -30,16 +30,24 @@ const IN_MEMORY = [
   }`]
 ]
 
-/** Over TCP, nobody logs in with an account or serves others. */
-const OVER_TCP = [
-  [/minecraft-protocol\/src\/index\.js$/, `module.exports = {
-    createClient: require('./createClient'), ping: require('./ping')
-  }`],
+/** Over TCP, nobody logs in with an account. */
+const WITHOUT_ACCOUNTS = [
   [/minecraft-protocol\/src\/client\/(mojangAuth|microsoftAuth)\.js$/, `module.exports = () => {
     throw new Error('this build plays on servers in offline mode only')
   }`],
   [/yggdrasil\/src\/index\.js$/, 'module.exports = { server: () => ({}) }']
 ]
+
+/** What a program may do with connections, by the name of its sort: none, open them, take them. */
+const CONNECTIONS = {
+  memory: IN_MEMORY,
+  client: [...WITHOUT_ACCOUNTS, [/minecraft-protocol\/src\/index\.js$/, `module.exports = {
+    createClient: require('./createClient'), ping: require('./ping')
+  }`]],
+  host: [...WITHOUT_ACCOUNTS, [/minecraft-protocol\/src\/index\.js$/, `module.exports = {
+    createClient () { throw new Error('this build opens no connections') }, createServer: require('./createServer')
+  }`]]
+}
 
 const STAND_INS = [
   [/flying-squid\/index\.js$/, `module.exports = {
@@ -77,9 +85,9 @@ function versionIndex (version, unused) {
   return `module.exports = { pc: { ${JSON.stringify(version)}: {\n${getters.join(',\n')}\n} }, bedrock: {} }`
 }
 
-/** An esbuild plugin. `version` is Minecraft's, `outdir` where data files go, `overTcp` whether bots join so. */
-function replacements (version, outdir, overTcp) {
-  const standIns = [...STAND_INS, ...(overTcp ? OVER_TCP : IN_MEMORY)]
+/** An esbuild plugin. `version` is Minecraft's, `outdir` where data files go, `connections` a name of CONNECTIONS. */
+function replacements (version, outdir, connections) {
+  const standIns = [...STAND_INS, ...CONNECTIONS[connections]]
   return {
     name: 'replacements',
     setup (build) {
@@ -87,7 +95,7 @@ function replacements (version, outdir, overTcp) {
         build.onLoad({ filter }, ({ path: file }) => ({ contents, loader: 'js', resolveDir: path.dirname(file) }))
       }
       build.onLoad({ filter: /minecraft-data\/data\.js$/ }, ({ path: file }) => ({
-        contents: versionIndex(version, overTcp ? UNUSED : UNUSED_IN_MEMORY), loader: 'js', resolveDir: path.dirname(file)
+        contents: versionIndex(version, connections === 'memory' ? UNUSED_IN_MEMORY : UNUSED), loader: 'js', resolveDir: path.dirname(file)
       }))
       build.onLoad({ filter: /minecraft-data\/minecraft-data\/data\/pc\/.*\.json$/ }, ({ path: file }) => ({
         contents: dataModule(file, outdir), loader: 'js'

@@ -13,7 +13,7 @@ const { agentState, factsOf } = require('../../src/regions/facts')
 const { join, showWorld } = require('../../src/regions/joining')
 const { Recorder } = require('../../src/regions/recorder')
 const { Region, TICK_MS } = require('../../src/regions/region')
-const { TcpEnd } = require('./end')
+const { TcpEnd } = require('../../src/net/tcpEnd')
 const { floor } = require('../harness')
 
 class Places {

@@ -7,7 +7,7 @@ const { Box } = require('../../src/regions/box')
 const { join, showWorld } = require('../../src/regions/joining')
 const { columnsOf } = require('../../src/regions/columns')
 const { Region, TICK_MS } = require('../../src/regions/region')
-const { TcpEnd } = require('../tcp/end')
+const { TcpEnd } = require('../../src/net/tcpEnd')
 const { COMMANDS, runCommand } = require('./commands')
 
 const BOX = [[-64, -63, -64], [63, 60, 63]]

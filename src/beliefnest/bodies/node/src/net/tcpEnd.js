@@ -1,6 +1,6 @@
 'use strict'
-/** The server's end of a connection over TCP, as `serv.join` takes it (see src/net/transport.js). */
-const { End, handOver } = require('../../src/net/end')
+/** The server's end of a connection over TCP, as `serv.join` takes it (see transport.js). */
+const { End, handOver } = require('./end')
 
 class TcpEnd extends End {
   /**
@@ -36,7 +36,7 @@ class TcpEnd extends End {
   }
 
   end (reason) {
-    this.client.end(reason)
+    if (!this.client.ended) this.client.end(reason)
   }
 }
 

@@ -1,0 +1,85 @@
+"""Where people come into the embedded world in real time, whose name is `embedded://HOST:PORT`."""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+from urllib.parse import urlsplit
+
+from beliefnest.errors import InputError
+
+__all__ = ["DEFAULT_PORT", "LOOPBACK", "ListenAddress", "is_hosted"]
+
+LOOPBACK = "127.0.0.1"
+"""Where only people at this machine come in."""
+
+DEFAULT_PORT = 25565
+"""Where Minecraft looks for a server."""
+
+_SCHEME = "embedded"
+_HIGHEST = 65535
+
+
+def is_hosted(world: str) -> bool:
+    """Whether the name of a world is that of an embedded one in real time."""
+    return world.startswith(f"{_SCHEME}://")
+
+
+@dataclass(frozen=True, slots=True)
+class ListenAddress:
+    """Where an embedded world in real time lets people in.
+
+    Attributes:
+        host: Address of this machine.
+        port: Port; 0: any that is free.
+    """
+
+    host: str = LOOPBACK
+    port: int = DEFAULT_PORT
+
+    @classmethod
+    def of(cls, listen: int | str) -> "ListenAddress":
+        """The address that is meant by a port of the loopback, or by `HOST:PORT`.
+
+        Raises:
+            InputError: It is neither.
+        """
+        if isinstance(listen, int):
+            return cls._checked(LOOPBACK, listen, listen)
+        try:
+            parts = urlsplit(f"{_SCHEME}://{listen}")
+            host, port = parts.hostname, parts.port
+        except ValueError:
+            host, port = None, None
+        if host is None or port is None or parts.path or parts.username is not None:
+            raise InputError(f"listen is {listen!r}; give a port, or HOST:PORT as 0.0.0.0:25565")
+        return cls._checked(host, port, listen)
+
+    @classmethod
+    def parse(cls, world: str) -> "ListenAddress":
+        """The address in the name of a world.
+
+        Raises:
+            InputError: There is none.
+        """
+        return cls.of(world.removeprefix(f"{_SCHEME}://"))
+
+    @classmethod
+    def _checked(cls, host: str, port: int, given: object) -> "ListenAddress":
+        if isinstance(port, bool) or not 0 <= port <= _HIGHEST:
+            raise InputError(
+                f"listen is {given!r}; a port is a number from 1 to {_HIGHEST}, 0 is any free one"
+            )
+        return cls(host, port)
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """What the Minecraft side is told of it."""
+        return asdict(self)
+
+    @property
+    def world(self) -> str:
+        """The name of the world."""
+        return f"{_SCHEME}://{self}"
+
+    def __str__(self) -> str:
+        host = f"[{self.host}]" if ":" in self.host else self.host
+        return f"{host}:{self.port}"

@@ -1,0 +1,46 @@
+'use strict'
+/** Answers the channel's requests with the embedded server in real time, where people are agents as well. */
+const { BadRequest } = require('../channel/errors')
+const { RequestHandler } = require('../requestHandler')
+const { createServer } = require('../server')
+const { Door } = require('./door')
+const { LiveRegions } = require('./liveRegions')
+
+// Real time: a request may wait for a tick, and says meanwhile that it lives.
+const BEAT_MS = 500
+
+class LiveHandler extends RequestHandler {
+  async answer (request) {
+    const beating = setInterval(() => this.beat({ beat: this.tick }), BEAT_MS)
+    try {
+      return await super.answer(request)
+    } finally {
+      clearInterval(beating)
+    }
+  }
+
+  async open (registry, { listen }) {
+    const regions = new LiveRegions(createServer(registry), frame => this.send({ frame }))
+    this.door = new Door(regions)
+    this.port = await this.door.listen(listen)
+    return regions
+  }
+
+  get tick () {
+    return this.regions?.open?.tick ?? null
+  }
+
+  async perform (request) {
+    if (request.op === 'people') return { here: this.door.invite(request.invited), port: this.port }
+    if (request.op === 'run') this.requireBots(Object.keys(request.programs))
+    return super.perform(request)
+  }
+
+  requireBots (agents) {
+    const person = agents.find(agent => this.door.isPerson(agent))
+    if (person === undefined) return
+    throw new BadRequest(`${person} is a person, for whom no program acts; take ${person} over first: nest.take_over("${person}")`)
+  }
+}
+
+module.exports = { LiveHandler }

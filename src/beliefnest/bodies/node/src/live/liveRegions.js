@@ -1,0 +1,134 @@
+'use strict'
+/**
+ * The real world of the embedded server in real time: one region, which goes on between the calls and which people can
+ * enter. What happens there meanwhile is told with the next call.
+ */
+const { BadRequest } = require('../channel/errors')
+const { Regions } = require('../regions/regions')
+const { LiveBodies } = require('./liveBodies')
+const { LiveClock } = require('./liveClock')
+
+const NOTHING = new Uint8Array(0)
+// People are told the server's coordinates; here they are the scenario's.
+const AT_ORIGIN = { take: () => ({ x: 0, z: 0 }), giveBack () {} }
+
+class LiveRegions extends Regions {
+  /**
+   * @param {object} serv
+   * @param {(frame: object) => void} send hears every frame, once a call is under way
+   */
+  constructor (serv, send) {
+    super(serv, new LiveClock(() => this.open?.mail.scheduled ?? false), frame => this.take(frame))
+    this.tell = send
+    this.bodies = new LiveBodies(serv, this.clock)
+    this.allotment = AT_ORIGIN
+    this.open = null
+    this.isDriven = false
+    // Frames that no call has sent yet.
+    this.waiting = []
+    // Ends when nobody is at work on the region any more.
+    this.turn = Promise.resolve()
+    this.failure = null
+    // Called at every tick with the region.
+    this.onTick = () => {}
+    // Ends when nobody is about to enter or to leave.
+    this.door = Promise.resolve()
+    serv.on('tick', (_, __, region) => this.onTick(region))
+  }
+
+  take (frame) {
+    if (this.isDriven) this.tell(frame)
+    else this.waiting.push(frame)
+  }
+
+  /** Runs one action after the other. */
+  async alone (action) {
+    const before = this.turn
+    const { promise, resolve } = Promise.withResolvers()
+    this.turn = promise
+    await before
+    try {
+      return await action()
+    } finally {
+      resolve()
+    }
+  }
+
+  async inside (region, action) {
+    this.serv.region = region
+    const result = await action()
+    region.raiseFaults()
+    return result
+  }
+
+  async create (request) {
+    if (this.open !== null) throw new BadRequest(`${this.open.name} goes on in real time; there can be one such region at a time`)
+    this.failure = null
+    const made = await super.create(request)
+    this.goOn(this.open)
+    return made
+  }
+
+  /** Remembers which region there is, from the moment at which somebody may come to be in it. */
+  async restoreState (region, hidden) {
+    this.open = region
+    await super.restoreState(region, hidden)
+  }
+
+  /** Lets time pass where no call does. */
+  async goOn (region) {
+    this.clock.due = performance.now()
+    while (this.open === region && this.failure === null) {
+      await this.alone(() => this.open === region ? this.tick(region) : null).catch(error => { this.failure = error })
+    }
+  }
+
+  /** Runs a call on the region: its ticks are then the call's to take. */
+  async resumed (region, action) {
+    return this.alone(async () => {
+      if (this.failure !== null) throw this.failure
+      region.faults.length = 0
+      this.isDriven = true
+      try {
+        for (const frame of this.waiting.splice(0)) this.tell(frame)
+        region.recorder.forgetClaims()
+        await action()
+        return { tick: region.tick, hidden: NOTHING }
+      } finally {
+        this.isDriven = false
+      }
+    })
+  }
+
+  /** Makes the region so; what happened there since the last call is forgotten with what it led to. */
+  async apply (request) {
+    await this.door
+    return this.alone(async () => {
+      const made = await super.apply(request)
+      this.waiting.length = 0
+      if (this.failure !== null) {
+        this.failure = null
+        this.goOn(this.open)
+      }
+      return made
+    })
+  }
+
+  async destroy (name) {
+    const region = this.get(name)
+    await this.door
+    return this.alone(async () => {
+      this.open = null
+      this.waiting.length = 0
+      for (const { player } of region.bodies.values()) player._client.end('What was played here is over')
+      await super.destroy(region.name)
+    })
+  }
+
+  /** Nothing is told to be under way in what goes on by itself. */
+  hidden () {
+    return NOTHING
+  }
+}
+
+module.exports = { LiveRegions }

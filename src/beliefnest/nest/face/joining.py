@@ -1,0 +1,124 @@
+"""People in a nest whose real world goes on in real time: who is awaited, who is there."""
+
+import sys
+from collections.abc import Callable
+from typing import Protocol
+
+from beliefnest.bodies.hosted import HostedWorld
+from beliefnest.bodies.worlds import hosted_of
+from beliefnest.errors import InputError, UnknownNameError, WorldError
+from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.acting.script import Progress
+from beliefnest.nest.face.turns import in_turn
+from beliefnest.nest.past.recording import Recording
+
+__all__ = ["Joining"]
+
+_PATIENCE_S = 600.0
+
+
+class _Joined(Protocol):
+    _engine: Engine
+    _recording: Recording
+
+    def wait(self, until: Callable[[], bool] | None = None, timeout_s: float = 60.0) -> bool: ...
+    @property
+    def people(self) -> frozenset[str]: ...
+
+
+class Joining:
+    """What a nest offers about people; a part of `Nest`."""
+
+    @property
+    def address(self: _Joined) -> str | None:
+        """Where a Minecraft client joins, `HOST:PORT`; None where people cannot."""
+        host = hosted_of(self._engine.bodies.world)
+        return None if host is None else host.address
+
+    @property
+    @in_turn
+    def people(self: _Joined) -> frozenset[str]:
+        """Names of the people who are there now."""
+        host = hosted_of(self._engine.bodies.world)
+        return frozenset() if host is None else host.here()
+
+    def wait_for_people(
+        self: _Joined, timeout_s: float = _PATIENCE_S, on_progress: Progress | None = None
+    ) -> None:
+        """Wait until all people of the scenario have joined; time passes meanwhile.
+
+        Args:
+            timeout_s: Seconds after which nobody is waited for any more.
+            on_progress: Is told who has to join, where and how; None: a line on stderr says so.
+
+        Raises:
+            InputError: The time is below 0, or longer than a day.
+            WorldError: Somebody did not come.
+        """
+        host = hosted_of(self._engine.bodies.world)
+        if host is None or not host.invited:
+            return
+        told: frozenset[str] | None = None
+
+        def all_here() -> bool:
+            nonlocal told
+            awaited = host.invited - self.people
+            if awaited and awaited != told:
+                _tell(_line(host, awaited), len(host.invited - awaited), len(host.invited))
+            told = awaited
+            return not awaited
+
+        def _tell(line: str, done: int, total: int) -> None:
+            if on_progress is None:
+                sys.stderr.write(f"{line}\n")
+            else:
+                on_progress(line, done, total)
+
+        if not self.wait(all_here, timeout_s):
+            awaited = host.invited - self.people
+            raise WorldError(
+                f"{_names(awaited)} did not come within {timeout_s:g} s; {_line(host, awaited)}; "
+                "or let programs act instead: nest.take_over(NAME)"
+            )
+
+    @in_turn
+    def take_over(self: _Joined, name: str) -> None:
+        """Let programs act for a person, who is sent away if there, until `hand_back`.
+
+        Raises:
+            UnknownNameError: The scenario has no person of that name.
+        """
+        host = _host_of_person(self, name)
+        host.invite(host.invited - {name})
+
+    @in_turn
+    def hand_back(self: _Joined, name: str) -> None:
+        """Let a person who was taken over join again; until then the agent stands still.
+
+        Raises:
+            UnknownNameError: The scenario has no person of that name.
+        """
+        host = _host_of_person(self, name)
+        host.invite(host.invited | {name})
+
+
+def _host_of_person(nest: _Joined, name: str) -> HostedWorld:
+    people = nest._recording.setting.people
+    if name not in people:
+        known = ", ".join(sorted(people)) or "none"
+        raise UnknownNameError(f"there is no person {name!r} in this scenario; there are: {known}")
+    host = hosted_of(nest._engine.bodies.world)
+    if host is None:
+        raise InputError(f"{name} is a person, and nobody can join this world")
+    return host
+
+
+def _names(people: frozenset[str]) -> str:
+    return " and ".join(sorted(people))
+
+
+def _line(host: HostedWorld, awaited: frozenset[str]) -> str:
+    return (
+        f"join as {' or '.join(sorted(awaited))}: "
+        f"Minecraft Java edition {host.minecraft}, Multiplayer, Direct Connection, {host.address}"
+    )

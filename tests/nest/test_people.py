@@ -1,0 +1,129 @@
+"""People as agents: what they do in a Minecraft client is what a bot does, for all beliefs."""
+
+from typing import Any
+
+import pytest
+import yaml
+from tests.people import Person
+
+from beliefnest import Nest, Scenario
+from beliefnest.errors import BodyError, InputError, WorldError
+
+LEFT, RIGHT = (-2, -51, -4), (2, -51, -4)
+LONG_S = 120
+MOVE = """
+await goToPosition(bot, new Vec3(-2, -51, -3), 0)
+await getItemFromChest(bot, new Vec3(-2, -51, -4), {diamond: 1})
+await goToPosition(bot, new Vec3(2, -51, -3), 0)
+await depositItemIntoChest(bot, new Vec3(2, -51, -4), {diamond: 1})
+"""
+BELIEFS = ("/", "/sally", "/anne", "/observer", "/observer/sally", "/observer/anne")
+
+
+@pytest.fixture
+def scenario(tmp_path):
+    """Sally-Anne, with a person as Anne."""
+    written: dict[str, Any] = yaml.safe_load(Scenario.load("sally-anne", 1).text)
+    written["agents"]["anne"]["type"] = "human"
+    written["script"] = written["script"][:2]
+    for condition in written["conditions"].values():
+        condition.pop("probes", None)
+    path = tmp_path / "with-a-person.yaml"
+    path.write_text(yaml.safe_dump(written), encoding="utf-8")
+
+    def load(condition):
+        return Scenario.load(str(path), condition)
+
+    return load
+
+
+def contents(nest):
+    held = nest.states(BELIEFS)
+    return {
+        path: {place: (held[path].containers[place].items) for place in (LEFT, RIGHT)}
+        for path in BELIEFS
+    }
+
+
+@pytest.mark.parametrize("condition", [1, 3])
+def test_a_person_moves_the_diamond_and_all_believe_as_if_a_bot_had(condition, scenario):
+    with Nest.open(Scenario.load("sally-anne", condition), "embedded") as nest:
+        nest.play()
+        as_with_bots = contents(nest)
+        kinds = {e.kind for e in nest["/"].state.events if e.actor == "anne"}
+    with (
+        Nest.open(scenario(condition), realtime=True, listen=0) as nest,
+        Person(nest.address, "anne") as anne,
+    ):
+        nest.play()
+        anne.does(MOVE)
+        assert nest.wait(lambda: anne.is_done, LONG_S)
+        assert contents(nest) == as_with_bots
+        assert {e.kind for e in nest["/"].state.events if e.actor == "anne"} == kinds
+
+
+def test_who_leaves_stands_there_until_they_come_back(scenario, tmp_path):
+    heard = []
+    with Nest.open(scenario(1), realtime=True, listen=0, store=tmp_path / "run.bn") as nest:
+        nest.on_chat(lambda _, speaker, text: heard.append((speaker, text)))
+        with Person(nest.address, "anne") as anne:
+            nest.play()
+            anne.does("bot.chat('Hello.'); bot.chat('/msg sally Come.')")
+            anne.does("await goToPosition(bot, new Vec3(-2, -51, -3), 0)")
+            anne.does("await getItemFromChest(bot, new Vec3(-2, -51, -4), {diamond: 1})")
+            assert nest.wait(lambda: anne.is_done, LONG_S)
+            anne.leave()
+            assert nest.wait(lambda: not nest.people, LONG_S)
+        assert heard == [("anne", "Hello."), ("anne", "Come.")]
+        chats = nest.states(["/sally", "/observer"])
+        assert [text for _, _, text in chats["/sally"].chat] == ["Hello.", "Come."]
+        assert [text for _, _, text in chats["/observer"].chat] == ["Hello."]
+        gone = nest["/observer"].state.agents["anne"]
+        assert gone.current
+        assert gone.position == pytest.approx((-1.5, -51, -2.5), abs=1)
+    with Nest.resume(tmp_path / "run.bn") as nest, Person(nest.address, "anne") as anne:
+        nest.wait_for_people()
+        anne.does("await goToPosition(bot, new Vec3(2, -51, -3), 0)")
+        anne.does("await depositItemIntoChest(bot, new Vec3(2, -51, -4), {diamond: 1})")
+        assert nest.wait(lambda: anne.is_done, LONG_S)
+        assert nest["/observer"].state.containers[RIGHT].items == {"diamond": 1}
+        assert nest["/observer/sally"].state.containers[LEFT].items == {"diamond": 1}
+
+
+def test_only_who_is_awaited_comes_in_and_acts(scenario):
+    act = "await goToPosition(bot, new Vec3(0, -51, 0))"
+    with Nest.open(scenario(1), realtime=True, listen=0) as nest:
+        for name, told in (
+            ("eve", "There is no eve in this scenario; come as anne"),
+            ("sally", "sally is played by BeliefNest; come as anne"),
+        ):
+            with Person(nest.address, name) as stranger:
+                assert stranger.left() == told
+        with pytest.raises(WorldError, match=rf"anne did not come .* 1\.20\.4.* {nest.address}"):
+            nest.wait_for_people(timeout_s=0.5)
+        with pytest.raises(WorldError, match=r"anne is a person.*nest\.take_over"):
+            nest["/"].run("anne", act)
+        with Person(nest.address, "anne") as anne:
+            nest.wait_for_people()
+            with Person(nest.address, "anne") as other:
+                assert other.left() == "anne is here already; nobody else is awaited now"
+            nest.take_over("anne")
+            assert anne.left() == "anne is played by BeliefNest from now on"
+        assert nest["/"].run("anne", act).ok
+        nest.hand_back("anne")
+        with Person(nest.address, "anne"):
+            nest.wait_for_people()
+            assert nest.people == {"anne"}
+
+
+def test_worlds_that_nobody_can_join_refuse_people(scenario):
+    for world in ("embedded", "scripted"):
+        with pytest.raises(InputError, match=r"anne .* is of type human.*realtime=True"):
+            Nest.open(scenario(1), world)
+    with pytest.raises(InputError, match="realtime=True as well"):
+        Nest.open(scenario(1), listen=0)
+    with (
+        Nest.open(Scenario.load("sally-anne", 1), realtime=True, listen=0) as nest,
+        pytest.raises(BodyError, match="another program listens there"),
+    ):
+        Nest.open(scenario(1), realtime=True, listen=str(nest.address))
