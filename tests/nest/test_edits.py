@@ -3,7 +3,9 @@
 import pytest
 from tests.nest.comparing import everything
 from tests.nest.places import CHEST, CORNER, EAST, GAP, MEETING, WEST, nest_of
+from tests.nest.stories import REGISTRY
 
+import beliefnest as bn
 from beliefnest.belief.entries import Source
 from beliefnest.errors import InputError, PositionError, UnknownNameError
 
@@ -146,3 +148,18 @@ def test_wrong_edits_are_refused_and_change_nothing():
     with pytest.raises(InputError):
         nest["/observer"].edit(containers={CHEST: {"apple": 0}})
     assert everything(nest["/observer"].state) == before
+
+
+def test_after_a_fork_only_those_below_an_edit_perceive_anew():
+    """Sally sees the place, the observer only believes in a block there, until it is a world."""
+    place, elsewhere = (6, 0, 5), {(3, 0, 3): "glass"}
+    believed = bn.InitialBelief(("**",), blocks={place: REGISTRY.state_id("stone")})
+    _, nest = nest_of(
+        THREE | {"anne": (2.5, 0, 2.5), "sally": GAP}, CORNER, initial_beliefs=[believed]
+    )
+    nest["/observer"].switch("what if")
+    for path in ("/observer/anne", "/observer/sally"):
+        nest[path].edit(blocks=elsewhere)
+        assert not nest["/observer/sally"].state.blocks.current(place)
+    nest["/observer"].edit(blocks=elsewhere)
+    assert nest["/observer/sally"].state.blocks.current(place)

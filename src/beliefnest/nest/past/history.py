@@ -214,11 +214,31 @@ class History:
     ) -> set[int]:
         """Those of some cells whose block a perception in the last of some entries backs."""
         base = self._journal.info(key).base
-        if position == 0 and base is not None and path != key.path:
+        edited = None if base is None else self._edited_at_first(key, path, position)
+        if base is not None and edited is not None:
             # What agents believed at the fork stays as it was until something happens.
-            return self.current_blocks(base.timeline, path, base.entries, cells)
+            left = [cell for cell in cells if cell not in edited]
+            return self.current_blocks(base.timeline, path, base.entries, left)
         table = self._forest(key, path, position).table
         return table.current_blocks(table.index[path], cells)
+
+    def _edited_at_first(self, key: TimelineKey, path: Path, position: int) -> set[int] | None:
+        """Cells of a node that were edited in some entries; None if it perceived anew in them.
+
+        A node perceives when something happens, and when a simulator above it is edited (6).
+        """
+        edited: set[int] = set()
+        if path == key.path:
+            return None
+        for entry in self._journal.entries(key, 0, position):
+            if not isinstance(entry, Edit):
+                return None
+            above = len(entry.path) < len(path)
+            if above and path[: len(entry.path)] == entry.path:
+                return None
+            if entry.path == path:
+                edited.update(cell_of(self.context.box, place) for place in entry.blocks)
+        return edited
 
     def forget(self, key: TimelineKey) -> None:
         """Drop what is remembered of a timeline that was deleted or renamed."""

@@ -13,7 +13,7 @@ test('a sign is written on and read, by skills and by Mineflayer\'s own calls', 
     const { bots: { sally, anne }, skills } = world
     assert.equal(await world.during(skills.anne.readSign(anne, SIGN)), '')
     await world.during(skills.sally.writeSign(sally, SIGN, 'tools\nno food\n'))
-    assert.equal(await world.during(skills.anne.readSign(anne, SIGN)), 'tools\nno food')
+    await world.until(async () => await world.during(skills.anne.readSign(anne, SIGN)) === 'tools\nno food')
     const results = await world.run({
       sally: `
         const sign = bot.blockAt(new Vec3(${PLACE}))
