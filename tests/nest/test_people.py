@@ -1,5 +1,9 @@
 """People as agents: what they do in a Minecraft client is what a bot does, for all beliefs."""
 
+import re
+import socket
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -7,6 +11,7 @@ import yaml
 from tests.people import Person
 
 from beliefnest import Nest, Scenario
+from beliefnest.cli.app import run_command_line
 from beliefnest.errors import BodyError, InputError, WorldError
 
 LEFT, RIGHT = (-2, -51, -4), (2, -51, -4)
@@ -20,16 +25,20 @@ await depositItemIntoChest(bot, new Vec3(2, -51, -4), {diamond: 1})
 BELIEFS = ("/", "/sally", "/anne", "/observer", "/observer/sally", "/observer/anne")
 
 
-@pytest.fixture
-def scenario(tmp_path):
-    """Sally-Anne, with a person as Anne."""
+def scenario_file(path: Path) -> None:
+    """Sally-Anne, with a person as Anne, who is told nothing by the script."""
     written: dict[str, Any] = yaml.safe_load(Scenario.load("sally-anne", 1).text)
     written["agents"]["anne"]["type"] = "human"
     written["script"] = written["script"][:2]
     for condition in written["conditions"].values():
         condition.pop("probes", None)
-    path = tmp_path / "with-a-person.yaml"
     path.write_text(yaml.safe_dump(written), encoding="utf-8")
+
+
+@pytest.fixture
+def scenario(tmp_path):
+    path = tmp_path / "with-a-person.yaml"
+    scenario_file(path)
 
     def load(condition):
         return Scenario.load(str(path), condition)
@@ -127,3 +136,36 @@ def test_worlds_that_nobody_can_join_refuse_people(scenario):
         pytest.raises(BodyError, match="another program listens there"),
     ):
         Nest.open(scenario(1), realtime=True, listen=str(nest.address))
+
+
+def test_the_example_of_the_page_runs(tmp_path, monkeypatch, capsys):
+    """The page's own example: what it prints, and what it writes down."""
+    page = (Path(__file__).parents[2] / "docs" / "people.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    scenario_file(tmp_path / "mine.yaml")
+    monkeypatch.chdir(tmp_path)
+    code = compile(example.replace("25565", str(port)), "people.md", "exec")
+    with ThreadPoolExecutor(1) as experimenter:
+        played = experimenter.submit(exec, code, {"__name__": "example"})
+        while not listens(port):
+            assert not played.done(), played.result()
+        with Person(f"127.0.0.1:{port}", "anne") as anne:
+            anne.does(
+                "await new Promise(turn => bot.on('message', m => /your turn/.test(m) && turn()))"
+            )
+            anne.does(MOVE)
+            played.result()
+    assert capsys.readouterr().out.splitlines() == [
+        "sally Anne, it is your turn.",
+        "{'diamond': 1}",
+    ]
+    assert run_command_line(["replay", str(tmp_path / "run.bn")]) == 2
+    assert "played in real time, which is not repeated" in capsys.readouterr().err
+
+
+def listens(port: int) -> bool:
+    with socket.socket() as probe:
+        return probe.connect_ex(("127.0.0.1", port)) == 0

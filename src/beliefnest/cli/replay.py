@@ -9,6 +9,7 @@ from pathlib import Path
 import msgspec
 
 from beliefnest.bodies.address import is_server
+from beliefnest.bodies.listening import is_hosted
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.cli.folder import stores_in
 from beliefnest.errors import InputError
@@ -55,9 +56,9 @@ def _replayed(store: Path, worlds: dict[int, Worlds], ended: ExitStack) -> Itera
                 "world, a suite's story or an imported trace is told by its user, so that nothing "
                 "could differ; only runs in the embedded world can be replayed"
             )
-        if is_server(name):
+        if is_server(name) or is_hosted(name):
             raise InputError(
-                f"{store} was played on a server, whose time is not repeated; "
+                f"{store} was played in real time, which is not repeated; "
                 "only runs in the embedded world can be replayed"
             )
         if run.seed not in worlds:
