@@ -49,10 +49,7 @@ agents:
   anne: {position: [1.5, 1, 6.5]}
 """
 WORK = [
-    (
-        "sally",
-        "await turnOnLever(bot, new Vec3(4, 1, 4)); await pressButton(bot, new Vec3(4, 1, 6))",
-    ),
+    ("sally", "await turnOnLever(bot, new Vec3(4, 1, 4))"),
     ("sally", "await openDoor(bot, new Vec3(6, 1, 4)); await closeDoor(bot, new Vec3(6, 1, 4))"),
     ("sally", "await openDoor(bot, new Vec3(8, 1, 4)); await openDoor(bot, new Vec3(9, 1, 4))"),
     ("sally", "await mineBlock(bot, new Vec3(9, 1, 9), 'dirt')"),
@@ -66,6 +63,7 @@ WORK = [
     ("sally", "await giveItemToOther(bot, 'anne', 'diamond', 1)"),
     ("anne", "await mineBlock(bot, new Vec3(10, 1, 6), 'chest')"),
     ("sally", "await equip(bot, 'iron_helmet', 'head')"),
+    ("sally", "await pressButton(bot, new Vec3(4, 1, 6))"),
 ]
 
 
