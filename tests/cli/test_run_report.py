@@ -65,3 +65,10 @@ def test_each_probe_has_its_prompt_answer_program_and_reasons(page: str) -> None
     assert "--seed 7" in said
     assert "mineflayer" in said
     assert said.count("<svg") == 2
+
+
+def test_what_happened_is_told_in_words(page: str) -> None:
+    told = html.unescape(page)
+    assert "bob opens the </svg><script>alert(1)</script>" in told
+    assert "bob takes 1 apple out of the </svg>" in told
+    assert "open container" not in told

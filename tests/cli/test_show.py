@@ -155,3 +155,24 @@ def test_of_several_conditions_all_have_the_tick_or_nothing_is_shown(
         assert told.out == ""
         assert f"in {heads[low].replace('-', ' ')}: tick {high}" in told.err
     assert not png.exists()
+
+
+def test_a_page_is_refused_where_it_would_not_show_what_is_asked_for(
+    run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = tmp_path / "page.html"
+    for options, told in (
+        (["--html", str(tmp_path / "page.pdf")], "does not end in .html"),
+        (["--html", str(page), "--tick", "99999"], "is in the future"),
+        (["--html", str(page), "--branch", "probe 1"], "leave --branch out"),
+    ):
+        assert run_command_line(["show", str(run), *options]) == 2
+        assert told in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_page_and_a_figure_are_written_by_one_command(run: Path, tmp_path: Path) -> None:
+    page, figure = tmp_path / "page.html", tmp_path / "figure.png"
+    assert run_command_line(["show", str(run), "--html", str(page), "--png", str(figure)]) == 0
+    assert page.is_file()
+    assert figure.is_file()

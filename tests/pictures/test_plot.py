@@ -124,3 +124,15 @@ def test_what_an_agent_has_is_followed(nest: bn.Nest, monkeypatch: pytest.Monkey
     assert rows[0].bands == (Band(0, 7, "no diamond", False), Band(7, 11, "1 diamond", False))
     assert rows[1].bands == (Band(0, 11, "", False),)
     assert acts == [Act(7, "anne takes")]
+
+
+def test_doors_and_signs_are_no_containers() -> None:
+    door, sign = (5, 1, 3), (6, 1, 3)
+    blocks = {door: "oak_door[half=lower]", (5, 2, 3): "oak_door[half=upper]", sign: "oak_sign"}
+    world = bn.ScriptedWorld(
+        ((0, 0, 0), (9, 4, 9)), blocks, {"anne": (4.5, 1, 2.5)}, containers={CHEST: {}}
+    )
+    with bn.Nest(world, bn.Perception(testimony="informed")) as nest:
+        for place in (door, sign):
+            with pytest.raises(bn.InputError, match=r"containers are at \(3, 1, 3\)$"):
+                nest.plot_beliefs(place)

@@ -1,17 +1,17 @@
 """What became of each probe, in words: what happened, how it counts, and on what grounds."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from beliefnest.cli.pictures import container_name, place_text, titled
 from beliefnest.nest.face.nest import Nest
-from beliefnest.pictures.words import items_words, place_words
 from beliefnest.scenarios.expected import Arrives, Holds, Opens, Stands
 from beliefnest.scenarios.judging import Verdict
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.world.values import Event
+from beliefnest.viewer.page.words import event_text
+from beliefnest.world.values import Position
 
 __all__ = ["accounts"]
 
@@ -28,7 +28,7 @@ def accounts(nest: Nest, outcome: Outcome) -> list[dict[str, list[str]]]:
     """
     return [
         {
-            "happened": _happened(probe),
+            "happened": _happened(probe, outcome.scenario.labels),
             "judged": [_judged(probe, each, outcome.scenario) for each in probe.verdicts]
             or ["Nothing was expected; it is only recorded."],
             "why": _why(nest, probe, outcome),
@@ -37,7 +37,7 @@ def accounts(nest: Nest, outcome: Outcome) -> list[dict[str, list[str]]]:
     ]
 
 
-def _happened(probe: ProbeOutcome) -> list[str]:
+def _happened(probe: ProbeOutcome, labels: Mapping[Position, str]) -> list[str]:
     answered = [
         f"to {reply.question!r} the model answered {reply.answer!r}"
         + (f", since: {reply.reason}" if reply.reason else "")
@@ -45,23 +45,12 @@ def _happened(probe: ProbeOutcome) -> list[str]:
     ]
     if probe.trial is None:
         return [*answered, *([probe.fault] if probe.fault else [])]
-    told = [f"tick {tick}: {_event_words(event)}" for tick, event in probe.result.happened]
+    told = [f"tick {tick}: {event_text(event, labels)}" for tick, event in probe.result.happened]
     lines = told[-_MOST:]
     if len(told) > _MOST:
         lines.insert(0, f"{len(told) - _MOST} earlier events are left out")
     ended = "ended well" if probe.result.ok else f"failed: {probe.result.error}"
     return [*lines, f"the program {ended}, after {probe.result.ticks} ticks", *answered]
-
-
-def _event_words(event: Event) -> str:
-    words = [event.actor or "somebody", event.kind.value.replace("_", " ")]
-    detail = event.detail
-    if "items" in detail:
-        words.append(items_words(detail["items"], complete=True))
-    if "position" in detail:
-        words.append(place_words(detail["position"]))
-    words += [str(detail[key]) for key in ("name", "other", "text") if key in detail]
-    return " ".join(words)
 
 
 def _judged(outcome: ProbeOutcome, judged: Verdict, scenario: Scenario) -> str:

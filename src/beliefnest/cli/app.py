@@ -175,16 +175,16 @@ def show(
     json: Json = False,
 ) -> None:
     """Show what a simulator of a recorded run held."""
-    if html is not None:
-        from beliefnest.cli.page import PageOptions, write_page
-
-        write_page(PageOptions(run, html, path, tick, depth))
-        return
+    from beliefnest.cli.page import PageOptions, write_page
     from beliefnest.cli.show import ShowOptions, show_run
 
     forms = {"png": png, "svg": svg, "pdf": pdf}
     figures = {form: file for form, file in forms.items() if file is not None}
-    show_run(ShowOptions(run, path, tick, branch, json, figures, gif, against, height))
+    page = None if html is None else PageOptions(run, html, path, tick, branch, depth)
+    if page is not None:
+        write_page(page)
+    if page is None or figures or gif or json:
+        show_run(ShowOptions(run, path, tick, branch, json, figures, gif, against, height))
 
 
 @app.command()

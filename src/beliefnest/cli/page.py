@@ -7,6 +7,7 @@ from pathlib import Path
 
 from beliefnest.cli.console import stdout
 from beliefnest.cli.folder import stores_in
+from beliefnest.errors import InputError, TickError
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
@@ -15,6 +16,8 @@ from beliefnest.viewer.page.static import write_still_page
 from beliefnest.world.paths import parse_path, path_text
 
 __all__ = ["PageOptions", "about_run", "write_page"]
+
+_ENDINGS = (".html", ".htm")
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +29,7 @@ class PageOptions:
         file: What to write.
         path: Belief to be in it whatever its depth.
         tick: What the page is to show at first; None: the latest.
+        branch: Always None: the page holds every branch.
         depth: How deep all beliefs go.
     """
 
@@ -33,6 +37,7 @@ class PageOptions:
     file: Path
     path: str
     tick: int | None
+    branch: str | None
     depth: int
 
 
@@ -40,8 +45,15 @@ def write_page(options: PageOptions) -> None:
     """Write the page of a run, with all its conditions.
 
     Raises:
-        BeliefNestError: There is no such run, a path is wrong, or the file cannot be written.
+        BeliefNestError: There is no such run, a path, tick or ending is wrong, a branch was named,
+            or the file cannot be written.
     """
+    if options.file.suffix.lower() not in _ENDINGS:
+        raise InputError(
+            f"--html writes HTML, and {options.file} does not end in {' or '.join(_ENDINGS)}"
+        )
+    if options.branch is not None:
+        raise InputError("the page holds every branch; leave --branch out, and choose it there")
     with ExitStack() as stack:
         runs = []
         for store in stores_in(options.run):
@@ -49,11 +61,22 @@ def write_page(options: PageOptions) -> None:
             stack.enter_context(journal.unchanging())
             nest = RecordedNest.of(journal)
             runs.append((nest.reader, about_run(journal, nest, [options.path])))
+            _check_tick(options, nest, store)
         first: dict[str, object] = {"tick": options.tick}
         if options.path != "/":
             first["at"] = path_text(parse_path(options.path, nest.agents))
         write_still_page(options.file, runs, options.depth, first)
     stdout().print(f"written to {options.file}", highlight=False, soft_wrap=True)
+
+
+def _check_tick(options: PageOptions, nest: RecordedNest, store: Path) -> None:
+    """That a run has the tick that is to be shown at first."""
+    if options.tick is None:
+        return
+    try:
+        _ = nest.simulator(options.path, options.tick).state
+    except TickError as error:
+        raise TickError(f"in {store.parent.name}: {error}") from None
 
 
 def about_run(journal: SqliteJournal, nest: RecordedNest, paths: Sequence[str] = ()) -> About:

@@ -45,7 +45,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         with Nest.open(Scenario.load(name, condition=condition), store=store) as nest:
             nest.play()
         written[name] = folder / f"{name}.html"
-        write_page(PageOptions(store, written[name], path, None, 2))
+        write_page(PageOptions(store, written[name], path, None, None, 2))
     return written
 
 
@@ -170,11 +170,35 @@ def test_texts_of_a_run_are_texts_whatever_is_in_them(browser, tmp_path):
     evil = "</script><img src=x onerror=\"document.title='taken'\"><script>document.title='taken'"
     world.say("ann", evil)
     nest.close()
-    write_page(PageOptions(tmp_path / "evil.bn", tmp_path / "evil.html", "/", None, 1))
+    write_page(PageOptions(tmp_path / "evil.bn", tmp_path / "evil.html", "/", None, None, 1))
     browser.open((tmp_path / "evil.html").as_uri())
     assert evil in browser.script("return document.querySelector('.events').textContent")
     assert browser.driver.title != "taken"
     assert_clean(browser, "file:")
+
+
+def test_what_is_written_on_a_sign_is_an_event_and_false_where_it_was_missed(browser, tmp_path):
+    import beliefnest as bn
+
+    sign = (1, 1, 5)
+    blocks = {(x, 0, z): "stone" for x in range(7) for z in range(7)}
+    blocks |= {(3, y, z): "stone" for y in (1, 2) for z in range(7) if z != 6}
+    world = bn.ScriptedWorld(
+        box=((0, 0, 0), (6, 3, 6)),
+        blocks={**blocks, sign: "oak_sign"},
+        agents={"ann": (1.5, 1, 3.5), "bob": (1.5, 1, 2.5)},
+        signs={sign: "in"},
+    )
+    nest = bn.Nest(world, store=tmp_path / "sign.bn")
+    world.place_agent("bob", (5.5, 1, 1.5))
+    world.write_sign("ann", sign, "out")
+    nest.close()
+    page = tmp_path / "sign.html"
+    write_page(PageOptions(tmp_path / "sign.bn", page, "/bob", None, None, 1))
+    browser.open(page.as_uri())
+    told = "return document.querySelector(arguments[0]).textContent"
+    assert "ann writes “out” on the sign" in browser.script(told, ".events")
+    assert "1 block is false" in browser.script(told, "main, body")
 
 
 @pytest.fixture

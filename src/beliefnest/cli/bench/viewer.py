@@ -96,7 +96,7 @@ def _story(place: Path) -> Path:
     store, page = place / "story.bn", place / "story.html"
     with Nest.open(Scenario.load("sally-anne", condition=1), store=store) as nest:
         nest.play()
-    write_page(PageOptions(store, page, "/", None, 2))
+    write_page(PageOptions(store, page, "/", None, None, 2))
     return page
 
 
@@ -107,7 +107,7 @@ def _long(place: Path) -> Path:
     with Nest(walk.world, Perception(), static_blocks=["stone", "air"], store=store):
         for _ in range(_TICKS):
             walk.tick()
-    write_page(PageOptions(store, page, "/", None, 2))
+    write_page(PageOptions(store, page, "/", None, None, 2))
     return page
 
 

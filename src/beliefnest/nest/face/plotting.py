@@ -3,9 +3,8 @@
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
-from typing import TypeVar
+from typing import Any, TypeVar
 
-from beliefnest.belief.columns import cell_of, place_of
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError, PositionError
 from beliefnest.nest.face.matters import Contained, Course, Matter, Owned, Whereabouts
@@ -56,18 +55,23 @@ def plot_of(
 
 
 def _contained(recording: Recording, container: Position, item: str | None) -> Contained:
-    box, context = recording.setting.snapshot.box, recording.history.context
+    box = recording.setting.snapshot.box
     if container not in box:
         raise PositionError(f"position {container} is outside the box {box.low}..{box.high}")
-    # Where a container was ever placed is known when the last entry has been read.
-    recording.reading(())
-    if cell_of(box, container) not in context.tracked:
-        known = ", ".join(str(place_of(box, cell)) for cell in sorted(context.tracked))
-        raise InputError(
-            f"there is no container at {container}; containers are at {known or 'no place'}"
-        )
     label = recording.setting.labels.get(container, f"container {place_words(container)}")
     return Contained(container, item, label)
+
+
+def _check_held(recording: Recording, matter: Contained, courses: Sequence[Course[Any]]) -> None:
+    """That a container ever was there, in reality or in one of the beliefs."""
+    if any(value is not None for course in courses for _, value in course):
+        return
+    key = recording.controller(())
+    *_, (_, real) = _stretch(recording, key, (), recording.journal.info(key).entries)
+    known = ", ".join(map(str, sorted(real.containers)))
+    raise InputError(
+        f"there is no container at {matter.container}; containers are at {known or 'no place'}"
+    )
 
 
 def _names(recording: Recording) -> Mapping[Position, str]:
@@ -83,6 +87,8 @@ def _figure(
     names = [parse_path(path, recording.agents) for path in paths]
     real = _course(recording, (), matter)
     courses = {path: _course(recording, path, matter) for path in names}
+    if isinstance(matter, Contained):
+        _check_held(recording, matter, [real, *courses.values()])
     ends = {path: recording.info(path).head if until is None else until for path in names}
     acts = _acts(recording, matter, max(ends.values()))
     rows = [

@@ -210,6 +210,8 @@ class RunData:
                 }
                 if place is not None:
                     told["at"] = list(place)
+                if event.kind is EventKind.BLOCK_UPDATE and event.actor and "text" in event.detail:
+                    told["written"] = True
                 line.events.append(told)
         line.entries = line.info.entries
 

@@ -1,4 +1,4 @@
-"""What happened, in words, for the page."""
+"""What happened, in words: one line for each event, on the page as in reports."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -144,11 +144,11 @@ export class Clock {
   }
 }
 
-/** @returns {object[]} events and notes of a timeline in order; walking and block updates are not listed */
+/** @returns {object[]} events and notes of a timeline in order; walking is not listed, nor block updates but for what is written on signs */
 function listed (run, timeline) {
   const mark = `${timeline.events.length} ${run.programs.length} ${run.prompts.length}`
   if (timeline.listed?.mark !== mark) {
-    const events = timeline.events.map((event, number) => ({ ...event, number })).filter(event => !QUIET.has(event.kind))
+    const events = timeline.events.map((event, number) => ({ ...event, number })).filter(event => event.written || !QUIET.has(event.kind))
     timeline.listed = { mark, rows: [...events, ...notesOf(run, timeline)].sort((a, b) => a.t - b.t) }
   }
   return timeline.listed.rows

@@ -47,7 +47,7 @@ export class Detail {
 
   others (run, things) {
     const told = []
-    if (things.wrongBlocks.length) told.push(`${things.wrongBlocks.length} blocks are false`)
+    if (things.wrongBlocks.length) told.push(things.wrongBlocks.length === 1 ? '1 block is false' : `${things.wrongBlocks.length} blocks are false`)
     for (const each of things.agents) if (each.wrongItems) told.push(`what ${each.look.name} has is false`)
     return told.length ? element('p', { class: 'mark false' }, `${run.head.marks.false.sign} ${told.join('; ')}.`) : null
   }
