@@ -8,7 +8,10 @@ import sys
 import urllib.request
 from pathlib import Path
 
+import pytest
+
 import beliefnest as bn
+from beliefnest.cli.app import run_command_line
 from beliefnest.cli.serve import ServeOptions, listening
 
 
@@ -37,3 +40,25 @@ def test_ctrl_c_ends_it_without_complaint_while_a_page_listens(tmp_path: Path) -
             live.read()
         said, complaints = server.communicate(timeout=60)
     assert (server.returncode, said, complaints) == (0, "", "")
+
+
+def test_what_cannot_be_shown_is_refused_before_anything_is_served(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    for options, told in (
+        (["--condition", "9"], "there is no condition 9; conditions are 1, 2, 3"),
+        (["--depth", "9"], "depth is 9; give 0 to 4"),
+    ):
+        assert run_command_line(["serve", "sally-anne", "--port", "0", *options]) == 2
+        assert told in capsys.readouterr().err
+
+
+def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
+    (tmp_path / "run.bn").write_text("no run", encoding="utf-8")
+    command = [sys.executable, "-m", "beliefnest", "serve", str(tmp_path), "--port", "0"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as it:
+        assert it.stdout is not None
+        assert it.stdout.readline().startswith("The page is at")
+        it.send_signal(signal.SIGINT)
+        _, complaints = it.communicate(timeout=60)
+    assert f"{tmp_path / 'run.bn'} is no run" in complaints

@@ -19,6 +19,7 @@ from beliefnest.errors import InputError
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.viewer.page.static import check_depth
 from beliefnest.viewer.serving.host import Host, Opened
 
 if TYPE_CHECKING:
@@ -54,8 +55,8 @@ def serve(options: ServeOptions) -> None:
     """Serve the page until it is interrupted.
 
     Raises:
-        InputError: The extra is not installed, there is no such run or scenario, or the address
-            cannot be listened on.
+        InputError: The extra is not installed, there is no such run, scenario or condition, the
+            depth is not from 0 to 4, or the address cannot be listened on.
     """
     try:
         import uvicorn
@@ -65,11 +66,13 @@ def serve(options: ServeOptions) -> None:
         raise InputError(
             "serve needs starlette and uvicorn: run `pip install 'beliefnest[serve]'`"
         ) from None
+    check_depth(options.depth)
     with listening(options) as listener, _running(options) as folder:
         port = listener.getsockname()[1]
         token = None if _is_loopback(options.address) else secrets.token_urlsafe(24)
         host = Host(lambda: _stores(folder), _open, options.depth)
-        host.discover()
+        for fault in host.discover():
+            sys.stderr.write(f"beliefnest: not on the page until it can be read: {fault}\n")
         host.follow()
         query = "" if token is None else f"?token={token}"
         address = f"http://{_host(options.address)}:{port}/{query}"
@@ -129,6 +132,9 @@ def _running(options: ServeOptions) -> Iterator[Path]:
         yield path
         return
     name = Scenario.load_all(options.what)[0].name
+    for number in options.conditions:
+        # One that there is not would end the run, and leave a page of nothing.
+        Scenario.load(options.what, number)
     folder = options.out or Path("runs") / f"{name}-{datetime.now():%Y%m%d-%H%M%S}"
     command = [sys.executable, "-m", "beliefnest", "run", options.what, "--out", str(folder)]
     for number in options.conditions:

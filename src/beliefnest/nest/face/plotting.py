@@ -46,7 +46,9 @@ def plot_of(
         recording.history.context.registry.item_stack(item)
     with recording.turn:
         if container is not None:
-            return _figure(recording, _contained(recording, container, item), paths, until)
+            return _figure(
+                recording, _contained(recording, container, item), paths, until, container
+            )
         assert agent is not None
         parse_path(path_text((agent,)), recording.agents)
         if item is not None:
@@ -62,7 +64,7 @@ def _contained(recording: Recording, container: Position, item: str | None) -> C
     return Contained(container, item, label)
 
 
-def _check_held(recording: Recording, matter: Contained, courses: Sequence[Course[Any]]) -> None:
+def _check_held(recording: Recording, container: Position, courses: Sequence[Course[Any]]) -> None:
     """That a container ever was there, in reality or in one of the beliefs."""
     if any(value is not None for course in courses for _, value in course):
         return
@@ -70,7 +72,7 @@ def _check_held(recording: Recording, matter: Contained, courses: Sequence[Cours
     *_, (_, real) = _stretch(recording, key, (), recording.journal.info(key).entries)
     known = ", ".join(map(str, sorted(real.containers)))
     raise InputError(
-        f"there is no container at {matter.container}; containers are at {known or 'no place'}"
+        f"there is no container at {container}; containers are at {known or 'no place'}"
     )
 
 
@@ -82,13 +84,17 @@ def _names(recording: Recording) -> Mapping[Position, str]:
 
 
 def _figure(
-    recording: Recording, matter: Matter[V], paths: Sequence[str], until: int | None
+    recording: Recording,
+    matter: Matter[V],
+    paths: Sequence[str],
+    until: int | None,
+    container: Position | None = None,
 ) -> Figure:
     names = [parse_path(path, recording.agents) for path in paths]
     real = _course(recording, (), matter)
     courses = {path: _course(recording, path, matter) for path in names}
-    if isinstance(matter, Contained):
-        _check_held(recording, matter, [real, *courses.values()])
+    if container is not None:
+        _check_held(recording, container, [real, *courses.values()])
     ends = {path: recording.info(path).head if until is None else until for path in names}
     acts = _acts(recording, matter, max(ends.values()))
     rows = [

@@ -10,7 +10,13 @@ from beliefnest.viewer.page.html import page_html
 from beliefnest.viewer.page.reasons import ahead
 from beliefnest.viewer.page.run import About
 
-__all__ = ["still_page", "write_still_page"]
+__all__ = ["check_depth", "still_page", "write_still_page"]
+
+
+def check_depth(depth: int) -> None:
+    """That a page can hold all beliefs to a depth; InputError if it is not from 0 to 4."""
+    if not 0 <= depth <= 4:
+        raise InputError(f"depth is {depth}; give 0 to 4, and deeper beliefs one by one as paths")
 
 
 def still_page(
@@ -26,8 +32,7 @@ def still_page(
     Raises:
         InputError: The depth is not from 0 to 4, or the page was not built with the package.
     """
-    if not 0 <= depth <= 4:
-        raise InputError(f"depth is {depth}; give 0 to 4, and deeper beliefs one by one as paths")
+    check_depth(depth)
     told: list[dict[str, Any]] = []
     title = ""
     for reader, about in runs:

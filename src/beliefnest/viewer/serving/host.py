@@ -1,7 +1,6 @@
 """The runs that a server shows, and all that was told of them so far."""
 
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import RLock
@@ -57,18 +56,22 @@ class Host:
     _data: list[RunData] = field(default_factory=list)
     _turn: RLock = field(default_factory=RLock)
 
-    def discover(self) -> None:
-        """Take up runs that have begun since."""
+    def discover(self) -> list[StoreError]:
+        """Take up runs that have begun since; returns why others cannot be read as yet."""
+        faults = []
         with self._turn:
             for file in self.find():
                 if file in self._files:
                     continue
-                # A run that has only just begun can be read a moment later.
-                with suppress(StoreError):
+                try:
                     opened = self.open(file)
                     self._files.append(file)
                     self._opened.append(opened)
                     self._data.append(RunData(opened.reader, opened.about, self.depth))
+                except StoreError as fault:
+                    # A run that has only just begun can be read a moment later.
+                    faults.append(fault)
+        return faults
 
     def follow(self) -> int:
         """Read what is new in all runs; returns how many updates there are now."""
