@@ -181,8 +181,14 @@ class Ground:
         if wanted not in self._ways:
             if len(self._ways) >= _MOST_WAYS:
                 self._ways.clear()
-            found = self.may_lead(start, goal)
-            self._ways[wanted] = find_way(self, start, goal) if found else None
+            known = any(start in area for area in self._areas)
+            if known and not self.may_lead(start, goal):
+                self._ways[wanted] = None
+            else:
+                self._ways[wanted] = found = find_way(self, start, goal)
+                if found is None and not known:
+                    # Who asks next from there need not look for a way through all of it.
+                    self._areas.append(self._area(start))
         return self._ways[wanted]
 
     def may_lead(self, start: Position, goal: Goal) -> bool:

@@ -10,6 +10,7 @@
   let room = 50_000
   let next = 1
   let seen = null
+  let blocks = null
   let grid = null
 
   // Calls that failed, whose errors the program may still be about to hear of.
@@ -56,7 +57,7 @@
   const others = () => Object.entries(seen.agents).filter(([name]) => name !== username)
 
   function blockAt (position) {
-    grid ??= parse(seen.blocks)
+    grid ??= parse(blocks)
     const cell = [position.x, position.y, position.z].map(Math.floor)
     const at = cell.map((value, axis) => value - grid.low[axis])
     if (at.some((value, axis) => value < 0 || value >= grid.shape[axis])) return null
@@ -144,9 +145,11 @@
       failed.push({ answer, error })
       reject(error)
     },
-    see (text, blocks) {
-      if (seen === null || blocks !== seen.blocks) grid = null
-      seen = { ...parse(text), blocks }
+    see (text, newBlocks) {
+      seen = parse(text)
+      if (newBlocks === null) return
+      blocks = newBlocks
+      grid = null
     }
   }
 }
