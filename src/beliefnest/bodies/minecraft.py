@@ -75,6 +75,11 @@ class MinecraftWorld:
         """Program to version, of what runs."""
         return {**self._beliefs.versions, **self._versions}
 
+    @property
+    def pid(self) -> int:
+        """Process id of the Node that speaks to the server; it is started if it has not been."""
+        return self._live().pid
+
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> Body:
         """Make the real world's body on the server, any other one in the embedded world.
 

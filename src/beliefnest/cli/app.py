@@ -425,7 +425,9 @@ def doctor(
 
 @app.command()
 def bench(
-    names: Annotated[list[str] | None, typer.Argument(help="Benches; none: all.")] = None,
+    names: Annotated[
+        list[str] | None, typer.Argument(help="Benches; none: all but minecraft.")
+    ] = None,
     json: Json = False,
 ) -> int:
     """Measure, and print medians and ratios beside the figures to reach."""

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from beliefnest.cli.bench.figures import Figure
 from beliefnest.errors import UnknownNameError
 
-__all__ = ["BENCHES", "measure"]
+__all__ = ["BENCHES", "NEEDING_MORE", "measure"]
 
 BENCHES: Mapping[str, str] = {
     "sally-anne": "beliefnest.cli.bench.sally_anne",
@@ -22,9 +22,14 @@ BENCHES: Mapping[str, str] = {
     "viewer": "beliefnest.cli.bench.viewer",
     "studies": "beliefnest.cli.bench.studies",
     "episodes": "beliefnest.cli.bench.episodes",
+    "minecraft": "beliefnest.cli.bench.minecraft",
     "pettingzoo": "beliefnest.cli.bench.pettingzoo",
 }
 """Name to the module whose `measure()` it is; loaded when it is run."""
+
+
+NEEDING_MORE = frozenset({"minecraft"})
+"""Benches that need what is not installed, as a server; they run where they are named."""
 
 
 def measure(name: str) -> Sequence[Figure]:
