@@ -15,7 +15,11 @@ __all__ = ["run_benches"]
 
 
 def run_benches(names: Sequence[str], *, as_json: bool) -> int:
-    """Run benches (all that need nothing more, if none is named); the status is 1 if a target was missed.
+    """Run benches; the status is 1 if a target was missed.
+
+    Args:
+        names: Which; none: all that need nothing more.
+        as_json: Whether to print JSON.
 
     Raises:
         UnknownNameError: There is no bench of a name.
