@@ -49,6 +49,21 @@ def test_a_task_of_any_size_makes_sense(name: str, key: str, value: int) -> None
 
 
 @pytest.mark.parametrize("name", bn.Task.names())
+def test_a_task_of_another_size_needs_its_order_too(name: str) -> None:
+    # One size of each, at night all of them.
+    sizes = [
+        {key: value}
+        for key, (usual, low, high) in parameters_of(name).items()
+        for value in (high, low)
+        if value != usual
+    ]
+    for size in sizes[: at_night(len(sizes), 1)]:
+        task = bn.Task.load(name, seed=1, **size)
+        assert played(task, task.order), size
+        assert not played(task, task.order - 1), size
+
+
+@pytest.mark.parametrize("name", bn.Task.names())
 def test_a_task_names_its_source(name: str) -> None:
     first = source_of(name).splitlines()[0]
     assert any(year in first for year in map(str, range(1970, 2026)))

@@ -1,7 +1,7 @@
 """Help somebody with a false belief (Buttelmann, Carpenter and Tomasello 2009, as talk).
 
 Sally wants a thing that was moved while she was away, and has not the time to look into every
-chest. Anne stands behind glass: she saw it moved, and can do nothing but speak. Who does not
+chest. Anne stands behind glass: she saw it moved, and can do nothing but speak, once. Who does not
 reckon with what Sally believes sees no need to say anything.
 """
 
@@ -60,7 +60,7 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
                 belief("/anne", contents),
             ],
         },
-        "goal": {"reach": [{"agent": "sally", "items": {item: 1}}]},
+        "goal": {"reach": [{"agent": "sally", "items": {item: 1}}], "messages": 1},
         "players": ["anne"],
         "policies": {"sally": "search:0", **dict.fromkeys(onlookers, "search:0")},
         "talk": ["anne", *onlookers],

@@ -1,8 +1,8 @@
 """A joint lift without a word (Sebanz, Bekkering and Knoblich 2006; Tomasello 2014).
 
-A lift rises when both of its plates are stood on at once. There are several; Bob cannot see them
-all, and Anne, who can, stands nearest to one that he does not know of. They do not talk: who
-reckons with what the other sees goes where the other will be.
+A lift rises when both of its plates are stood on at once. There are two; both people stand nearer
+to one that Anne sees and Bob does not know of. They do not talk: who reckons with what the other
+sees goes where the other will be.
 """
 
 import random
@@ -10,28 +10,26 @@ from typing import Any
 
 from beliefnest.episodes.tasks.building import FLOOR, WALL, hall, wall
 
-PARAMETERS = {"lifts": (2, 2, 4), "far": (14, 12, 20)}
+PARAMETERS = {"far": (14, 12, 20)}
 
 
-def instance(chance: random.Random, lifts: int, far: int) -> dict[str, Any]:
+def instance(chance: random.Random, far: int) -> dict[str, Any]:
     """An instance.
 
     Args:
         chance: Draws the side and the places.
-        lifts: How many lifts there are; Bob sees one.
-        far: Blocks between the lifts that he does not see and the one that he does.
+        far: Blocks between the lift that Bob does not see and the one that he does.
     """
-    hidden = [(2 + 3 * number, 0) for number in range(lifts - 1)]
-    corner = hidden[-1][0] + 3
+    hidden, corner = (2, 0), 5
     width, depth = corner + far + 5, 12
     seen = (corner + far + chance.randint(0, 2), chance.randint(7, 9))
-    sites = [[(x, 1, z), (x, 1, z + 2)] for x, z in [*hidden, seen]]
-    # Behind these walls, with a gap at their corner, are the lifts that Bob does not see.
+    sites = [[(x, 1, z), (x, 1, z + 2)] for x, z in (hidden, seen)]
+    # Behind these walls, with a gap at their corner, is the lift that Bob does not see.
     blocks = [
         wall((corner, 1, 0), (corner, 2, 5)),
         wall((0, 1, 7), (corner, 2, 7)),
     ]
-    # Both stand nearer to those than to the other one.
+    # Both stand nearer to it than to the other one.
     anne, bob = (corner - 1.5, 1, 4.5), (corner + 2.5, 1, 10.5)
     mirrored = chance.random() < 0.5
     plates = [place for site in sites for place in site]

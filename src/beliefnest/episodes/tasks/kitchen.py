@@ -63,5 +63,5 @@ def instance(chance: random.Random, orders: int, hatches: int) -> dict[str, Any]
         "players": ["cook"],
         "policies": {"waiter": "search:0"},
         "round_ticks": 10,
-        "rounds": 5 + 4 * orders + hatches,
+        "rounds": 3 + 3 * orders,
     }
