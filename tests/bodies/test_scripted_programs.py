@@ -1,5 +1,6 @@
 """Programs in the scripted world: the skills it has, in ticks, and what it refuses."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -8,7 +9,7 @@ import pytest
 import beliefnest as bn
 from beliefnest.llm.offline import OfflineModel
 from beliefnest.scenarios.running import run_scenario
-from beliefnest.world.values import EventKind
+from beliefnest.world.values import EYE_HEIGHT, EventKind
 
 CHEST = (6, 1, 2)
 ROOM: dict[str, Any] = {
@@ -167,6 +168,28 @@ def test_a_gate_is_gone_through_and_no_corner_of_it_cut() -> None:
 def test_settings_of_doors_that_there_are_not_are_named(nest: bn.Nest) -> None:
     error = run(nest, ann="await goToPosition(bot, new Vec3(3, 1, 2), 0, {openDoor: true})")["ann"]
     assert "openDoors and closeDoors, each true or false" in str(error.error)
+
+
+def test_agents_turn_to_the_point_they_look_at(nest: bn.Nest) -> None:
+    x, y, z = nest["/"].state.agents["ann"].position
+    result = run(nest, ann=f"await lookAt(bot, new Vec3({x + 2}, {y + EYE_HEIGHT + 2}, {z}))")[
+        "ann"
+    ]
+    ann = nest["/"].state.agents["ann"]
+    assert (result.ok, result.ticks, ann.position) == (True, 1, (x, y, z))
+    assert (ann.yaw, ann.pitch) == (pytest.approx(-math.pi / 2), pytest.approx(math.pi / 4))
+    error = run(nest, ann="await lookAt(bot, 'bob')")["ann"].error
+    assert "position must be a Vec3" in str(error)
+
+
+@pytest.mark.parametrize("condition", [1, 2])
+def test_who_looks_at_a_container_sees_nothing_in_it(condition: int) -> None:
+    with bn.Nest.open(bn.Scenario.load("knowledge-access", condition), world="scripted") as nest:
+        nest.play()
+        inside = {name: nest[f"/{name}"].state.containers[7, 1, 2] for name in ("fiona", "john")}
+        known = {name: dict(container.items) for name, container in inside.items()}
+    looked, stood = ("fiona", "john") if condition == 1 else ("john", "fiona")
+    assert known == {looked: {"diamond": 1}, stood: {}}
 
 
 def test_signs_are_written_on_and_read() -> None:

@@ -79,8 +79,7 @@ from beliefnest.scenarios.loading import builtin_names
 
 logs = []
 for name in builtin_names():
-    # Its script looks at things, which the scripted world has no skill for.
-    arguments = {"world": "embedded" if name == "knowledge-access" else "scripted"}
+    arguments = {"world": "scripted"}
     task = "beliefnest/" + name.replace("-", "_")
     logs += read(eval(task, task_args=arguments, model=mock(answer), display="none", limit=1))
 assert len(logs) == len(builtin_names())

@@ -1,7 +1,7 @@
 """The skills of the scripted world, each a generator that is advanced once a tick.
 
-Walking takes one tick for each cell; opening, taking, putting, speaking, thinking and handing over
-take one tick each.
+Walking takes one tick for each cell; opening, taking, putting, turning to look, speaking, thinking
+and handing over take one tick each.
 """
 
 import math
@@ -138,19 +138,25 @@ def _write_sign(hand: Hand, position: Any, text: Any) -> Doing:
     hand.world.write_sign(hand.name, place, text)
 
 
-def _read_sign(hand: Hand, position: Any) -> Doing:
-    place = _block(position)
-    if hand.known().is_sign(place) is False:
-        raise SkillError(f"there is no sign at {place}. Give the position of a sign.")
-    x, y, z = hand.feet
-    away = (place[0] + 0.5 - x, place[1] + 0.5 - y - EYE_HEIGHT, place[2] + 0.5 - z)
+def _look_at(hand: Hand, position: Any) -> Doing:
+    target = _point("position", position)
     yield
+    x, y, z = hand.feet
+    away = (target[0] - x, target[1] - y - EYE_HEIGHT, target[2] - z)
     hand.world.place_agent(
         hand.name,
         hand.feet,
         yaw=math.atan2(-away[0], -away[2]),
         pitch=math.atan2(away[1], math.hypot(away[0], away[2])),
     )
+
+
+def _read_sign(hand: Hand, position: Any) -> Doing:
+    place = _block(position)
+    if hand.known().is_sign(place) is False:
+        raise SkillError(f"there is no sign at {place}. Give the position of a sign.")
+    x, y, z = place
+    yield from _look_at(hand, (x + 0.5, y + 0.5, z + 0.5))
     yield
     if not hand.known().is_sign(place):
         raise SkillError(f"no sign is to be seen at {place}. Go nearer, or look somewhere else.")
@@ -200,6 +206,7 @@ SKILLS: Mapping[str, Callable[..., Doing]] = {
     "closeDoor": _use_door(to_open=False),
     "writeSign": _write_sign,
     "readSign": _read_sign,
+    "lookAt": _look_at,
     "giveItemToOther": _give_item,
     "say": _say,
     "whisper": _whisper,
