@@ -28,6 +28,7 @@ probes:
     expect: {opens: [4, 1, 2]}
 expectations:
   - {path: /bob, label: "<u>", container: [4, 1, 2], items: {apple: 1}}
+  - {path: /bob, label: "nothing", container: [4, 1, 2], items: {}}
 conditions: {1: {description: "<em>one</em>"}, 2: {}}
 """
 
@@ -72,3 +73,7 @@ def test_what_happened_is_told_in_words(page: str) -> None:
     assert "bob opens the </svg><script>alert(1)</script>" in told
     assert "bob takes 1 apple out of the </svg>" in told
     assert "open container" not in told
+
+
+def test_that_nothing_is_expected_in_a_container_is_said(page: str) -> None:
+    assert "items: none<" in page

@@ -496,3 +496,12 @@ def test_an_explanation_says_what_the_state_says(story: Story) -> None:
                 looks = told.levels[-1].missed.sightings
                 assert all(look.view is not View.SEEN for look in looks)
             assert str(told)
+
+
+def test_an_act_of_which_the_kind_alone_is_known_is_told_in_words():
+    scenario = bn.Scenario.load("knowledge-access", condition=1)
+    with bn.Nest.open(scenario) as nest:
+        nest.play()
+        told = str(nest["/observer/fiona"].explain(container=(7, 1, 2)))
+    assert "something was put in; fiona took it over" in told
+    assert "deposit_item" not in told

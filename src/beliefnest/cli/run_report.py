@@ -95,6 +95,8 @@ def _verdict(ok: bool | None) -> Markup:
 def _compact(value: object) -> str:
     """A value of the report in one line."""
     if isinstance(value, Mapping):
+        if not value:
+            return "none"
         return ", ".join(f"{key}: {_compact(each)}" for key, each in value.items())
     if isinstance(value, Sequence) and not isinstance(value, str):
         return f"({', '.join(map(_compact, value))})"

@@ -20,6 +20,13 @@ from beliefnest.world.values import EventKind, Items
 
 __all__ = ["explanation_lines"]
 
+_KINDS = {
+    EventKind.DEPOSIT_ITEM_INTO_CHEST: "something was put in",
+    EventKind.GET_ITEM_FROM_CHEST: "something was taken out",
+    EventKind.OPEN_CONTAINER: "somebody looked in",
+}
+"""Acts of which no more is known than their kind."""
+
 
 def explanation_lines(element: Element, fact: Fact, levels: Iterable[Level]) -> list[str]:
     """What is so, then what each belief along the path holds and why."""
@@ -204,7 +211,7 @@ def _act_text(act: PerceivedEvent) -> str:
         case EventKind.BLOCK_UPDATE | EventKind.PLACE_BLOCK if "block" in act.detail:
             return f"{actor} {_made_text(act.detail)}"
         case _:
-            return f"{actor} did {act.kind.value}"
+            return f"{actor} did {act.kind.value.replace('_', ' ')}"
 
 
 def _made_text(detail: Mapping[str, Any]) -> str:
@@ -216,7 +223,7 @@ def _made_text(detail: Mapping[str, Any]) -> str:
 
 
 def _kind_text(kind: EventKind | None) -> str:
-    return "an act" if kind is None else kind.value
+    return "an act" if kind is None else _KINDS.get(kind, kind.value.replace("_", " "))
 
 
 def _state_text(value: Value, block: str | None, element: Element) -> str:
