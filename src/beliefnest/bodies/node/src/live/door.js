@@ -2,6 +2,7 @@
 /** Where people come in: a TCP port, and who may take an agent's place in the region that is open. */
 const { once } = require('node:events')
 const minecraft = require('minecraft-protocol')
+const { states } = minecraft
 const { TcpEnd } = require('../net/tcpEnd')
 const versions = require('../versions')
 const { CannotListen } = require('./cannotListen')
@@ -12,6 +13,8 @@ const MOST_CONNECTIONS = 1000
 const STANDING_TICKS = 10
 const NIGHT_VISION = 15
 const FOR_EVER = -1
+// What a handshake asks for who wants to play.
+const LOGIN = 2
 const MOVES = ['position', 'position_look']
 
 class PersonEnd extends TcpEnd {
@@ -42,8 +45,12 @@ class Door {
   /** @returns {Promise<number>} the port; 0 asked for any. @throws {CannotListen} */
   async listen ({ host, port }) {
     const listening = minecraft.createServer({
-      host, port, version: versions.minecraft, 'online-mode': false, maxPlayers: MOST_CONNECTIONS, motd: 'BeliefNest', hideErrors: true
+      host, port, version: versions.minecraft, 'online-mode': false, maxPlayers: MOST_CONNECTIONS, motd: 'BeliefNest', hideErrors: true,
+      // The library would answer with its error, which is no text.
+      errorHandler: client => client.socket.destroy()
     })
+    // Before the library's own, which ends such a connection without a word.
+    listening.prependListener('connection', client => client.once('set_protocol', asked => refuseVersion(client, asked, listening.mcversion)))
     listening.on('playerJoin', client => this.greet(client))
     try {
       await once(listening, 'listening')
@@ -119,6 +126,13 @@ class Door {
       else if (++standing.ticks === STANDING_TICKS) player.report({ kind: 'move_to', detail: { destination: region.toScenario(player.position.floored()) } })
     }
   }
+}
+
+/** Says so to a game of another version than ours; who only asks who is here gets an answer all the same. */
+function refuseVersion (client, { protocolVersion, nextState }, { version, minecraftVersion }) {
+  if (protocolVersion === version || nextState !== LOGIN) return
+  client.state = states.LOGIN
+  client.end(`This is Minecraft ${minecraftVersion}; start the game in that version`)
 }
 
 /** What a game with a screen asks for besides: an end to waiting, and light. */

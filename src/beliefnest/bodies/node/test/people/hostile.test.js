@@ -1,0 +1,109 @@
+'use strict'
+/** What a client may send that nobody plays with: it ends that client's connection at most, and everybody stays whole. */
+const assert = require('node:assert/strict')
+const { once } = require('node:events')
+const path = require('node:path')
+const { after, afterEach, before, test } = require('node:test')
+const minecraft = require('minecraft-protocol')
+const versions = require('../../src/versions')
+const { agent, floor, Node, region } = require('../harness')
+
+const HOSTING = path.join(__dirname, '..', '..', 'src', 'hosting.js')
+const CHEST = [-4, -51, 4]
+const CHEST_STATE = require('minecraft-data')(versions.minecraft).blocksByName.chest.defaultState
+const START = [-4.5, -51, 2.5]
+
+let node
+let port
+const clients = []
+
+before(async () => {
+  node = new Node(HOSTING)
+  await node.request('hello', { protocol: 3, seed: 0, minecraft: '1.20.4', listen: { host: '127.0.0.1', port: 0 } })
+  ;({ port } = await node.request('people', { invited: ['anne'] }))
+  await node.request('create_region', region('/', {
+    blocks: floor([[...CHEST, CHEST_STATE]]), containers: [[...CHEST, { diamond: 3 }]], agents: { anne: agent(START), sally: agent([0.5, -51, 0.5]) }
+  }))
+})
+after(() => node.close())
+afterEach(async () => {
+  for (const client of clients.splice(0)) client.socket?.destroy()
+  await here([])
+})
+
+/** Lets time pass until those people are there. */
+async function here (names) {
+  for (;;) {
+    const { here: present } = await node.request('people', { invited: ['anne'] })
+    if (present.join() === names.join()) return
+    await node.request('step', { region: '/', ticks: 1 })
+  }
+}
+
+const join = (username, version = versions.minecraft) => {
+  const client = minecraft.createClient({ host: '127.0.0.1', port, username, version, auth: 'offline', hideErrors: true })
+  client.on('error', () => {})
+  clients.push(client)
+  return client
+}
+
+async function anneIn () {
+  const client = join('anne')
+  await here(['anne'])
+  return client
+}
+
+/** Lets what was sent arrive, and some time pass. */
+async function settled (client) {
+  const heard = once(client, 'system_chat')
+  client.write('chat_command', { command: 'settled', timestamp: 0n, salt: 0n, argumentSignatures: [], messageCount: 0, acknowledged: Buffer.alloc(3) })
+  await heard
+  await node.request('step', { region: '/', ticks: 3 })
+}
+
+const snapshot = () => node.request('snapshot', { region: '/' })
+const diamonds = ({ agents, containers }) => (agents.anne.inventory.diamond ?? 0) + (containers[0][3].diamond ?? 0)
+
+test('who says to be outside the box, or nowhere, stays where they are', async () => {
+  const client = await anneIn()
+  for (const [x, y, z] of [[1e9, -51, 0], [0, 500, 0], [NaN, -51, 0], [0, -Infinity, 0], [0, -51, -13]]) {
+    client.write('position', { x, y, z, onGround: true })
+    client.write('position_look', { x, y, z, yaw: 0, pitch: 0, onGround: true })
+  }
+  await settled(client)
+  assert.deepEqual((await snapshot()).agents.anne.position, START)
+})
+
+test('what is no line of text is refused with a sentence, and nobody hears it', async () => {
+  const client = await anneIn()
+  const told = []
+  client.on('system_chat', ({ content }) => told.push(JSON.stringify(content)))
+  client.chat('two\nlines')
+  await settled(client)
+  assert.match(told.join('\n'), /what anne utters/)
+  assert.equal(node.frames.flatMap(({ events }) => events).filter(({ kind }) => kind === 'chat').length, 0)
+})
+
+test('who is cut off with something in hand keeps it', async () => {
+  const client = await anneIn()
+  client.write('block_place', {
+    hand: 0, location: { x: CHEST[0], y: CHEST[1], z: CHEST[2] }, direction: 2, cursorX: 0.5, cursorY: 0.5, cursorZ: 0, insideBlock: false, sequence: 1
+  })
+  const [{ windowId }] = await once(client, 'open_window')
+  const [{ stateId }] = await once(client, 'window_items')
+  client.write('window_click', { windowId, stateId, slot: 0, mouseButton: 0, mode: 0, changedSlots: [], cursorItem: { present: false } })
+  await settled(client)
+  client.socket.destroy()
+  await here([])
+  const left = await snapshot()
+  assert.equal(diamonds(left), 3)
+  assert.deepEqual(left.agents.anne.inventory, { diamond: 3 })
+  await anneIn()
+  assert.deepEqual((await snapshot()).agents.anne.inventory, { diamond: 3 })
+})
+
+test('a game of another version is told which one it has to be', async () => {
+  const client = join('anne', '1.19.4')
+  const [{ reason }] = await once(client, 'disconnect')
+  assert.match(reason, /This is Minecraft 1\.20\.4; start the game in that version/)
+})
