@@ -86,7 +86,7 @@ def test_a_model_that_says_nothing_in_time_costs_its_own_round(server: FakeOpenA
 
 
 def test_an_episode_ends_when_its_tokens_are_spent(server: FakeOpenAI) -> None:
-    server.will(server.says(GOOD))
+    server.will(server.says("```javascript\nawait think(bot, 'hm')\n```"))
     task, policies = bn.Task.load("help-find"), {"anne": "model:openai:gpt-4o-mini:0"}
     with bn.Episode(task, policies, budget=Budget(tokens=301)) as episode:
         assert episode.play().rounds == 3

@@ -86,11 +86,11 @@ test('what is no line of text is refused with a sentence, and nobody hears it', 
 
 test('who is cut off with something in hand keeps it', async () => {
   const client = await anneIn()
+  const chest = new Promise(resolve => client.on('window_items', packet => { if (packet.windowId !== 0) resolve(packet) }))
   client.write('block_place', {
     hand: 0, location: { x: CHEST[0], y: CHEST[1], z: CHEST[2] }, direction: 2, cursorX: 0.5, cursorY: 0.5, cursorZ: 0, insideBlock: false, sequence: 1
   })
-  const [{ windowId }] = await once(client, 'open_window')
-  const [{ stateId }] = await once(client, 'window_items')
+  const { windowId, stateId } = await chest
   client.write('window_click', { windowId, stateId, slot: 0, mouseButton: 0, mode: 0, changedSlots: [], cursorItem: { present: false } })
   await settled(client)
   client.socket.destroy()
