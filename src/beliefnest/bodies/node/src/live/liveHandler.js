@@ -1,24 +1,12 @@
 'use strict'
 /** Answers the channel's requests with the embedded server in real time, where people are agents as well. */
 const { BadRequest } = require('../channel/errors')
-const { RequestHandler } = require('../requestHandler')
+const { RealtimeHandler } = require('../realtimeHandler')
 const { createServer } = require('../server')
 const { Door } = require('./door')
 const { LiveRegions } = require('./liveRegions')
 
-// Real time: a request may wait for a tick, and says meanwhile that it lives.
-const BEAT_MS = 500
-
-class LiveHandler extends RequestHandler {
-  async answer (request) {
-    const beating = setInterval(() => this.beat({ beat: this.tick }), BEAT_MS)
-    try {
-      return await super.answer(request)
-    } finally {
-      clearInterval(beating)
-    }
-  }
-
+class LiveHandler extends RealtimeHandler {
   async open (registry, { listen }) {
     const regions = new LiveRegions(createServer(registry), frame => this.send({ frame }))
     this.door = new Door(regions)
