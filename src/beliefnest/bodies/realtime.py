@@ -1,0 +1,96 @@
+"""Reality in real time, in a process of its own that has sockets; beliefs in the embedded world."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+
+from beliefnest.bodies.channel import Channel
+from beliefnest.bodies.embedded import EmbeddedBody, EmbeddedWorld
+from beliefnest.bodies.limits import ProcessLimits
+from beliefnest.bodies.protocol import Body, Sink
+from beliefnest.errors import BodyError
+from beliefnest.world.frames import Snapshot
+
+__all__ = ["RealtimeBody", "RealtimeWorld"]
+
+_REALITY = "/"
+
+
+class RealtimeBody(EmbeddedBody):
+    """The real world in real time: a call first tells what has happened since the last one.
+
+    `set_state` makes the place what is asked for, whatever happened there meanwhile.
+    """
+
+    @property
+    def goes_on(self) -> bool:
+        """True: neither people nor servers wait."""
+        return True
+
+
+class RealtimeWorld(ABC):
+    """A process for the real world, and an embedded world for all others.
+
+    Two processes of Node: the one that plays the real world opens sockets, the one in which
+    beliefs are acted out does not. Both are started when they are first needed.
+
+    Args:
+        seed: Drives the random numbers of beliefs' bodies.
+        limits: What each process may take.
+    """
+
+    def __init__(self, seed: int, limits: ProcessLimits | None = None) -> None:
+        self._seed = seed
+        self._limits = limits or ProcessLimits()
+        self._beliefs = EmbeddedWorld(seed, limits)
+        self._channel: Channel | None = None
+        self._versions: Mapping[str, str] = {}
+        self._closed = False
+
+    @property
+    def has_physics(self) -> bool:
+        """True: it is Minecraft."""
+        return True
+
+    @property
+    def versions(self) -> Mapping[str, str]:
+        """Program to version, of what runs."""
+        return {**self._beliefs.versions, **self._versions}
+
+    def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> Body:
+        """Make the real world's body in real time, any other one in the embedded world.
+
+        Raises:
+            WorldError: A server's place holds other blocks, or does not become as asked for.
+        """
+        self._beliefs.knows(snapshot.agents)
+        if name != _REALITY:
+            return self._beliefs.open_body(name, seed, snapshot, sink)
+        known = sorted(snapshot.agents)
+        return RealtimeBody.opened(self._live(), name, seed, snapshot, sink, known)
+
+    def another(self) -> EmbeddedWorld:
+        """An embedded world: what is tried out goes as fast as it can, where nobody sees it.
+
+        What is tried from reality begins there as reality is.
+        """
+        return self._beliefs.another()
+
+    def interrupt(self) -> None:
+        """Kill both processes; what was built on a server stays there."""
+        self._beliefs.interrupt()
+        if self._channel is not None:
+            self._channel.kill()
+
+    def _live(self) -> Channel:
+        """The channel to the process of the real world, started if none is running."""
+        if self._closed:
+            raise BodyError("this world was closed; open another one")
+        if self._channel is None or self._channel.lost:
+            if self._channel is not None:
+                self._channel.close()
+            self._channel = self._started()
+        return self._channel
+
+    @abstractmethod
+    def _started(self) -> Channel:
+        """Start the process of the real world; sets `_versions`."""
