@@ -329,11 +329,15 @@ class _Planning:
         unknown = [place for place, content in known.items() if not content.complete]
         for place in sorted(unknown, key=lambda at: (_apart(me.position, at), at)):
             call = Call("openContainer", (place,))
-            trial, mine = mind.bare(), Performer([call])
-            trial.play({self._agent: mine}, self._horizon, lambda: mine.is_done)  # noqa: B023
-            if not mine.failed:
+            if self._succeeds(mind, call):
                 return (call,)
         return ()
+
+    def _succeeds(self, mind: Imagination, call: Call) -> bool:
+        """Whether the agent, left alone in a mind, can do a call."""
+        trial, mine = mind.bare(), Performer([call])
+        trial.play({self._agent: mine}, self._horizon, lambda: mine.is_done)
+        return not mine.failed
 
 
 @dataclass(frozen=True)
