@@ -43,6 +43,8 @@ def drawn(study, folder):
 def test_what_is_missing_is_told_with_its_command(tmp_path, monkeypatch, package, extra, use):
     study = bn.Study(small_in(tmp_path), world="scripted")
     study.run(tmp_path / "s", jobs=1)
+    # pandas looks for pyarrow once, when it is first imported, and then holds to what it found.
+    importlib.import_module("pandas")
     for name in list(sys.modules):
         if name.startswith(("beliefnest.inspect", "beliefnest.env.")):
             monkeypatch.delitem(sys.modules, name)

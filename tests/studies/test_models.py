@@ -122,9 +122,11 @@ def test_what_may_be_spent_holds_over_all_jobs_and_runs(server, tmp_path):
     refused = [row for row in result.rows if row["outcome"] == "error"]
     assert len(refused) == 6 - len(server.requests)
     assert all("may use 300; raise the limit" in row["why_not"] for row in refused)
-    # No script was played for them.
-    played = {row["cell"] for row in result.rows} - {row["cell"] for row in refused}
-    assert {file.stem for file in (out / "runs").glob("*.bn")} == played
+    # No script was played for them, but for one whose other job's answer was then under way.
+    answered = {row["cell"] for row in result.rows} - {row["cell"] for row in refused}
+    recorded = {file.stem for file in (out / "runs").glob("*.bn")}
+    assert answered <= recorded
+    assert len(recorded) <= 3
     result = study(tmp_path, variations=counts).run(out, jobs=1)
     assert len(server.requests) == 6
     assert result.frame()["ok"].all()
