@@ -6,19 +6,14 @@ but the values it is given, has 64 MB, and computes for two seconds at most betw
 
 import json
 import re
-from collections.abc import Iterable, Mapping
-from functools import cache
-from importlib.resources import files
-from pathlib import Path
+from collections.abc import Collection, Mapping
 from typing import Any
 
+from beliefnest.bodies.engines import MEMORY_BYTES, Engine, Engines, leaves_nothing
 from beliefnest.bodies.protocol import Fault
 
 __all__ = ["JavaScriptProgram"]
 
-_MEMORY_BYTES = 64 << 20
-_STACK_BYTES = 512 << 10
-_SECONDS = 2
 _MOST_JOBS = 100_000
 _FIRST_LINE = 1000
 """Lines before a program's own: the engine names no files, so that they tell its places apart."""
@@ -32,34 +27,45 @@ class JavaScriptProgram:
     Args:
         username: The agent that runs it.
         skills: Names of the skills in its scope.
+        code: Its text.
+        engines: Those that may be used again.
     """
 
-    def __init__(self, username: str, skills: Iterable[str]) -> None:
-        import quickjs  # takes 10 ms, and most nests run no such program
-
-        self._failed: type[Exception] = quickjs.JSException
-        self._context = quickjs.Context()
-        self._context.set_memory_limit(_MEMORY_BYTES)
-        self._context.set_max_stack_size(_STACK_BYTES)
-        self._context.set_time_limit(_SECONDS)
-        self._call = self._context.eval(_engine())(json.dumps([sorted(skills), username]))
+    def __init__(self, username: str, skills: Collection[str], code: str, engines: Engines) -> None:
+        self._code = code
+        self._engines = engines
+        self._leaves_nothing = leaves_nothing(code, skills)
+        self._engine = engines.take() if self._leaves_nothing else Engine()
+        self._call = self._engine.scope(username, skills)
         self._fault: Fault | None = None
         self._blocks: str | None = None
         self._taken: dict[str, Any] = {"calls": [], "log": [], "done": None, "waiting": 0}
 
-    def start(self, code: str) -> None:
-        """Begin a program, and run it until it waits."""
+    @property
+    def reads(self) -> bool:
+        """Whether it can read anything of the world."""
+        return not self._leaves_nothing
+
+    def start(self) -> None:
+        """Begin it, and run it until it waits."""
+        code = self._code
         names = ", ".join(json.loads(self._call("names")))
         whole = _WHOLE.match(code) is not None
         lines = "\n" * _FIRST_LINE
         head = f"({'' if whole else 'async '}function ({names}) {{ 'use strict'; "
         body = f"return ({lines}{code}\n)" if whole else f"{lines}{code}\n"
         try:
-            main = self._context.eval(f"{head}{body}}})")
+            main = self._engine.read(f"{head}{body}}})")
             self._call("start", main, whole)
             self._drain()
-        except self._failed as error:
+        except self._engine.failed as error:
             self._fault = _fault_of(str(error), kind="syntax")
+
+    def end(self) -> None:
+        """Leave the engine to others, if it is as it was; the program is not to go on."""
+        is_over = self._taken["done"] is not None and self._is_stuck and self._fault is None
+        if self._leaves_nothing and is_over:
+            self._engines.give_back(self._engine)
 
     def see(self, told: Mapping[str, object], blocks: str) -> None:
         """Tell what the program reads of the world from now on."""
@@ -73,7 +79,7 @@ class JavaScriptProgram:
         try:
             self._call("settle", number, ok, json.dumps(value))
             self._drain()
-        except self._failed as error:
+        except self._engine.failed as error:
             self._fault = _fault_of(str(error), kind="error")
 
     def calls(self) -> list[tuple[int, str, list[Any]]]:
@@ -115,7 +121,7 @@ class JavaScriptProgram:
 
     def _drain(self) -> None:
         jobs = 0
-        while self._context.execute_pending_job():
+        while self._engine.advance():
             jobs += 1
             if jobs > _MOST_JOBS:
                 self._fault = Fault("the program goes on without ever waiting", "fuel")
@@ -124,39 +130,13 @@ class JavaScriptProgram:
         self._taken = {**taken, "calls": [*self._taken["calls"], *taken["calls"]]}
 
 
-@cache
-def _engine() -> str:
-    """A function of skills and username, as JSON, that gives what calls a part of the prelude.
-
-    No function is in brackets: those that open with one are read twice, to see whether an arrow
-    comes after them.
-    """
-    prelude = (files("beliefnest.bodies") / "scripted_prelude.js").read_text(encoding="utf-8")
-    return f"""{{
-const vec3 = {_shared("vec3", "env.Vec3")}
-const hints = {_shared("hints", "module.exports")}
-const prelude = {prelude}
-given => {{
-  const parts = prelude(vec3(), hints(), ...JSON.parse(given))
-  return (part, one, two, three) => parts[part](one, two, three)
-}} }}"""
-
-
-def _shared(name: str, given: str) -> str:
-    """A function that gives what a module of the bots' sandbox does, too."""
-    built = Path(str(files("beliefnest"))) / "_bundle" / f"{name}.js"
-    text = built.read_text(encoding="utf-8")
-    made = "if (typeof module.exports === 'function') module.exports(env)"
-    return f"() => {{ const module = {{}}, env = {{}};\n{text}\n{made}\nreturn {given} }}"
-
-
 def _fault_of(text: str, kind: str) -> Fault:
     message = text.partition("\n")[0]
     line, column = _place_in(text)
     if "interrupted" in message:
         return Fault("the program computes without end; is there an endless loop?", "fuel", line)
     if "out of memory" in message:
-        return Fault(f"the program takes more than {_MEMORY_BYTES >> 20} MB", "memory", line)
+        return Fault(f"the program takes more than {MEMORY_BYTES >> 20} MB", "memory", line)
     return Fault(message, kind, line, column)
 
 

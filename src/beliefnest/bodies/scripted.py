@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from beliefnest.bodies.engines import Engines
 from beliefnest.bodies.grounds import Grounds
 from beliefnest.bodies.protocol import ProgramResult, Sense, Sink
 from beliefnest.errors import WorldError
@@ -18,10 +19,13 @@ class ScriptedBody:
         world: The world to tell what happens.
     """
 
-    def __init__(self, world: ScriptedWorld, sink: Sink, grounds: Grounds) -> None:
+    def __init__(
+        self, world: ScriptedWorld, sink: Sink, grounds: Grounds, engines: Engines
+    ) -> None:
         self.world = world
         self._sink = sink
         self._grounds = grounds
+        self._engines = engines
         self._recording = True
         world.listen(sink)
 
@@ -62,7 +66,9 @@ class ScriptedBody:
                 raise WorldError(f"{agent} is not there: its pose is not known; there are {there}")
         from beliefnest.bodies.scripted_programs import run_programs
 
-        return run_programs(self.world, programs, timeout_ticks, senses or {}, self._grounds)
+        return run_programs(
+            self.world, programs, timeout_ticks, senses or {}, self._grounds, self._engines
+        )
 
     def step(self, ticks: int) -> None:
         """Let ticks pass."""
@@ -85,6 +91,7 @@ class ScriptedBodies:
     def __init__(self, first: ScriptedWorld | None = None) -> None:
         self._first = first
         self._grounds = Grounds()
+        self._engines = Engines()
 
     @property
     def has_physics(self) -> bool:
@@ -99,7 +106,8 @@ class ScriptedBodies:
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> ScriptedBody:
         """Make a body; its name and seed play no part, nothing here is random."""
         world, self._first = self._first, None
-        return ScriptedBody(world or ScriptedWorld.from_snapshot(snapshot), sink, self._grounds)
+        world = world or ScriptedWorld.from_snapshot(snapshot)
+        return ScriptedBody(world, sink, self._grounds, self._engines)
 
     def another(self) -> "ScriptedBodies":
         """One more, with nothing in it."""

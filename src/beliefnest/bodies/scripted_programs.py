@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from beliefnest.bodies.engines import Engines
 from beliefnest.bodies.grounds import Grounds
 from beliefnest.bodies.javascript import JavaScriptProgram
 from beliefnest.bodies.protocol import Aim, Fault, ProgramResult, Sense, Sensed, Unfinished
@@ -46,6 +47,7 @@ def run_programs(
     timeout_ticks: int,
     senses: Mapping[str, Sense],
     grounds: Grounds,
+    engines: Engines,
 ) -> Mapping[str, ProgramResult]:
     """Run programs by agent until the last has ended.
 
@@ -55,6 +57,7 @@ def run_programs(
         timeout_ticks: Ticks after which they are ended.
         senses: By agent, what its program may read now; those left out read what is the case.
         grounds: What was made of grids of blocks already.
+        engines: Engines of programs that may be used again.
     """
     first = world.now
     happened: list[tuple[int, Event]] = []
@@ -64,7 +67,11 @@ def run_programs(
 
     world.listen(hear)
     try:
-        runs = [_begun(world, agent, code, senses, grounds) for agent, code in programs.items()]
+        begun = {
+            agent: JavaScriptProgram(agent, SKILLS, code, engines)
+            for agent, code in programs.items()
+        }
+        runs = [_begun(world, agent, program, senses, grounds) for agent, program in begun.items()]
         while True:
             with world.tick():
                 done = [(run, _act(run)) for run in runs]
@@ -82,13 +89,15 @@ def run_programs(
                 break
     finally:
         world.unlisten(hear)
+    for run in runs:
+        run.program.end()
     return {run.hand.name: _result(run, first, tuple(happened)) for run in runs}
 
 
 def _begun(
     world: ScriptedWorld,
     agent: str,
-    code: str,
+    program: JavaScriptProgram,
     senses: Mapping[str, Sense],
     grounds: Grounds,
 ) -> _Run:
@@ -104,9 +113,9 @@ def _begun(
         signs=lambda: sense().signs,
         ground=lambda: grounds.of(world.box, world.blocks).ground,
     )
-    run = _Run(hand, JavaScriptProgram(agent, SKILLS), sense)
+    run = _Run(hand, program, sense)
     _show(run, grounds)
-    run.program.start(code)
+    program.start()
     _take_calls(run)
     return run
 
@@ -160,6 +169,8 @@ def _told(error: Exception) -> dict[str, object]:
 
 
 def _show(run: _Run, grounds: Grounds) -> None:
+    if not run.program.reads:
+        return
     sensed = run.sense()
     me = run.hand.world.agents[run.hand.name]
     there = {**sensed.agents, run.hand.name: me}

@@ -1,0 +1,117 @@
+"""JavaScript engines of the scripted world, and which programs may have one that was used.
+
+An engine takes a millisecond to make, and what one program leaves in it, the next could find. So
+each program gets a new one, but for those that only call skills one after the other with plain
+values: they read nothing there and change nothing, and one engine serves any number of them.
+"""
+
+import json
+import re
+from collections.abc import Collection
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+__all__ = ["MEMORY_BYTES", "Engine", "Engines", "leaves_nothing"]
+
+MEMORY_BYTES = 64 << 20
+"""What a program may take."""
+_STACK_BYTES = 512 << 10
+_SECONDS = 2
+
+# Whatever ends a line for JavaScript ends a comment, and is in no text.
+_ENDS = r"\n\r\u2028\u2029"
+_GAP = rf"(?:\s|//[^{_ENDS}]*+(?:[{_ENDS}]|\Z))*+"
+_WORD = r"[A-Za-z]\w*+"
+_NUMBER = r"-?\d++(?:\.\d++)?+"
+_TEXT = rf"""(?:"[^"\\{_ENDS}]*+"|'[^'\\{_ENDS}]*+')"""
+_PLACE = rf"new\s+Vec3\s*\(\s*{_NUMBER}\s*,\s*{_NUMBER}\s*,\s*{_NUMBER}\s*\)"
+_ITEM = rf"(?:{_WORD}|{_TEXT})\s*:\s*{_NUMBER}"
+_ITEMS = rf"\{{\s*{_ITEM}\s*(?:,\s*{_ITEM}\s*)*+\}}"
+_VALUE = rf"(?:{_NUMBER}|{_TEXT}|{_PLACE}|{_ITEMS})"
+_CALL = re.compile(rf"{_GAP}await\s+({_WORD})\s*\(\s*bot\s*(?:,\s*{_VALUE}\s*)*+\)\s*;?", re.ASCII)
+_END = re.compile(_GAP, re.ASCII)
+
+
+def leaves_nothing(code: str, skills: Collection[str]) -> bool:
+    """Whether a program is nothing but calls of skills with plain values, one after the other."""
+    at = 0
+    while call := _CALL.match(code, at):
+        if call[1] not in skills:
+            return False
+        at = call.end()
+    return _END.fullmatch(code, at) is not None
+
+
+class Engine:
+    """An engine of JavaScript with what programs find in scope, read and not yet made."""
+
+    def __init__(self) -> None:
+        import quickjs  # takes 10 ms, and most nests run no such program
+
+        self.failed: type[Exception] = quickjs.JSException
+        self._context = quickjs.Context()
+        self._context.set_memory_limit(MEMORY_BYTES)
+        self._context.set_max_stack_size(_STACK_BYTES)
+        self._context.set_time_limit(_SECONDS)
+        self._made = self._context.eval(_text())
+
+    def scope(self, username: str, skills: Collection[str]) -> Any:
+        """What a program finds in scope, new; given the name of a part and its arguments, calls it.
+
+        The parts are those of the prelude.
+        """
+        return self._made(json.dumps([sorted(skills), username]))
+
+    def read(self, text: str) -> Any:
+        """The value of a program's text; raises `failed`."""
+        return self._context.eval(text)
+
+    def advance(self) -> bool:
+        """Do one thing that waits to be done; whether there was any. Raises `failed`."""
+        return bool(self._context.execute_pending_job())
+
+
+class Engines:
+    """Engines that programs had which leave nothing behind, kept for the next of them."""
+
+    def __init__(self) -> None:
+        self._free: list[Engine] = []
+
+    def take(self) -> Engine:
+        """An engine for a program that leaves nothing behind."""
+        try:
+            return self._free.pop()
+        except IndexError:
+            return Engine()
+
+    def give_back(self, engine: Engine) -> None:
+        """Take back the engine of such a program, which has ended well."""
+        self._free.append(engine)
+
+
+@cache
+def _text() -> str:
+    """A function of skills and username, as JSON, that gives what calls a part of the prelude.
+
+    No function is in brackets: those that open with one are read twice, to see whether an arrow
+    comes after them.
+    """
+    prelude = (files("beliefnest.bodies") / "scripted_prelude.js").read_text(encoding="utf-8")
+    return f"""{{
+const vec3 = {_shared("vec3", "env.Vec3")}
+const hints = {_shared("hints", "module.exports")}
+const prelude = {prelude}
+given => {{
+  const parts = prelude(vec3(), hints(), ...JSON.parse(given))
+  return (part, one, two, three) => parts[part](one, two, three)
+}} }}"""
+
+
+def _shared(name: str, given: str) -> str:
+    """A function that gives what a module of the bots' sandbox does, too."""
+    built = Path(str(files("beliefnest"))) / "_bundle" / f"{name}.js"
+    text = built.read_text(encoding="utf-8")
+    made = "if (typeof module.exports === 'function') module.exports(env)"
+    return f"() => {{ const module = {{}}, env = {{}};\n{text}\n{made}\nreturn {given} }}"

@@ -1,0 +1,93 @@
+"""Engines of the scripted world's programs: which may be used again, and that nothing leaks."""
+
+import pytest
+
+import beliefnest as bn
+from beliefnest.bodies.engines import Engines, leaves_nothing
+from beliefnest.bodies.javascript import JavaScriptProgram
+
+SKILLS = ("goToPosition", "getItemFromChest", "say")
+
+PLAIN = [
+    "",
+    "// nothing",
+    "await goToPosition(bot, new Vec3(-2, 51, 0.5), 0);",
+    "await say(bot, 'it is {here}')\n// a word\nawait say(bot, \"it's\")",
+    'await getItemFromChest(bot, new Vec3(1, 2, 3), {"oak log": 1, diamond: 2});  ',
+]
+OTHERS = [
+    "globalThis.leak = 1;",
+    "await say(bot, [].constructor.constructor('leak = 1')());",
+    "await say(bot, `${Array.prototype.leak = 1}`);",
+    "await say(bot, 'a' + (globalThis.leak = 1));",
+    "// a line's end\u2028globalThis.leak = 1;",
+    "await say(bot, 'a\\'); globalThis.leak = 1; //');",
+    "await say(bot, {get a() { leak = 1 }});",
+    "await say(bot, bot.players);",
+    "await other(bot);",
+    "await goToPosition(bot, new Vec3(1, 2, 3)).then(() => { leak = 1 });",
+    "say(bot, 'not awaited');",
+    "async function f(bot) { await say(bot, 'a'); }",
+    "const x = 1;",
+]
+
+
+@pytest.mark.parametrize("code", PLAIN)
+def test_calls_with_plain_values_leave_nothing(code: str) -> None:
+    assert leaves_nothing(code, SKILLS)
+
+
+@pytest.mark.parametrize("code", OTHERS)
+def test_all_else_may_leave_something(code: str) -> None:
+    assert not leaves_nothing(code, SKILLS)
+
+
+def test_programs_that_leave_nothing_have_one_engine_after_the_other_and_no_other_has_it() -> None:
+    engines = Engines()
+    engine = engines.take()
+    engines.give_back(engine)
+    for code in (PLAIN[2], PLAIN[3]):
+        program = JavaScriptProgram("ann", SKILLS, code, engines)
+        program.start()
+        while calls := program.calls():
+            for number, _, _ in calls:
+                program.settle(number, ok=True, value=None)
+        assert program.ended and program.fault is None
+        program.end()
+        assert engines.take() is engine
+        engines.give_back(engine)
+    other = JavaScriptProgram("ann", SKILLS, "Array.prototype.leak = 1", engines)
+    other.start()
+    other.end()
+    assert other.ended and other.fault is None
+    assert engines.take() is engine
+    assert engines.take() is not engine
+
+
+def test_an_engine_whose_program_waits_still_is_not_used_again() -> None:
+    engines = Engines()
+    engine = engines.take()
+    engines.give_back(engine)
+    program = JavaScriptProgram("ann", SKILLS, "await say(bot, 'a');", engines)
+    program.start()
+    program.end()
+    assert engines.take() is not engine
+
+
+def test_no_program_finds_what_another_left() -> None:
+    world = bn.ScriptedWorld(((0, 0, 0), (4, 3, 4)), agents={"ann": (1.5, 1, 1.5)})
+    leave = """
+        await say(bot, 'a');
+        globalThis.leak = 1; Array.prototype.leak = 1; Promise.prototype.then.leak = 1;
+        Vec3.prototype.leak = 1; JSON.stringify = () => 'leak'; bot.leak = 1;
+    """
+    look = """
+        const found = [globalThis, [], Promise.prototype.then, Vec3.prototype, bot];
+        return console.log(found.map(each => 'leak' in each), JSON.stringify([1]));
+    """
+    with bn.Nest(world) as nest:
+        for code in ("await say(bot, 'a');", leave, "await say(bot, 'b');", look):
+            result = nest["/"].run("ann", code)
+            assert result.ok, result.error
+        assert result.log == ("[false,false,false,false,false] [1]",)
+        assert [text for _, _, text in nest["/"].state.chat] == ["a", "a", "b"]
