@@ -333,15 +333,18 @@ def study(
 
 @app.command()
 def play(
-    task: Annotated[str | None, typer.Argument(help="A built-in task, or a task file.")] = None,
+    task: Annotated[
+        str | None, typer.Argument(help="A built-in task or scenario, or a file of either.")
+    ] = None,
     agent: Annotated[
         list[str] | None,
         typer.Option(help="Who plays an agent, as anne=search:1; can be repeated."),
     ] = None,
     set: Annotated[
         list[str] | None,
-        typer.Option(help="Size of a built-in task, as agents=3; can be repeated."),
+        typer.Option(help="Size of a task, as agents=3, or a scenario's parameter; repeatable."),
     ] = None,
+    condition: Annotated[int | None, typer.Option(help="A scenario's condition.")] = None,
     rounds: Annotated[int | None, typer.Option(help="Most rounds.", min=0)] = None,
     seed: Annotated[int, typer.Option(help="Which instance; drives every random number.")] = 0,
     world: Annotated[str, typer.Option(help="Where it plays.")] = "scripted",
@@ -380,6 +383,7 @@ def play(
 
     options = PlayOptions(
         task=task,
+        condition=condition,
         agents=tuple(agent or ()),
         parameters=tuple(set or ()),
         rounds=rounds,

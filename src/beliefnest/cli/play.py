@@ -25,9 +25,10 @@ class PlayOptions:
     """What was asked for on the command line.
 
     Attributes:
-        task: Name of a built-in task, or a file.
+        task: Name of a built-in task or scenario, or a file of either.
+        condition: Number of a scenario's condition; None: as written.
         agents: `NAME=POLICY`, each.
-        parameters: `NAME=NUMBER`, each: the size of a built-in task.
+        parameters: `NAME=NUMBER`, each: the size of a task, or a parameter of a scenario.
         rounds: Most rounds; None: as many as the task has.
         seed: Which instance, and what drives every random number.
         world: Where it is played.
@@ -38,6 +39,7 @@ class PlayOptions:
     """
 
     task: str
+    condition: int | None
     agents: tuple[str, ...]
     parameters: tuple[str, ...]
     rounds: int | None
@@ -62,7 +64,7 @@ def play_task(options: PlayOptions) -> int:
         if not value.isdecimal():
             raise InputError(f"--set {name}={value}: give a whole number")
     parameters = {name: int(value) for name, value in numbers.items()}
-    task = Task.load(options.task, options.seed, **parameters)
+    task = Task.load(options.task, options.seed, condition=options.condition, **parameters)
     with _episode(task, policies, options) as episode, progress_on(task.name) as on_progress:
         limit = task.form.rounds if options.rounds is None else options.rounds
         while episode.rounds < limit and not episode.is_over:

@@ -8,7 +8,6 @@ from typing import Any, Self
 from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.episodes.choosing import chosen, name_of
-from beliefnest.episodes.goals import Look, Progress, looking_at
 from beliefnest.episodes.measures import Measures, measured
 from beliefnest.episodes.record import (
     Branch,
@@ -25,6 +24,8 @@ from beliefnest.episodes.view import AgentView, Brief, Ended, Policy
 from beliefnest.errors import InputError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.setting import MAIN
+from beliefnest.scenarios.goals import Look, Progress, looking_at
+from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.paths import path_text
 
 __all__ = ["Budget", "Episode", "Moment"]
@@ -40,7 +41,8 @@ class Episode:
     unless another one is named. Close it, or use it in a `with` block.
 
     Args:
-        task: What is played; where one walks as people do, its rounds are as much longer.
+        task: What is played, or a scenario, played by its own rules; where one walks as people
+            do, rounds are as much longer.
         policies: By agent, as on the command line or any object with `act`; who is left out is
             played by the task's own policy, a player by `search` of the task's order.
         world: Where it is played.
@@ -56,7 +58,7 @@ class Episode:
 
     def __init__(
         self,
-        task: Task,
+        task: Task | Scenario,
         policies: Mapping[str, "str | Policy"] | None = None,
         *,
         world: str = "scripted",
@@ -65,6 +67,8 @@ class Episode:
         budget: Budget | None = None,
         patience_s: float | None = None,
     ) -> None:
+        if isinstance(task, Scenario):
+            task = Task.of(task)
         if world != "scripted" and task.form.pace == 1:
             task = task.at_pace(_ON_FOOT)
         self.task = task
@@ -256,6 +260,7 @@ class Episode:
     @property
     def start(self) -> int:
         """The tick at which the first round began."""
+        self._opened()
         return self._start
 
     def play(self, rounds: int | None = None) -> Self:

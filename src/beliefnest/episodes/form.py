@@ -1,134 +1,25 @@
-"""The form of a task: what may be written where, in a file or by a generator."""
+"""The form of a task: a scenario with goals and rules of play, in a file or by a generator."""
 
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import msgspec
 
-from beliefnest.episodes.goals import (
-    AgentAt,
-    AgentsAt,
-    BlockIs,
-    BlocksAlike,
-    Condition,
-    Fact,
-    Goal,
-    ItemsIn,
-    ItemsWith,
-)
-from beliefnest.errors import ScenarioError
-from beliefnest.world.paths import parse_path
+from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry
 
-__all__ = ["ConditionEntry", "GoalEntry", "TaskForm", "goal_of"]
-
-Position = tuple[int, int, int]
+__all__ = ["TaskForm"]
 
 
-def _note(text: str) -> msgspec.Meta:
-    return msgspec.Meta(description=text)
-
-
-class _Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
-    """Base of all parts: a key that is not listed is an error."""
-
-
-class ConditionEntry(_Entry, frozen=True):
-    """A condition: `container` or `agent` with `items`, `agent` or `agents` at places, `block`."""
-
-    path: Annotated[str, _note("Where it is to be the case; / is reality.")] = "/"
-    container: Annotated[Position | None, _note("A container that holds `items`.")] = None
-    agent: Annotated[str | None, _note("An agent that has `items` or stands `at` a place.")] = None
-    items: Annotated[dict[str, int], _note("Item name to least count.")] = {}
-    at: Annotated[Position | None, _note("A block position.")] = None
-    within: Annotated[float, _note("Greatest distance from there, in blocks.")] = 1.0
-    block: Annotated[Position | None, _note("A block that is in a state.")] = None
-    state: Annotated[str | None, _note("name or name[property=value,...].")] = None
-    like: Annotated[Position | None, _note("A block that it is to be like.")] = None
-    agents: Annotated[list[str], _note("Agents that stand on the plates of a site at once.")] = []
-    sites: Annotated[list[list[Position]], _note("Where one stands on the plates of each.")] = []
-    plate: Annotated[str, _note("Name of the block below.")] = "lodestone"
-    property: Annotated[str, _note("The property in which these are to agree.")] = "open"
-
-
-class GoalEntry(_Entry, frozen=True):
-    """What somebody is after."""
-
-    reach: Annotated[list[ConditionEntry], _note("True at one and the same tick.")] = []
-    never: Annotated[list[ConditionEntry], _note("True at no tick until then.")] = []
-    messages: Annotated[int | None, _note("Most utterances of all players.")] = None
-
-
-class TaskForm(_Entry, frozen=True):
+class TaskForm(EpisodeEntry, frozen=True, kw_only=True):
     """A task: a scenario, what its agents are after, and the rules of play."""
 
-    name: Annotated[str, _note("Short name, for tables and folders.")]
-    scenario: Annotated[dict[str, Any], _note("As in a scenario file.")]
-    goal: Annotated[GoalEntry, _note("What makes the episode a success; the players' goal.")]
-    order: Annotated[int, msgspec.Meta(ge=0, description="Order of Theory of Mind it needs.")] = 0
-    description: Annotated[str, _note("What it is about, for people; who plays is not told.")] = ""
-    players: Annotated[list[str], _note("Whose policies are put to the test; empty: all.")] = []
-    goals: Annotated[dict[str, GoalEntry], _note("Of agents who are after something else.")] = {}
-    policies: Annotated[dict[str, str], _note("Policies of agents who are no players.")] = {}
-    talk: Annotated[list[str], _note("Who may speak.")] = []
-    play: Annotated[Literal["together", "turns"], _note("How programs of a round run.")] = (
-        "together"
-    )
-    rounds: Annotated[int, msgspec.Meta(ge=1, description="Rounds until it is over.")] = 10
+    name: Annotated[str, msgspec.Meta(description="Short name, for tables and folders.")]
+    scenario: Annotated[dict[str, Any], msgspec.Meta(description="As in a scenario file.")]
+    goal: Annotated[
+        GoalEntry, msgspec.Meta(description="What makes it a success; the players' goal.")
+    ]
+    description: Annotated[
+        str, msgspec.Meta(description="What it is about, for people; who plays is not told.")
+    ] = ""
     pace: Annotated[
         int, msgspec.Meta(ge=1, le=100, description="Ticks that one block on foot takes.")
     ] = 1
-    round_ticks: Annotated[
-        int, msgspec.Meta(ge=1, le=12_000, description="Ticks after which programs are cut.")
-    ] = 20
-
-
-def goal_of(entry: GoalEntry, agents: Mapping[str, Any]) -> Goal:
-    """The goal that an entry describes.
-
-    Raises:
-        ScenarioError: A condition makes no sense.
-    """
-    return Goal(
-        tuple(each for one in entry.reach for each in _conditions(one, agents)),
-        tuple(each for one in entry.never for each in _conditions(one, agents)),
-        entry.messages,
-    )
-
-
-def _conditions(entry: ConditionEntry, agents: Mapping[str, Any]) -> list[Condition]:
-    path = parse_path(entry.path, agents)
-    for name in (*entry.agents, *([] if entry.agent is None else [entry.agent])):
-        if name not in agents:
-            raise ScenarioError(f"a condition is about {name!r}, who is no agent")
-    if any(len(site) != len(entry.agents) for site in entry.sites):
-        raise ScenarioError("a site of a condition has not as many places as there are `agents`")
-    facts = _facts(entry)
-    if not facts:
-        plain = msgspec.to_builtins(entry)
-        raise ScenarioError(
-            f"the condition {plain} makes no sense; give container and items, agent and items, "
-            "agent and at, agents and sites, block and state, or block and like"
-        )
-    return [Condition(fact, path) for fact in facts]
-
-
-def _facts(entry: ConditionEntry) -> list[Fact]:
-    match entry:
-        case ConditionEntry(container=place) if place is not None:
-            return [ItemsIn(place, item, count) for item, count in entry.items.items()]
-        case ConditionEntry(agent=agent, at=place) if agent is not None and place is not None:
-            return [AgentAt(agent, place, entry.within)]
-        case ConditionEntry(agents=[_, *_], sites=[_, *_]):
-            sites = tuple(tuple(site) for site in entry.sites)
-            return [AgentsAt(tuple(entry.agents), sites, entry.plate)]
-        case ConditionEntry(agent=agent) if agent is not None:
-            return [ItemsWith(agent, item, count) for item, count in entry.items.items()]
-    return _block_facts(entry)
-
-
-def _block_facts(entry: ConditionEntry) -> list[Fact]:
-    if entry.block is None:
-        return []
-    if entry.state is not None:
-        return [BlockIs(entry.block, entry.state)]
-    return [] if entry.like is None else [BlocksAlike(entry.block, entry.like, entry.property)]

@@ -8,12 +8,14 @@ from typing import Any, Self
 
 import msgspec
 
-from beliefnest.episodes.form import TaskForm, goal_of
-from beliefnest.episodes.goals import Goal
+from beliefnest.episodes.form import TaskForm
 from beliefnest.episodes.tasks import builtin_tasks, generated
-from beliefnest.errors import InputError, ScenarioError, UnknownNameError
+from beliefnest.errors import BeliefNestError, InputError, ScenarioError, UnknownNameError
 from beliefnest.scenarios.document import plain
+from beliefnest.scenarios.goals import Goal
+from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.reading import read_yaml
+from beliefnest.scenarios.rules import EpisodeEntry, check_rules, goal_of
 from beliefnest.scenarios.scenario import Scenario
 
 __all__ = ["Task"]
@@ -37,13 +39,21 @@ class Task:
         return tuple(sorted(builtin_tasks()))
 
     @classmethod
-    def load(cls, name_or_path: str, seed: int = 0, **parameters: int) -> Self:
-        """A built-in task, or one in a file.
+    def load(
+        cls,
+        name_or_path: str,
+        seed: int = 0,
+        *,
+        condition: int | str | None = None,
+        **parameters: Any,
+    ) -> Self:
+        """A built-in task, one in a file, or a scenario.
 
         Args:
-            name_or_path: Name of a built-in task, or path of a YAML file.
+            name_or_path: Name of a built-in task or scenario, or path of a YAML file of either.
             seed: Which instance of a built-in task.
-            parameters: Its size, as `agents=3`; each task has its own.
+            condition: Number of a scenario's condition; None: as written.
+            parameters: Its size, as `agents=3`; each task and scenario has its own.
 
         Raises:
             UnknownNameError: There is no such task and no such file, or no such parameter.
@@ -51,15 +61,50 @@ class Task:
             ScenarioError: The file is wrong.
         """
         if name_or_path in builtin_tasks():
+            _check_no_condition(name_or_path, condition)
             return cls.from_mapping(generated(name_or_path, seed, parameters), seed)
         file = FilePath(name_or_path)
+        if name_or_path in builtin_names():
+            return cls.of(Scenario.load(name_or_path, condition, parameters))
         if not file.is_file():
             raise UnknownNameError(
-                f"no task {name_or_path!r}, and no such file; there are {', '.join(cls.names())}"
+                f"no task {name_or_path!r}, and no such file; there are {', '.join(cls.names())}, "
+                f"and of scenarios {', '.join(builtin_names())}"
             )
+        content = plain(read_yaml(file).root)
+        if not isinstance(content, dict) or "scenario" not in content:
+            return cls.of(Scenario.load(name_or_path, condition, parameters))
+        _check_no_condition(name_or_path, condition)
         if parameters:
-            raise InputError(f"{name_or_path} is a file and takes no {', '.join(parameters)}")
-        return cls.from_mapping(_mapping(plain(read_yaml(file).root), name_or_path))
+            raise InputError(f"{name_or_path} is a task and takes no {', '.join(parameters)}")
+        return cls.from_mapping(content)
+
+    @classmethod
+    def of(cls, scenario: Scenario, **rules: Any) -> Self:
+        """A scenario as a task: played by what its key `episode` says.
+
+        Args:
+            scenario: The scenario; its probes and expectations play no part.
+            rules: What is said in place of what `episode` says, as there: `goal`, `rounds`, ...
+
+        Raises:
+            ScenarioError: The rules make no sense.
+            InputError: Only the setting of the scenario is known.
+        """
+        if not scenario.written:
+            raise InputError(f"{scenario.source} was not read as a whole; load it again")
+        left_out = ("probes", "expectations", "episode")
+        content = {key: v for key, v in scenario.written.items() if key not in left_out}
+        return cls.from_mapping(
+            {
+                "name": scenario.name,
+                "description": scenario.description,
+                "scenario": content,
+                **msgspec.to_builtins(scenario.rules or EpisodeEntry()),
+                "goal": msgspec.to_builtins((scenario.rules or EpisodeEntry()).goal),
+                **rules,
+            }
+        )
 
     @classmethod
     def from_mapping(cls, content: Mapping[str, Any], seed: int | None = None) -> Self:
@@ -82,17 +127,10 @@ class Task:
         Raises:
             ScenarioError: It does not.
         """
-        agents = self.agents
-        named = {*self.form.players, *self.form.goals, *self.form.policies, *self.form.talk}
-        for name in sorted(named - set(agents)):
-            raise ScenarioError(f"task {self.name}: {name!r} is none of its agents {agents}")
-        for name in agents:
-            self.goal_of(name)
-            if (name in self.players) == (name in self.form.policies):
-                raise ScenarioError(
-                    f"task {self.name}: {name} is to be one of `players` or to have a policy in "
-                    "`policies`"
-                )
+        try:
+            check_rules(self.form, self.agents)
+        except BeliefNestError as fault:
+            raise ScenarioError(f"task {self.name}: {fault}") from None
 
     @property
     def name(self) -> str:
@@ -146,7 +184,6 @@ class Task:
         return plain
 
 
-def _mapping(value: object, source: str) -> Mapping[str, Any]:
-    if not isinstance(value, dict):
-        raise ScenarioError(f"{source} is no mapping; see docs/episodes.md")
-    return value
+def _check_no_condition(name: str, condition: int | str | None) -> None:
+    if condition is not None:
+        raise InputError(f"{name} is a task and has no conditions; only scenarios have")

@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, Protocol
 
 from beliefnest.belief.view import FixedState, State
-from beliefnest.episodes.goals import Goal
 from beliefnest.errors import PathError
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.nest.face.past_simulator import ShownSimulator
+from beliefnest.scenarios.goals import Goal
 from beliefnest.world.values import Position
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.perception.options import Perception
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, built_in_template
 from beliefnest.scenarios.content import Probe, ScenarioContent
-from beliefnest.scenarios.document import Document, KeyPath
+from beliefnest.scenarios.document import Document, KeyPath, plain
 from beliefnest.scenarios.expected import (
     Answers,
     Arrives,
@@ -43,6 +43,7 @@ from beliefnest.scenarios.format import (
 )
 from beliefnest.scenarios.functions import judge_of
 from beliefnest.scenarios.people import build_agents
+from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, conditions_of
 from beliefnest.scenarios.space import (
     UNKNOWN,
     build_box,
@@ -66,6 +67,9 @@ T = TypeVar("T")
 
 _MOST_OPTIONS = 26
 """One for each letter."""
+
+_WORKED_IN = ("conditions", "parameters", "constraints")
+"""Keys whose values have taken their places in the others."""
 
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}", re.ASCII)
 
@@ -101,6 +105,8 @@ def build_scenario(
         expectations=tuple(
             builder.expectation(n, entry) for n, entry in enumerate(file.expectations)
         ),
+        rules=builder.rules(),
+        written=_written(document),
         source=document.source,
         text=document.text,
         templates={
@@ -234,6 +240,22 @@ class _Builder:
         path = ("expectations", number)
         self._check_belief_path((*path, "path"), entry.path)
         return Expectation(entry.path, self._expected(path, entry), entry.label)
+
+    def rules(self) -> EpisodeEntry | None:
+        """What agents are after round after round."""
+        rules, agents = self._file.episode, self._snapshot.agents
+        if rules is None:
+            return None
+        goals: dict[KeyPath, GoalEntry] = {("goal",): rules.goal}
+        goals |= {("goals", name): goal for name, goal in rules.goals.items()}
+        for path, goal in goals.items():
+            for key, entries in (("reach", goal.reach), ("never", goal.never)):
+                for number, entry in enumerate(entries):
+                    with self._document.naming(("episode", *path, key, number)):
+                        conditions_of(entry, agents)
+        with self._document.naming(("episode",)):
+            check_rules(rules, agents)
+        return rules
 
     def _expected(self, path: KeyPath, entry: ExpectationEntry) -> Holds | Stands | Hears | Reads:
         kinds = (entry.container, entry.agent, entry.sign, entry.heard, entry.not_heard)
@@ -387,6 +409,11 @@ class _Builder:
     def _check_block_name(self, path: KeyPath, name: str) -> None:
         with self._document.naming(path):
             self._registry.state_ids(name)
+
+
+def _written(document: Document) -> Mapping[str, Any]:
+    content: Any = plain(document.root)
+    return {key: value for key, value in content.items() if key not in _WORKED_IN}
 
 
 def _listed(entry: T | list[T] | None) -> list[T]:

@@ -2,9 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from beliefnest.nest.past.setting import Senses, Setting
 from beliefnest.scenarios.expected import Answers, Expectation, Expected
+from beliefnest.scenarios.rules import EpisodeEntry
 from beliefnest.world.values import Position
 
 __all__ = ["Probe", "ScenarioContent"]
@@ -62,6 +64,9 @@ class ScenarioContent:
         conditions: All conditions it could be loaded under: number to description.
         probes: What models are asked, in order.
         expectations: What simulators are to hold after the script.
+        rules: What agents are after round after round, and how they play; None: not said.
+        written: All of it as plain values, its parameters and its condition in place; empty if
+            only the setting is known.
         source: Where it comes from, for messages.
         text: The text of its file; empty if it was built in code.
         templates: Texts of the templates that its probes name, by the name written there.
@@ -75,6 +80,8 @@ class ScenarioContent:
     conditions: Mapping[int, str] = field(default_factory=dict)
     probes: tuple[Probe, ...] = ()
     expectations: tuple[Expectation, ...] = ()
+    rules: EpisodeEntry | None = None
+    written: Mapping[str, Any] = field(default_factory=dict)
     source: str = "scenario"
     text: str = ""
     templates: Mapping[str, str] = field(default_factory=dict)

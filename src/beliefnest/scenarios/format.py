@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
+from beliefnest.scenarios.rules import EpisodeEntry
 from beliefnest.world import values as world
 from beliefnest.world.limits import FARTHEST
 
@@ -368,6 +369,10 @@ class ScenarioFile(_Entry, frozen=True):
     script: Annotated[list[StepEntry], _note("What happens in the real world, in order.")] = []
     probes: list[ProbeEntry] = []
     expectations: list[ExpectationEntry] = []
+    episode: Annotated[
+        EpisodeEntry | None,
+        _note("What agents are after, and the rules by which they act round after round."),
+    ] = None
     conditions: Annotated[
         dict[int, dict[str, Any]],
         _note(

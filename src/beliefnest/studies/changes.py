@@ -44,6 +44,7 @@ class Moved:
             "yaw": symmetry.yaw,
             "facing": self._facing,
             "state": lambda value: symmetry.block_state(value, self.registry),
+            "wanted": lambda value: symmetry.wanted_state(value, self.registry),
             "program": lambda value: rewritten(
                 value, Rewriting(self._vector, self._text, lambda key: key)
             ),

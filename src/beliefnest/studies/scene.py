@@ -15,7 +15,8 @@ __all__ = ["Kind", "SceneChange", "changed_scene"]
 
 Kind = str
 """`keep`, `block`, `point`, `place` (a block or a point), `yaw`, `facing`, `state`, `program`,
-`text` (read by models), `label` (read by people alone), `agent`, `item`, `path`."""
+`text` (read by models), `label` (read by people alone), `agent`, `item`, `path`, `wanted` (a block
+state of which only what is written counts)."""
 
 
 class SceneChange(Protocol):
@@ -80,6 +81,33 @@ _EXPECT = {
     ),
     "believes": _Each(_EXPECTATION),
 }
+_CONDITION = {
+    "path": "path",
+    "container": "block",
+    "agent": "agent",
+    "items": _ITEMS,
+    "at": "block",
+    "within": "keep",
+    "block": "block",
+    "state": "wanted",
+    "like": "block",
+    "agents": _Each("agent"),
+    "sites": _Each(_Each("block")),
+    "plate": "keep",
+    "property": "keep",
+}
+_GOAL = {"reach": _Each(_CONDITION), "never": _Each(_CONDITION), "messages": "keep"}
+_EPISODE = {
+    "goal": _GOAL,
+    "goals": _Map("agent", _GOAL),
+    "order": "keep",
+    "players": _Each("agent"),
+    "policies": _Map("agent", "keep"),
+    "talk": _Each("agent"),
+    "play": "keep",
+    "rounds": "keep",
+    "round_ticks": "keep",
+}
 _SHAPE: Mapping[str, Any] = {
     "name": "keep",
     "description": "label",
@@ -140,6 +168,7 @@ _SHAPE: Mapping[str, Any] = {
         }
     ),
     "expectations": _Each(_EXPECTATION),
+    "episode": _EPISODE,
 }
 
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from beliefnest.errors import BeliefNestError, InputError
-from beliefnest.world.registry import Registry
+from beliefnest.world.registry import Registry, parse_state
 from beliefnest.world.values import Box
 
 __all__ = ["SYMMETRIES", "Placing", "Symmetry", "symmetry_named"]
@@ -75,6 +75,17 @@ class Symmetry:
                 if _is_state(candidate, registry):
                     return candidate
         raise InputError(f"{text!r} cannot be {self.name}: there is no {changed!r}")
+
+    def wanted_state(self, text: str, registry: Registry) -> str:
+        """The same, of a text in which only the properties that it names count.
+
+        Raises:
+            UnknownNameError: There is no such block.
+        """
+        registry.state_id(text)
+        name, stated = parse_state(text)
+        new = [f"{self._key(key)}={self._value(name, key, v)}" for key, v in stated.items()]
+        return f"{name}[{','.join(new)}]" if new else text
 
     def _key(self, key: str) -> str:
         return self.direction(key) if key in _COMPASS else key

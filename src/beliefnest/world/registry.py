@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from beliefnest.errors import BodyError, InputError, UnknownNameError
 
-__all__ = ["AIR", "CONTAINER_NAMES", "BoxBounds", "Registry"]
+__all__ = ["AIR", "CONTAINER_NAMES", "BoxBounds", "Registry", "parse_state"]
 
 AIR = 0
 """State id of air; the protocol has kept it in every version."""
@@ -144,7 +144,7 @@ class Registry:
             InputError: The text has not the form `name` or `name[a=b,c=d]`.
             UnknownNameError: No such block, property or value.
         """
-        name, chosen = _parse_state(text)
+        name, chosen = parse_state(text)
         block = self._block(name)
         known = [property_name for property_name, _ in block.properties]
         for property_name in chosen:
@@ -269,8 +269,8 @@ def _nearest(name: str, names: Iterable[str]) -> str:
     return f"; did you mean {' or '.join(close)}?" if close else ""
 
 
-def _parse_state(text: str) -> tuple[str, dict[str, str]]:
-    """Name and chosen properties of a block state text."""
+def parse_state(text: str) -> tuple[str, dict[str, str]]:
+    """Name and chosen properties of a block state text; InputError if it is none."""
     match = _STATE_TEXT.fullmatch(text.strip())
     if match is None:
         raise InputError(f"{text!r} is not a block; write name or name[property=value,...]")

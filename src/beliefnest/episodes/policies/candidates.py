@@ -2,7 +2,10 @@
 
 from collections.abc import Iterator, Sequence
 
-from beliefnest.episodes.goals import (
+from beliefnest.episodes.policies.distance import MindFacts
+from beliefnest.nest.acting.imagination import Imagination
+from beliefnest.programs.calls import Call
+from beliefnest.scenarios.goals import (
     AgentAt,
     AgentsAt,
     BlockIs,
@@ -11,9 +14,6 @@ from beliefnest.episodes.goals import (
     ItemsIn,
     ItemsWith,
 )
-from beliefnest.episodes.policies.distance import MindFacts
-from beliefnest.nest.acting.imagination import Imagination
-from beliefnest.programs.calls import Call
 from beliefnest.world.claims import Claim
 from beliefnest.world.doors import is_door, is_open
 from beliefnest.world.registry import Registry

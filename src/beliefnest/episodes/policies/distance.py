@@ -7,7 +7,8 @@ fractions for the ways to it.
 import math
 from collections.abc import Iterable
 
-from beliefnest.episodes.goals import (
+from beliefnest.nest.acting.imagination import Imagination
+from beliefnest.scenarios.goals import (
     AgentAt,
     AgentsAt,
     BlockIs,
@@ -18,7 +19,6 @@ from beliefnest.episodes.goals import (
     ItemsIn,
     ItemsWith,
 )
-from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.world.paths import normalised
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Point, Position

@@ -3,13 +3,13 @@
 from dataclasses import dataclass, field
 from importlib.resources import files
 
-from beliefnest.episodes.goals import Goal, ItemsWith
 from beliefnest.episodes.rounds import Spent
 from beliefnest.episodes.view import AgentView
 from beliefnest.llm.asking import NoUsableProgramError, ask_for_program
 from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.programs import skills
 from beliefnest.prompts import built_in_template
+from beliefnest.scenarios.goals import Goal, ItemsWith
 
 __all__ = ["ModelPolicy", "OmniscientModelPolicy"]
 

@@ -8,7 +8,6 @@ believes that they believe; conditions on beliefs are seen down to k beliefs bel
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from beliefnest.episodes.goals import Goal
 from beliefnest.episodes.policies.candidates import (
     calls_of,
     claims_of_mind,
@@ -20,6 +19,7 @@ from beliefnest.episodes.policies.distance import distance, held, is_visible
 from beliefnest.episodes.view import AgentView, Brief
 from beliefnest.nest.acting.imagination import Imagination, Performer
 from beliefnest.programs.calls import Call, program_of
+from beliefnest.scenarios.goals import Goal
 
 __all__ = ["Bounds", "Omniscient", "Plan", "Planner", "Search"]
 

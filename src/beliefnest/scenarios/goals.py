@@ -5,12 +5,14 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
-from beliefnest.belief.view import State
 from beliefnest.world.paths import path_text
-from beliefnest.world.registry import Registry
+from beliefnest.world.registry import Registry, parse_state
 from beliefnest.world.values import Items, Point, Position
+
+if TYPE_CHECKING:
+    from beliefnest.belief.view import State
 
 __all__ = [
     "AgentAt",
@@ -58,7 +60,7 @@ Look = Callable[[Path], Facts]
 class StateFacts:
     """The facts of a simulator's state."""
 
-    state: State
+    state: "State"
 
     def items_in(self, place: Position) -> Items:
         """Items known to be in a container."""
@@ -338,21 +340,16 @@ class Progress:
         ]
 
 
-def looking_at(states: Mapping[Path, State]) -> Look:
+def looking_at(states: "Mapping[Path, State]") -> Look:
     """Look at states by path."""
     return lambda path: StateFacts(states[path])
 
 
 @cache
 def _agrees(there: str, wanted: str) -> bool:
-    registry = Registry.load()
-    name, _, stated = wanted.partition("[")
-    state = registry.state_id(there)
-    if registry.name(state) != name:
-        return False
-    properties = registry.properties(state)
-    pairs = (part.partition("=") for part in stated.rstrip("]").split(",") if part)
-    return all(str(properties.get(key)) == value for key, _, value in pairs)
+    name, stated = parse_state(wanted)
+    is_named, properties = parse_state(there)
+    return is_named == name and stated.items() <= properties.items()
 
 
 def _is_named(text: str | None, name: str) -> bool:
