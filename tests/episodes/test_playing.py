@@ -90,7 +90,7 @@ def test_what_was_believed_wrongly_and_acted_on_is_counted() -> None:
     with bn.Episode(helped, {"anne": "search:0"}) as alone, bn.Episode(helped) as together:
         wrong, right = alone.play().measures, together.play().measures
     assert (wrong.acted_on_false, right.acted_on_false) == (1, 0)
-    assert (right.taken_up, right.superfluous, right.false_beliefs) == (1, 0, 0)
+    assert (right.taken_up, right.not_taken_up, right.false_beliefs) == (1, 0, 0)
     assert right.false_beliefs_mean > 0
     # She has learnt it when she has looked, at last.
     assert wrong.false_beliefs_mean > right.false_beliefs_mean

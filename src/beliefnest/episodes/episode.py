@@ -1,6 +1,7 @@
 """An episode: a task played round after round, recorded, gone on with, replayed, branched."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -8,7 +9,8 @@ from typing import Any, Self
 from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.episodes.choosing import chosen, name_of
-from beliefnest.episodes.measures import Measures, measured
+from beliefnest.episodes.helping import Help, help_in
+from beliefnest.episodes.measures import Measures, false_beliefs, measured
 from beliefnest.episodes.record import (
     Branch,
     Budget,
@@ -85,6 +87,7 @@ class Episode:
         self._parts: list[Part] = []
         self._watched = 0
         self._progress: dict[str, Progress] = {}
+        self._help: Help | None = None
 
     @classmethod
     def resume(
@@ -241,7 +244,48 @@ class Episode:
     @property
     def measures(self) -> Measures:
         """What it came to, as one row."""
-        return measured(self)
+        found = measured(self)
+        if self._help is None:
+            return found
+        return replace(
+            found,
+            help_needed=len(self._help.needed),
+            help_given=len(self._help.given),
+            help_superfluous=len(self._help.superfluous),
+        )
+
+    @property
+    def false_beliefs(self) -> Sequence[tuple[int, Mapping[str, int]]]:
+        """How many things each agent held wrongly as each round began and now, with the ticks."""
+        return false_beliefs(self)
+
+    def help(self) -> Help:
+        """Who needed help and got it, and what was superfluous: by what would have been.
+
+        Branches of a copy in memory are played: one for each agent, with the other players idle,
+        and one for each thing that a player said or gave, without it. Policies are asked again,
+        which with models takes time and tokens that are not counted here. `measures` tells of
+        it from then on.
+        """
+        if self._help is None:
+            known = self._parts
+            told = {
+                agent: Replayed([p.decisions[agent] for p in known if agent in p.decisions])
+                for agent in self.task.agents
+            }
+            with Episode(self.task, told, world=self._world, seed=self.seed) as copy:
+                copy.play(self.rounds)
+                self._help = help_in(copy, self._policies)
+        return self._help
+
+    def reached_by(self, agent: str) -> float:
+        """Ticks after which an agent reached its goal; infinite: it did not, or not yet."""
+        self._opened()
+        self._watch()
+        progress = self._progress[agent]
+        if not progress.succeeded(over=self.is_over):
+            return float("inf")
+        return self.ticks if progress.reached is None else progress.reached - self._start
 
     @property
     def spent(self) -> Spent:
@@ -276,6 +320,7 @@ class Episode:
         if rounds is not None and rounds < 0:
             raise InputError(f"{rounds} rounds cannot be played; give 0 or more")
         self._opened()
+        self._help = None
         self._finish_part()
         last = self.task.form.rounds if rounds is None else self.rounds + rounds
         while not self.is_over and len(self._parts) < last * len(self._slots):

@@ -9,7 +9,7 @@ from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest
 from beliefnest.world.values import EventKind
 
-__all__ = ["Measures", "measured"]
+__all__ = ["Measures", "false_beliefs", "measured"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,19 +27,25 @@ class Measures:
         rounds: Rounds played.
         messages: Utterances of players.
         claims: Claims of players.
-        false_claims: Those that were not so in reality when they were made.
+        true_claims: Those that were so in reality when they were made.
+        false_claims: Those that were not.
         lies: Those that their speaker did not believe.
         taken_up: Times a hearer took up a claim of a player.
-        superfluous: Claims of players that nobody took up.
+        not_taken_up: Claims of players that nobody took up.
         acted_on_false: Times somebody opened a container in which it believed something that was
             not in it.
         lost_rounds: Times a policy gave no program, or failed.
         failed_programs: Programs that failed, other than by being cut.
         false_beliefs: Things that agents hold wrongly in the end, each agent's counted.
         false_beliefs_mean: The same, as mean over the beginnings of rounds and the end.
+        false_beliefs_over_time: The same at each of them.
         requests: Requests to models.
         tokens: Sent to models and received.
         cost: US dollars; None where a price is not known.
+        help_needed: Agents who would not have reached their goals without the other players;
+            None, as for the next two: it was not asked for, see `Episode.help`.
+        help_given: Those of them who did.
+        help_superfluous: What players said or gave without which nobody would be worse off.
     """
 
     task: str
@@ -52,18 +58,23 @@ class Measures:
     rounds: int
     messages: int
     claims: int
+    true_claims: int
     false_claims: int
     lies: int
     taken_up: int
-    superfluous: int
+    not_taken_up: int
     acted_on_false: int
     lost_rounds: int
     failed_programs: int
     false_beliefs: int
     false_beliefs_mean: float
+    false_beliefs_over_time: tuple[int, ...]
     requests: int
     tokens: int
     cost: float | None
+    help_needed: int | None = None
+    help_given: int | None = None
+    help_superfluous: int | None = None
 
     def row(self) -> dict[str, Any]:
         """As a row of a table."""
@@ -123,7 +134,7 @@ def measured(episode: Played) -> Measures:
         sum(each.taken_up(f"/{name}") for name in nest.agents if name != each.speaker)
         for each in claims
     ]
-    wrong = _false_beliefs(episode)
+    wrong = [sum(counts.values()) for _, counts in false_beliefs(episode)]
     ended = [each for part in episode.parts for each in part.ended.values()]
     return Measures(
         task=task.name,
@@ -136,26 +147,31 @@ def measured(episode: Played) -> Measures:
         rounds=episode.rounds,
         messages=len(said),
         claims=len(claims),
+        true_claims=sum(not each.false for each in claims),
         false_claims=sum(each.false for each in claims),
         lies=sum(each.lie for each in claims),
         taken_up=sum(taken),
-        superfluous=taken.count(0),
+        not_taken_up=taken.count(0),
         acted_on_false=_acted_on_false(episode),
         lost_rounds=sum(bool(d.fault) for p in episode.parts for d in p.decisions.values()),
         failed_programs=sum(each.how in ("failed", "no_way") for each in ended),
         false_beliefs=wrong[-1],
         false_beliefs_mean=sum(wrong) / len(wrong),
+        false_beliefs_over_time=tuple(wrong),
         requests=episode.spent.requests,
         tokens=episode.spent.tokens,
         cost=episode.spent.cost,
     )
 
 
-def _false_beliefs(episode: Played) -> list[int]:
-    """How many things agents held wrongly, at the beginnings of rounds and now."""
+def false_beliefs(episode: Played) -> list[tuple[int, dict[str, int]]]:
+    """How many things each agent held wrongly at the beginnings of rounds and now, with the ticks.
+
+    What an agent holds of others' beliefs is not counted.
+    """
     nest = episode.nest
     return [
-        sum(len(nest.at(tick).false_beliefs(f"/{name}")) for name in nest.agents)
+        (tick, {name: len(nest.at(tick).false_beliefs(f"/{name}")) for name in nest.agents})
         for tick in (*episode.beginnings, nest.tick)
     ]
 
