@@ -9,8 +9,11 @@ const NODE_MS = 3 / 32
  * Charges the bot's pathfinder for its search, and keeps it from changing the world on its
  * way: agents walk around walls, they do not dig through them. `bot.pathfinder.reset()` undoes what
  * a program has set.
+ *
+ * @param {(x: number, y: number, z: number, isBelow: boolean) => object | undefined} [unknownAt] what to make of a block
+ *   that the bot does not know; undefined where it knows
  */
-function chargePathfinder (bot, clock) {
+function chargePathfinder (bot, clock, unknownAt) {
   const setMovements = bot.pathfinder.setMovements
   const charged = movements => {
     const getNeighbors = movements.getNeighbors
@@ -18,7 +21,7 @@ function chargePathfinder (bot, clock) {
       clock.charge(NODE_MS)
       return getNeighbors.call(movements, node)
     }
-    rememberBlocks(movements, bot)
+    rememberBlocks(movements, bot, unknownAt)
     rememberEntities(movements)
     return movements
   }
@@ -40,16 +43,16 @@ function chargePathfinder (bot, clock) {
 /**
  * Movements note on a block what it is to a walker, anew each time it is asked for, a hundred times a node. What they
  * noted holds as long as the block: a place whose state changes gets another object. Their sets of
- * kinds of blocks must not be changed any more. A bot that does not know every block says by `unknownAt` what to make of those.
+ * kinds of blocks must not be changed any more.
  */
-function rememberBlocks (movements, bot) {
+function rememberBlocks (movements, bot, unknownAt) {
   const { getBlock } = movements
   movements.getBlock = (place, dx, dy, dz) => {
     if (!place || !Number.isInteger(place.y)) return getBlock.call(movements, place, dx, dy, dz)
     const x = Math.floor(place.x + dx)
     const y = place.y + dy
     const z = Math.floor(place.z + dz)
-    const unknown = bot.unknownAt?.(x, y, z, dy < 0)
+    const unknown = unknownAt?.(x, y, z, dy < 0)
     if (unknown !== undefined) return unknown
     const block = bot.world.blockIn(x, y, z)
     if (block === null || block.notedBy !== movements) return noted(place, dx, dy, dz)

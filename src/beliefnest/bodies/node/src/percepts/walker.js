@@ -31,10 +31,9 @@ class Walker {
     this.floor = known.make(view.registry.blocksByName.stone.defaultState)
     const walker = Object.create(view)
     walker.blockAt = place => this.trodden(place)
-    walker.unknownAt = (x, y, z, isBelow) => this.unknownAt(x, y, z, isBelow)
     walker.on = (event, listener) => view.on(event === 'blockUpdate' ? PLANNED : event, listener)
     pathfinder(walker)
-    chargePathfinder(walker, clock)
+    chargePathfinder(walker, clock, (x, y, z, isBelow) => this.unknownAt(x, y, z, isBelow))
     view.pathfinder = walker.pathfinder
     view.on('path_update', ({ path }) => { this.path = path })
     view.on('path_reset', reason => this.feel(reason))
