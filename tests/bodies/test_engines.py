@@ -47,7 +47,7 @@ def test_programs_that_leave_nothing_have_one_engine_after_the_other_and_no_othe
     engine = engines.take()
     engines.give_back(engine)
     for code in (PLAIN[2], PLAIN[3]):
-        program = JavaScriptProgram("ann", SKILLS, code, engines)
+        program = JavaScriptProgram("ann", SKILLS, code, "0", engines)
         program.start()
         while calls := program.calls():
             for number, _, _ in calls:
@@ -56,7 +56,7 @@ def test_programs_that_leave_nothing_have_one_engine_after_the_other_and_no_othe
         program.end()
         assert engines.take() is engine
         engines.give_back(engine)
-    other = JavaScriptProgram("ann", SKILLS, "Array.prototype.leak = 1", engines)
+    other = JavaScriptProgram("ann", SKILLS, "Array.prototype.leak = 1", "0", engines)
     other.start()
     other.end()
     assert other.ended and other.fault is None
@@ -68,7 +68,7 @@ def test_an_engine_whose_program_waits_still_is_not_used_again() -> None:
     engines = Engines()
     engine = engines.take()
     engines.give_back(engine)
-    program = JavaScriptProgram("ann", SKILLS, "await say(bot, 'a');", engines)
+    program = JavaScriptProgram("ann", SKILLS, "await say(bot, 'a');", "0", engines)
     program.start()
     program.end()
     assert engines.take() is not engine
@@ -91,3 +91,28 @@ def test_no_program_finds_what_another_left() -> None:
             assert result.ok, result.error
         assert result.log == ("[false,false,false,false,false] [1]",)
         assert [text for _, _, text in nest["/"].state.chat] == ["a", "a", "b"]
+
+
+def test_time_is_the_world_s_and_random_numbers_are_the_seed_s() -> None:
+    code = """
+        console.log(Date.now(), new Date().toString(), new Date().getHours())
+        await waitTicks(bot, 20)
+        console.log(new Date().toISOString(), Math.random())
+    """
+
+    def logged(seed: int) -> tuple[str, ...]:
+        scenario = bn.Scenario.from_mapping(
+            {
+                "name": "room",
+                "box": [[0, 0, 0], [2, 2, 2]],
+                "agents": {"ann": {"position": [1.5, 0, 1.5]}},
+            }
+        )
+        with bn.Nest.open(scenario, "scripted", seed=seed) as nest:
+            return nest["/"].run("ann", code).log
+
+    first, second = logged(3)
+    assert first == "1704067200000 Mon, 01 Jan 2024 00:00:00 GMT 0"
+    assert second.startswith("2024-01-01T00:00:01.0")
+    assert logged(3) == (first, second)
+    assert logged(4)[1] != second

@@ -51,6 +51,17 @@ def test_walking_takes_a_tick_for_each_cell_and_taking_two_more(nest: bn.Nest) -
     ]
 
 
+def test_what_is_said_last_is_said_whether_it_is_waited_for_or_not(nest: bn.Nest) -> None:
+    walk = "await goToPosition(bot, new Vec3(3, 1, 2), 0)"
+    waited = run(nest, ann=f"{walk}; await say(bot, 'here')")["ann"]
+    back = run(nest, ann="await goToPosition(bot, new Vec3(1, 1, 2), 0)")["ann"]
+    not_waited = run(nest, ann=f"{walk}; bot.chat('here')")["ann"]
+    assert back.ok
+    assert not_waited.ticks == waited.ticks
+    assert not_waited.unfinished == ()
+    assert [text for _, _, text in nest["/"].state.chat] == ["here", "here"]
+
+
 def test_programs_go_on_together(nest: bn.Nest) -> None:
     results = run(
         nest,

@@ -107,6 +107,46 @@ def test_replaying_runs_the_recorded_programs(run, tmp_path, capsys):
     assert (difference["entry"], difference["tick"]) == (0, entries[0].tick)
 
 
+DRAW = "bot.chat('' + Math.random()); await bot.waitForTicks(2); bot.chat('' + Date.now())"
+
+
+def scripted_run(store, told="mine"):
+    """A run in the scripted world: programs, a branch, an edit, and what a user told."""
+    with bn.Nest.open(bn.Scenario.load("sally-anne", 3), "scripted", store, seed=4) as nest:
+        nest.play()
+        world = nest.scripted_world
+        world.say("anne", told)
+        world.step(3)
+        world.place_agent("anne", (1.5, -51, 1.5))
+        nest["/"].run("anne", DRAW)
+        nest["/"].edit(blocks={(0, -51, 0): "stone"})
+        world.think("sally", "hm")
+        nest["/"].run_all({"sally": DRAW, "anne": WALKS[0]}, senses="percepts")
+        nest["/observer"].switch("try")
+        nest["/observer"].scripted.say("sally", "not so")
+        nest["/observer"].run("sally", DRAW)
+    return store
+
+
+def test_a_run_of_the_scripted_world_is_replayed_with_what_a_user_told_it(tmp_path, capsys):
+    store = scripted_run(tmp_path / "run.bn")
+    assert run_command_line(["replay", str(store), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert [row["programs"] for row in told["timelines"]] == [6, 1]
+    with SqliteJournal.open(store) as journal, journal.together():
+        key = TimelineKey(("observer",), "try")
+        info = journal.info(key)
+        entries = list(journal.entries(key, 0, info.entries))
+        (program,) = [p for p in journal.records.programs() if p.branch == "try"]
+        journal.delete(key)
+        journal.create(key, info.base, info.start)
+        journal.append(key, entries, info.head)
+        journal.records.add_program(replace(program, code=DRAW.replace("2", "3")))
+    assert run_command_line(["replay", str(store), "--json"]) == 1
+    told = json.loads(capsys.readouterr().out)["timelines"]
+    assert [row["difference"] is None for row in told] == [True, False]
+
+
 def test_a_run_is_exported_with_beliefs(run, tmp_path, capsys):
     out = tmp_path / "tables"
     command = ["export", str(run), "--path", "/observer/sally", "--out", str(out)]

@@ -3,6 +3,7 @@
 import json
 from typing import Any
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import at_night
@@ -101,6 +102,26 @@ def test_a_body_bumps_into_what_its_agent_does_not_know() -> None:
         assert result.error is not None
         assert result.error.reason == "no_way"
         assert nest["/"].state.agents["ann"].position[0] < 2
+
+
+def test_programs_that_are_explored_read_what_is_perceived() -> None:
+    scenario = bn.Scenario.from_mapping({**ROOM, "blocks": [FLOOR]})
+    look = "console.log(bot.blockAt(new Vec3(8, 1, 5))?.name ?? null)"
+    with bn.Nest.open(scenario, world="scripted") as nest:
+        nest["/"].edit(blocks={(3, y, z): "bricks" for y in (1, 2, 3) for z in range(7)})
+        nest["/"].edit(blocks={(8, 1, 5): "dirt"})
+        for number, senses in enumerate(("world", "percepts")):
+            name, several = f"look {number}", 2
+            attempts = nest.explore(
+                "/", "ann", [look] * 2, lambda *_: 0.0, 20, name, several, senses
+            )
+            read = "dirt" if senses == "world" else "air"  # as it was when seen last
+            assert [attempt.result.log for attempt in attempts] == [(read,)] * 2
+        assert {p.senses for p in nest.programs()} == {"world", "percepts"}
+        branches = nest["/"].branches()
+        with pytest.raises(bn.InputError, match="give 'world' or 'percepts'"):
+            nest.explore("/", "ann", [look], lambda *_: 0.0, name="no", senses="all")  # type: ignore[arg-type]
+        assert nest["/"].branches() == branches
 
 
 def test_what_is_imagined_meanwhile_is_not_what_is_perceived() -> None:

@@ -5,8 +5,10 @@ each program gets a new one, but for those that only call skills one after the o
 values: they read nothing there and change nothing, and one engine serves any number of them.
 """
 
+import hashlib
 import json
 import re
+import struct
 from collections.abc import Collection
 from functools import cache
 from importlib.resources import files
@@ -57,12 +59,13 @@ class Engine:
         self._context.set_time_limit(_SECONDS)
         self._made = self._context.eval(_text())
 
-    def scope(self, username: str, skills: Collection[str]) -> Any:
+    def scope(self, username: str, skills: Collection[str], seed: str) -> Any:
         """What a program finds in scope, new; given the name of a part and its arguments, calls it.
 
-        The parts are those of the prelude.
+        The parts are those of the prelude. The seed decides about random numbers.
         """
-        return self._made(json.dumps([sorted(skills), username]))
+        words = struct.unpack("<4i", hashlib.sha256(seed.encode()).digest()[:16])
+        return self._made(json.dumps([sorted(skills), username]), json.dumps(words))
 
     def read(self, text: str) -> Any:
         """The value of a program's text; raises `failed`."""
@@ -100,11 +103,19 @@ def _text() -> str:
     """
     prelude = (files("beliefnest.bodies") / "scripted_prelude.js").read_text(encoding="utf-8")
     return f"""{{
-const vec3 = {_shared("vec3", "env.Vec3")}
+const time = {{ ms: 0 }}
+let random = null
+const vec3 = {_shared("vec3", "(module.exports(env), env.Vec3)")}
 const hints = {_shared("hints", "module.exports")}
+const sfc32 = {_shared("sfc32", "module.exports")}
+const date = {_shared("date", "module.exports")}
 const prelude = {prelude}
-given => {{
-  const parts = prelude(vec3(), hints(), ...JSON.parse(given))
+const draw = sfc32()
+date()({{ now: () => time.ms }})
+Math.random = () => random.fraction();
+(given, words) => {{
+  random = draw(JSON.parse(words))
+  const parts = prelude(vec3(), hints(), time, ...JSON.parse(given))
   return (part, one, two, three) => parts[part](one, two, three)
 }} }}"""
 
@@ -113,5 +124,4 @@ def _shared(name: str, given: str) -> str:
     """A function that gives what a module of the bots' sandbox does, too."""
     built = Path(str(files("beliefnest"))) / "_bundle" / f"{name}.js"
     text = built.read_text(encoding="utf-8")
-    made = "if (typeof module.exports === 'function') module.exports(env)"
-    return f"() => {{ const module = {{}}, env = {{}};\n{text}\n{made}\nreturn {given} }}"
+    return f"() => {{ const module = {{}}, env = {{}};\n{text}\nreturn {given} }}"

@@ -28,15 +28,18 @@ class JavaScriptProgram:
         username: The agent that runs it.
         skills: Names of the skills in its scope.
         code: Its text.
+        seed: Decides about its random numbers.
         engines: Those that may be used again.
     """
 
-    def __init__(self, username: str, skills: Collection[str], code: str, engines: Engines) -> None:
+    def __init__(
+        self, username: str, skills: Collection[str], code: str, seed: str, engines: Engines
+    ) -> None:
         self._code = code
         self._engines = engines
         self._leaves_nothing = leaves_nothing(code, skills)
         self._engine = engines.take() if self._leaves_nothing else Engine()
-        self._call = self._engine.scope(username, skills)
+        self._call = self._engine.scope(username, skills, seed)
         self._fault: Fault | None = None
         self._blocks: str | None = None
         self._taken: dict[str, Any] = {"calls": [], "log": [], "done": None, "waiting": 0}

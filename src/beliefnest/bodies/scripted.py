@@ -20,10 +20,11 @@ class ScriptedBody:
     """
 
     def __init__(
-        self, world: ScriptedWorld, sink: Sink, grounds: Grounds, engines: Engines
+        self, world: ScriptedWorld, sink: Sink, seed: str, grounds: Grounds, engines: Engines
     ) -> None:
         self.world = world
         self._sink = sink
+        self._seed = seed
         self._grounds = grounds
         self._engines = engines
         self._recording = True
@@ -67,7 +68,13 @@ class ScriptedBody:
         from beliefnest.bodies.scripted_programs import run_programs
 
         return run_programs(
-            self.world, programs, timeout_ticks, senses or {}, self._grounds, self._engines
+            self.world,
+            programs,
+            timeout_ticks,
+            senses or {},
+            self._seed,
+            self._grounds,
+            self._engines,
         )
 
     def step(self, ticks: int) -> None:
@@ -104,10 +111,10 @@ class ScriptedBodies:
         return {}
 
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> ScriptedBody:
-        """Make a body; its name and seed play no part, nothing here is random."""
+        """Make a body; its name plays no part, and its seed in what its programs draw alone."""
         world, self._first = self._first, None
         world = world or ScriptedWorld.from_snapshot(snapshot)
-        return ScriptedBody(world, sink, self._grounds, self._engines)
+        return ScriptedBody(world, sink, seed, self._grounds, self._engines)
 
     def another(self) -> "ScriptedBodies":
         """One more, with nothing in it."""

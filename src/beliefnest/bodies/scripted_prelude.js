@@ -1,6 +1,6 @@
-// What programs of the scripted world find in scope. Evaluates to a function of (Vec3, hints, skills, username) that gives
-// what Python calls: start, take, settle, see. Nothing here calls Python: it takes what is asked for after each turn.
-(Vec3, hints, skills, username) => {
+// What programs of the scripted world find in scope. Evaluates to a function of (Vec3, hints, time, skills, username)
+// that gives what Python calls: start, take, settle, see. Nothing here calls Python: it takes what is asked for after each turn.
+(Vec3, hints, time, skills, username) => {
   'use strict'
   const { parse, stringify } = JSON
   const waiting = new Map()
@@ -147,6 +147,7 @@
     },
     see (text, newBlocks) {
       seen = parse(text)
+      time.ms = seen.ms
       if (newBlocks === null) return
       blocks = newBlocks
       grid = null

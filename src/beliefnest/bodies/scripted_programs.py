@@ -25,6 +25,9 @@ _USING = frozenset(
     {"getItemFromChest", "depositItemIntoChest", "openDoor", "closeDoor", "writeSign"}
 )
 _MOST_AIMS = 100
+_EPOCH_MS = 1_704_067_200_000
+"""When Minecraft's worlds begin here, too: 2024-01-01, in UTC."""
+_TICK_MS = 50
 _DOINGS = {**SKILLS, **CALLS}
 
 
@@ -46,6 +49,7 @@ def run_programs(
     programs: Mapping[str, str],
     timeout_ticks: int,
     senses: Mapping[str, Sense],
+    seed: str,
     grounds: Grounds,
     engines: Engines,
 ) -> Mapping[str, ProgramResult]:
@@ -56,6 +60,7 @@ def run_programs(
         programs: JavaScript by agent.
         timeout_ticks: Ticks after which they are ended.
         senses: By agent, what its program may read now; those left out read what is the case.
+        seed: Decides about random numbers.
         grounds: What was made of grids of blocks already.
         engines: Engines of programs that may be used again.
     """
@@ -68,7 +73,7 @@ def run_programs(
     world.listen(hear)
     try:
         begun = {
-            agent: JavaScriptProgram(agent, SKILLS, code, engines)
+            agent: JavaScriptProgram(agent, SKILLS, code, f"{seed} {first} {agent}", engines)
             for agent, code in programs.items()
         }
         runs = [_begun(world, agent, program, senses, grounds) for agent, program in begun.items()]
@@ -80,7 +85,7 @@ def run_programs(
                 for number, ok, value in answers:
                     _settle(run, grounds, number, ok=ok, value=value)
             for run in runs:
-                if run.end_tick is None and run.program.ended:
+                if run.end_tick is None and run.program.ended and not _goes_on(run):
                     run.end_tick = world.now
             if all(run.end_tick is not None for run in runs):
                 break
@@ -136,6 +141,11 @@ def _act(run: _Run) -> list[tuple[int, bool, object]]:
     return ended
 
 
+def _goes_on(run: _Run) -> bool:
+    """Whether something is done still that goes on without its program."""
+    return any(name not in SKILLS for name, _ in run.doing.values())
+
+
 def _settle(run: _Run, grounds: Grounds, number: int, *, ok: bool, value: object) -> None:
     del run.doing[number]
     _show(run, grounds)
@@ -180,6 +190,7 @@ def _show(run: _Run, grounds: Grounds) -> None:
         "inventory": dict(me.inventory),
         "health": me.health,
         "food": me.food,
+        "ms": _EPOCH_MS + run.hand.world.now * _TICK_MS,
         "signs": {",".join(map(str, place)): text for place, text in sensed.signs.items()},
     }
     run.program.see(told, grounds.of(run.hand.world.box, sensed.blocks).text)

@@ -50,22 +50,23 @@ def _replayed(store: Path, worlds: dict[int, Worlds], ended: ExitStack) -> Itera
     with SqliteJournal.read(store) as journal, journal.unchanging():
         run = journal.records.run()
         setting, name = decode_start(run.setting)
-        if name == "scripted":
+        programs = journal.records.programs()
+        if name == "scripted" and not programs:
             raise InputError(
                 f"{store} holds no programs that could be run again: what happens in a scripted "
                 "world, a suite's story or an imported trace is told by its user, so that nothing "
-                "could differ; only runs in the embedded world can be replayed"
+                "could differ; replay a run in which programs ran"
             )
         if is_server(name) or is_hosted(name):
             raise InputError(
                 f"{store} was played in real time, which is not repeated; "
-                "only runs in the embedded world can be replayed"
+                "only runs in the embedded and the scripted world can be replayed"
             )
         if run.seed not in worlds:
             worlds[run.seed] = ended.enter_context(Worlds(run.seed))
         world = worlds[run.seed].lend(name)
         try:
-            yield from replay(setting, journal, journal.records.programs(), world, run.seed)
+            yield from replay(setting, journal, programs, world, run.seed)
         finally:
             world.close()
 

@@ -12,6 +12,8 @@ const { interpreterBytes } = require('./src/sandbox/interpreter')
 const { INTERPRETER, replacements } = require('./bundling/replacements')
 
 const SOURCE = path.join(__dirname, 'src')
+/** Programs in the scripted world have the same class, dates and random numbers, and are told the same names. */
+const SHARED = ['sandbox/guest/vec3.js', 'sandbox/guest/date.js', 'time/sfc32.js', 'sandbox/hints.js']
 const DEFAULT_OUTDIR = path.join(__dirname, '..', '..', '_bundle')
 
 async function build (outdir) {
@@ -23,12 +25,16 @@ async function build (outdir) {
   fs.writeFileSync(
     path.join(outdir, `registry-${MINECRAFT_VERSION}.msgpack`), encode(buildRegistry(MINECRAFT_VERSION)))
   fs.writeFileSync(path.join(outdir, INTERPRETER), interpreterBytes())
-  // Programs in the scripted world have the same class, and are told the same names.
-  fs.copyFileSync(path.join(SOURCE, 'sandbox', 'guest', 'vec3.js'), path.join(outdir, 'vec3.js'))
-  fs.copyFileSync(path.join(SOURCE, 'sandbox', 'hints.js'), path.join(outdir, 'hints.js'))
+  for (const file of SHARED) await share(path.join(SOURCE, file), outdir)
   const folders = packageFolders(inputs)
   fs.writeFileSync(path.join(outdir, 'packages.json'), `${JSON.stringify(packageList(folders), null, 1)}\n`)
   fs.writeFileSync(path.join(outdir, 'licenses.txt'), licenseTexts(folders))
+}
+
+/** Puts a file of no other files into the bundle, short: an engine reads it whole each time that one is made. */
+async function share (file, outdir) {
+  const { code } = await esbuild.transform(fs.readFileSync(file, 'utf8'), { minifySyntax: true, minifyWhitespace: true, target: 'es2022' })
+  fs.writeFileSync(path.join(outdir, path.basename(file)), code)
 }
 
 /** @returns {Promise<object>} what programs were made of, by file */

@@ -38,13 +38,18 @@ class Replayed:
 
 @dataclass(frozen=True, slots=True)
 class _Call:
-    """Programs that ran together: at a tick, after some entries of the timeline."""
+    """Programs that ran together: at a tick, after some entries of the timeline, for some ticks."""
 
     tick: int
     entries: int
     programs: Mapping[str, str]
     timeout_ticks: int
     senses: Senses
+    ticks: int
+
+    def made(self, entry: Entry) -> bool:
+        """Whether an entry lies in its time."""
+        return self.tick < entry.tick <= self.tick + self.ticks
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +106,7 @@ def replay(
     """Run every timeline of a run again, in order of creation.
 
     Each begins in the state that was recorded for its first tick, so that one that differs does not
-    make those based on it differ.
+    make those based on it differ. What a user told a scripted world is told again as recorded.
 
     Args:
         setting: What the run started from.
@@ -127,7 +132,8 @@ def replay(
 def _call(group: Sequence[ProgramRecord]) -> _Call:
     first = group[0]
     programs = {program.agent: program.code for program in group}
-    return _Call(first.tick, first.entries, programs, first.timeout_ticks, first.senses)
+    ticks = max(program.ticks for program in group)
+    return _Call(first.tick, first.entries, programs, first.timeout_ticks, first.senses, ticks)
 
 
 def _run_again(
@@ -153,15 +159,20 @@ def _run_again(
     begins = recorded.after(len(found), info.start, world)
     body = world.open_body(name, f"{seed} {name}", begins, take)
     try:
-        edits = [(n, e) for n, e in enumerate(entries) if isinstance(e, Edit)]
-        acts: list[tuple[int, int, Edit | _Call]] = [(e.tick, n, e) for n, e in edits]
+        told = [
+            (number, entry)
+            for number, entry in enumerate(entries)
+            if isinstance(entry, Edit)
+            or not (world.has_physics or any(call.made(entry) for call in calls))
+        ]
+        acts: list[tuple[int, int, Entry | _Call]] = [(e.tick, n, e) for n, e in told]
         acts += [(call.tick, call.entries, call) for call in calls]
         for tick, number, act in sorted(acts, key=lambda each: each[:2]):
             recorded.wait_until(body, tick)
             if isinstance(act, _Call):
                 body.run(act.programs, act.timeout_ticks, recorded.senses(act, body))
                 continue
-            if act.path == info.key.path:
+            if isinstance(act, Frame) or act.path == info.key.path:
                 body.set_state(recorded.after(number + 1, act.tick, world))
             found.append(act)
         recorded.wait_until(body, info.head)

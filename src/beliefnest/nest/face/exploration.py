@@ -11,9 +11,10 @@ from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.errors import BranchError, InputError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.speculation import Speculation
-from beliefnest.nest.face.simulator import Simulator
+from beliefnest.nest.face.simulator import Simulator, check_senses
 from beliefnest.nest.past.body_state import present
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
+from beliefnest.timeline.records import Senses
 
 __all__ = ["Attempt", "Exploration", "Score"]
 
@@ -60,6 +61,8 @@ class Exploration:
         name: What the branches are called.
         processes: How many run programs at the same time; None: as many as the machine has
             processors, if what is left after the first program would take long enough.
+        senses: What programs read; what their agent perceives is worked out as it is recorded, so
+            that then they run one after the other.
     """
 
     engine: Engine
@@ -70,14 +73,16 @@ class Exploration:
     timeout_ticks: int
     name: str
     processes: int | None
+    senses: Senses = "world"
 
     def attempts(self) -> tuple[Attempt, ...]:
         """Try all programs, in order.
 
         Raises:
             BranchError: A branch is there already; nothing was run.
-            InputError: The number of processes is none.
+            InputError: The number of processes is none, or `senses` is not what programs read.
         """
+        check_senses(self.senses)
         simulator = Simulator(self.engine, self.path)
         branches = self._branches(simulator)
         if self.processes is not None and self.processes < 1:
@@ -123,7 +128,7 @@ class Exploration:
     ) -> ProgramResult:
         code = self.programs[number]
         if speculation is None:
-            return simulator.run(self.agent, code, self.timeout_ticks)
+            return simulator.run(self.agent, code, self.timeout_ticks, self.senses)
         with self.engine.recording.turn:
             results = self.engine.run_speculated(
                 self.path, {self.agent: code}, self.timeout_ticks, speculation
@@ -146,7 +151,7 @@ class Exploration:
         if processes is None:
             processes = _processors() if seconds * len(left) > _WORTH_SECONDS else 1
         processes = min(processes, len(left))
-        if processes < 2:
+        if processes < 2 or self.senses == "percepts":
             return {}
         with self.engine.recording.turn:
             stack.enter_context(self.engine.bodies.without(self.path))

@@ -31,7 +31,7 @@ from beliefnest.nest.past.over_time import each_tick
 from beliefnest.nest.past.setting import Setting
 from beliefnest.perception.options import Perception
 from beliefnest.prompts import Renderer
-from beliefnest.timeline.records import ProgramRecord, PromptRecord
+from beliefnest.timeline.records import ProgramRecord, PromptRecord, Senses
 from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.world.paths import parse_path
 from beliefnest.world.scripted import ScriptedWorld
@@ -268,6 +268,7 @@ class Nest(Looking, Viewing, Telling, Comparing, Waiting, Joining):
         timeout_ticks: int = 1200,
         name: str = "plan",
         processes: int | None = None,
+        senses: Senses = "world",
     ) -> tuple[Attempt, ...]:
         """Try programs in one simulator, each on a branch of its own, from its present.
 
@@ -285,6 +286,8 @@ class Nest(Looking, Viewing, Telling, Comparing, Waiting, Joining):
                 takes about a second to start, once, and 200 MB as long as the nest is open.
                 None: the first program runs alone; if the others would take more than four
                 seconds, as many as there are processors run them, else they run one by one.
+            senses: `percepts`: programs read no more than their agent perceives or remembers; they
+                run one by one, whatever `processes` is.
 
         Returns:
             One attempt for each program, in order, with its branch, result and score.
@@ -293,7 +296,7 @@ class Nest(Looking, Viewing, Telling, Comparing, Waiting, Joining):
             PathError: The path or the agent is not there.
             BranchError: There is such a branch already; nothing was run.
             WorldError: The agent's pose is not known there, or the world runs no programs.
-            InputError: `processes` is below 1.
+            InputError: `processes` is below 1, or `senses` is neither.
         """
         self[path].child(agent)
         return Exploration(
@@ -305,6 +308,7 @@ class Nest(Looking, Viewing, Telling, Comparing, Waiting, Joining):
             timeout_ticks=timeout_ticks,
             name=name,
             processes=processes,
+            senses=senses,
         ).attempts()
 
     @contextmanager

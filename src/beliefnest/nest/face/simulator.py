@@ -22,7 +22,7 @@ from beliefnest.world.values import TICKS_PER_SECOND, Block, Items, Position
 if TYPE_CHECKING:
     from beliefnest.llm.messages import Model
 
-__all__ = ["Simulator"]
+__all__ = ["Simulator", "check_senses"]
 
 Mode = Literal["control", "follow"]
 
@@ -183,8 +183,7 @@ class Simulator(ShownSimulator):
                     f"the program of {agent} has half of a character in it; write the whole "
                     "character, or an escape such as \\u{1f600}"
                 )
-        if senses not in ("world", "percepts"):
-            raise InputError(f"senses is {senses!r}; give 'world' or 'percepts'")
+        check_senses(senses)
         return self._engine.run(self._path, programs, _timeout(timeout_ticks), None, senses)
 
     def noting(self, model: "Model", **detail: str) -> "Model":
@@ -270,6 +269,12 @@ class Simulator(ShownSimulator):
         for path in nodes_below(self._path, depth, self._recording.agents):
             forest = self._recording.history.shared(info.key, path, info.entries)
         return Imagination.of(forest, self._path, depth, info.head)
+
+
+def check_senses(senses: object) -> None:
+    """Refuse what is none of `Senses`; InputError says so."""
+    if senses not in ("world", "percepts"):
+        raise InputError(f"senses is {senses!r}; give 'world' or 'percepts'")
 
 
 def _timeout(ticks: int) -> int:

@@ -45,31 +45,6 @@ module.exports = function defineGlobals (env) {
     if (result instanceof Promise) env.answer(result, 0)
   }
 
-  // Local time would depend on the machine.
-  function defineDate () {
-    const RealDate = Date
-    class VirtualDate extends RealDate {
-      constructor (...args) {
-        if (args.length === 0) super(env.now())
-        else if (args.length === 1) super(args[0])
-        else super(RealDate.UTC(...args))
-      }
-
-      static now () { return env.now() }
-      getTimezoneOffset () { return 0 }
-      toString () { return this.toUTCString() }
-    }
-    for (const part of ['FullYear', 'Month', 'Date', 'Day', 'Hours', 'Minutes', 'Seconds', 'Milliseconds']) {
-      for (const verb of ['get', 'set']) {
-        const utc = RealDate.prototype[`${verb}UTC${part}`]
-        if (utc) RealDate.prototype[verb + part] = utc
-      }
-    }
-    RealDate.prototype.constructor = VirtualDate
-    Object.defineProperty(VirtualDate, 'name', { value: 'Date' })
-    globalThis.Date = VirtualDate
-  }
-
   function readOnly (what) {
     return () => { throw new TypeError(`${what} is read-only`) }
   }
@@ -156,7 +131,6 @@ module.exports = function defineGlobals (env) {
   env.kindOf = (value) => Object.keys(env.kinds).find((kind) => Object.getPrototypeOf(value) === env.kinds[kind])
   env.kinds = Object.fromEntries(Object.keys(config.kinds).map((name) => [name, {}]))
   defineKinds()
-  defineDate()
   defineConsole()
   Math.random = () => env.random()
   globalThis.setTimeout = (callback, delay, ...args) => startTimer(callback, delay, args, false)

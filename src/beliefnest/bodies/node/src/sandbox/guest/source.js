@@ -2,8 +2,8 @@
 /** The text that prepares a fresh QuickJS context for a program. */
 
 const parts = [
-  require('./primordials'), require('./vec3'), require('./values'), require('./border'), require('./globals'), require('./claims'),
-  require('./main')
+  require('./primordials'), require('./vec3'), require('./values'), require('./border'), require('./globals'), require('./date'),
+  require('./claims'), require('./main')
 ]
 
 /**
