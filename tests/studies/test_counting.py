@@ -31,7 +31,7 @@ def test_what_has_no_result_is_counted_and_not_judged():
 
 def test_pairs_are_rows_that_differ_in_one_column():
     rows = [row(model, spot, (model == "a") or spot > 2) for model in "ab" for spot in range(5)]
-    (pairs,) = paired_rows(rows, "model")
+    (pairs,) = paired_rows(rows, "model", ["model", "spot"])
     assert pairs == Pairs("a", "b", 5, 2, 3, 0)
     assert pairs.difference == pytest.approx(0.6)
     # Bonett and Price: 4/7 and 1/7 in place of 3/5 and 0.
@@ -43,4 +43,4 @@ def test_pairs_are_rows_that_differ_in_one_column():
 
 def test_nothing_is_compared_by_what_came_of_it():
     with pytest.raises(InputError, match="by 'outcome'; columns are model, spot"):
-        paired_rows([row("a", 1, True)], "outcome")
+        paired_rows([row("a", 1, True)], "outcome", ["model", "spot"])

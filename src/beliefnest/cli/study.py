@@ -16,7 +16,6 @@ from beliefnest.cli.console import progress_on, stdout
 from beliefnest.cli.report import cost_text
 from beliefnest.cli.text import printable
 from beliefnest.errors import InputError, ModelError, UnknownNameError
-from beliefnest.studies.counting import count_rows
 from beliefnest.studies.result import StudyResult
 from beliefnest.studies.running import StudyProgress
 from beliefnest.studies.study import Study
@@ -120,7 +119,7 @@ def _report(result: StudyResult) -> dict[str, Any]:
     return {
         "study_dir": str(result.folder.path),
         "cells": len(result.plan["cells"]),
-        "summary": count_rows(result.rows, result.groups),
+        "summary": result.counted(result.groups),
         "rows": result.rows,
         "invalid": result.invalid,
     }
@@ -128,10 +127,10 @@ def _report(result: StudyResult) -> dict[str, Any]:
 
 def _print(result: StudyResult) -> None:
     console = stdout()
-    console.print(_table(result.groups, count_rows(result.rows, result.groups)))
+    console.print(_table(result.groups, result.counted(result.groups)))
     failed = {row["cell"]: row["why_not"] for row in result.rows if row["outcome"] == "error"}
     told = [f"no result: {why}" for why in dict.fromkeys(failed.values())]
-    told += [f"no scenario: {_invalid_text(each)}" for each in result.invalid]
+    told += [f"left out: {_invalid_text(each)}" for each in result.invalid]
     for line in told[:_MOST_TOLD]:
         console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
     if len(told) > _MOST_TOLD:

@@ -8,6 +8,7 @@ from typing import Any, Self
 
 from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import ProgramResult
+from beliefnest.bodies.worlds import Worlds
 from beliefnest.episodes.choosing import chosen, name_of
 from beliefnest.episodes.helping import Help, help_in
 from beliefnest.episodes.measures import Measures, false_beliefs, measured
@@ -52,6 +53,8 @@ class Episode:
         seed: Drives every random number.
         budget: What it may take.
         patience_s: Seconds after which a policy has lost its round; None: it is waited for.
+        worlds: Lends the world, to one episode after the other; None: one is started.
+        names: What runs call policies that are objects, by agent.
 
     Raises:
         InputError: There is a policy for nobody.
@@ -68,6 +71,8 @@ class Episode:
         seed: int = 0,
         budget: Budget | None = None,
         patience_s: float | None = None,
+        worlds: Worlds | None = None,
+        names: Mapping[str, str] | None = None,
     ) -> None:
         if isinstance(task, Scenario):
             task = Task.of(task)
@@ -76,7 +81,8 @@ class Episode:
         self.task = task
         self.seed = seed
         self._names, self._policies = chosen(task, policies or {})
-        self._world, self._store = world, store
+        self._names |= names or {}
+        self._world, self._store, self._worlds = world, store, worlds
         self._budget = budget or Budget()
         self._patience_s = patience_s
         self._asker = Asker(self._policies, patience_s)
@@ -401,7 +407,7 @@ class Episode:
 
     def _opened(self) -> Nest:
         if self._nest is None:
-            nest = Nest.open(self.task.scenario, self._world, self._store, self.seed)
+            nest = Nest.open(self.task.scenario, self._world, self._store, self.seed, self._worlds)
             try:
                 nest.play()
                 _look_around(nest)

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 from beliefnest.belief.plain import belief_json
 from beliefnest.episodes.measures import Measures
 from beliefnest.errors import InputError, MissingExtraError
-from beliefnest.frames.sources import Recorded, Source, cells_of
+from beliefnest.frames.sources import Recorded, Source, cells_of, study_of
 from beliefnest.nest.face.recorded import RecordedNest
+from beliefnest.studies.episode_rows import EPISODES
+from beliefnest.studies.result import StudyResult
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.timeline.tables import entry_rows, prompt_row
 from beliefnest.world.frames import Frame
@@ -45,16 +47,24 @@ def cells_df(source: Source) -> "pandas.DataFrame":
     return _frame((_cell_row(each) for each in cells_of(source)), ["cell"])
 
 
-def episodes_df(measures: Iterable[Measures]) -> "pandas.DataFrame":
+def episodes_df(source: Source | Iterable[Measures]) -> "pandas.DataFrame":
     """One row for each episode: what it was, success, ticks, messages and all other measures.
 
     Args:
-        measures: As `Episode.measures` and `play_cells` give them.
+        source: A study of episodes (a folder or a result), whose rows also have `cell`; or
+            measures, as `Episode.measures` gives them.
 
     Raises:
+        InputError: There is no study of episodes.
         MissingExtraError: pandas is not installed.
     """
-    return _frame((each.row() for each in measures), ["task", "task_seed", "policies"])
+    if not isinstance(source, str | Path | StudyResult):
+        rows = ({key: _plain(v) for key, v in each.row().items()} for each in source)
+        return _frame(rows, ["task", "task_seed", "policies"])
+    study = study_of(source)
+    if study is None or study.table is not EPISODES:
+        raise InputError(f"there is no study of episodes at {source}")
+    return _frame(iter(study.rows), ["cell"])
 
 
 def probes_df(source: Source) -> "pandas.DataFrame":
@@ -130,6 +140,8 @@ def _cell_row(recorded: Recorded) -> Row:
     usages = [probe["usage"] for probe in probes]
     variation = about.get("variation", {})
     kept = ("scenario", "condition", "model", "template", "repeat", "seed", "error", "ticks")
+    if "task" in about:
+        kept = ("task", "condition", "player", "order", "instance", "repeat", "seed", "error")
     return {
         "cell": recorded.cell,
         **{key: about.get(key) for key in kept},

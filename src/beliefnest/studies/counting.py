@@ -7,23 +7,17 @@ from typing import Any
 
 from beliefnest.errors import InputError
 from beliefnest.scenarios.judging import OUTCOMES
-from beliefnest.scenarios.scoring import wilson_interval
+from beliefnest.scenarios.scoring import mean_interval, wilson_interval
 
 __all__ = ["Pairs", "Row", "count_rows", "paired_rows"]
 
 Row = Mapping[str, Any]
 _Z95 = 1.959963984540054
-_NO_IDENTITY = frozenset(
-    (
-        *("outcome", "ok", "why_not", "expected", "intended", "opened", "arrived", "answered"),
-        *("program", "beliefs_ok", "script_ticks", "ticks", "seconds", "attempts", "tokens"),
-        *("cost", "run", "cell", "seed"),
-    )
-)
-"""Columns that say what came of a probe, and not which one it was."""
 
 
-def count_rows(rows: Sequence[Row], by: Sequence[str]) -> list[dict[str, Any]]:
+def count_rows(
+    rows: Sequence[Row], by: Sequence[str], means: Mapping[str, bool] | None = None
+) -> list[dict[str, Any]]:
     """For each group of rows how many came out as expected, and how sure that is.
 
     Rows in which nothing was expected, or which have no result, are counted and not judged.
@@ -31,17 +25,19 @@ def count_rows(rows: Sequence[Row], by: Sequence[str]) -> list[dict[str, Any]]:
     Args:
         rows: Of a study.
         by: Columns that tell the groups apart.
+        means: Columns whose means are told; True: of what is right alone.
 
     Returns:
         One mapping for each group, in the order in which they come: the columns of `by`; `rows`;
         `judged`; `right`; `accuracy`, `low` and `high` (the 95 % interval of Wilson), None where
-        none is judged; each outcome with its count; `tokens`, `cost` (None if not known).
+        none is judged; each outcome with its count; `tokens`, `cost` (None if not known); of each
+        of `means` the mean, and its 95 % interval as `NAME_low`, `NAME_high` (None: no values).
     """
     groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault(tuple(row.get(name) for name in by), []).append(row)
     return [
-        {**dict(zip(by, values, strict=True)), **_counted(group)}
+        {**dict(zip(by, values, strict=True)), **_counted(group), **_means(group, means or {})}
         for values, group in groups.items()
     ]
 
@@ -62,6 +58,17 @@ def _counted(group: Sequence[Row]) -> dict[str, Any]:
         "tokens": sum(row.get("tokens") or 0 for row in group),
         "cost": None if None in costs else sum(cost or 0.0 for cost in costs),
     }
+
+
+def _means(group: Sequence[Row], means: Mapping[str, bool]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for name, of_right in means.items():
+        chosen = [row for row in group if row.get("ok") or not of_right]
+        values = [row[name] for row in chosen if row.get(name) is not None]
+        low, high = mean_interval(values)
+        mean = sum(values) / len(values) if values else None
+        found |= {name: mean, f"{name}_low": low, f"{name}_high": high}
+    return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,23 +118,32 @@ class Pairs:
         return float(min(1.0, 2 * tail / 2**discordant))
 
 
-def paired_rows(rows: Iterable[Row], column: str) -> list[Pairs]:
+def paired_rows(
+    rows: Iterable[Row], column: str, identity: Sequence[str], same: Sequence[str] = ()
+) -> list[Pairs]:
     """All pairs of levels of a column, on rows that are the same in all but it.
 
+    Args:
+        rows: Of a study.
+        column: Whose values are compared.
+        identity: Columns that say which row it is, and not what came of it.
+        same: Those of them that say the same as the column in other words.
+
     Raises:
-        InputError: There is no such column, or it does not tell rows apart that are alike.
+        InputError: The column is none of them.
     """
+    if column not in identity:
+        raise InputError(
+            f"rows cannot be compared by {column!r}; columns are {', '.join(identity)}"
+        )
+    others = [name for name in identity if name not in (column, *same)]
     table: dict[tuple[Any, ...], dict[Any, bool]] = {}
     levels: dict[Any, None] = {}
     for row in rows:
-        if column not in row or column in _NO_IDENTITY:
-            known = ", ".join(name for name in row if name not in _NO_IDENTITY)
-            raise InputError(f"rows cannot be compared by {column!r}; columns are {known}")
         levels[row[column]] = None
-        if row.get("ok") is None:
-            continue
-        rest = ((name, v) for name, v in row.items() if name not in _NO_IDENTITY | {column})
-        table.setdefault(tuple(rest), {})[row[column]] = row["ok"]
+        if row.get("ok") is not None:
+            key = tuple(row.get(name) for name in others)
+            table.setdefault(key, {})[row[column]] = row["ok"]
     names = list(levels)
     return [
         _pairs(table.values(), one, other)

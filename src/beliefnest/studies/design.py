@@ -1,11 +1,9 @@
-"""What a study combines, checked; and the file that says so."""
+"""What a study of scenarios combines, checked."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
-
-import msgspec
 
 from beliefnest.bodies.worlds import check_world
 from beliefnest.errors import BeliefNestError, InputError, ScenarioError
@@ -16,14 +14,12 @@ from beliefnest.prompts.templates import (
     built_in_template,
     load_template,
 )
-from beliefnest.scenarios.document import Document, plain
+from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.expressions import evaluate
-from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.parameters import declared_in
-from beliefnest.scenarios.reading import read_yaml
 from beliefnest.studies.variation import CHANGES, Variation
 
-__all__ = ["Constraint", "Design", "Template", "read_design"]
+__all__ = ["Constraint", "Design", "Template", "template_named"]
 
 Constraint = str | Callable[[Mapping[str, Any]], bool]
 """An expression over a variation's values, or a function of them, that has to hold."""
@@ -105,6 +101,20 @@ class Design:
             **({} if self.claims_from is None else {"claims_from": self.claims_from}),
         }
 
+    def plain(self) -> dict[str, Any]:
+        """What a study's plan says of it."""
+        return {
+            "scenarios": list(self.scenarios),
+            "models": list(self.models),
+            "templates": [template.name for template in self.templates],
+            "repeats": self.repeats,
+            "variations": self.variations
+            if isinstance(self.variations, int)
+            else {name: list(values) for name, values in self.variations.items()},
+            "conditions": None if self.conditions is None else list(self.conditions),
+            **self.setting,
+        }
+
     def broken_constraint(
         self, document: Document, condition: int | None, variation: Variation
     ) -> BeliefNestError | None:
@@ -128,57 +138,6 @@ def _is_count(number: object) -> bool:
     return isinstance(number, int) and not isinstance(number, bool) and number >= 1
 
 
-class _StudyFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The form of a study's file; what each key means is told at `Design`."""
-
-    scenarios: list[str]
-    models: list[str] = msgspec.field(default_factory=lambda: ["offline"])
-    templates: list[str] = []
-    repeats: int = 1
-    seed: int = 0
-    variations: dict[str, list[Any]] | int = {}
-    conditions: list[int] | None = None
-    constraints: list[str] = []
-    world: str = "embedded"
-    attempts: int = 3
-    temperature: float | None = 0.0
-    max_tokens: int | None = 1_000_000
-    max_cost: float | None = 5.0
-    claims_from: str | None = None
-
-
-def read_design(path: Path) -> Design:
-    """The design that a YAML file describes; files that it names are looked for beside it.
-
-    Raises:
-        ScenarioError: The file is wrong; the message names file, line and key.
-    """
-    document = read_yaml(path)
-    try:
-        found = msgspec.convert(plain(document.root), _StudyFile)
-    except msgspec.ValidationError as error:
-        raise _fault(document, str(error)) from None
-    try:
-        return Design(
-            scenarios=tuple(_beside(name, path) for name in found.scenarios),
-            models=tuple(found.models),
-            templates=tuple(template_named(name, path.parent) for name in found.templates),
-            repeats=found.repeats,
-            seed=found.seed,
-            variations=found.variations,
-            conditions=None if found.conditions is None else tuple(found.conditions),
-            constraints=tuple(found.constraints),
-            world=found.world,
-            attempts=found.attempts,
-            temperature=found.temperature,
-            limits=RunLimits(found.max_tokens, found.max_cost),
-            claims_from=found.claims_from,
-        )
-    except BeliefNestError as error:
-        key = next((key for key in _StudyFile.__struct_fields__ if key in str(error)), None)
-        raise document.fault((key,) if key else (), str(error)) from None
-
-
 def template_named(name: str, folder: Path = Path()) -> Template:
     """A built-in template, or one in a file.
 
@@ -186,17 +145,3 @@ def template_named(name: str, folder: Path = Path()) -> Template:
         TemplateError: There is no such file.
     """
     return built_in_template(name) if name in BUILT_IN_TEMPLATES else load_template(folder / name)
-
-
-def _beside(name: str, path: Path) -> str:
-    return name if name in builtin_names() else str(path.parent / name)
-
-
-def _fault(document: Document, error: str) -> ScenarioError:
-    what, _, place = error.partition(" - at `$.")
-    key = place.rstrip("`").partition("[")[0].partition(".")[0]
-    if what.startswith("Object contains unknown field"):
-        key = what.split("`")[1]
-        what = f"unknown key; keys are {', '.join(_StudyFile.__struct_fields__)}"
-    what = what[:1].lower() + what[1:].replace("`", "'")
-    return document.fault((key,) if key else (), what)

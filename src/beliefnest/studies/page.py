@@ -2,54 +2,58 @@
 
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from jinja2 import Environment, StrictUndefined
 
 from beliefnest.errors import UnknownNameError
-from beliefnest.studies.counting import Pairs, count_rows, paired_rows
 from beliefnest.studies.plot import plot_accuracy, svg_of
+from beliefnest.studies.rows import variation_columns
+
+if TYPE_CHECKING:
+    from beliefnest.studies.result import StudyResult
 
 __all__ = ["page_text"]
 
-_ROWS = (
-    *("probe", "path", "expected", "intended", "opened", "arrived", "answered"),
-    *("outcome", "why_not", "ticks", "tokens"),
-)
 _MOST_ROWS = 2_000
 
 
-def page_text(plan: Mapping[str, Any], rows: Sequence[Mapping[str, Any]], by: Sequence[str]) -> str:
+def page_text(result: "StudyResult", by: Sequence[str]) -> str:
     """The page, the same text for the same study.
 
     Args:
-        plan: Of the study.
-        rows: Its rows.
+        result: What the study came to.
         by: Columns of the summary.
     """
-    groups = count_rows(rows, by)
-    varied = [name for name in (rows[0] if rows else {}) if name not in ("seed", "task")]
-    first = varied[: varied.index("probe")] if "probe" in varied else varied
+    plan, rows, table = result.plan, result.rows, result.table
+    groups = result.counted(by)
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     environment.filters["percent"] = _percent
+    environment.filters["number"] = _number
     template = environment.from_string(
         (files("beliefnest.studies") / "page.html.jinja").read_text(encoding="utf-8")
     )
     return template.render(
+        kind="episodes" if "tasks" in plan else "scenarios",
+        subjects=plan.get("tasks") or plan["scenarios"],
+        players=_players(plan),
         plan=plan,
         by=by,
         groups=groups,
+        means=[name for name in table.means if any(each[name] is not None for each in groups)],
         figure=_figure(groups, by),
-        differences=[
-            (name, each)
-            for name in ("condition", "model", "template")
-            for each in _pairs(rows, name)
-        ],
-        columns=[*first, *_ROWS],
+        differences=[(name, each) for name in table.compared for each in result.paired(name)],
+        columns=[*table.first, *variation_columns(plan), *table.shown],
         rows=rows[:_MOST_ROWS],
         left_out=max(0, len(rows) - _MOST_ROWS),
         failed=[row for row in rows if row["outcome"] == "error"],
     )
+
+
+def _players(plan: Mapping[str, Any]) -> str:
+    if "tasks" in plan:
+        return f"policies {', '.join(plan['players'])}; {len(plan['seeds'])} instances of each"
+    return f"models {', '.join(plan['models'])}; seed {plan['seed']}"
 
 
 def _figure(groups: Sequence[Mapping[str, Any]], by: Sequence[str]) -> str:
@@ -62,9 +66,9 @@ def _figure(groups: Sequence[Mapping[str, Any]], by: Sequence[str]) -> str:
     return drawn[drawn.index("<svg") :]
 
 
-def _pairs(rows: Sequence[Mapping[str, Any]], column: str) -> list[Pairs]:
-    return paired_rows(rows, column)
-
-
 def _percent(share: float | None) -> str:
     return "-" if share is None else f"{share:.1%}"
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.2f}"

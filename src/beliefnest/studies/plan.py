@@ -4,19 +4,50 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Generic, Protocol, TypeVar
 
 from beliefnest.errors import BeliefNestError, MissingExtraError
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import condition_numbers
+from beliefnest.scenarios.records import expected_json
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.design import Design, Template
 from beliefnest.studies.drawing import drawn_variations
 from beliefnest.studies.variation import Variation, listed_variations
 
-__all__ = ["Cell", "CellKey", "Invalid", "Plan", "plan_cells"]
+__all__ = ["SEEDS", "Cell", "CellKey", "Invalid", "Key", "Keyed", "Plan", "digest", "plan_cells"]
 
-_SEEDS = 2**32
+SEEDS = 2**32
+"""How many seeds of cells there are."""
+
+
+class Key(Protocol):
+    """What tells a cell from all others."""
+
+    @property
+    def name(self) -> str:
+        """Sixteen letters and digits, the same for the same cell on every machine."""
+
+    @property
+    def seed(self) -> int:
+        """Drives every random number of the cell."""
+
+    def content_json(self) -> dict[str, Any]:
+        """All of it as plain values."""
+
+
+class Keyed(Protocol):
+    """A cell of any kind of study."""
+
+    @property
+    def key(self) -> Key:
+        """What tells it from all others."""
+
+    def plain(self) -> dict[str, Any]:
+        """What a study's plan says of it."""
+
+
+C = TypeVar("C", bound=Keyed)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +77,7 @@ class CellKey:
     @property
     def name(self) -> str:
         """Sixteen letters and digits, the same for the same cell on every machine."""
-        return _digest(self.content_json())[:16]
+        return digest(self.content_json())[:16]
 
     def content_json(self) -> dict[str, Any]:
         """All of it as plain values."""
@@ -69,7 +100,7 @@ class CellKey:
         that nothing else differs where they are compared.
         """
         whole = [self.scenario, dict(self.variation), self.repeat, self.setting["seed"]]
-        return int(_digest(whole), 16) % _SEEDS
+        return int(digest(whole), 16) % SEEDS
 
     @property
     def title(self) -> str:
@@ -80,7 +111,8 @@ class CellKey:
         return ", ".join([*parts, Variation(self.variation).text, self.model])
 
 
-def _digest(value: object) -> str:
+def digest(value: object) -> str:
+    """A hash of plain values, the same on every machine."""
     return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
 
 
@@ -90,6 +122,25 @@ class Cell:
 
     key: CellKey
     scenario: Scenario
+
+    def plain(self) -> dict[str, Any]:
+        """What a study's plan says of it."""
+        return {
+            "name": self.key.name,
+            "key": self.key.content_json(),
+            "seed": self.key.seed,
+            "probes": [
+                {
+                    "label": probe.label,
+                    "path": probe.path,
+                    "acts_in": probe.acts_in,
+                    "agent": probe.agent,
+                    "task": probe.task,
+                    "expected": expected_json(probe.expect),
+                }
+                for probe in self.scenario.probes
+            ],
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,13 +161,13 @@ class Invalid:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class Plan(Generic[C]):
     """All cells of a study, in the order of its table, and what is no cell."""
 
-    cells: tuple[Cell, ...]
+    cells: tuple[C, ...]
     invalid: tuple[Invalid, ...]
 
-    def shard(self, number: int, count: int) -> "Plan":
+    def shard(self, number: int, count: int) -> "Plan[C]":
         """One of several parts that together are the plan; a cell is always in the same one.
 
         Args:
@@ -127,7 +178,7 @@ class Plan:
         return replace(self, cells=tuple(own))
 
 
-def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan:
+def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan[Cell]:
     """The plan of a study.
 
     Args:
@@ -204,7 +255,7 @@ def _cells(
 ) -> Iterator[Cell]:
     for template in design.templates or (None,):
         told = scenario if template is None else _with_template(scenario, template)
-        content = _digest([document.text, dict(scenario.templates), template and template.text])
+        content = digest([document.text, dict(scenario.templates), template and template.text])
         for model in design.models:
             for repeat in range(1, design.repeats + 1):
                 key = CellKey(

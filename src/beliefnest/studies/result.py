@@ -7,17 +7,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from beliefnest.errors import InputError, MissingExtraError
-from beliefnest.studies.counting import count_rows, paired_rows
-from beliefnest.studies.rows import COLUMNS, study_rows, variation_columns
+from beliefnest.studies.counting import Pairs, count_rows, paired_rows
+from beliefnest.studies.episode_rows import EPISODES
+from beliefnest.studies.rows import PROBES, variation_columns
 from beliefnest.studies.store import StudyFolder
+from beliefnest.studies.table import Table
 
 if TYPE_CHECKING:
     import pandas
     from matplotlib.figure import Figure
 
 __all__ = ["StudyResult"]
-
-_BY = ("scenario", "condition", "model")
 
 
 @dataclass(frozen=True)
@@ -47,9 +47,14 @@ class StudyResult:
         return self.folder.plan()
 
     @cached_property
+    def table(self) -> Table:
+        """The form of `frame`: of episodes, or of scenarios' probes."""
+        return EPISODES if "tasks" in self._plan else PROBES
+
+    @cached_property
     def rows(self) -> list[dict[str, Any]]:
         """The rows of `frame` as plain values."""
-        return list(study_rows(self.folder, self._plan))
+        return list(self.table.rows(self.folder, self._plan))
 
     @property
     def invalid(self) -> list[dict[str, Any]]:
@@ -62,7 +67,7 @@ class StudyResult:
         return dict(self._plan)
 
     def frame(self) -> "pandas.DataFrame":
-        """One row for each probe of each cell, in the order of the plan.
+        """One row for each probe of each cell, or each episode, in the order of the plan.
 
         The same study gives the same rows, however many jobs it ran with. Wall times, which are
         not the same twice, are in `seconds`.
@@ -70,16 +75,19 @@ class StudyResult:
         Raises:
             MissingExtraError: pandas is not installed.
         """
-        return _frame(self.rows, ["scenario", "condition", *variation_columns(self._plan)])
+        return _frame(self.rows, self.table, variation_columns(self._plan))
 
     @property
     def groups(self) -> tuple[str, ...]:
         """The columns that summaries are made by where nothing else is asked for."""
-        several = len({row["template"] for row in self.rows}) > 1
-        return (*_BY, "template") if several else _BY
+        table = self.table
+        several = len({row[table.further_group] for row in self.rows}) > 1
+        return (*table.groups, table.further_group) if several else table.groups
 
     def summary(self, by: Sequence[str] | str | None = None) -> "pandas.DataFrame":
         """For each group its accuracy with the 95 % interval of Wilson, and all outcomes' counts.
+
+        Of episodes also means with their 95 % intervals, by the bootstrap.
 
         `accuracy` is of what was judged: rows with the outcome `error` are counted, not judged.
 
@@ -91,13 +99,23 @@ class StudyResult:
             MissingExtraError: pandas is not installed.
         """
         names = self._columns(self.groups if by is None else by)
-        return _pandas().DataFrame.from_records(count_rows(self.rows, names))
+        return _pandas().DataFrame.from_records(self.counted(names))
+
+    def counted(self, by: Sequence[str]) -> list[dict[str, Any]]:
+        """The rows of `summary` as plain values."""
+        return count_rows(self.rows, by, self.table.means)
+
+    def paired(self, between: str) -> list[Pairs]:
+        """The rows of `differences` as values; InputError if rows are not told apart by it."""
+        table = self.table
+        identity = [*table.identity, *variation_columns(self._plan)]
+        return paired_rows(self.rows, between, identity, table.same.get(between, ()))
 
     def differences(self, between: str) -> "pandas.DataFrame":
         """Paired differences of accuracy between the values of a column.
 
         Pairs are rows that are the same in scenario, condition, variation, model, template, repeat
-        and probe, but for that column.
+        and probe, but for that column; or in task, instance, repeat and who plays.
 
         Args:
             between: Such as `model` or `condition`.
@@ -124,7 +142,7 @@ class StudyResult:
                 "high": pairs.interval[1],
                 "p": pairs.p,
             }
-            for pairs in paired_rows(self.rows, between)
+            for pairs in self.paired(between)
         ]
         return _pandas().DataFrame.from_records(found)
 
@@ -138,8 +156,11 @@ class StudyResult:
         ]
         return _pandas().DataFrame.from_records(records, columns=["cell", "wall_seconds"])
 
-    def plot(self, by: Sequence[str] | str = ("condition", "model")) -> "Figure":
+    def plot(self, by: Sequence[str] | str | None = None) -> "Figure":
         """Accuracies with their intervals: the first column along the axis, the second by colour.
+
+        Args:
+            by: The columns; None: condition and model, or of episodes task and policy.
 
         Raises:
             InputError: There is no such column.
@@ -147,7 +168,7 @@ class StudyResult:
         """
         from beliefnest.studies.plot import plot_accuracy
 
-        names = self._columns(by)
+        names = self._columns(self.table.groups[-2:] if by is None else by)
         return plot_accuracy(count_rows(self.rows, names), names)
 
     def write_page(self, file: str | Path, by: Sequence[str] | str | None = None) -> Path:
@@ -159,7 +180,7 @@ class StudyResult:
         from beliefnest.studies.page import page_text
 
         path = Path(file)
-        text = page_text(self._plan, self.rows, self._columns(self.groups if by is None else by))
+        text = page_text(self, self._columns(self.groups if by is None else by))
         try:
             path.write_text(text, encoding="utf-8")
         except OSError as error:
@@ -175,7 +196,7 @@ class StudyResult:
         return csv, parquet
 
     def _columns(self, names: Sequence[str] | str) -> list[str]:
-        known = ["scenario", "condition", *variation_columns(self._plan), *COLUMNS]
+        known = [*self.table.first, *variation_columns(self._plan), *self.table.columns]
         chosen = [names] if isinstance(names, str) else list(names)
         for name in chosen:
             if name not in known:
@@ -183,18 +204,18 @@ class StudyResult:
         return chosen
 
 
-def _frame(rows: Sequence[dict[str, Any]], first: Sequence[str]) -> "pandas.DataFrame":
+def _frame(
+    rows: Sequence[dict[str, Any]], table: Table, varied: Sequence[str]
+) -> "pandas.DataFrame":
     pandas = _pandas()
     import pyarrow
 
     arrow = {"string": pyarrow.string(), "bool": pyarrow.bool_()}
     arrow |= {"int64": pyarrow.int64(), "float64": pyarrow.float64()}
     columns: dict[str, Any] = {}
-    for name in (*first, *COLUMNS):
+    kinds = {**table.first, **dict.fromkeys(varied), **table.columns}
+    for name, kind in kinds.items():
         values = [row.get(name) for row in rows]
-        kind = COLUMNS.get(name)
-        if name == "condition":
-            kind = "int64"
         told = pyarrow.array(values if kind else _alike(values), arrow[kind] if kind else None)
         columns[name] = pandas.array(told, dtype=pandas.ArrowDtype(told.type))
     return pandas.DataFrame(columns)

@@ -1,4 +1,4 @@
-"""The table of a study: one row for each probe of each cell, from what its folder holds."""
+"""The table of a study of scenarios: one row for each probe of each cell, from its folder."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -6,14 +6,15 @@ from typing import Any
 
 from beliefnest.scenarios.judging import OUTCOMES
 from beliefnest.studies.store import StudyFolder
+from beliefnest.studies.table import Table
 
-__all__ = ["COLUMNS", "FAILED", "study_rows", "variation_columns"]
+__all__ = ["FAILED", "PROBES", "plain_value", "variation_columns"]
 
 FAILED = "error"
-"""The outcome of the probes of a cell that has no result."""
+"""The outcome of what has no result."""
 assert FAILED in OUTCOMES
 
-COLUMNS = {
+_COLUMNS = {
     "model": "string",
     "template": "string",
     "repeat": "int64",
@@ -52,7 +53,7 @@ def variation_columns(plan: Mapping[str, Any]) -> list[str]:
     return list(dict.fromkeys(names))
 
 
-def study_rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+def _probe_rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     """The rows of all planned cells that have been tried, in the order of the plan.
 
     A cell that failed has a row for each of its probes, all with the outcome `error` and its
@@ -67,7 +68,7 @@ def study_rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[st
         about = {
             "scenario": key["scenario"],
             "condition": key["condition"],
-            **{name: _plain(key["variation"].get(name)) for name in columns},
+            **{name: plain_value(key["variation"].get(name)) for name in columns},
             "model": key["model"],
             "template": key["template"],
             "repeat": key["repeat"],
@@ -97,7 +98,7 @@ def _probe(probe: Mapping[str, Any]) -> dict[str, Any]:
         "acts_in": probe["acts_in"],
         "agent": probe["agent"],
         "task": probe["task"],
-        "expected": _plain(probe["expected"]),
+        "expected": plain_value(probe["expected"]),
         "intended": _place(probe["intended"]),
         "opened": " ".join(_place(place) or "" for place in probe["opened"]),
         "arrived": _place(probe["arrived"]),
@@ -118,7 +119,7 @@ def _failed(probe: Mapping[str, Any], why: str) -> dict[str, Any]:
     return {
         **{name: probe.get(name) for name in ("path", "acts_in", "agent", "task")},
         "probe": probe.get("label", ""),
-        "expected": _plain(probe.get("expected")),
+        "expected": plain_value(probe.get("expected")),
         "outcome": FAILED,
         "why_not": why,
     }
@@ -136,7 +137,7 @@ def _beliefs(expectations: list[Mapping[str, Any]]) -> dict[str, Any]:
     }
 
 
-def _plain(value: Any) -> Any:
+def plain_value(value: Any) -> Any:
     """A value as one cell of a table: places as `x,y,z`, other structures as JSON."""
     if isinstance(value, list) and value and all(isinstance(n, int | float) for n in value):
         return _place(value)
@@ -145,3 +146,22 @@ def _plain(value: Any) -> Any:
 
 def _place(place: list[float] | None) -> str | None:
     return None if place is None else ",".join(f"{part:g}" for part in place)
+
+
+PROBES = Table(
+    rows=_probe_rows,
+    first={"scenario": "string", "condition": "int64"},
+    columns=_COLUMNS,
+    identity=(
+        *("scenario", "condition", "model", "template", "repeat"),
+        *("probe", "path", "acts_in", "agent", "task"),
+    ),
+    groups=("scenario", "condition", "model"),
+    further_group="template",
+    compared=("condition", "model", "template"),
+    shown=(
+        *("model", "template", "repeat", "probe", "path", "expected", "intended", "opened"),
+        *("arrived", "answered", "outcome", "why_not", "ticks", "tokens"),
+    ),
+)
+"""Of studies of scenarios."""

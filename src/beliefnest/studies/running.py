@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 from beliefnest.errors import InputError, MissingExtraError, UnknownNameError
 from beliefnest.llm.messages import Usage
-from beliefnest.studies.plan import Cell
+from beliefnest.studies.plan import Keyed
 from beliefnest.studies.spending import spent_in
 from beliefnest.studies.store import StudyFolder
-from beliefnest.studies.worker import CellResult, Terms, Worker, play_in_process
+from beliefnest.studies.terms import Terms
+from beliefnest.studies.worker import CellResult, Worker, play_in_process
 
 __all__ = ["BACKENDS", "OnStudyProgress", "StudyProgress", "run_cells"]
 
@@ -49,7 +50,7 @@ OnStudyProgress = Callable[[StudyProgress], None]
 
 
 def run_cells(
-    cells: Sequence[Cell],
+    cells: Sequence[Keyed],
     folder: StudyFolder,
     terms: Terms,
     jobs: int,
@@ -82,7 +83,7 @@ def run_cells(
             progress.count(result)
 
 
-def _is_open(folder: StudyFolder, cell: Cell) -> bool:
+def _is_open(folder: StudyFolder, cell: Keyed) -> bool:
     known = folder.cell(cell.key.name)
     return known is None or known["error"] is not None
 
@@ -113,7 +114,7 @@ class _Counting:
         self._tell(StudyProgress(self._total, self._done, self._failed, spent))
 
 
-def _results(cells: Sequence[Cell], terms: Terms, jobs: int, backend: str) -> _Results:
+def _results(cells: Sequence[Keyed], terms: Terms, jobs: int, backend: str) -> _Results:
     if not cells:
         return
     if jobs == 1 and backend == "loky":
@@ -125,7 +126,7 @@ def _results(cells: Sequence[Cell], terms: Terms, jobs: int, backend: str) -> _R
     yield from _parallel(cells, terms, jobs, backend)
 
 
-def _parallel(cells: Sequence[Cell], terms: Terms, jobs: int, backend: str) -> _Results:
+def _parallel(cells: Sequence[Keyed], terms: Terms, jobs: int, backend: str) -> _Results:
     try:
         from joblib import Parallel, delayed, parallel_config
     except ModuleNotFoundError:

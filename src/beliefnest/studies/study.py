@@ -12,14 +12,21 @@ from beliefnest.llm.budget import RunLimits
 from beliefnest.llm.resolve import resolve_model
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import read_document
-from beliefnest.scenarios.records import expected_json
-from beliefnest.scenarios.scenario import Scenario
-from beliefnest.studies.design import Constraint, Design, Template, read_design, template_named
+from beliefnest.studies.design import Constraint, Design, Template, template_named
+from beliefnest.studies.episode_design import (
+    EpisodeDesign,
+    Order,
+    Policies,
+    check_episodes_alone,
+    seeds_of,
+)
+from beliefnest.studies.episode_plan import EpisodeCell, plan_episodes
+from beliefnest.studies.file import read_design
 from beliefnest.studies.plan import Cell, Plan, plan_cells
 from beliefnest.studies.result import StudyResult
 from beliefnest.studies.running import OnStudyProgress, StudyProgress, run_cells
 from beliefnest.studies.store import StudyFolder
-from beliefnest.studies.worker import Terms
+from beliefnest.studies.terms import Terms
 
 __all__ = ["Study"]
 
@@ -27,23 +34,36 @@ __all__ = ["Study"]
 class Study:
     """Scenarios, conditions, variations, models, templates and repeats, all combined.
 
+    Or episodes: tasks, policies, models and orders, seeds and repeats. Of the arguments below
+    `templates`, `constraints`, `attempts`, `temperature` and `claims_from` are for scenarios alone,
+    and `policies`, `orders`, `seeds` and `help` for tasks.
+
     Args:
         scenarios: Names of built-in scenarios, or paths of files.
-        models: Names of models, as `beliefnest run --model` takes them.
+        models: Names of models, as `beliefnest run --model` takes them; None: `offline`, or with
+            tasks none.
         templates: Built-in prompt templates or paths of files, in place of the scenarios' own.
         repeats: How often each cell is played, each time with another seed.
         seed: Decides which variations are drawn, and with a cell about its seed.
         variations: Lists of values, by name of a parameter that the scenarios declare or of
             `symmetry`, `agents`, `items`; all combinations are played. Or how many variations
-            are drawn for each scenario, of its parameters and all symmetries.
+            are drawn for each scenario, of its parameters and all symmetries. Of tasks, lists of
+            values of their parameters.
         conditions: Numbers of conditions; None: all.
         constraints: What has to hold of a variation's values: expressions, or functions of them.
-        world: Name of the world.
+        world: Name of the world; None: `embedded`, or with tasks `scripted`.
         attempts: How often a model is asked for one probe at most.
         temperature: How answers are drawn; None leaves it to the provider.
         max_tokens: What the whole study may use; None: no limit.
         max_cost: US dollars that it may cost; None: no limit.
         claims_from: Name of a model that reads claims out of what is said; None: nobody.
+        tasks: In place of scenarios: names of tasks or scenarios that are played as episodes, or
+            paths of their files.
+        policies: Who plays the players: policies as `beliefnest play` takes them, `search` for
+            search of each of the orders, or mappings from agent to policy.
+        orders: At which models and search play: 0, 1, 2, `omniscient`.
+        seeds: Which instances of tasks; a number: so many from `seed` on.
+        help: Whether help is measured too, for which branches are played.
 
     Raises:
         InputError: An argument is not of the form that it should have.
@@ -54,8 +74,8 @@ class Study:
 
     def __init__(
         self,
-        scenarios: Sequence[str] | str,
-        models: Sequence[str] | str = ("offline",),
+        scenarios: Sequence[str] | str = (),
+        models: Sequence[str] | str | None = None,
         templates: Sequence[str] | None = None,
         repeats: int = 1,
         seed: int = 0,
@@ -63,24 +83,51 @@ class Study:
         conditions: Sequence[int] | None = None,
         *,
         constraints: Sequence[Constraint] = (),
-        world: str = "embedded",
+        world: str | None = None,
         attempts: int = 3,
         temperature: float | None = 0.0,
         max_tokens: int | None = 1_000_000,
         max_cost: float | None = 5.0,
         claims_from: str | None = None,
+        tasks: Sequence[str] | str = (),
+        policies: Sequence[Policies] | Policies = (),
+        orders: Sequence[Order] = (),
+        seeds: Sequence[int] | int = 1,
+        help: bool = False,
     ) -> None:
+        if tasks:
+            check_episodes_alone(scenarios, templates, constraints, claims_from)
+            if isinstance(variations, int):
+                raise InputError("variations of tasks are lists; give `seeds` for instances")
+            self._hold(
+                EpisodeDesign(
+                    tasks=_several(tasks),
+                    policies=_listed(policies),
+                    models=() if models is None else _several(models),
+                    orders=tuple(orders),
+                    seeds=seeds_of(seeds, seed),
+                    repeats=repeats,
+                    variations=variations or {},
+                    conditions=None if conditions is None else tuple(conditions),
+                    world="scripted" if world is None else world,
+                    help=help,
+                    limits=RunLimits(max_tokens, max_cost),
+                )
+            )
+            return
+        if policies or orders:
+            raise InputError("policies and orders are for tasks; name `tasks` to play episodes")
         self._hold(
             Design(
                 scenarios=_several(scenarios),
-                models=_several(models),
+                models=("offline",) if models is None else _several(models),
                 templates=_templates(templates),
                 repeats=repeats,
                 seed=seed,
                 variations={} if variations is None else variations,
                 conditions=None if conditions is None else tuple(conditions),
                 constraints=_constraints(constraints),
-                world=world,
+                world="embedded" if world is None else world,
                 attempts=attempts,
                 temperature=temperature,
                 limits=RunLimits(max_tokens, max_cost),
@@ -99,26 +146,30 @@ class Study:
         study._hold(read_design(Path(file)))
         return study
 
-    def _hold(self, design: Design) -> None:
+    def _hold(self, design: Design | EpisodeDesign) -> None:
         self._design = design
-        self._documents: dict[str, Document] = {
-            name: read_document(name) for name in design.scenarios
-        }
-        self._plan: Plan | None = None
+        scenarios = design.scenarios if isinstance(design, Design) else ()
+        self._documents: dict[str, Document] = {name: read_document(name) for name in scenarios}
+        self._plan: Plan[Cell] | Plan[EpisodeCell] | None = None
 
     @property
-    def design(self) -> Design:
+    def design(self) -> Design | EpisodeDesign:
         """What is combined."""
         return self._design
 
-    def plan(self) -> Plan:
-        """All cells, each checked, and the combinations that make no scenario.
+    def plan(self) -> Plan[Cell] | Plan[EpisodeCell]:
+        """All cells, each checked, and the combinations that make no scenario or episode.
 
         Raises:
             ScenarioError: A scenario is wrong as it is written.
+            UnknownNameError: There is no such task or policy.
         """
         if self._plan is None:
-            self._plan = plan_cells(self._design, self._documents)
+            design = self._design
+            if isinstance(design, Design):
+                self._plan = plan_cells(design, self._documents)
+            else:
+                self._plan = plan_episodes(design)
         return self._plan
 
     def run(
@@ -187,8 +238,9 @@ class Study:
 
     def _check_models(self, backend: str) -> None:
         """Refuse a model that there is not, or that lacks a key, before anything is played."""
-        readers = () if self._design.claims_from is None else (self._design.claims_from,)
-        for name in (*self._design.models, *readers):
+        design = self._design
+        reader = design.claims_from if isinstance(design, Design) else None
+        for name in (*design.models, *(() if reader is None else (reader,))):
             try:
                 resolve_model(name, os.environ)
             except ModelError:
@@ -196,19 +248,10 @@ class Study:
                 if backend == "loky":
                     raise
 
-    def _plan_json(self, plan: Plan) -> dict[str, Any]:
-        design = self._design
+    def _plan_json(self, plan: Plan[Cell] | Plan[EpisodeCell]) -> dict[str, Any]:
         return {
-            "scenarios": list(design.scenarios),
-            "models": list(design.models),
-            "templates": [template.name for template in design.templates],
-            "repeats": design.repeats,
-            "variations": design.variations
-            if isinstance(design.variations, int)
-            else {name: list(values) for name, values in design.variations.items()},
-            "conditions": None if design.conditions is None else list(design.conditions),
-            **design.setting,
-            "cells": [_cell_json(cell) for cell in plan.cells],
+            **self._design.plain(),
+            "cells": [cell.plain() for cell in plan.cells],
             "invalid": [
                 {
                     "scenario": each.scenario,
@@ -224,6 +267,10 @@ class Study:
 def _several(names: Sequence[str] | str) -> tuple[str, ...]:
     """A name alone is a list of one."""
     return (names,) if isinstance(names, str) else tuple(str(name) for name in names)
+
+
+def _listed(policies: Sequence[Policies] | Policies) -> tuple[Policies, ...]:
+    return (policies,) if isinstance(policies, str | Mapping) else tuple(policies)
 
 
 def _templates(names: Sequence[str] | None) -> tuple[Template, ...]:
@@ -243,29 +290,6 @@ def _checked_shard(shard: tuple[int, int]) -> tuple[int, int]:
             f"there is no shard {number} of {count}; give 1/{count} to {count}/{count}"
         )
     return number, count
-
-
-def _cell_json(cell: Cell) -> dict[str, Any]:
-    return {
-        "name": cell.key.name,
-        "key": cell.key.content_json(),
-        "seed": cell.key.seed,
-        "probes": _probes_json(cell.scenario),
-    }
-
-
-def _probes_json(scenario: Scenario) -> list[dict[str, Any]]:
-    return [
-        {
-            "label": probe.label,
-            "path": probe.path,
-            "acts_in": probe.acts_in,
-            "agent": probe.agent,
-            "task": probe.task,
-            "expected": expected_json(probe.expect),
-        }
-        for probe in scenario.probes
-    ]
 
 
 def _say_nothing(progress: StudyProgress) -> None:

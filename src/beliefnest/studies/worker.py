@@ -1,48 +1,28 @@
 """Playing one cell, in whatever process it falls to."""
 
-import os
 import threading
 import time
 from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.errors import BeliefNestError
-from beliefnest.llm.budget import RunLimits
 from beliefnest.llm.hearsay import claims_from_model
 from beliefnest.llm.messages import Sampling
 from beliefnest.llm.remote import RemoteModel
-from beliefnest.llm.resolve import Connection, open_model, resolve_model
+from beliefnest.llm.resolve import open_model, resolve_model
 from beliefnest.nest.face.nest import Nest
 from beliefnest.prompts import Renderer
 from beliefnest.scenarios.records import expectation_json, probe_json
 from beliefnest.scenarios.running import Asking, run_scenario
-from beliefnest.studies.plan import Cell
-from beliefnest.studies.spending import SharedBudget
+from beliefnest.studies.episode_plan import EpisodeCell
+from beliefnest.studies.episode_playing import play_episode
+from beliefnest.studies.plan import Cell, Keyed
+from beliefnest.studies.terms import Terms
 
-__all__ = ["CellResult", "Terms", "Worker", "play_in_process"]
-
-
-@dataclass(frozen=True, slots=True)
-class Terms:
-    """What every cell of a study is played with.
-
-    Attributes:
-        answers: Folder of kept answers.
-        ledger: File in which spending is counted.
-        runs: Folder of recorded runs; None: nothing is recorded.
-        limits: What the whole study may spend.
-        environment: Where models are and their keys; None: the worker's own environment.
-    """
-
-    answers: Path
-    ledger: Path
-    runs: Path | None
-    limits: RunLimits
-    environment: Mapping[str, str] | None = None
+__all__ = ["CellResult", "Worker", "play_in_process"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,32 +51,31 @@ class Worker:
         self._worlds = stack.enter_context(Worlds(0))
         self._renderer = Renderer()
 
-    def play(self, cell: Cell, terms: Terms) -> CellResult:
+    def play(self, cell: Keyed, terms: Terms) -> CellResult:
         """Play a cell; what goes wrong is its result."""
         started = time.perf_counter()
         try:
-            content = self._played(cell, terms)
+            if isinstance(cell, EpisodeCell):
+                content = play_episode(cell, terms, self._worlds)
+            elif isinstance(cell, Cell):
+                content = self._played(cell, terms)
+            else:
+                raise TypeError(f"{cell!r} is no cell that can be played")
         except BeliefNestError as error:
             content = {"error": str(error), "kind": type(error).__name__}
         return CellResult(cell.key.name, content, time.perf_counter() - started)
 
     def _played(self, cell: Cell, terms: Terms) -> dict[str, Any]:
         key, scenario = cell.key, cell.scenario
-        environment = os.environ if terms.environment is None else terms.environment
-        budget = SharedBudget.of(terms.limits, terms.ledger)
+        environment = terms.surroundings
+        connection = terms.connection()
         if isinstance(resolve_model(key.model, environment), RemoteModel):
             # Before the script: it would be played for nothing.
-            budget.check()
-        connection = Connection(budget=budget, cache=terms.answers)
+            connection.budget.check()
         model = open_model(key.model, environment, connection)
         sampling = Sampling(key.setting["temperature"], key.seed)
         asking = Asking(key.setting["attempts"], sampling, keeps_unanswered=True)
-        store = None
-        if terms.runs is not None:
-            store = terms.runs / f"{key.name}.bn"
-            store.parent.mkdir(parents=True, exist_ok=True)
-            for left in store.parent.glob(f"{key.name}.bn*"):
-                left.unlink()
+        store = terms.store(key.name)
         reader = key.setting.get("claims_from")
         claims_from = None
         if reader is not None:
@@ -136,7 +115,7 @@ class _Kept(threading.local):
 _kept = _Kept()
 
 
-def play_in_process(cell: Cell, terms: Terms) -> CellResult:
+def play_in_process(cell: Keyed, terms: Terms) -> CellResult:
     """Play a cell with the worker that this thread keeps until its process ends."""
     if _kept.worker is None:
         # The process behind a world ends with the one that started it.

@@ -3,13 +3,25 @@
 import os
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from beliefnest.episodes.policies.simple import Program, Random, Scripted
 from beliefnest.episodes.view import Policy
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.files import read_regular_text
 
-__all__ = ["POLICIES", "Program", "Random", "Scripted", "resolve_policy"]
+if TYPE_CHECKING:
+    from beliefnest.llm.resolve import Connection
+
+__all__ = [
+    "POLICIES",
+    "Program",
+    "Random",
+    "Scripted",
+    "policy_beside",
+    "resolve_policy",
+    "text_of_policy",
+]
 
 POLICIES = (
     "search:ORDER",
@@ -23,15 +35,22 @@ POLICIES = (
 """The forms of names that `resolve_policy` takes."""
 
 _HIGHEST = 4
+_READ = ("program", "scripted")
+"""Policies that stand in files."""
 
 
-def resolve_policy(name: str, environment: Mapping[str, str] | None = None) -> Policy:
+def resolve_policy(
+    name: str,
+    environment: Mapping[str, str] | None = None,
+    connection: "Connection | None" = None,
+) -> Policy:
     """The policy of a name.
 
     Args:
         name: As in `POLICIES`. A file of `scripted` has programs between lines of `---`; a model is
             `offline` or `PROVIDER:NAME`.
         environment: Holds keys and base URLs of models; None: that of the process.
+        connection: What is put around a model; None: retries and limits alone.
 
     Raises:
         UnknownNameError: There is no such policy.
@@ -45,7 +64,9 @@ def resolve_policy(name: str, environment: Mapping[str, str] | None = None) -> P
             text = _text(rest)
             return Program(text) if kind == "program" else Scripted(_programs(text))
         case "model" if rest:
-            return _model(rest, name, os.environ if environment is None else environment)
+            return _model(
+                rest, name, os.environ if environment is None else environment, connection
+            )
         case "search" if rest:
             from beliefnest.episodes.policies.search import Search
 
@@ -57,17 +78,34 @@ def resolve_policy(name: str, environment: Mapping[str, str] | None = None) -> P
     raise UnknownNameError(f"no policy {name!r}; write one of {', '.join(POLICIES)}")
 
 
-def _model(rest: str, name: str, environment: Mapping[str, str]) -> Policy:
+def text_of_policy(name: str) -> str:
+    """What is read from the file of a policy; empty: it has none.
+
+    Raises:
+        InputError: It cannot be read.
+    """
+    kind, _, file = name.partition(":")
+    return _text(file) if kind in _READ and file else ""
+
+
+def policy_beside(name: str, folder: Path) -> str:
+    """The name of a policy whose file, if it has one, is looked for in a folder."""
+    kind, colon, file = name.partition(":")
+    return f"{kind}:{folder / file}" if kind in _READ and colon else name
+
+
+def _model(
+    rest: str, name: str, environment: Mapping[str, str], connection: "Connection | None"
+) -> Policy:
     from beliefnest.episodes.policies.model import ModelPolicy, OmniscientModelPolicy
     from beliefnest.llm.resolve import Connection, open_model
 
     model_name, colon, order = rest.rpartition(":")
     if not colon:
         raise InputError(f"{name!r} is not complete; write model:MODEL:ORDER")
-    if order == "omniscient":
-        return OmniscientModelPolicy(open_model(model_name, environment, Connection()), 2)
-    number = order_of(order, name)
-    return ModelPolicy(open_model(model_name, environment, Connection()), number)
+    number = 2 if order == "omniscient" else order_of(order, name)
+    model = open_model(model_name, environment, connection or Connection())
+    return (OmniscientModelPolicy if order == "omniscient" else ModelPolicy)(model, number)
 
 
 def order_of(text: str, name: str) -> int:

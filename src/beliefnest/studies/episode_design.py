@@ -1,0 +1,179 @@
+"""What a study of episodes combines, checked."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from beliefnest.bodies.worlds import check_world
+from beliefnest.errors import InputError
+from beliefnest.llm.budget import RunLimits
+
+__all__ = [
+    "EpisodeDesign",
+    "Order",
+    "Player",
+    "Policies",
+    "check_episodes_alone",
+    "seeds_of",
+]
+
+Order = int | Literal["omniscient"]
+Policies = str | Mapping[str, str]
+"""A policy of all players, or of each agent by its name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Player:
+    """Who plays.
+
+    Attributes:
+        name: `search`, `model:MODEL`, or a policy as it was named.
+        order: Order of Theory of Mind; None: the name says all.
+        policies: What the command line calls it.
+    """
+
+    name: str
+    order: Order | None
+    policies: Policies
+
+    @property
+    def text(self) -> str:
+        """All of it as one text."""
+        if isinstance(self.policies, str):
+            return self.policies
+        return ",".join(f"{agent}={policy}" for agent, policy in self.policies.items())
+
+
+@dataclass(frozen=True)
+class EpisodeDesign:
+    """What a study of episodes combines.
+
+    Attributes:
+        tasks: Names of built-in tasks or scenarios, or paths of files of either.
+        policies: Of all players, or mappings from agent to policy. `search` stands for `search` of
+            each of the `orders`; all others are as on the command line.
+        models: Names of models that play, each at each of the `orders`.
+        orders: Orders of Theory of Mind; `omniscient` is an upper bound.
+        seeds: Which instances; of the first repeat also the seeds of the episodes.
+        repeats: How often each cell is played.
+        variations: Lists of values of parameters, of which all combinations are cells.
+        conditions: Numbers of conditions of scenarios; None: as written.
+        world: Name of the world.
+        help: Whether help is measured, for which branches are played.
+        limits: What the whole study may spend.
+    """
+
+    tasks: tuple[str, ...]
+    policies: tuple[Policies, ...] = ()
+    models: tuple[str, ...] = ()
+    orders: tuple[Order, ...] = ()
+    seeds: tuple[int, ...] = (0,)
+    repeats: int = 1
+    variations: Mapping[str, Sequence[Any]] = field(default_factory=dict)
+    conditions: tuple[int, ...] | None = None
+    world: str = "scripted"
+    help: bool = False
+    limits: RunLimits = field(default_factory=RunLimits)
+
+    def __post_init__(self) -> None:
+        lists: Mapping[str, Sequence[Any]] = {
+            "tasks": self.tasks,
+            "policies": self.policies,
+            "models": self.models,
+            "orders": self.orders,
+            "seeds": self.seeds,
+        }
+        for name, values in lists.items():
+            twice = [value for value in values if values.count(value) > 1]
+            if twice:
+                raise InputError(f"{name}: {twice[0]!r} is named twice; use repeats to do it again")
+        for name in ("tasks", "seeds"):
+            if not lists[name]:
+                raise InputError(f"a study without {name} has no cells; name at least one")
+        if not self.policies and not self.models:
+            raise InputError("a study of episodes needs policies, or models and orders, that play")
+        if not self.orders and (self.models or "search" in self.policies):
+            raise InputError("orders is empty; models and search play at the orders named there")
+        for order in self.orders:
+            if order != "omniscient" and (isinstance(order, bool) or not isinstance(order, int)):
+                raise InputError(f"orders has {order!r}; give whole numbers, or 'omniscient'")
+        if isinstance(self.repeats, bool) or not isinstance(self.repeats, int) or self.repeats < 1:
+            raise InputError(f"repeats is {self.repeats!r}; it must be a whole number, at least 1")
+        for name, values in self.variations.items():
+            if isinstance(values, str) or not isinstance(values, Sequence) or not values:
+                raise InputError(
+                    f"variations of {name!r} are {values!r}; give a list of at least one value"
+                )
+        check_world(self.world, servers=False)
+
+    @property
+    def players(self) -> tuple[Player, ...]:
+        """Everybody who plays, in order."""
+        return tuple(self._players())
+
+    def _players(self) -> Iterator[Player]:
+        for policies in self.policies:
+            if policies == "search":
+                for order in self.orders:
+                    name = "omniscient:search" if order == "omniscient" else f"search:{order}"
+                    yield Player("search", order, name)
+            else:
+                player = Player("", None, policies)
+                yield Player(player.text, None, policies)
+        for model in self.models:
+            for order in self.orders:
+                yield Player(f"model:{model}", order, f"model:{model}:{order}")
+
+    @property
+    def setting(self) -> dict[str, Any]:
+        """What decides about the result of every cell."""
+        return {"world": self.world, **({"help": True} if self.help else {})}
+
+    def plain(self) -> dict[str, Any]:
+        """What a study's plan says of it."""
+        return {
+            "tasks": list(self.tasks),
+            "players": [player.text for player in self.players],
+            "models": list(self.models),
+            "orders": list(self.orders),
+            "seeds": list(self.seeds),
+            "repeats": self.repeats,
+            "variations": {name: list(values) for name, values in self.variations.items()},
+            "conditions": None if self.conditions is None else list(self.conditions),
+            **self.setting,
+        }
+
+
+def seeds_of(seeds: Sequence[int] | int, first: int) -> tuple[int, ...]:
+    """Which instances are played: so many from the first on, or those that are listed.
+
+    Raises:
+        InputError: It is no number of them.
+    """
+    if isinstance(seeds, int):
+        if isinstance(seeds, bool) or seeds < 1:
+            raise InputError(f"seeds is {seeds!r}; give at least 1, or a list of seeds")
+        return tuple(range(first, first + seeds))
+    return tuple(seeds)
+
+
+def check_episodes_alone(
+    scenarios: Sequence[str] | str,
+    templates: Sequence[str] | str | None,
+    constraints: object,
+    claims_from: str | None,
+) -> None:
+    """Refuse what a study of episodes does not combine.
+
+    Raises:
+        InputError: Something of it is given.
+    """
+    given = {
+        "scenarios": scenarios,
+        "templates": templates,
+        "constraints": constraints,
+        "claims_from": claims_from,
+    }
+    for name, value in given.items():
+        if value:
+            raise InputError(f"{name} cannot stand beside tasks; make two studies of it")

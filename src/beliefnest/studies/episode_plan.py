@@ -1,0 +1,170 @@
+"""The cells of a study of episodes."""
+
+import itertools
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from beliefnest.episodes.policies import resolve_policy, text_of_policy
+from beliefnest.episodes.task import Task
+from beliefnest.errors import BeliefNestError, MissingExtraError, ModelError
+from beliefnest.studies.episode_design import EpisodeDesign, Player
+from beliefnest.studies.plan import SEEDS, Invalid, Plan, digest
+
+__all__ = ["EpisodeCell", "EpisodeKey", "plan_episodes"]
+
+
+@dataclass(frozen=True, slots=True)
+class EpisodeKey:
+    """What tells a cell from all others.
+
+    Attributes:
+        task: Name of the task.
+        content: A hash of the instance, and of the files that policies are read from.
+        condition: Number of a scenario's condition; None: as written.
+        variation: Values of parameters.
+        player: What stands in the table for who plays.
+        order: Its order of Theory of Mind, as text; empty: `player` says all.
+        policies: By agent, who plays it, of those that the study names.
+        instance: Which instance of a built-in task.
+        repeat: Number of the repeat, from 1.
+        setting: What else decides about results.
+    """
+
+    task: str
+    content: str
+    condition: int | None
+    variation: Mapping[str, Any]
+    player: str
+    order: str
+    policies: Mapping[str, str]
+    instance: int
+    repeat: int
+    setting: Mapping[str, Any]
+
+    @property
+    def name(self) -> str:
+        """Sixteen letters and digits, the same for the same cell on every machine."""
+        return digest(self.content_json())[:16]
+
+    def content_json(self) -> dict[str, Any]:
+        """All of it as plain values."""
+        return {
+            "task": self.task,
+            "content": self.content,
+            "condition": self.condition,
+            "variation": dict(self.variation),
+            "player": self.player,
+            "order": self.order,
+            "policies": dict(self.policies),
+            "instance": self.instance,
+            "repeat": self.repeat,
+            "setting": dict(self.setting),
+        }
+
+    @property
+    def seed(self) -> int:
+        """Drives every random number; the same for all players of one repeat of an instance."""
+        if self.repeat == 1:
+            return self.instance
+        return int(digest([self.instance, self.repeat]), 16) % SEEDS
+
+
+@dataclass(frozen=True)
+class EpisodeCell:
+    """An instance of a task, to be played by somebody once."""
+
+    key: EpisodeKey
+    task: Task
+
+    def plain(self) -> dict[str, Any]:
+        """What a study's plan says of it."""
+        key = self.key
+        return {"name": key.name, "key": key.content_json(), "seed": key.seed}
+
+
+def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
+    """The plan of a study of episodes; what is done first is a smaller study of the same form.
+
+    Raises:
+        UnknownNameError: There is no such task or policy.
+        ScenarioError: A task's file is wrong.
+        InputError: A policy's file cannot be read.
+    """
+    texts = {player.text: _texts(player) for player in design.players}
+    found: list[EpisodeCell | Invalid] = []
+    for name, condition in itertools.product(design.tasks, design.conditions or (None,)):
+        # As it is written it has to be right: a fault in it is no matter of a variation.
+        Task.load(name, design.seeds[0])
+        for values in itertools.product(*design.variations.values()):
+            variation = dict(zip(design.variations, values, strict=True))
+            try:
+                tasks = {
+                    seed: Task.load(name, seed, condition=condition, **variation)
+                    for seed in design.seeds
+                }
+            except MissingExtraError:
+                raise
+            except BeliefNestError as error:
+                found.append(Invalid(name, condition, variation, str(error)))
+                continue
+            found += _cells(design, _Place(name, condition, variation), tasks, texts)
+    cells = [each for each in found if isinstance(each, EpisodeCell)]
+    seeds = {seed: number for number, seed in enumerate(design.seeds)}
+    cells.sort(key=lambda cell: (cell.key.repeat, seeds[cell.key.instance]))
+    return Plan(tuple(cells), tuple(each for each in found if isinstance(each, Invalid)))
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """Where a cell stands in a study, but for who plays, and which instance and repeat it is."""
+
+    name: str
+    condition: int | None
+    variation: Mapping[str, Any]
+
+
+def _cells(
+    design: EpisodeDesign, place: _Place, tasks: Mapping[int, Task], texts: Mapping[str, list[str]]
+) -> Iterator[EpisodeCell | Invalid]:
+    instances = {seed: digest(task.plain()) for seed, task in tasks.items()}
+    for player in design.players:
+        policies = _policies(tasks[design.seeds[0]], player)
+        strange = sorted(policies.keys() - set(tasks[design.seeds[0]].agents))
+        if strange:
+            why = f"{place.name} has no agent {strange[0]!r} for the policies {player.text}"
+            yield Invalid(place.name, place.condition, place.variation, why)
+            continue
+        for seed, repeat in itertools.product(design.seeds, range(1, design.repeats + 1)):
+            key = EpisodeKey(
+                task=tasks[seed].name,
+                content=digest([instances[seed], texts[player.text]])[:16],
+                condition=place.condition,
+                variation=place.variation,
+                player=player.name,
+                order="" if player.order is None else str(player.order),
+                policies=policies,
+                instance=seed,
+                repeat=repeat,
+                setting=design.setting,
+            )
+            yield EpisodeCell(key, tasks[seed])
+
+
+def _policies(task: Task, player: Player) -> dict[str, str]:
+    if isinstance(player.policies, str):
+        return dict.fromkeys(task.players, player.policies)
+    return dict(player.policies)
+
+
+def _texts(player: Player) -> list[str]:
+    """What the policies of a player are read from; that there is no such policy is told here."""
+    policies = player.policies
+    names = [policies] if isinstance(policies, str) else list(policies.values())
+    for name in names:
+        try:
+            resolve_policy(name)
+        except ModelError:
+            # The machines of a cluster may have keys that this one has not.
+            continue
+    return [text_of_policy(name) for name in names]

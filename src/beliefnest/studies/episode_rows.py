@@ -1,0 +1,121 @@
+"""The table of a study of episodes: one row for each episode, from what its folder holds."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from beliefnest.episodes.measures import Measures
+from beliefnest.studies.rows import FAILED, plain_value, variation_columns
+from beliefnest.studies.store import StudyFolder
+from beliefnest.studies.table import Table
+
+__all__ = ["EPISODES"]
+
+_COLUMNS = {
+    "player": "string",
+    "order": "string",
+    "policy": "string",
+    "instance": "int64",
+    "repeat": "int64",
+    "seed": "int64",
+    "needs": "int64",
+    "ok": "bool",
+    "outcome": "string",
+    "why_not": "string",
+    "ticks": "int64",
+    "rounds": "int64",
+    "messages": "int64",
+    "claims": "int64",
+    "true_claims": "int64",
+    "false_claims": "int64",
+    "lies": "int64",
+    "taken_up": "int64",
+    "not_taken_up": "int64",
+    "help_needed": "int64",
+    "help_given": "int64",
+    "help_superfluous": "int64",
+    "acted_on_false": "int64",
+    "false_beliefs": "int64",
+    "false_beliefs_mean": "float64",
+    "false_beliefs_over_time": "string",
+    "lost_rounds": "int64",
+    "failed_programs": "int64",
+    "requests": "int64",
+    "tokens": "int64",
+    "cost": "float64",
+    "policies": "string",
+    "run": "string",
+    "cell": "string",
+}
+"""Columns after `task`, `condition` and those of variations, and their types; what they mean is
+told at `Measures`. `needs` is the order that the task needs, `order` that of who plays."""
+
+
+_MEASURED = [
+    name
+    for name in _COLUMNS
+    if name in Measures.__dataclass_fields__ and name not in ("order", "seed")
+]
+
+
+def _rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """The rows of all planned episodes that have been tried, in the order of the plan."""
+    columns = variation_columns(plan)
+    for cell in plan["cells"]:
+        found = folder.cell(cell["name"])
+        if found is None:
+            continue
+        key = cell["key"]
+        about = {
+            "task": key["task"],
+            "condition": key["condition"],
+            **{name: plain_value(key["variation"].get(name)) for name in columns},
+            "player": key["player"],
+            "order": key["order"] or None,
+            "policy": f"{key['player']}:{key['order']}" if key["order"] else key["player"],
+            "instance": key["instance"],
+            "repeat": key["repeat"],
+            "seed": cell["seed"],
+        }
+        ends = {"run": found.get("run", ""), "cell": cell["name"]}
+        if found["error"] is not None:
+            yield {**about, "outcome": FAILED, "why_not": found["error"], **ends}
+        else:
+            yield {**about, **_measured(found), **ends}
+
+
+def _measured(found: Mapping[str, Any]) -> dict[str, Any]:
+    measures, ok = found["measures"], found["measures"]["success"]
+    told = {name: plain_value(measures[name]) for name in _MEASURED}
+    return {
+        "needs": measures["order"],
+        "ok": ok,
+        "outcome": "ok" if ok else "wrong",
+        "why_not": found["why_not"],
+        **told,
+    }
+
+
+EPISODES = Table(
+    rows=_rows,
+    first={"task": "string", "condition": "int64"},
+    columns=_COLUMNS,
+    identity=("task", "condition", "player", "order", "policy", "instance", "repeat"),
+    groups=("task", "policy"),
+    further_group="condition",
+    compared=("policy",),
+    shown=(
+        *("policy", "instance", "repeat", "outcome", "why_not", "ticks", "rounds", "messages"),
+        *("lies", "acted_on_false", "false_beliefs_over_time", "tokens"),
+    ),
+    same={"policy": ("player", "order"), "player": ("policy",), "order": ("policy",)},
+    means={
+        "ticks": True,
+        "messages": False,
+        "acted_on_false": False,
+        "false_beliefs_mean": False,
+        "help_needed": False,
+        "help_given": False,
+        "help_superfluous": False,
+    },
+)
+"""Of studies of episodes."""

@@ -1,0 +1,126 @@
+"""The file that describes a study."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+import msgspec
+
+from beliefnest.episodes.policies import policy_beside
+from beliefnest.episodes.task import Task
+from beliefnest.errors import BeliefNestError, InputError, ScenarioError
+from beliefnest.llm.budget import RunLimits
+from beliefnest.scenarios.document import Document, plain
+from beliefnest.scenarios.loading import builtin_names
+from beliefnest.scenarios.reading import read_yaml
+from beliefnest.studies.design import Design, template_named
+from beliefnest.studies.episode_design import (
+    EpisodeDesign,
+    Policies,
+    check_episodes_alone,
+    seeds_of,
+)
+
+__all__ = ["read_design"]
+
+
+class _StudyFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The form of a study's file; what each key means is told at `Design` and `EpisodeDesign`."""
+
+    scenarios: list[str] = []
+    models: list[str] | None = None
+    templates: list[str] = []
+    repeats: int = 1
+    seed: int = 0
+    variations: dict[str, list[Any]] | int = {}
+    conditions: list[int] | None = None
+    constraints: list[str] = []
+    world: str | None = None
+    attempts: int = 3
+    temperature: float | None = 0.0
+    max_tokens: int | None = 1_000_000
+    max_cost: float | None = 5.0
+    claims_from: str | None = None
+    tasks: list[str] | None = None
+    policies: list[str | dict[str, str]] = []
+    orders: list[int | Literal["omniscient"]] = []
+    seeds: list[int] | int = 1
+    help: bool = False
+
+
+def read_design(path: Path) -> Design | EpisodeDesign:
+    """The design that a YAML file describes; files that it names are looked for beside it.
+
+    Raises:
+        ScenarioError: The file is wrong; the message names file, line and key.
+    """
+    document = read_yaml(path)
+    try:
+        found = msgspec.convert(plain(document.root), _StudyFile)
+    except msgspec.ValidationError as error:
+        raise _fault(document, str(error)) from None
+    try:
+        return _scenarios(found, path) if found.tasks is None else _episodes(found, path)
+    except BeliefNestError as error:
+        key = next((key for key in _StudyFile.__struct_fields__ if key in str(error)), None)
+        raise document.fault((key,) if key else (), str(error)) from None
+
+
+def _scenarios(found: _StudyFile, path: Path) -> Design:
+    if found.policies or found.orders:
+        raise InputError("policies and orders are for tasks; name tasks to play episodes")
+    return Design(
+        scenarios=tuple(_beside(name, path, builtin_names()) for name in found.scenarios),
+        models=("offline",) if found.models is None else tuple(found.models),
+        templates=tuple(template_named(name, path.parent) for name in found.templates),
+        repeats=found.repeats,
+        seed=found.seed,
+        variations=found.variations,
+        conditions=None if found.conditions is None else tuple(found.conditions),
+        constraints=tuple(found.constraints),
+        world="embedded" if found.world is None else found.world,
+        attempts=found.attempts,
+        temperature=found.temperature,
+        limits=RunLimits(found.max_tokens, found.max_cost),
+        claims_from=found.claims_from,
+    )
+
+
+def _episodes(found: _StudyFile, path: Path) -> EpisodeDesign:
+    check_episodes_alone(found.scenarios, found.templates, found.constraints, found.claims_from)
+    if isinstance(found.variations, int):
+        raise InputError("variations of tasks are lists; give `seeds` for instances")
+    known = [*Task.names(), *builtin_names()]
+    return EpisodeDesign(
+        tasks=tuple(_beside(name, path, known) for name in found.tasks or ()),
+        policies=tuple(_policies_beside(each, path.parent) for each in found.policies),
+        models=() if found.models is None else tuple(found.models),
+        orders=tuple(found.orders),
+        seeds=seeds_of(found.seeds, found.seed),
+        repeats=found.repeats,
+        variations=found.variations,
+        conditions=None if found.conditions is None else tuple(found.conditions),
+        world="scripted" if found.world is None else found.world,
+        help=found.help,
+        limits=RunLimits(found.max_tokens, found.max_cost),
+    )
+
+
+def _policies_beside(policies: Policies, folder: Path) -> Policies:
+    if isinstance(policies, str):
+        return policy_beside(policies, folder)
+    return {agent: policy_beside(name, folder) for agent, name in policies.items()}
+
+
+def _beside(name: str, path: Path, known: Sequence[str]) -> str:
+    return name if name in known else str(path.parent / name)
+
+
+def _fault(document: Document, error: str) -> ScenarioError:
+    what, _, place = error.partition(" - at `$.")
+    key = place.rstrip("`").partition("[")[0].partition(".")[0]
+    if what.startswith("Object contains unknown field"):
+        key = what.split("`")[1]
+        what = f"unknown key; keys are {', '.join(_StudyFile.__struct_fields__)}"
+    what = what[:1].lower() + what[1:].replace("`", "'")
+    return document.fault((key,) if key else (), what)

@@ -1,0 +1,201 @@
+"""Studies of episodes: tasks, instances, policies, models, orders, and all that studies have."""
+
+import itertools
+import os
+import pickle
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import beliefnest as bn
+from beliefnest import frames
+from beliefnest.cli.app import run_command_line
+from beliefnest.studies.store import StudyFolder
+
+TASK = """\
+name: bring
+description: Ann takes the apple; Eve does nothing.
+box: [[0, 0, 0], [8, 3, 6]]
+blocks: [{block: stone, fill: [[0, 0, 0], [8, 0, 6]]}]
+static_blocks: [stone]
+parameters: {spot: {default: [1, 1, 1]}}
+containers: [{at: "${spot}", items: {apple: 1}}, {at: [5, 1, 5]}]
+agents: {ann: {position: [3.5, 1, 3.5]}, eve: {position: [4.5, 1, 3.5]}}
+initial_beliefs: [{path: "/**", containers: [{at: "${spot}", items: {apple: 1}}]}]
+episode:
+  goal: {reach: [{agent: ann, items: {apple: 1}}], never: [{agent: eve, items: {apple: 1}}]}
+  goals: {eve: {}}
+  policies: {eve: random}
+  rounds: 2
+  round_ticks: 10
+"""
+STUDY = """\
+tasks: [bring.yaml]
+policies: [search, "program:idle.js", {ann: "program:take.js", eve: random}]
+orders: [0, 1]
+seeds: 2
+variations: {spot: [[1, 1, 1], [7, 1, 1], [9, 1, 1]]}
+"""
+TAKE = "await getItemFromChest(bot, new Vec3(1, 1, 1), {apple: 1})"
+CELLS = 4 * 2 * 2
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    write_into(tmp_path)
+    return tmp_path
+
+
+def write_into(folder: Path) -> None:
+    (folder / "bring.yaml").write_text(TASK)
+    (folder / "study.yaml").write_text(STUDY)
+    (folder / "idle.js").write_text("")
+    (folder / "take.js").write_text(TAKE)
+
+
+def files_of(folder: Path) -> list[bytes]:
+    names = ("rows.csv", "rows.parquet", "study.html")
+    cells = sorted(folder.glob("cells/*.json"))
+    assert len(cells) == CELLS
+    return [(folder / name).read_bytes() for name in names] + [c.read_bytes() for c in cells]
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The study, played by one process on the command line."""
+    folder = tmp_path_factory.mktemp("whole")
+    write_into(folder)
+    before = Path.cwd()
+    os.chdir(folder)
+    try:
+        command = ["study", "study.yaml", "--out", "out", "--jobs", "1"]
+        assert run_command_line(command) == 1, "not every episode is a success"
+    finally:
+        os.chdir(before)
+    return folder / "out"
+
+
+def test_one_row_for_each_episode(whole: Path) -> None:
+    result = bn.StudyResult.read(whole)
+    frame = result.frame()
+    assert len(frame) == CELLS
+    right = frame.groupby(["policy", "spot"])["ok"].mean().to_dict()
+    assert right[("search:0", "7,1,1")] == right[("search:1", "1,1,1")] == 1
+    assert right[("program:idle.js", "1,1,1")] == 0
+    taken = "ann=program:take.js,eve=random"
+    assert (right[(taken, "1,1,1")], right[(taken, "7,1,1")]) == (1, 0)
+    assert list(frame["seed"].unique()) == [0, 1]
+    lost = frame[frame["policy"] == "program:idle.js"]
+    told = {"not reached: ann has 1 apple", "not to be: eve has 1 apple"}
+    assert set(lost["why_not"]) == told
+    # The third place lies outside the box.
+    assert [each["variation"] for each in result.invalid] == [{"spot": [9, 1, 1]}]
+    assert frames.episodes_df(whole)["cell"].is_unique
+    assert set(frames.cells_df(whole)["player"]) == {"search", "program:idle.js", taken}
+
+
+def test_summaries_have_intervals_and_differences_are_of_pairs(whole: Path) -> None:
+    result = bn.StudyResult.read(whole)
+    summary = result.summary().set_index("policy")
+    assert (summary.loc["search:0", "right"], summary.loc["search:0", "judged"]) == (4, 4)
+    assert summary.loc["search:0", "low"] == pytest.approx(0.5101, abs=1e-4)  # Wilson, 4 of 4
+    ticks = summary.loc["search:0", ["ticks_low", "ticks", "ticks_high"]]
+    assert ticks.iloc[0] <= ticks.iloc[1] <= ticks.iloc[2]
+    differences = result.differences("policy").set_index(["one", "other"])
+    pair = differences.loc[("search:0", "program:idle.js")]
+    assert (pair["pairs"], pair["only_one"], pair["only_other"]) == (4, 4, 0)
+    by_order = result.differences("order")
+    assert list(by_order[["one", "other", "both"]].itertuples(index=False, name=None)) == [
+        ("0", "1", 4)
+    ]
+    assert result.plot().axes[0].get_xlabel() == "task"
+    page = (whole / "study.html").read_text("utf-8")
+    assert "bring.yaml" in page and "<svg" in page and "search:1" in page
+
+
+def test_shards_come_to_the_same_bytes(whole: Path, here: Path) -> None:
+    command = ["study", "study.yaml", "--jobs", "1"]
+    assert run_command_line([*command, "--out", "a", "--shard", "1/2"]) in (0, 1)
+    assert run_command_line([*command, "--out", "b", "--shard", "2/2"]) in (0, 1)
+    assert run_command_line([*command, "--out", "all", "--merge", "a", "--merge", "b"]) == 1
+    assert files_of(here / "all") == files_of(whole)
+
+
+def test_a_cell_is_the_same_in_another_process(whole: Path, here: Path) -> None:
+    for cell in bn.Study.load("study.yaml").plan().cells:
+        assert pickle.loads(pickle.dumps(cell)).key.name == cell.key.name
+        assert (whole / "cells" / f"{cell.key.name}.json").is_file()
+
+
+def test_files_of_policies_are_beside_that_of_the_study(
+    here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (here / "elsewhere").mkdir()
+    monkeypatch.chdir(here / "elsewhere")
+    assert len(bn.Study.load("../study.yaml").plan().cells) == CELLS
+
+
+def test_a_study_goes_on_and_becomes_larger(here: Path) -> None:
+    told: list[Any] = []
+    for seeds, policies in ((1, ["program:idle.js"]), (2, ["program:idle.js", "program:take.js"])):
+        study = bn.Study(tasks="bring.yaml", policies=policies, seeds=seeds)
+        study.run("out", jobs=1, on_progress=told.append)
+    assert [(each.done, each.total) for each in told] == [(0, 1), (1, 1)] + [
+        (done, 4) for done in range(1, 5)
+    ]
+    Path("take.js").write_text("")
+    changed = bn.Study(tasks="bring.yaml", policies=["program:idle.js", "program:take.js"])
+    changed.run("out", jobs=1, on_progress=told.append)
+    # Another program in the file is another policy.
+    assert [each.done for each in told[-2:]] == [1, 2]
+
+
+def test_help_is_measured_where_it_is_asked_for_and_runs_are_kept(here: Path) -> None:
+    study = bn.Study(tasks="help-find", policies="search:1", seeds=[1], help=True)
+    result = study.run("out", jobs=1, record=True)
+    (row,) = result.rows
+    assert (row["help_needed"], row["help_given"], row["help_superfluous"]) == (1, 1, 0)
+    with bn.Episode.resume(here / "out" / row["run"]) as episode:
+        assert episode.policies == {"anne": "search:1", "sally": "search:0"}
+        assert episode.success
+
+
+def test_a_model_that_cannot_be_asked_is_no_result(here: Path, monkeypatch: Any) -> None:
+    monkeypatch.setenv("OPENAI_API_KEY", "none")
+    monkeypatch.setenv("OPENAI_BASE_URL", "http://127.0.0.1:9/v1")
+    study = bn.Study(
+        tasks="bring.yaml", models=["offline", "openai:gpt-4o-mini"], orders=[0], max_tokens=0
+    )
+    result = study.run("out", jobs=1)
+    outcomes = {row["player"]: row["outcome"] for row in result.rows}
+    assert outcomes == {"model:offline": "wrong", "model:openai:gpt-4o-mini": "error"}
+    assert "may use 0" in result.rows[1]["why_not"]
+    folder = StudyFolder.existing("out")
+    assert sum(folder.cell(name)["error"] is None for name in folder.names()) == 1
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ("policies: [search]", "orders is empty"),
+        ("policies: [serach]", "no policy 'serach'"),
+        ("models: [offline]", "orders is empty"),
+        ("orders: [0]", "needs policies"),
+        ("policies: [random]\norders: [one]", "orders"),
+        ("policies: [random]\nseeds: 0", "seeds is 0"),
+        ("policies: [random]\ntemplates: [paper]", "templates cannot stand beside tasks"),
+        ("policies: [random]\nvariations: 3", "variations of tasks are lists"),
+        ("policies: [random, random]", "'random' is named twice"),
+        ("policies: ['program:none.js']", "none.js cannot be read"),
+    ],
+)
+def test_a_wrong_study_is_told_in_one_line(
+    here: Path, capsys: pytest.CaptureFixture[str], more: str, told: str
+) -> None:
+    Path("study.yaml").write_text(f"tasks: [bring.yaml]\n{more}\n")
+    assert run_command_line(["study", "study.yaml", "--out", "out", "--jobs", "1"]) == 2
+    shown = capsys.readouterr().err.splitlines()
+    assert told in shown[-1]
+    assert not list(itertools.chain(Path("out").glob("cells/*.json")))
