@@ -117,6 +117,20 @@ class Channel:
             raise refused
         return _result(op, answer)
 
+    def post(self, op: str, **arguments: Any) -> None:
+        """Send what has no answer, also while a request is under way.
+
+        Raises:
+            BodyLostError: Node takes nothing any more and was killed. If it had ended before, the
+                next request says so.
+        """
+        try:
+            self._send(_packed({"op": op, **arguments}))
+        except _BrokenError as error:
+            raise self._lost(op, str(error)) from error
+        except OSError:
+            return
+
     def kill(self) -> None:
         """End the process at once."""
         self._child.kill()

@@ -48,6 +48,16 @@ class HostedWorld(RealtimeWorld):
         return str(self._address)
 
     @property
+    def origin(self) -> tuple[int, int]:
+        """People are told the scenario's coordinates."""
+        return (0, 0)
+
+    @property
+    def shows_reality(self) -> bool:
+        """False: only who is an agent is in it."""
+        return False
+
+    @property
     def minecraft(self) -> str:
         """The version that it has to be."""
         return MINECRAFT

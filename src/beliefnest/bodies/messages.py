@@ -29,6 +29,7 @@ __all__ = [
     "items_message",
     "percepts_changes",
     "percepts_message",
+    "pose_message",
     "results_of",
     "signs_message",
     "snapshot_message",
@@ -151,7 +152,7 @@ def percepts_message(sensed: Sensed) -> dict[str, Any]:
     """PERCEPTS of an agent whose program begins: all that it knows."""
     return {
         "states": sensed.blocks.astype("<i4").tobytes(),
-        "agents": {name: _pose_message(agent) for name, agent in sensed.agents.items()},
+        "agents": {name: pose_message(agent) for name, agent in sensed.agents.items()},
         "items": items_message(sensed.items),
         **signs_message(sensed.signs),
     }
@@ -163,7 +164,7 @@ def percepts_changes(before: Sensed, after: Sensed, low: Position) -> dict[str, 
     agents: dict[str, Any] = dict.fromkeys(before.agents.keys() - after.agents.keys())
     for name, agent in after.agents.items():
         if before.agents.get(name) != agent:
-            agents[name] = _pose_message(agent)
+            agents[name] = pose_message(agent)
     items: dict[str, Any] = {str(number): None for number in before.items.keys() - after.items}
     for number, item in after.items.items():
         if before.items.get(number) != item:
@@ -182,7 +183,8 @@ def percepts_changes(before: Sensed, after: Sensed, low: Position) -> dict[str, 
     return changes
 
 
-def _pose_message(agent: AgentState) -> dict[str, Any]:
+def pose_message(agent: AgentState) -> dict[str, Any]:
+    """What others see of an agent as a message."""
     return {
         "position": agent.position,
         "yaw": agent.yaw,

@@ -5,9 +5,11 @@ from typing import Self
 from beliefnest.bodies.address import ServerAddress
 from beliefnest.bodies.channel import Channel
 from beliefnest.bodies.embedded import started
+from beliefnest.bodies.exhibits import Exhibit, Plot, Shown
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.node_files import REALTIME
 from beliefnest.bodies.realtime import RealtimeWorld
+from beliefnest.errors import InputError
 
 __all__ = ["MinecraftWorld"]
 
@@ -37,6 +39,28 @@ class MinecraftWorld(RealtimeWorld):
         world = cls(address, seed, limits)
         world._live()
         return world
+
+    @property
+    def origin(self) -> tuple[int, int]:
+        """Where scenario (0, y, 0) lies on the server: x and z."""
+        return self._address.at
+
+    @property
+    def shows_reality(self) -> bool:
+        """True: it stands on the server, for everybody who is there."""
+        return True
+
+    @property
+    def players(self) -> frozenset[str]:
+        """The operator."""
+        return frozenset({self._address.operator})
+
+    def open_exhibit(self, name: str, plot: Plot, shown: Shown) -> Exhibit:
+        """Refused: nobody can visit beliefs on a server elsewhere yet."""
+        raise InputError(
+            "beliefs cannot be visited on a server elsewhere; play in the embedded world: "
+            "Nest.open(..., realtime=True, listen=25565)"
+        )
 
     @property
     def pid(self) -> int:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 from beliefnest.bodies.channel import Channel
 from beliefnest.bodies.embedded import EmbeddedBody, EmbeddedWorld
+from beliefnest.bodies.exhibits import Exhibit, Plot, Shown
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.protocol import Body, Sink
 from beliefnest.errors import BodyError
@@ -80,6 +81,30 @@ class RealtimeWorld(ABC):
         self._beliefs.interrupt()
         if self._channel is not None:
             self._channel.kill()
+
+    @property
+    @abstractmethod
+    def origin(self) -> tuple[int, int]:
+        """Where scenario (0, y, 0) of reality lies in Minecraft: x and z."""
+
+    @property
+    @abstractmethod
+    def shows_reality(self) -> bool:
+        """Whether visitors see reality itself; if not, they need to be shown it as beliefs are."""
+
+    @property
+    def players(self) -> frozenset[str]:
+        """Names of players besides the agents."""
+        return frozenset()
+
+    def open_exhibit(self, name: str, plot: Plot, shown: Shown) -> Exhibit:
+        """Let people see what a simulator holds, at a place of its own.
+
+        Raises:
+            WorldError: The place on a server holds other blocks.
+            BodyError: It could not be built.
+        """
+        return Exhibit.opened(self._live(), name, plot, shown)
 
     def _live(self) -> Channel:
         """The channel to the process of the real world, started if none is running."""

@@ -9,11 +9,21 @@ from beliefnest.bodies.hosted import HostedWorld
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.listening import DEFAULT_PORT, ListenAddress, is_hosted
 from beliefnest.bodies.protocol import Body, Sink, World
+from beliefnest.bodies.realtime import RealtimeWorld
 from beliefnest.bodies.scripted import ScriptedBodies
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.world.frames import Snapshot
 
-__all__ = ["WORLDS", "LazyWorld", "Worlds", "check_world", "hosted_of", "open_world", "world_name"]
+__all__ = [
+    "WORLDS",
+    "LazyWorld",
+    "Worlds",
+    "check_world",
+    "hosted_of",
+    "open_world",
+    "realtime_of",
+    "world_name",
+]
 
 WORLDS = ("embedded", "scripted")
 """Names of the worlds; any other one is the address of a server, `minecraft://HOST:PORT`, or of
@@ -105,6 +115,23 @@ def hosted_of(world: World) -> HostedWorld | None:
             return None
 
 
+def realtime_of(world: World) -> RealtimeWorld | None:
+    """The world that goes on in real time, also if it is lent; None if it is of another kind.
+
+    Raises:
+        BodyError: It had not been started, and cannot be.
+    """
+    match world:
+        case RealtimeWorld():
+            return world
+        case LazyWorld():
+            return realtime_of(world.started()) if world.is_realtime else None
+        case _SharedWorld():
+            return realtime_of(world.inner)
+        case _:
+            return None
+
+
 class LazyWorld:
     """A world that is started when its first body is opened.
 
@@ -145,9 +172,22 @@ class LazyWorld:
         Raises:
             BodyError: The world could not be started.
         """
+        return self.started().open_body(name, seed, snapshot, sink)
+
+    @property
+    def is_realtime(self) -> bool:
+        """Whether it goes on in real time, where people can stand in it."""
+        return is_server(self._name) or is_hosted(self._name)
+
+    def started(self) -> World:
+        """The world itself, started if it is not yet.
+
+        Raises:
+            BodyError: It could not be started.
+        """
         if self._world is None:
             self._world = open_world(self._name, self._seed, self._limits)
-        return self._world.open_body(name, seed, snapshot, sink)
+        return self._world
 
     def another(self) -> World:
         """One more world of the kind, started with its first body."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from beliefnest.bodies.protocol import Body, Sense, World
 from beliefnest.errors import BodyError, BranchError, WorldError
+from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.nest.acting.frame_recorder import ChatListener, FrameRecorder
 from beliefnest.nest.acting.hearsay import ClaimReader, Hearsay
 from beliefnest.nest.acting.lives import Lives
@@ -46,6 +47,7 @@ class Bodies:
         world: Where they live.
         others: Further worlds of the kind, for programs that run at the same time.
         chat_listeners: Called on what is said in the real world.
+        embodying: What people who visit beliefs are shown.
     """
 
     def __init__(
@@ -55,6 +57,7 @@ class Bodies:
         self.others: list[World] = []
         self.chat_listeners: list[ChatListener] = []
         self._recording = recording
+        self.embodying = Embodying(recording, world)
         self._hearsay = None
         if reader is not None:
             self._hearsay = Hearsay(reader, recording.setting, recording.history)
@@ -95,7 +98,11 @@ class Bodies:
     def _recorder(self, key: TimelineKey) -> FrameRecorder:
         recording = self._recording
         on_chat = self._tell_chat if key.path == () else None
-        return FrameRecorder(recording.journal, recording.history, key, self._hearsay, on_chat)
+        # Of reality alone: what goes on faster than real time nobody could watch.
+        follower = self.embodying if key.path == () else None
+        return FrameRecorder(
+            recording.journal, recording.history, key, self._hearsay, on_chat, follower
+        )
 
     def _tell_chat(self, tick: int, speaker: str, text: str) -> None:
         for listener in self.chat_listeners:
@@ -216,6 +223,7 @@ class Bodies:
                 self._embodied[path].recorder.drop()
             # What was read meanwhile, here or in what is based on it, has not happened.
             self._recording.history.forget_all()
+            self.embodying.look_again()
             self.restore(path)
             raise
 

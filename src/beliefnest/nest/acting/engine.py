@@ -45,6 +45,20 @@ def _surviving(
     return again
 
 
+def _shown(
+    method: Callable[Concatenate["Engine", P], R],
+) -> Callable[Concatenate["Engine", P], R]:
+    """Let people who visit beliefs see what has come of a method."""
+
+    @wraps(method)
+    def visible(self: "Engine", /, *args: P.args, **kwargs: P.kwargs) -> R:
+        result = method(self, *args, **kwargs)
+        self.bodies.embodying.keep_up()
+        return result
+
+    return visible
+
+
 class Engine:
     """Acts in the world of one nest and records what happens.
 
@@ -73,6 +87,7 @@ class Engine:
         self.bodies.lives().call(lambda: self.bodies.open(key, snapshot))
         return self
 
+    @_shown
     @_surviving
     def fork(self, path: Path, name: str, tick: int | None) -> None:
         """Begin a branch at the current tick, or at a past one, and select it."""
@@ -92,6 +107,7 @@ class Engine:
                 journal.append(key, [start.frame], base.tick)
             journal.records.select(path, name)
 
+    @_shown
     @_surviving
     def select(self, key: TimelineKey) -> None:
         """Put a simulator on a timeline it has, in the world too."""
@@ -100,6 +116,7 @@ class Engine:
             with self.bodies.selecting(key, self.bodies.recorded(key)):
                 self.recording.journal.records.select(key.path, key.branch)
 
+    @_shown
     def follow(self, path: Path) -> None:
         """Put a simulator into follow mode; its body is given up."""
         if path == ():
@@ -141,6 +158,7 @@ class Engine:
         """The body of a simulator in control mode; see `Bodies.of`."""
         return self.bodies.of(path)
 
+    @_shown
     def run(
         self,
         path: Path,
@@ -239,12 +257,14 @@ class Engine:
         with self.bodies.speculated(path, speculation):
             return self.run(path, programs, timeout_ticks)
 
+    @_shown
     @_surviving
     def step(self, path: Path, ticks: int) -> None:
         """Let ticks pass in a body."""
         with self.bodies.acting(path) as body:
             body.step(ticks)
 
+    @_shown
     @_surviving
     def edit(
         self,

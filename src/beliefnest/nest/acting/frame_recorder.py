@@ -1,6 +1,7 @@
 """The recorder of one body: appends its frames to the timeline that the body is on."""
 
 from collections.abc import Callable, Iterator
+from typing import Protocol
 
 from beliefnest.nest.acting.hearsay import Hearsay, has_unread
 from beliefnest.nest.past.history import History
@@ -19,6 +20,17 @@ ChatListener = Callable[[int, str, str], None]
 _BATCH = 256
 
 
+class Follower(Protocol):
+    """What is kept up to date with what is recorded."""
+
+    @property
+    def follows(self) -> bool:
+        """Whether there is anything to keep up to date."""
+
+    def keep_up(self) -> None:
+        """Bring it up to date."""
+
+
 class FrameRecorder:
     """Takes a body's frames and appends them to the timeline it is on.
 
@@ -30,6 +42,8 @@ class FrameRecorder:
         key: The timeline.
         hearsay: Completes frames in which something is said; None: they are recorded as they are.
         on_chat: Is called with what was said, once it is recorded; None: nobody is.
+        follower: What is to be kept up to date with every frame, also while a call is under way;
+            None: nothing is.
     """
 
     def __init__(
@@ -39,8 +53,10 @@ class FrameRecorder:
         key: TimelineKey,
         hearsay: Hearsay | None = None,
         on_chat: ChatListener | None = None,
+        follower: Follower | None = None,
     ) -> None:
         self.key = key
+        self._follower = follower
         self._on_chat = on_chat
         self._said: list[Utterance] = []
         self.batched = False
@@ -60,11 +76,14 @@ class FrameRecorder:
             self._frames.append(frame)
         if self._on_chat is not None:
             self._said.extend(_said_in(frame))
+        followed = self._follower is not None and self._follower.follows
         if not self.batched:
             self.flush()
             self.keep_up()
-        elif len(self._frames) >= _BATCH:
+        elif followed or len(self._frames) >= _BATCH:
             self.flush()
+        if self._follower is not None and followed:
+            self._follower.keep_up()
 
     def flush(self, tick: int | None = None) -> None:
         """Write what was taken; `tick` is the body's tick by now."""

@@ -26,6 +26,7 @@ from beliefnest.nest.face.telling import Telling
 from beliefnest.nest.face.ticks import tick_of
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.face.viewing import Viewing
+from beliefnest.nest.face.visiting import Visiting
 from beliefnest.nest.face.waiting import Waiting
 from beliefnest.nest.past.over_time import each_tick
 from beliefnest.nest.past.setting import Setting
@@ -40,7 +41,7 @@ from beliefnest.world.values import Position
 __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 
 
-class Nest(Looking, Viewing, Telling, Comparing, Waiting, Joining):
+class Nest(Looking, Viewing, Telling, Comparing, Waiting, Joining, Visiting):
     """The real world and every belief in it; each node is made on first use.
 
     `Nest(world)` wraps a `ScriptedWorld` and follows what happens in it; `Nest.open` opens a

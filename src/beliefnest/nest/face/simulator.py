@@ -252,6 +252,33 @@ class Simulator(ShownSimulator):
         self._engine.edit(self._path, states, {p: dict(i) for p, i in (containers or {}).items()})
 
     @in_turn
+    def embody(self, stands: bool = True, *, unknown: str = "air") -> None:
+        """Let what it holds stand in Minecraft, for people to visit, or no longer.
+
+        It stands beyond view distance of reality and is kept up to date, tick by tick, as long as
+        the nest lets time pass: blocks, what is known of contents, signs, and agents of known
+        pose, under names of their own. `Nest.layout` says where, and how to go there. It is what
+        the simulator holds on whatever branch it is; nothing that is done there changes it.
+
+        Args:
+            stands: Whether it is to stand there. If it does, or does not, nothing happens.
+            unknown: The block that unknown ones are shown as.
+
+        Raises:
+            InputError: It is the real world, or people cannot come into this world.
+            UnknownNameError: There is no such block.
+            WorldError: The place on a server holds other blocks.
+            BodyError: It could not be built.
+        """
+        if stands is not True and stands is not False:
+            raise InputError(f"embody({stands!r}): give True, or False to end it")
+        embodying = self._engine.bodies.embodying
+        if stands:
+            embodying.begin(self._path, unknown)
+        else:
+            embodying.end(self._path)
+
+    @in_turn
     def imagine(self, depth: int = 1) -> Imagination:
         """What it holds now as a world of its own, to try courses in; nothing is recorded.
 

@@ -2,7 +2,7 @@
 /** Runs the programs of agents in one region, together, tick by tick. */
 const { stopBot } = require('./bots/bot')
 const { View } = require('./percepts/view')
-const { statesOf } = require('./regions/regions')
+const { statesOf } = require('./regions/box')
 const { Random } = require('./time/random')
 
 const MOST_AIMS = 100

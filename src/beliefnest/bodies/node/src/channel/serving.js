@@ -10,7 +10,7 @@ const LIFELINE_FILE = 'lifeline.js'
 
 /**
  * @param {(post: function(object): void, beat: function(object): void, ask: function(object): Promise<object>) => object} makeHandler
- *   gives who answers: `answer(request)`, `prepare()`; `ask` sends a question and resolves with what the other side says to it
+ *   gives who answers: `answer(request)`, `prepare()`, `note(message)` of what asks for no answer; `ask` sends a question and resolves with what the other side says to it
  * @param {number} descriptor of the channel
  * @param {number} lifeline another one
  */
@@ -29,6 +29,7 @@ function serve (makeHandler, descriptor, lifeline) {
   const channel = new Channel(stream, request => {
     // What answers a question is no request.
     if (request.op === undefined) asking.resolve(request)
+    else if (request.id === undefined) handler.note(request)
     else turn = turn.then(() => answer(request)).catch(fail)
   })
   async function answer (request) {

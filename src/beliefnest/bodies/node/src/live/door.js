@@ -6,16 +6,19 @@ const { states } = minecraft
 const { TcpEnd } = require('../net/tcpEnd')
 const versions = require('../versions')
 const { CannotListen } = require('./cannotListen')
+const { ease } = require('./ease')
+const { Gallery } = require('./gallery')
 
 // More than there are agents; one who comes too many is told so by name.
 const MOST_CONNECTIONS = 1000
 // Ticks after which one who stands has arrived.
 const STANDING_TICKS = 10
-const NIGHT_VISION = 15
-const FOR_EVER = -1
 // What a handshake asks for who wants to play.
 const LOGIN = 2
 const MOVES = ['position', 'position_look']
+const REALITY = '/'
+// The game's own `/tp`, of oneself.
+const TRAVEL = /^(?:minecraft:)?(?:tp|teleport)(?: @s| (?<who>\w+))? (?<x>-?\d+(?:\.\d+)?) (?<y>-?\d+(?:\.\d+)?) (?<z>-?\d+(?:\.\d+)?)$/
 
 class PersonEnd extends TcpEnd {
   /** @param {(place: {x: number, y: number, z: number}) => boolean} mayBeAt whether somebody may go there */
@@ -40,6 +43,12 @@ class Door {
     // Who is there: player, and for how many ticks where.
     this.present = new Map()
     regions.onTick = region => this.watch(region)
+    this.gallery = new Gallery(regions.serv)
+    const refuse = regions.serv.command
+    regions.serv.command = (player, command) => {
+      const end = this.endOf(player)
+      if (end === null || !this.travel(end, command, text => player.system(text))) refuse(player, command)
+    }
   }
 
   /** @returns {Promise<number>} the port; 0 asked for any. @throws {CannotListen} */
@@ -76,18 +85,68 @@ class Door {
 
   greet (client) {
     const refusal = this.refusal(client.username)
-    if (refusal !== null) {
-      client.end(refusal)
-      return
-    }
+    if (refusal === null) this.inTurn(() => { if (!client.ended) this.letIn(client) })
+    else if (this.mayVisit(client.username)) this.visit(client, this.gallery.entrance)
+    else client.end(refusal)
+  }
+
+  /** Whether somebody who is no agent can come and look: at what is embodied, if anything is. */
+  mayVisit (name) {
+    const { open } = this.regions
+    return open !== null && !open.bodies.has(name) && this.gallery.exhibits.size > 0
+  }
+
+  /** The connection of a person who is an agent now; null if a bot is. */
+  endOf ({ agent, _client: end }) {
+    return this.present.get(agent)?.player._client === end ? end : null
+  }
+
+  /**
+   * Takes a person, an agent or a visitor, to where `/tp X Y Z` says, if they may go there.
+   * @returns {boolean} whether it is that command
+   */
+  travel (end, command, tell) {
+    const { x, y, z, who = end.username } = TRAVEL.exec(command)?.groups ?? {}
+    if (x === undefined || this.gallery.exhibits.size === 0) return false
+    const [place, isSeated] = [{ x: Number(x), y: Number(y), z: Number(z) }, this.present.has(end.username)]
+    const exhibit = this.gallery.at(place)
+    if (who !== end.username) tell('You can go to other places yourself alone.')
+    else if (exhibit === null) tell(`Nothing stands there. ${this.gallery.directions()}`)
+    else if (exhibit.name !== REALITY) this.visit(end.release(), { exhibit, place: centred(place) })
+    else if (isSeated) tell('You are there already, and walk.')
+    else if (this.refusal(end.username) === null) this.comeBack(end.release())
+    else this.visit(end.release(), { exhibit, place: centred(place) })
+    return true
+  }
+
+  comeBack (client) {
     this.inTurn(() => { if (!client.ended) this.letIn(client) })
+  }
+
+  visit (client, { exhibit, place }) {
+    const visitor = this.gallery.admit(client, (each, command) => {
+      if (!this.travel(each.end, command, text => each.system(text))) each.system('Visitors have one command: /tp X Y Z')
+    })
+    visitor.enter(exhibit, place)
+    visitor.system(`${greeting(exhibit)} ${this.gallery.directions()}`)
+  }
+
+  /** What is no longer shown nobody looks at: agents come back to where they stand, visitors have to go. */
+  closeExhibit (name) {
+    for (const { end } of this.gallery.close(name)) {
+      const client = end.release()
+      if (this.refusal(client.username) === null) this.comeBack(client)
+      else if (this.mayVisit(client.username)) this.visit(client, this.gallery.entrance)
+      else client.end('What you looked at is no longer shown')
+    }
   }
 
   /** @returns {string | null} why somebody cannot come in, as a sentence for them */
   refusal (name) {
     const { open } = this.regions
     const free = [...this.invited].filter(agent => !this.present.has(agent))
-    const who = free.length === 0 ? 'nobody else is awaited now' : `come as ${free.join(' or ')}`
+    const look = this.gallery.exhibits.size > 0 && open?.bodies.has(name) ? ', or by another name to look' : ''
+    const who = `${free.length === 0 ? 'nobody else is awaited now' : `come as ${free.join(' or ')}`}${look}`
     if (open === null) return 'Nothing is being played here at this moment; come again when it is'
     if (this.present.has(name)) return `${name} is here already; ${who}`
     if (this.invited.has(name) && open.bodies.has(name)) return null
@@ -135,12 +194,22 @@ function refuseVersion (client, { protocolVersion, nextState }, { version, minec
   client.end(`This is Minecraft ${minecraftVersion}; start the game in that version`)
 }
 
-/** What a game with a screen asks for besides: an end to waiting, and light. */
+/** Tells a person who is an agent from now on who else is there. */
 function equip (end, region) {
-  end.write('game_state_change', { reason: 'level_chunks_load_start', gameMode: 0 })
-  end.write('entity_effect', { entityId: end.player.id, effectId: NIGHT_VISION, amplifier: 0, duration: FOR_EVER, hideParticles: 0 })
+  ease(end, end.player.id)
   const others = [...region.bodies.keys()].filter(agent => agent !== end.username).sort()
   end.player.system(`You are ${end.username}. ${others.length > 0 ? `Here are ${others.join(', ')}. ` : ''}What you do and say is recorded.`)
+}
+
+/** As the game does: whole numbers are the middle of a block. */
+function centred ({ x, y, z }) {
+  const middle = value => Number.isInteger(value) ? value + 0.5 : value
+  return { x: middle(x), y, z: middle(z) }
+}
+
+function greeting ({ name }) {
+  const what = name === REALITY ? 'the real world' : `${name}: what ${name.slice(1).split('/').join(' believes that ')} believes`
+  return `You look at ${what}. Nobody sees or hears you, and nothing can be changed.`
 }
 
 /** What a person cannot do they are told; a client that sends what makes no sense has to go. */

@@ -12,11 +12,13 @@ class TcpEnd extends End {
     super(client.username, client.uuid)
     this.client = client
     this.report = report
-    client.on('packet', (params, { name, state }) => {
-      if (state === 'play') inside(() => this.deliver(name, params))
-    })
-    client.on('error', error => { if (!client.ended) report(error) })
-    client.on('end', reason => inside(() => this.emit('end', reason)))
+    this.isReleased = false
+    this.heard = {
+      packet: (params, { name, state }) => { if (state === 'play') inside(() => this.deliver(name, params)) },
+      error: error => { if (!client.ended) report(error) },
+      end: reason => inside(() => this.emit('end', reason))
+    }
+    for (const [event, listener] of Object.entries(this.heard)) client.on(event, listener)
   }
 
   supportFeature (feature) {
@@ -32,11 +34,21 @@ class TcpEnd extends End {
   }
 
   write (name, params) {
-    if (!this.client.ended) this.client.write(name, params)
+    if (!this.client.ended && !this.isReleased) this.client.write(name, params)
   }
 
   end (reason) {
-    if (!this.client.ended) this.client.end(reason)
+    if (!this.client.ended && !this.isReleased) this.client.end(reason)
+  }
+
+  /** Ends, and leaves the client connected for another end. @returns {import('minecraft-protocol').Client} */
+  release () {
+    for (const [event, listener] of Object.entries(this.heard)) this.client.off(event, listener)
+    this.isReleased = true
+    // Until somebody else listens; an error that nobody hears would end the process.
+    this.client.on('error', () => {})
+    this.emit('end', 'released')
+    return this.client
   }
 }
 

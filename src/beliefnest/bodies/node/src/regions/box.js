@@ -1,5 +1,6 @@
 'use strict'
 /** A box of blocks: two inclusive corners, dense arrays with x slowest and z fastest. */
+const { BadRequest } = require('../channel/errors')
 
 class Box {
   /**
@@ -38,4 +39,17 @@ class Box {
   }
 }
 
-module.exports = { Box }
+/**
+ * @param {Uint8Array} bytes block states of a box as the channel sends them
+ * @returns {Int32Array} in the box's array order
+ * @throws {BadRequest} if they are not as many as the box has
+ */
+function statesOf (bytes, box) {
+  const needed = box.size * Int32Array.BYTES_PER_ELEMENT
+  if (bytes.byteLength !== needed) {
+    throw new BadRequest(`the box has ${box.size} blocks, so "blocks" must have ${needed} bytes; it has ${bytes.byteLength}`)
+  }
+  return new Int32Array(new Uint8Array(bytes).buffer)
+}
+
+module.exports = { Box, statesOf }

@@ -3,7 +3,7 @@
 const { decode, encode } = require('@msgpack/msgpack')
 const { Allotment } = require('./allotment')
 const { Bodies } = require('./bodies')
-const { Box } = require('./box')
+const { Box, statesOf } = require('./box')
 const { buildColumns, dropColumns, readStates } = require('./columns')
 const { applyBlocks, applyContainers, applyItems, applySigns } = require('./changes')
 const { agentStates, containerStates, factsOf, itemStates, settleItems, signStates } = require('./facts')
@@ -189,12 +189,4 @@ function requireHeight ({ minY, worldHeight }, box) {
   throw new BadRequest(`a box lies between y = ${lowest} and y = ${highest}; this one goes from ${box.low[1]} to ${box.high[1]}`)
 }
 
-function statesOf (bytes, box) {
-  const needed = box.size * Int32Array.BYTES_PER_ELEMENT
-  if (bytes.byteLength !== needed) {
-    throw new BadRequest(`the box has ${box.size} blocks, so "blocks" must have ${needed} bytes; it has ${bytes.byteLength}`)
-  }
-  return new Int32Array(new Uint8Array(bytes).buffer)
-}
-
-module.exports = { Regions, statesOf, TICK_MS }
+module.exports = { Regions, TICK_MS }

@@ -5,7 +5,7 @@
  */
 const { setTimeout: sleep } = require('node:timers/promises')
 const { BadRequest } = require('../channel/errors')
-const { Box } = require('../regions/box')
+const { Box, statesOf } = require('../regions/box')
 const { Recorder } = require('../regions/recorder')
 const { vecOf } = require('../server/plugins/lib/positions')
 const { Agents } = require('./agents')
@@ -270,12 +270,6 @@ class RemoteRegions {
 function withEmpty (positions, containers) {
   const said = new Set(containers.map(([x, y, z]) => `${x},${y},${z}`))
   return [...containers, ...positions.filter(position => !said.has(position.join())).map(position => [...position, {}])]
-}
-
-function statesOf (bytes, box) {
-  const needed = box.size * Int32Array.BYTES_PER_ELEMENT
-  if (bytes.byteLength !== needed) throw new BadRequest(`the box has ${box.size} blocks, so "blocks" must have ${needed} bytes; it has ${bytes.byteLength}`)
-  return new Int32Array(new Uint8Array(bytes).buffer)
 }
 
 module.exports = { RemoteRegions }

@@ -42,7 +42,7 @@ module.exports.server = serv => {
 module.exports.player = (player, serv) => {
   /** Everything a client needs in order to be in the world. */
   player.sendWorld = columns => {
-    sendLogin(player, serv)
+    player._client.write('login', loginPacket(serv, player.id, player.gameMode))
     for (const [x, z] of columns) player.sendColumn(x, z)
     player.sendSigns()
     player._client.write('spawn_position', { location: serv.region.spawnPoint, angle: 0 })
@@ -60,12 +60,15 @@ function freeNumber ({ entities }) {
   return number
 }
 
-function sendLogin (player, serv) {
+/** With what a client is let into the world: its packet `login`. */
+module.exports.loginPacket = loginPacket
+
+function loginPacket (serv, entityId, gameMode) {
   const { dimensionCodec, ...packet } = serv.registry.loginPacket
-  player._client.write('login', {
+  return {
     ...packet,
-    entityId: player.id,
-    gameMode: player.gameMode,
+    entityId,
+    gameMode,
     previousGameMode: -1,
     worldNames: Object.values(serv.dimensionNames),
     worldName: serv.dimensionNames[0],
@@ -73,7 +76,7 @@ function sendLogin (player, serv) {
     maxPlayers: 255,
     viewDistance: 32,
     isFlat: true
-  })
+  }
 }
 
 // The tab list first: clients ignore the body of a player they have not been told of.

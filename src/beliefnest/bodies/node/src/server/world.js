@@ -22,17 +22,23 @@ module.exports.player = (player, serv) => {
   player.loadedChunks = {}
 
   player.sendColumn = (chunkX, chunkZ) => {
-    const column = serv.overworld.sync.getColumn(chunkX, chunkZ)
     player.loadedChunks[`${chunkX},${chunkZ}`] = 1
-    player._client.write('map_chunk', {
-      x: chunkX,
-      z: chunkZ,
-      heightmaps: nbt.comp({
-        MOTION_BLOCKING: nbt.longArray(new Array(HEIGHTMAP_LONGS).fill([0, 0]))
-      }),
-      chunkData: column.dump(),
-      blockEntities: [],
-      ...column.dumpLight()
-    })
+    player._client.write('map_chunk', columnPacket(serv.overworld.sync.getColumn(chunkX, chunkZ), chunkX, chunkZ))
+  }
+}
+
+/** What clients are told of a column: its packet `map_chunk`. */
+module.exports.columnPacket = columnPacket
+
+function columnPacket (column, x, z) {
+  return {
+    x,
+    z,
+    heightmaps: nbt.comp({
+      MOTION_BLOCKING: nbt.longArray(new Array(HEIGHTMAP_LONGS).fill([0, 0]))
+    }),
+    chunkData: column.dump(),
+    blockEntities: [],
+    ...column.dumpLight()
   }
 }

@@ -2,11 +2,8 @@
 
 const { cell, containerMenu } = require('./lib/menus')
 const { halvesAt, partnerOf } = require('./lib/doubleChest')
+const { HALF, TITLES, windowOf } = require('./lib/chestWindows')
 
-const HALF = 27
-const WINDOW_9X3 = 2
-const WINDOW_9X6 = 5
-const TITLES = { chest: 'Chest', trapped_chest: 'Trapped Chest', barrel: 'Barrel' }
 const LID_ACTION = 1
 /** Who watches only lifts no lid. */
 const SPECTATOR = 3
@@ -43,10 +40,8 @@ module.exports.server = (serv) => {
       const slots = serv.containers.slots(half)
       return slots.map((_, i) => cell(slots, i))
     })
-    const single = positions.length === 1
     player.lookInto({
-      type: single ? WINDOW_9X3 : WINDOW_9X6,
-      title: single ? TITLES[block.name] : `Large ${TITLES[block.name]}`,
+      ...windowOf(block.name, positions.length),
       positions,
       menu: containerMenu(cells, player),
       closed: () => positions.forEach((half) => showLid(serv, half)),

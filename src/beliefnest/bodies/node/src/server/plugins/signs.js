@@ -1,14 +1,9 @@
 'use strict'
 
-const nbt = require('prismarine-nbt')
 const { EventEmitter } = require('events')
 const { signFlawOf } = require('../../../../../programs/skills/lib/text')
 const { byPlace, keyOf, listOf, vecOf } = require('./lib/positions')
-
-const LINES = 4
-/** Numbers of block entities in 1.20.4. */
-const SIGN = 7
-const HANGING_SIGN = 8
+const { signPacket } = require('./lib/signPacket')
 
 /**
  * What is written on the fronts of signs; backs stay empty. Lines are joined by line breaks, empty ones at the
@@ -79,10 +74,7 @@ module.exports.player = (player, serv) => {
   player.edits = null
 
   player.sendSign = (position) => {
-    const hangs = serv.blocks.at(position).name.endsWith('hanging_sign')
-    player._client.write('tile_entity_data', {
-      location: position, action: hangs ? HANGING_SIGN : SIGN, nbtData: entityOf(serv.signs.get(position))
-    })
+    player._client.write('tile_entity_data', signPacket(position, serv.blocks.at(position).name, serv.signs.get(position)))
   }
 
   /** Tells what is written in the columns that the player was sent. */
@@ -97,16 +89,4 @@ module.exports.player = (player, serv) => {
     serv.signs.set(position, text, player)
   })
   for (const end of ['rest', 'disconnected']) player.on(end, () => { player.edits = null })
-}
-
-/** A sign's data as clients get them. */
-function entityOf (text) {
-  const lines = text.split('\n')
-  const side = (messages) => nbt.comp({
-    has_glowing_text: nbt.byte(0),
-    color: nbt.string('black'),
-    messages: nbt.list(nbt.string(messages.map((line) => JSON.stringify(line)))),
-  })
-  const four = (given) => Array.from({ length: LINES }, (_, i) => given[i] ?? '')
-  return nbt.comp({ is_waxed: nbt.byte(0), front_text: side(four(lines)), back_text: side(four([])) })
 }

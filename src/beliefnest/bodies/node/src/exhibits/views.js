@@ -1,0 +1,79 @@
+'use strict'
+/** An exhibit as packets: what a client that looks at it is told. Numbers of entities are the gallery's. */
+const { angleStep, toDegrees } = require('../server/angles')
+const { agentUuid } = require('../bots/bot')
+const { stacksOf } = require('../server/plugins/lib/items')
+const { halvesAt } = require('../server/plugins/lib/doubleChest')
+const { HALF, windowOf } = require('../server/plugins/lib/chestWindows')
+const { keyOf } = require('../server/plugins/lib/positions')
+const { signPacket } = require('../server/plugins/lib/signPacket')
+const { slotsIn } = require('../remote/kinds')
+
+const SURVIVAL = 0
+const OWN_SLOTS = 36
+/** Number of the protocol by part of the equipment. */
+const PARTS = { main_hand: 0, off_hand: 1, feet: 2, legs: 3, chest: 4, head: 5 }
+const LISTED = { add_player: true, update_game_mode: true, update_listed: true, update_latency: true }
+
+/** @returns {object} the packet `player_info` that lists a player */
+function listing (name, { uuid = agentUuid(name), gamemode = SURVIVAL } = {}) {
+  return { action: LISTED, data: [{ uuid, player: { name, properties: [] }, gamemode, listed: true, latency: 0 }] }
+}
+
+function turned (pose) {
+  const { yaw, pitch } = toDegrees(pose)
+  return { yaw: angleStep(yaw), pitch: angleStep(pitch) }
+}
+
+/** How an agent stands there. */
+function spawning (exhibit, label, pose, entityId, type) {
+  const { x, y, z } = exhibit.toServer(pose.position)
+  const { yaw, pitch } = turned(pose)
+  return { entityId, objectUUID: agentUuid(label), type, x, y, z, yaw, pitch, headPitch: yaw, objectData: 0, velocity: { x: 0, y: 0, z: 0 } }
+}
+
+/** How an agent moves: packets, in order. */
+function moving (exhibit, pose, entityId) {
+  const { x, y, z } = exhibit.toServer(pose.position)
+  const { yaw, pitch } = turned(pose)
+  return [
+    ['entity_teleport', { entityId, x, y, z, yaw, pitch, onGround: pose.on_ground }],
+    ['entity_head_rotation', { entityId, headYaw: yaw }]
+  ]
+}
+
+/** What an agent wears and holds; empty hands too. */
+function wearing ({ equipment }, entityId, { Item, registry }) {
+  const item = name => Item.toNotch(name === undefined ? null : new Item(registry.itemsByName[name].id, 1))
+  return { entityId, equipments: Object.entries(PARTS).map(([part, slot]) => ({ slot, item: item(equipment[part]) })) }
+}
+
+function sign (exhibit, states, [x, y, z]) {
+  const place = { x, y, z }
+  return signPacket(exhibit.toServer([x, y, z]), states.describe(exhibit.at(place)).name, exhibit.signs.get(keyOf(place)) ?? '')
+}
+
+/**
+ * @param {object} place (exhibit)
+ * @returns {{type: number, title: string, items: Array} | null} the window of what stands there; null if nothing opens
+ */
+function inside (exhibit, place, states, { Item, registry }) {
+  const { name } = states.describe(exhibit.at(place))
+  if (slotsIn(name) === 0) return null
+  const halves = halvesAt(each => states.describe(exhibit.at(each)), place)
+  const held = halves.map(half => exhibit.containers.get(keyOf(half)) ?? { items: {}, complete: false })
+  const { type, title } = windowOf(name, halves.length)
+  const slots = held.flatMap(({ items }) => {
+    const stacks = stacksOf(Item, registry, items)
+    return Array.from({ length: HALF }, (_, slot) => stacks[slot] ?? null)
+  })
+  return { type, title: `${title}${known(held)}`, items: [...slots, ...new Array(OWN_SLOTS).fill(null)].map(stack => Item.toNotch(stack)) }
+}
+
+/** What is not known of contents is said in the window's title: an empty window would tell that nothing is in it. */
+function known (held) {
+  if (held.every(({ complete }) => complete)) return ''
+  return held.every(({ items }) => Object.keys(items).length === 0) ? ' (contents unknown)' : ' (known in part)'
+}
+
+module.exports = { inside, listing, moving, sign, spawning, wearing }

@@ -1,0 +1,96 @@
+'use strict'
+/** The exhibits of the embedded server in real time, and who looks at them. */
+const { BadRequest } = require('../channel/errors')
+const { Exhibit } = require('../exhibits/exhibit')
+const { columnsOf } = require('../regions/columns')
+const { blockStates } = require('../server/plugins/lib/states')
+const { columnPacket } = require('../server/world')
+const { Visitor } = require('./visitor')
+
+// Blocks around a box from which one still looks at it.
+const MARGIN = 64
+const FIRST_NUMBER = 2
+
+class Gallery {
+  /** @param {object} serv of which it uses tables, and no player and no block */
+  constructor (serv) {
+    this.serv = serv
+    this.states = blockStates(serv.registry)
+    this.exhibits = new Map()
+    this.visitors = new Set()
+    // Entity of an agent of an exhibit, by `EXHIBIT LABEL`.
+    this.numbers = new Map()
+    this.nextNumber = FIRST_NUMBER
+  }
+
+  /** Where somebody comes in who names no place: beside the first that was opened. */
+  get entrance () {
+    const [exhibit] = this.exhibits.values()
+    const { x, y, z } = exhibit.stand
+    return { exhibit, place: { x: x + 0.5, y, z: z + 0.5 } }
+  }
+
+  /** How to go where, as a line for people. */
+  directions () {
+    return [...this.exhibits.values()].map(({ name, stand: { x, y, z } }) => `${name}: /tp ${x} ${y} ${z}`).join(', ')
+  }
+
+  open (told) {
+    if (this.exhibits.has(told.exhibit)) throw new BadRequest(`${told.exhibit} is shown already`)
+    this.exhibits.set(told.exhibit, new Exhibit(told))
+  }
+
+  /** What is another in an exhibit is told to those who look at it. */
+  show ({ exhibit: name, ...changes }) {
+    const exhibit = this.exhibits.get(name)
+    if (exhibit === undefined) return
+    const before = new Set(exhibit.agents.keys())
+    const { signs } = exhibit.take(changes)
+    for (const visitor of this.visitors) {
+      if (visitor.exhibit === exhibit) visitor.tell({ ...changes, signs }, before)
+    }
+  }
+
+  /** @returns {Visitor[]} who looked at it, and has to go elsewhere */
+  close (name) {
+    const exhibit = this.exhibits.get(name)
+    if (exhibit === undefined) throw new BadRequest(`${name} is not shown`)
+    this.exhibits.delete(name)
+    return [...this.visitors].filter(visitor => visitor.exhibit === exhibit)
+  }
+
+  /** @returns {Exhibit | null} what is to be seen at a place of the server's world */
+  at (place) {
+    return [...this.exhibits.values()].find(exhibit => exhibit.holds(place, MARGIN)) ?? null
+  }
+
+  /** Lets a client look. @returns {Visitor} */
+  admit (client, onCommand) {
+    const visitor = new Visitor(client, this, onCommand)
+    this.visitors.add(visitor)
+    visitor.end.on('end', () => this.visitors.delete(visitor))
+    return visitor
+  }
+
+  numberOf (exhibit, label) {
+    const key = `${exhibit.name} ${label}`
+    if (!this.numbers.has(key)) this.numbers.set(key, this.nextNumber++)
+    return this.numbers.get(key)
+  }
+
+  /** @returns {object[]} packets of an exhibit's columns */
+  columns (exhibit) {
+    const { serv: { registry, minY, worldHeight } } = this
+    const Chunk = require('prismarine-chunk')(registry)
+    const columns = new Map(columnsOf(exhibit.box, exhibit.origin).map(([x, z]) => [`${x},${z}`, new Chunk({ minY, worldHeight })]))
+    exhibit.box.forEach((x, y, z, index) => {
+      const state = exhibit.states[index]
+      if (state === 0) return
+      const place = exhibit.toServer([x, y, z])
+      columns.get(`${place.x >> 4},${place.z >> 4}`).setBlockStateId({ x: place.x & 15, y, z: place.z & 15 }, state)
+    })
+    return [...columns].map(([key, column]) => columnPacket(column, ...key.split(',').map(Number)))
+  }
+}
+
+module.exports = { Gallery }

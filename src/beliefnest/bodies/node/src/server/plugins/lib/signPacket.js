@@ -1,0 +1,27 @@
+'use strict'
+
+const nbt = require('prismarine-nbt')
+
+const LINES = 4
+/** Numbers of block entities in 1.20.4. */
+const SIGN = 7
+const HANGING_SIGN = 8
+
+/** What clients are told of the sign `name` at a position: its packet `tile_entity_data`. */
+function signPacket (position, name, text) {
+  return { location: position, action: name.endsWith('hanging_sign') ? HANGING_SIGN : SIGN, nbtData: entityOf(text) }
+}
+
+/** A sign's data as clients get them. */
+function entityOf (text) {
+  const lines = text.split('\n')
+  const side = (messages) => nbt.comp({
+    has_glowing_text: nbt.byte(0),
+    color: nbt.string('black'),
+    messages: nbt.list(nbt.string(messages.map((line) => JSON.stringify(line)))),
+  })
+  const four = (given) => Array.from({ length: LINES }, (_, i) => given[i] ?? '')
+  return nbt.comp({ is_waxed: nbt.byte(0), front_text: side(four(lines)), back_text: side(four([])) })
+}
+
+module.exports = { signPacket }

@@ -1,0 +1,199 @@
+"""Simulators that stand in Minecraft for people to visit, each kept as its simulator's state is.
+
+This is process F-2 of the paper, "reflecting state in the simulator environment".
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from beliefnest.belief.node_view import NodeView
+from beliefnest.bodies.exhibits import Exhibit, Plot, Shown, display_names, origin_of
+from beliefnest.bodies.protocol import World
+from beliefnest.bodies.realtime import RealtimeWorld
+from beliefnest.bodies.worlds import realtime_of
+from beliefnest.errors import InputError
+from beliefnest.nest.acting.placement import BodySpace
+from beliefnest.nest.past.recording import Recording
+from beliefnest.timeline.journal import TimelineKey
+from beliefnest.world.paths import path_text
+from beliefnest.world.registry import AIR
+from beliefnest.world.values import AgentState, Position
+
+__all__ = ["Embodying"]
+
+Path = tuple[str, ...]
+
+_REALITY: Path = ()
+
+
+@dataclass
+class _Standing:
+    """A simulator that is shown.
+
+    Attributes:
+        plot: Where.
+        names: What its agents are called there.
+        unknown: State of the block that unknown ones are shown as.
+        exhibit: What stands there; None: nothing yet.
+        when: Timeline and entry that it was last brought up to.
+    """
+
+    plot: Plot
+    names: Mapping[str, str]
+    unknown: int
+    exhibit: Exhibit | None = None
+    when: tuple[TimelineKey, int] | None = None
+
+
+class Embodying:
+    """What stands in Minecraft of a nest's beliefs.
+
+    Args:
+        recording: What they hold.
+        world: Where reality is.
+    """
+
+    def __init__(self, recording: Recording, world: World) -> None:
+        self._recording = recording
+        self._world = world
+        self._standing: dict[Path, _Standing] = {}
+
+    @property
+    def follows(self) -> bool:
+        """Whether anything stands there."""
+        return bool(self._standing)
+
+    def begin(self, path: Path, unknown: str) -> None:
+        """Let a simulator stand there; see `Simulator.embody`."""
+        state = self._recording.history.context.registry.state_id(unknown)
+        if path == _REALITY:
+            raise InputError("the real world stands there already; nest.layout() says where")
+        world = self._realtime()
+        self._show(world, path, state)
+        if not world.shows_reality:
+            self._show(world, _REALITY, AIR)
+
+    def end(self, path: Path) -> None:
+        """Let a simulator stand there no longer."""
+        self._close(path)
+        if self._standing.keys() == {_REALITY}:
+            self._close(_REALITY)
+
+    def keep_up(self) -> None:
+        """Bring all that stands there up to what is recorded by now."""
+        for path, standing in self._standing.items():
+            info = self._recording.info(path)
+            when = (info.key, info.entries)
+            exhibit = standing.exhibit
+            if exhibit is None or exhibit.lost:
+                shown = self._shown(path, standing)
+                world = self._realtime()
+                standing.exhibit = world.open_exhibit(path_text(path), standing.plot, shown)
+            elif when != standing.when:
+                exhibit.show(self._shown(path, standing))
+            standing.when = when
+
+    def look_again(self) -> None:
+        """Take nothing for up to date: what was recorded meanwhile has not happened."""
+        for standing in self._standing.values():
+            standing.when = None
+
+    def plots(self) -> Mapping[Path, Plot]:
+        """Where reality and all that is embodied stand; nothing if reality stands nowhere."""
+        world = realtime_of(self._world)
+        if world is None:
+            return {}
+        standing = {path: each.plot for path, each in self._standing.items()}
+        reality = standing.pop(_REALITY, None) or self._plot(_REALITY, 0, world)
+        return {_REALITY: reality, **standing}
+
+    def _show(self, world: RealtimeWorld, path: Path, unknown: int) -> None:
+        before = self._standing.get(path)
+        if before is not None:
+            before.unknown, before.when = unknown, None
+        else:
+            number = 0 if path == _REALITY else self._free_number(world)
+            self._standing[path] = self._planned(world, path, number, unknown)
+        try:
+            self.keep_up()
+        except BaseException:
+            if before is None:
+                del self._standing[path]
+            raise
+
+    def _planned(self, world: RealtimeWorld, path: Path, number: int, unknown: int) -> _Standing:
+        agents = self._recording.agents
+        names: Mapping[str, str] = {name: name for name in agents}
+        if number:
+            others = [name for each in self._standing.values() for name in each.names.values()]
+            names = display_names(agents, number, {*agents, *others, *world.players})
+        return _Standing(self._plot(path, number, world), names, unknown)
+
+    def _free_number(self, world: RealtimeWorld) -> int:
+        taken = {standing.plot.origin for standing in self._standing.values()}
+        box, number = self._recording.setting.snapshot.box, 1
+        while origin_of(number, box, world.origin) in taken:
+            number += 1
+        return number
+
+    def _plot(self, path: Path, number: int, world: RealtimeWorld) -> Plot:
+        box = self._recording.setting.snapshot.box
+        x, z = origin = origin_of(number, box, world.origin)
+        stand = self._stand(self._recording.reading(path))
+        return Plot(box, origin, (stand[0] + x, stand[1], stand[2] + z))
+
+    def _stand(self, reading: NodeView) -> Position:
+        """The free place nearest to the middle of the agents, or of the box if nobody is known."""
+        box = self._recording.setting.snapshot.box
+        space = BodySpace(self._recording.history.context.registry, box, reading.blocks)
+        places = [each.position for each in reading.agents.values() if each.position is not None]
+        taken = {tuple(map(math.floor, place)) for place in places}
+        middle = np.array(places or [box.low, box.high], dtype=float).mean(axis=0)
+        cells = np.argwhere(np.ones(box.shape, dtype=np.bool_)) + box.low
+        near = np.linalg.norm(cells + 0.5 - middle, axis=1).argsort(kind="stable")
+        for number in near:
+            x, y, z = map(int, cells[number])
+            if (x, y, z) not in taken and space.heights((x, y, z)):
+                return x, y, z
+        x, y, z = (math.floor(value) for value in middle)
+        return x, y, z
+
+    def _shown(self, path: Path, standing: _Standing) -> Shown:
+        reading = self._recording.reading(path)
+        blocks = reading.blocks
+        agents = {
+            standing.names[name]: AgentState(
+                position=agent.position,
+                yaw=agent.yaw,
+                pitch=agent.pitch,
+                on_ground=agent.on_ground,
+                equipment=dict(agent.equipment or {}),
+            )
+            for name, agent in reading.agents.items()
+            if agent.position is not None
+        }
+        contents = reading.containers.items()
+        return Shown(
+            np.where(blocks < 0, np.int32(standing.unknown), blocks),
+            {place: (dict(held.items), held.complete) for place, held in contents},
+            dict(reading.signs),
+            agents,
+        )
+
+    def _close(self, path: Path) -> None:
+        standing = self._standing.pop(path, None)
+        if standing is not None and standing.exhibit is not None:
+            standing.exhibit.close()
+
+    def _realtime(self) -> RealtimeWorld:
+        world = realtime_of(self._world)
+        if world is None:
+            raise InputError(
+                "nobody can visit a belief in this world, whose time does not go on by itself; "
+                "open the nest with realtime=True, listen=25565, or on a server: "
+                'world="minecraft://HOST:PORT"'
+            )
+        return world

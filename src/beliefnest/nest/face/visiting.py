@@ -1,0 +1,97 @@
+"""Where a nest's simulators stand in Minecraft, for people who visit them."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Protocol, overload
+
+from beliefnest.errors import InputError
+from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.face.turns import in_turn
+from beliefnest.nest.past.recording import Recording
+from beliefnest.world.paths import path_text
+from beliefnest.world.values import Position
+
+__all__ = ["Layout", "Standing", "Visiting"]
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """Where one simulator stands.
+
+    Attributes:
+        path: Its belief path; `/` is the real world.
+        low: The lowest corner of its box, in blocks of Minecraft.
+        high: The highest one.
+        origin: Where scenario (0, y, 0) lies: x and z, in blocks of Minecraft.
+        command: What to type in the game to go there.
+    """
+
+    path: str
+    low: Position
+    high: Position
+    origin: tuple[int, int]
+    command: str
+
+
+class Layout(Sequence[Standing]):
+    """Where all simulators stand that do; as a text, one line for each."""
+
+    def __init__(self, standing: Sequence[Standing]) -> None:
+        self._standing = tuple(standing)
+
+    def __len__(self) -> int:
+        return len(self._standing)
+
+    @overload
+    def __getitem__(self, index: int) -> Standing: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[Standing]: ...
+    def __getitem__(self, index: int | slice) -> Standing | Sequence[Standing]:
+        return self._standing[index]
+
+    def __iter__(self) -> Iterator[Standing]:
+        return iter(self._standing)
+
+    def __repr__(self) -> str:
+        width = max(len(each.path) for each in self)
+        return "\n".join(
+            f"{each.path:{width}}  {_corner(each.low)} to {_corner(each.high)}  {each.command}"
+            for each in self
+        )
+
+
+class _Embodied(Protocol):
+    _engine: Engine
+    _recording: Recording
+
+
+class Visiting:
+    """What a nest offers those who visit beliefs; a part of `Nest`."""
+
+    @in_turn
+    def layout(self: _Embodied) -> Layout:
+        """Where the real world and all that `Simulator.embody` embodied stand in Minecraft.
+
+        Raises:
+            InputError: The real world is not in real time, so that nobody can go there.
+        """
+        plots = self._engine.bodies.embodying.plots()
+        if not plots:
+            raise InputError(
+                "nothing stands where people could go: this world's time does not go on by itself"
+            )
+        return Layout(
+            [
+                Standing(
+                    path_text(path),
+                    *plot.corners,
+                    plot.origin,
+                    "/tp {} {} {}".format(*plot.stand),
+                )
+                for path, plot in plots.items()
+            ]
+        )
+
+
+def _corner(position: Position) -> str:
+    return "{} {} {}".format(*position)

@@ -1,0 +1,139 @@
+"""Beliefs that stand in Minecraft, as their simulators are: people walk into them."""
+
+import json
+import re
+from typing import Any
+
+import pytest
+import yaml
+from tests.people import Person
+
+from beliefnest import Nest, Scenario
+from beliefnest.errors import InputError, UnknownNameError
+
+LEFT, RIGHT = (-2, -51, -4), (2, -51, -4)
+LONG_S = 120
+MOVE = """
+await getItemFromChest(bot, new Vec3(-2, -51, -4), {diamond: 1})
+await goToPosition(bot, new Vec3(2, -51, -3), 0)
+await depositItemIntoChest(bot, new Vec3(2, -51, -4), {diamond: 1})
+"""
+# Sally puts the diamond away and looks elsewhere, and then so does the observer.
+AWAY = "await bot.look({} * Math.PI, 0, true)"
+SCRIPT = [
+    {
+        "agent": "sally",
+        "program": "await depositItemIntoChest(bot, new Vec3(-2, -51, -4), {diamond: 1});"
+        + AWAY.format(1 / 2),
+    },
+    {"agent": "observer", "program": AWAY.format(1)},
+]
+# How somebody goes where a line of the layout says, and what they find there.
+TRAVEL = """
+const there = at => Math.abs(bot.entity.position.x - at) < 30
+bot.chat(LINE)
+while (!there(X) || !bot.blockAt(new Vec3(X - 2, -51, -4))) await waitTicks(bot, 1)
+"""
+LOOK = """
+await goToPosition(bot, new Vec3(X, -51, -2), 1)
+const found = {}
+for (const [side, x] of [['left', X - 2], ['right', X + 2]]) {
+  const chest = await bot.openContainer(bot.blockAt(new Vec3(x, -51, -4)))
+  found[side] = Object.fromEntries(chest.containerItems().map(({name, count}) => [name, count]))
+  await bot.closeWindow(chest)
+}
+found.players = Object.keys(bot.players).filter(name => name !== bot.username).sort()
+found.unseen = bot.blockAt(new Vec3(X, -52, 11)).name
+if (JSON.stringify(found) !== JSON.stringify(EXPECTED)) throw new Error(JSON.stringify(found))
+"""
+WATCH = """
+const sally = () => bot.players.sally_2?.entity?.position.x - X
+if (!(sally() < -1)) throw new Error('Sally is at ' + sally())
+bot.chat('I watch.')
+while (!(sally() > 0)) await waitTicks(bot, 1)
+"""
+
+
+@pytest.fixture
+def play_of_a_person():
+    """Sally-Anne with a person as Anne, in which agents see what is before them alone."""
+    written: dict[str, Any] = yaml.safe_load(Scenario.load("sally-anne", 1).text)
+    agents = written["agents"]
+    agents["anne"] |= {"type": "human", "position": [-1.5, -51, -2.5]}
+    agents["sally"]["position"] = [-2.5, -51, -1.5]
+    written |= {"script": SCRIPT, "static_blocks": ["stone_bricks"]}
+    written["perception"]["field_of_view"] = 120
+    for part in ("probes", "conditions", "expectations"):
+        written.pop(part)
+    return Scenario.from_mapping(written)
+
+
+def where(nest, path):
+    return next(each for each in nest.layout() if each.path == path)
+
+
+def script(text, there, **values):
+    for name, value in {"LINE": there.command, "X": there.origin[0], **values}.items():
+        text = re.sub(rf"\b{name}\b", lambda _, value=value: json.dumps(value), text)
+    return text
+
+
+def test_who_moved_the_diamond_finds_it_where_sally_believes_it(play_of_a_person):
+    with (
+        Nest.open(play_of_a_person, realtime=True, listen=0) as nest,
+        Person(nest.address, "anne") as anne,
+    ):
+        nest.play()
+        nest["/observer/sally"].embody(unknown="glass")
+        nest["/observer"].embody()
+        anne.does(MOVE)
+        assert nest.wait(lambda: anne.is_done, LONG_S)
+        assert nest["/"].state.containers[RIGHT].items == {"diamond": 1}
+        assert nest["/observer"].state.containers[LEFT].items == {"diamond": 1}
+
+        belief = where(nest, "/observer/sally")
+        expected = {
+            "left": {"diamond": 1},
+            "right": {},
+            # Sally has never turned to where the observer stands.
+            "players": ["anne_1", "sally_1"],
+            "unseen": "glass",
+        }
+        anne.does(script(TRAVEL + LOOK, belief, EXPECTED=expected))
+        assert nest.wait(lambda: anne.is_done, LONG_S)
+        assert nest.people == frozenset()
+        assert nest["/"].state.agents["anne"].current
+
+        # What the observer sees again while a program runs is seen there while it does.
+        anne.does(script(TRAVEL + WATCH, where(nest, "/observer")))
+        watches = "Nobody hears you here: who visits a belief is not in it."
+        assert nest.wait(lambda: anne.is_done or watches in anne.read, LONG_S)
+        programs = {
+            "observer": "await bot.lookAt(new Vec3(0, -50, -2), true); await waitTicks(bot, 5)",
+            "sally": "await goToPosition(bot, new Vec3(1, -51, -1), 0)",
+        }
+        results = nest["/"].run_all(programs)
+        assert all(result.ok for result in results.values())
+        assert nest.wait(lambda: anne.is_done, LONG_S)
+        assert [each.path for each in nest.layout()] == ["/", "/observer/sally", "/observer"]
+
+        with Person(nest.address, "sally") as taken:
+            assert taken.left().endswith("come as anne, or by another name to look")
+        nest["/observer"].embody(False)
+        assert nest.wait(lambda: nest.people == {"anne"}, LONG_S)
+        assert [each.path for each in nest.layout()] == ["/", "/observer/sally"]
+
+
+def test_what_nobody_could_visit_is_refused(play_of_a_person):
+    with Nest.open(Scenario.load("sally-anne", 1), "scripted") as nest:
+        with pytest.raises(InputError, match=r"nobody can visit a belief in this world.*realtime"):
+            nest["/observer"].embody()
+        with pytest.raises(InputError, match="nothing stands where people could go"):
+            nest.layout()
+    with Nest.open(play_of_a_person, realtime=True, listen=0) as nest:
+        with pytest.raises(InputError, match=r"stands there already; nest\.layout"):
+            nest["/"].embody()
+        with pytest.raises(UnknownNameError, match="fog"):
+            nest["/observer"].embody(unknown="fog")
+        nest["/observer"].embody(False)
+        assert [each.path for each in nest.layout()] == ["/"]
