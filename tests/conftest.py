@@ -1,18 +1,22 @@
-"""Profiles of the property tests: few examples by default, many at night."""
+"""How tests are shared out and what surrounds them; profiles of the property tests."""
 
 import os
 import signal
 
+import pytest
 from hypothesis import HealthCheck, settings
 from tests.profiles import NIGHTLY
+from tests.sharing import ByFile, rank
+from xdist.remote import Producer
 
 _SLOW_TO_MAKE = [HealthCheck.too_slow, HealthCheck.data_too_large]
 
+# The same few examples in every run, so that what fails is what was changed; at night any.
 settings.register_profile(
     "default",
     max_examples=8,
     deadline=None,
-    derandomize=bool(os.environ.get("CI")),
+    derandomize=True,
     suppress_health_check=_SLOW_TO_MAKE,
 )
 settings.register_profile(
@@ -26,3 +30,14 @@ os.environ.pop("COLUMNS", None)
 # Tests interrupt what they start; a shell that starts the tests in the background makes all of
 # them deaf to that.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByFile | None:
+    """Share out the tests by file, if nothing else is asked for."""
+    return ByFile(config, log) if config.getoption("dist") == "loadfile" else None
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with what takes longest, so that at the end no process waits for another."""
+    items.sort(key=lambda item: rank(item.nodeid))

@@ -25,8 +25,8 @@ visit() {
   local home said
   home=$(mktemp -d -p "$room")
   if said=$( {
-    "$1" -m venv "$home/venv" &&
-      "$home/venv/bin/pip" install --quiet "$room"/wheel/*.whl &&
+    "$1" -m venv --without-pip "$home/venv" &&
+      python -m pip --python "$home/venv/bin/python" install --quiet --no-compile "$room"/wheel/*.whl &&
       cd "$home" &&
       venv/bin/beliefnest --version &&
       venv/bin/beliefnest run sally-anne --out run
@@ -38,7 +38,9 @@ visit() {
   fi
 }
 
-python -m hatchling build -t sdist -d "$room/sdist"
+# The builder is in a folder of its own, so that any Python with pip will do.
+python -m pip install --quiet --target "$room/builder" "hatchling>=1.27,<2"
+PYTHONPATH="$room/builder" python -m hatchling build -t sdist -d "$room/sdist"
 python -m pip wheel --quiet --no-deps --wheel-dir "$room/wheel" "$room"/sdist/*.tar.gz
 mapfile -t found < <(pythons)
 ((${#found[@]})) || { echo "no Python from 3.11 on was found" >&2; exit 1; }

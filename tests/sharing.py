@@ -1,0 +1,44 @@
+"""How the tests are shared out among processes."""
+
+from xdist.scheduler import LoadFileScheduling
+
+__all__ = ["ByFile", "rank"]
+
+_LONGEST = (
+    "tests/bodies/test_node_suite.py::test_javascript[test/tcp/",
+    "tests/nest/test_on_servers.py",
+    "tests/bodies/test_node_suite.py::test_javascript[test/process.",
+    "tests/nest/test_people.py",
+    "tests/viewer/page/test_page.py",
+    "tests/studies/test_models.py",
+    "tests/studies/test_study.py",
+    "tests/bodies/test_node_suite.py",
+    "tests/inspect/",
+    "tests/cli/test_pictures.py",
+    "tests/cli/test_models.py",
+    "tests/nest/test_killed_node.py",
+    "tests/nest/test_percepts_embedded.py",
+    "tests/nest/test_against_reference.py",
+    "tests/nest/test_laws.py",
+    "tests/bodies/",
+    "tests/docs/",
+    "tests/cli/",
+    "tests/nest/",
+)
+"""What takes long, by the beginnings of names: what waits for real time, then what computes."""
+
+_APART = ("tests/bodies/test_node_suite.py", "tests/nest/test_against_reference.py")
+"""Files whose tests have nothing in common, so that each may run anywhere."""
+
+
+class ByFile(LoadFileScheduling):
+    """A file's tests run in one process, since they share what is made for the file."""
+
+    def _split_scope(self, nodeid: str) -> str:
+        return nodeid if nodeid.startswith(_APART) else super()._split_scope(nodeid)
+
+
+def rank(nodeid: str) -> int:
+    """Where a test stands in the order in which tests are begun, from 0."""
+    ranks = (place for place, start in enumerate(_LONGEST) if nodeid.startswith(start))
+    return next(ranks, len(_LONGEST))
