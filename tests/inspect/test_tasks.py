@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
 from importlib.metadata import entry_points
 from pathlib import Path
 
@@ -106,28 +107,61 @@ for name, file in FILES.items():
 """
 
 
-def run(code, folder):
+LISTENER = """
+import contextlib, io, json, os, sys, traceback
+
+for line in sys.stdin:
+    folder, code = json.loads(line)
+    os.chdir(folder)
+    said, failed = io.StringIO(), None
+    with contextlib.redirect_stdout(said):
+        try:
+            exec(code, {"__name__": "__main__"})
+        except BaseException:
+            failed = traceback.format_exc()
+    print(json.dumps([said.getvalue(), failed]), flush=True)
+"""
+
+Run = Callable[[str, Path], list[str]]
+
+
+@pytest.fixture(scope="module")
+def run() -> Iterator[Run]:
+    """What a program says; all run in one process, in turn, as the cells of a notebook do."""
     # Inspect has an event loop, threads and a log of its own: a process of its own as well.
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout.splitlines()
+    with subprocess.Popen(
+        [sys.executable, "-c", LISTENER],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as listener:
+        assert listener.stdin is not None and listener.stdout is not None
+
+        def told(code: str, folder: Path) -> list[str]:
+            print(json.dumps([str(folder), code]), file=listener.stdin, flush=True)
+            answer = listener.stdout.readline()
+            assert answer, f"the process ended with {listener.wait()}"
+            said, failed = json.loads(answer)
+            assert failed is None, failed
+            return said.splitlines()
+
+        yield told
+        listener.stdin.close()
 
 
-def test_answers_of_the_mock_model_are_run_in_the_belief_and_explained(tmp_path):
+def test_answers_of_the_mock_model_are_run_in_the_belief_and_explained(run, tmp_path):
     assert sorted(run(MODEL + LEFT_OR_NOWHERE, tmp_path)) == ["1 C ok", "2 I wrong"]
 
 
-def test_variations_in_minecraft_are_samples_with_explanations_of_their_own(tmp_path):
+def test_variations_in_minecraft_are_samples_with_explanations_of_their_own(run, tmp_path):
     assert run(MODEL + LIKE_OURS + VARIED, tmp_path) == ["C ok True"] * 3
 
 
-def test_every_built_in_scenario_is_a_task_whose_samples_are_scored(tmp_path):
+def test_every_built_in_scenario_is_a_task_whose_samples_are_scored(run, tmp_path):
     run(MODEL + LIKE_OURS + EVERY, tmp_path)
 
 
-def test_suites_are_tasks_whose_answers_are_scored_and_explained(tmp_path):
+def test_suites_are_tasks_whose_answers_are_scored_and_explained(run, tmp_path):
     story = "1 Ann and Bob entered the den.\n2 The ball is in the box.\n3 Ann exited the den.\n"
     story += "4 Bob moved the ball to the jar."
     asked = {"Where does Ann think the ball is?": "box", "Where is the ball really?": "jar"}
@@ -148,7 +182,7 @@ def test_suites_are_tasks_whose_answers_are_scored_and_explained(tmp_path):
     ]
 
 
-def test_the_guide_does_what_it_says(tmp_path):
+def test_the_guide_does_what_it_says(run, tmp_path):
     (code,) = re.findall(r"```python\n(.*?)```", GUIDE.read_text("utf-8"), re.DOTALL)
     assert run(code, tmp_path) == re.findall(r"print\(.*\)  # (.*)", code)
 
@@ -170,7 +204,7 @@ def test_the_installed_package_registers_its_tasks(tmp_path):
     assert re.search(r"accuracy\s+1\.000", done.stdout)
 
 
-def test_a_question_of_a_suite_is_a_sample_with_its_container_as_target(tmp_path):
+def test_a_question_of_a_suite_is_a_sample_with_its_container_as_target(run, tmp_path):
     file = tmp_path / "stories.json"
     file.write_text(
         '[{"story": "1 Ann and Bob entered the den.\\n2 The ball is in the box.\\n'
