@@ -39,7 +39,7 @@ picture: ## The pictures of README and docs, by the program itself
 notebooks: ## What the notebook of a study shows, by executing it
 	python tools/notebooks.py
 
-baselines: ## docs/tasks.md: all tasks by all baselines, over 50 seeds; takes an hour
+baselines: ## docs/tasks.md: all tasks by all baselines, over 50 seeds; takes half an hour
 	beliefnest play --baselines --seeds 50 --jobs 2 --page docs/tasks.md
 
 docs: ## The documentation site, in build/site; a broken link is an error

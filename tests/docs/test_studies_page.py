@@ -5,11 +5,12 @@ from pathlib import Path
 
 import pytest
 
+import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 
 PAGE = (Path(__file__).parents[2] / "docs" / "studies.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
-SCENARIO, STUDY = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
+SCENARIO, STUDY, EPISODES = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
 
 
 def test_from_the_scenario_to_the_figure_and_by_command(
@@ -30,3 +31,16 @@ def test_from_the_scenario_to_the_figure_and_by_command(
     # The same cells: nothing is left to play.
     assert run_command_line(["study", "study.yaml", "--out", "fetch-study", "--jobs", "1"]) == 0
     assert "(4/4)" in capsys.readouterr().err.splitlines()[-1]
+
+
+def test_the_study_of_episodes_is_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("mine.yaml").write_text(SCENARIO, encoding="utf-8")
+    Path("mine.js").write_text("", encoding="utf-8")
+    Path("minds.yaml").write_text(EPISODES, encoding="utf-8")
+    plan = bn.Study.load("minds.yaml").plan()
+    players = {cell.key.player for cell in plan.cells}
+    assert players == {"search", "random", "model:offline", "anne=program:mine.js"}
+    # The recipe and the scenario are of one size.
+    assert {each.scenario for each in plan.invalid} == {"recipe", "mine.yaml"}
+    assert len(plan.cells) == 50 * 2 * (4 + 1 + 4 + 1)

@@ -372,7 +372,7 @@ def play(
     if baselines:
         from beliefnest.cli.baselines import BaselineOptions, run_baselines
 
-        return run_baselines(BaselineOptions(task, seeds, jobs, page, json))
+        return run_baselines(BaselineOptions(task, seeds, jobs, out, page, json))
     if task is None:
         from beliefnest.episodes.task import Task
         from beliefnest.errors import InputError

@@ -2,26 +2,37 @@
 
 import json
 import sys
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+import tempfile
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from rich import box
 from rich.table import Table
 
 from beliefnest.cli.console import folded, progress_on, stdout
-from beliefnest.episodes.baselines import BASELINES, Baseline, Cell, play_cells, summary
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.tasks import parameters_of, source_of
-from beliefnest.errors import InputError
+from beliefnest.errors import InputError, ModelError
+from beliefnest.studies.running import StudyProgress
+from beliefnest.studies.study import Study
 
 __all__ = ["BaselineOptions", "page_of", "run_baselines"]
+
+_POLICIES, _ORDERS = ("random", "search", "omniscient:search"), (0, 1, 2)
+"""Who plays the players; the others are played as each task says."""
+_BY = ("task", "needs", "policy")
 
 _REPORTS = 20
 """Lines of progress where there is no terminal."""
 
-_COLUMNS = ("task", "order", "policy", "success", "95 %", "ticks", "messages")
+_COLUMNS = ("task", "order", "policy", "success", "95 %", "ticks", "messages", "false beliefs")
+
+Group = Mapping[str, Any]
+"""A row of a study's summary."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +43,7 @@ class BaselineOptions:
         task: The only task; None: all.
         seeds: How many instances of each.
         jobs: Episodes at the same time.
+        out: Folder of the study, which goes on there; None: a temporary one.
         page: Markdown file to write, with pictures in `img` beside it; None: none.
         as_json: Whether to print one JSON object instead of a table.
     """
@@ -39,6 +51,7 @@ class BaselineOptions:
     task: str | None
     seeds: int
     jobs: int
+    out: Path | None
     page: Path | None
     as_json: bool
 
@@ -49,38 +62,43 @@ def run_baselines(options: BaselineOptions) -> int:
     It is, if `search` of its order reaches the goal in all episodes and of one less in none.
 
     Raises:
-        BeliefNestError: The input is wrong.
+        BeliefNestError: The input is wrong, or episodes have no result.
     """
     if options.seeds < 1:
         raise InputError(f"--seeds is {options.seeds}; give at least 1")
     names = Task.names() if options.task is None else (options.task,)
-    cells = [
-        Cell(Task.load(name).name, policy, seed)
-        for name in names
-        for policy in BASELINES
-        for seed in range(options.seeds)
-    ]
-    with progress_on("baselines") as on_progress:
-        step = max(1, len(cells) // _REPORTS)
-
-        def told(done: int) -> None:
-            if done % step == 0 or done == len(cells):
-                on_progress("playing", done, len(cells))
-
-        measures = play_cells(cells, options.jobs, told)
-    found = summary(cells, measures)
+    found = _played(names, options)
     if options.page is not None:
         _draw(names, options.page.parent / "img")
         options.page.write_text(page_of(names, found, options.seeds), encoding="utf-8")
     if options.as_json:
-        content = {"seeds": options.seeds, "baselines": [asdict(each) for each in found]}
+        content = {"seeds": options.seeds, "baselines": found}
         sys.stdout.write(json.dumps(content, indent=2) + "\n")
     else:
         _print(found)
     return 0 if all(_is_as_claimed(each) for each in found) else 1
 
 
-def page_of(names: Sequence[str], found: Sequence[Baseline], seeds: int) -> str:
+def _played(names: Sequence[str], options: BaselineOptions) -> list[dict[str, Any]]:
+    """The summary of a study of all baselines."""
+    study = Study(tasks=names, policies=_POLICIES, orders=_ORDERS, seeds=options.seeds)
+    with ExitStack() as stack:
+        folder = options.out or stack.enter_context(tempfile.TemporaryDirectory())
+        on_progress = stack.enter_context(progress_on("baselines"))
+        step = max(1, len(study.plan().cells) // _REPORTS)
+
+        def told(progress: StudyProgress) -> None:
+            if progress.done % step == 0 or progress.done == progress.total:
+                on_progress("playing", progress.done, progress.total)
+
+        result = study.run(folder, options.jobs, on_progress=told)
+        failed = [row["why_not"] for row in result.rows if row["outcome"] == "error"]
+        if failed:
+            raise ModelError(f"{len(failed)} episodes have no result; the first: {failed[0]}")
+        return result.counted(_BY)
+
+
+def page_of(names: Sequence[str], found: Sequence[Group], seeds: int) -> str:
     """The page of tasks, as Markdown."""
     lines = [
         "# Tasks",
@@ -92,8 +110,9 @@ def page_of(names: Sequence[str], found: Sequence[Baseline], seeds: int) -> str:
         "`make baselines` takes 50 seeds.",
         "",
         f"Players by policy, over {seeds} seeds, in the scripted world; who is no player acts",
-        "as the task says. Success with its 95 % interval of Wilson; mean ticks of those that",
-        "succeeded; mean utterances of players.",
+        "as the task says. Success with its 95 % interval of Wilson; mean ticks of the successes;",
+        "mean utterances of players, and mean false beliefs of all agents over the rounds, of all",
+        "episodes. The intervals of means are 95 % ones, by the bootstrap.",
         "",
         f"| {' | '.join(_COLUMNS)} |",
         "|" + "---|" * len(_COLUMNS),
@@ -118,21 +137,27 @@ def _draw(names: Sequence[str], folder: Path) -> None:
             episode.nest.figure(["/"]).save(str(folder / f"task-{name}.png"))
 
 
-def _cells(found: Baseline) -> tuple[str, ...]:
-    rate = f"{found.successes}/{found.episodes}"
-    ticks = "" if found.ticks is None else f"{found.ticks:.0f}"
-    interval = f"{found.low:.2f} to {found.high:.2f}"
-    messages = f"{found.messages:.1f}"
-    return (found.task, str(found.order), found.policy, rate, interval, ticks, messages)
+def _cells(found: Group) -> tuple[str, ...]:
+    interval = f"{found['low']:.2f} to {found['high']:.2f}"
+    means = [_mean(found, name) for name in ("ticks", "messages", "false_beliefs_mean")]
+    rate = f"{found['right']}/{found['judged']}"
+    return (found["task"], str(found["needs"]), found["policy"], rate, interval, *means)
 
 
-def _is_as_claimed(found: Baseline) -> bool:
-    if found.policy == f"search:{found.order}":
-        return found.successes == found.episodes
-    return found.policy != f"search:{found.order - 1}" or found.successes == 0
+def _mean(found: Group, name: str) -> str:
+    mean, low, high = (found[f"{name}{end}"] for end in ("", "_low", "_high"))
+    if mean is None:
+        return ""
+    return f"{mean:.1f}" if low is None else f"{mean:.1f} ({low:.1f} to {high:.1f})"
 
 
-def _print(found: Sequence[Baseline]) -> None:
+def _is_as_claimed(found: Group) -> bool:
+    if found["policy"] == f"search:{found['needs']}":
+        return bool(found["right"] == found["judged"])
+    return bool(found["policy"] != f"search:{found['needs'] - 1}" or found["right"] == 0)
+
+
+def _print(found: Sequence[Group]) -> None:
     table = Table(title="baselines", title_justify="left", box=box.SIMPLE_HEAVY)
     for column in _COLUMNS:
         table.add_column(column)
