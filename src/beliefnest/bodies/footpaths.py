@@ -55,13 +55,17 @@ class InReach:
     Attributes:
         block: Its position.
         reach: Distance between eyes and the block's middle.
+        beside: Whether one must not stand in it, neither with the feet nor with the head.
     """
 
     block: Position
     reach: float
+    beside: bool = False
 
     def is_met(self, cell: Position) -> bool:
         """Whether a block can be reached from a cell."""
+        if self.beside and self._is_within(cell):
+            return False
         x, y, z = feet_in(cell)
         middle = (self.block[0] + 0.5, self.block[1] + 0.5, self.block[2] + 0.5)
         return math.dist((x, y + EYE_HEIGHT, z), middle) <= self.reach
@@ -69,6 +73,10 @@ class InReach:
     def steps_left(self, cell: Position) -> float:
         """How many steps it is to such a cell at least."""
         return max(0.0, math.dist(cell, self.block) - self.reach)
+
+    def _is_within(self, cell: Position) -> bool:
+        x, y, z = self.block
+        return cell in ((x, y, z), (x, y - 1, z))
 
 
 Goal = Near | InReach

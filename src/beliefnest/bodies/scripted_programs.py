@@ -13,7 +13,8 @@ from beliefnest.bodies.engines import Engines
 from beliefnest.bodies.grounds import Grounds
 from beliefnest.bodies.javascript import JavaScriptProgram
 from beliefnest.bodies.protocol import Aim, Fault, ProgramResult, Sense, Sensed, Unfinished
-from beliefnest.bodies.scripted_skills import CALLS, SKILLS, Doing, Hand, SkillError
+from beliefnest.bodies.scripted_hand import Doing, Hand, SkillError
+from beliefnest.bodies.scripted_skills import CALLS, SKILLS
 from beliefnest.errors import BeliefNestError
 from beliefnest.world.frames import Frame
 from beliefnest.world.scripted import ScriptedWorld
@@ -21,9 +22,17 @@ from beliefnest.world.values import AgentState, Event, Point
 
 __all__ = ["run_programs"]
 
-_USING = frozenset(
-    {"getItemFromChest", "depositItemIntoChest", "openDoor", "closeDoor", "writeSign"}
-)
+_USING = {
+    "getItemFromChest",
+    "depositItemIntoChest",
+    "openDoor",
+    "closeDoor",
+    "turnOnLever",
+    "turnOffLever",
+    "pressButton",
+    "mineBlock",
+    "writeSign",
+}
 _MOST_AIMS = 100
 _EPOCH_MS = 1_704_067_200_000
 """When Minecraft's worlds begin here, too: 2024-01-01, in UTC."""
@@ -212,6 +221,8 @@ def _note_aim(run: _Run, name: str, args: list[Any]) -> None:
         place = _point(args[0])
         if place is not None:
             run.aims.append(Aim(now, name, place, None, name != "goToPosition"))
+    elif name == "placeItem" and len(args) > 1 and (place := _point(args[1])) is not None:
+        run.aims.append(Aim(now, name, place, None, uses=True))
     elif name == "giveItemToOther" and isinstance(args[0], str):
         run.aims.append(Aim(now, name, None, args[0], uses=True))
 

@@ -7,7 +7,8 @@ from typing import Protocol
 import numpy as np
 
 from beliefnest.bodies.footpaths import Ground
-from beliefnest.bodies.scripted_skills import CALLS, SKILLS, Doing, Hand
+from beliefnest.bodies.scripted_hand import Doing, Hand
+from beliefnest.bodies.scripted_skills import CALLS, SKILLS
 from beliefnest.env.actions import Call
 from beliefnest.errors import BeliefNestError
 from beliefnest.nest.face.nest import Nest

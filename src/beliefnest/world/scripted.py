@@ -12,42 +12,43 @@ from copy import copy
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
-from beliefnest.errors import BeliefNestError, InputError, WorldError
+from beliefnest.errors import InputError, WorldError
 from beliefnest.world.claims import Claim, with_claims
 from beliefnest.world.doors import used_door
-from beliefnest.world.frames import BlockGrid, Frame, Snapshot
+from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.handling import (
+    Handling,
+    check_holds_nothing,
+    pressed_button,
+    put_block,
+    switched_lever,
+)
 from beliefnest.world.limits import (
     AGENT_SLOTS,
     WORN_SLOTS,
     container_slots,
-    items_fault,
     snapshot_fault,
 )
-from beliefnest.world.registry import AIR, Registry
+from beliefnest.world.registry import AIR
 from beliefnest.world.scripted_parts import (
     Facts,
     Pending,
-    checked_box,
     checked_equipment,
     checked_name,
     checked_utterance,
+    pressed_from,
     rest_of,
-    sum_of,
     whole_position,
 )
-from beliefnest.world.signs import plain_state, text_of, written
+from beliefnest.world.scripted_state import ScriptedState
+from beliefnest.world.signs import plain_state, text_of
 from beliefnest.world.values import (
     AgentState,
-    Block,
-    Box,
     Event,
     EventKind,
     Items,
     Point,
     Position,
-    Sign,
 )
 
 __all__ = ["Listener", "ScriptedWorld"]
@@ -56,7 +57,7 @@ Listener = Callable[[Frame], None]
 """Takes a frame for every tick, empty ones included."""
 
 
-class ScriptedWorld:
+class ScriptedWorld(ScriptedState):
     """A world that is told what happens.
 
     Args:
@@ -84,13 +85,10 @@ class ScriptedWorld:
         tick: int = 0,
         signs: Mapping[Position, str] | None = None,
     ) -> None:
-        self._registry = Registry.load()
-        self._box = checked_box(box)
+        super().__init__(box)
         self._tick = tick
         self._listeners: list[Listener] = []
         self._pending: Pending | None = None
-        self._handed_out = False
-        self._facts = Facts(np.zeros(self._box.shape, dtype=np.int32), {}, {}, {})
         for position, text in (blocks or {}).items():
             self._put(self._inside(position), text)
         for position, items in (containers or {}).items():
@@ -126,11 +124,6 @@ class ScriptedWorld:
         return other
 
     @property
-    def box(self) -> Box:
-        """The part of space there is."""
-        return self._box
-
-    @property
     def now(self) -> int:
         """The latest tick."""
         return self._tick
@@ -153,7 +146,8 @@ class ScriptedWorld:
             {place: dict(items) for place, items in facts.containers.items()},
             dict(facts.agents),
             dict(facts.items),
-            signs=dict(facts.signs),
+            facts.under_way(self._tick),
+            dict(facts.signs),
         )
 
     def set_state(self, snapshot: Snapshot) -> None:
@@ -167,6 +161,7 @@ class ScriptedWorld:
             dict(snapshot.agents),
             dict(snapshot.items),
             dict(snapshot.signs),
+            pressed_from(snapshot.internal_state, snapshot.tick),
         )
 
     @contextmanager
@@ -225,6 +220,57 @@ class ScriptedWorld:
             detail = {"position": min(moved), "open": open}
             pending.events.append(Event(EventKind.USE_DOOR, name, detail))
 
+    def use_lever(self, name: str, position: Position, *, powered: bool) -> None:
+        """An agent brings a lever into a state; it powers nothing."""
+        with self._act() as pending:
+            self._agent(name)
+            place = self._inside(position)
+            moved = switched_lever(self._registry, self._state_at, place, powered=powered)
+            self._change(pending, place, moved, None)
+            detail = {"position": place, "powered": powered}
+            pending.events.append(Event(EventKind.USE_LEVER, name, detail))
+
+    def press_button(self, name: str, position: Position) -> None:
+        """An agent presses a button, which comes out again by itself; it powers nothing."""
+        with self._act() as pending:
+            self._agent(name)
+            place = self._inside(position)
+            moved = pressed_button(self._registry, self._state_at, place)
+            ticks = Handling.load().pressed_ticks(self._registry.name(moved))
+            self._change(pending, place, moved, None)
+            self._facts.pressed[place] = self._tick + 1 + ticks
+            pending.events.append(Event(EventKind.PRESS_BUTTON, name, {"position": place}))
+
+    def mine(self, name: str, position: Position) -> None:
+        """An agent breaks a block and takes what it drops."""
+        with self._act() as pending:
+            agent = self._agent(name)
+            place = self._inside(position)
+            state = self._state_at(place)
+            drops = Handling.load().drops(self._registry.name(state), agent.inventory)
+            check_holds_nothing(self._registry, self._state_at, place)
+            held = self._fitting(name, agent.inventory, drops, AGENT_SLOTS + WORN_SLOTS)
+            self._change(pending, place, AIR, None)
+            self._set_agent(name, inventory=held)
+            pending.agents.add(name)
+            detail = {"position": place, "block": self._registry.text(state)}
+            pending.events.append(Event(EventKind.MINE_BLOCK, name, detail))
+
+    def put(self, name: str, item: str, position: Position) -> None:
+        """An agent puts a block of its inventory somewhere."""
+        with self._act() as pending:
+            agent = self._agent(name)
+            place = self._inside(position)
+            moved = self._items({item: 1})
+            held = rest_of(agent.inventory, moved, f"{name} cannot put {item}: it")
+            bodies = [each.position for each in self._facts.agents.values()]
+            state = put_block(self._registry, self._state_at, place, item, bodies)
+            self._change(pending, place, state, None)
+            self._set_agent(name, inventory=held)
+            pending.agents.add(name)
+            detail = {"position": place, "block": self._registry.text(state)}
+            pending.events.append(Event(EventKind.PLACE_BLOCK, name, detail))
+
     def write_sign(self, name: str, position: Position, text: str) -> None:
         """An agent writes on a sign, over what is there; whoever sees the sign sees the text."""
         with self._act() as pending:
@@ -243,35 +289,6 @@ class ScriptedWorld:
             self._agent(name)
             x, y, z = (float(value) for value in destination)
             pending.events.append(Event(EventKind.MOVE_TO, name, {"destination": (x, y, z)}))
-
-    @property
-    def agents(self) -> Mapping[str, AgentState]:
-        """What is the case about all agents."""
-        return dict(self._facts.agents)
-
-    @property
-    def containers(self) -> Mapping[Position, Items]:
-        """What all containers hold; not to be written to."""
-        return self._facts.containers
-
-    def contents(self, position: Position) -> Items:
-        """What a container holds.
-
-        Raises:
-            WorldError: There is no container at the position.
-        """
-        return dict(self._facts.containers[self._container(position)])
-
-    @property
-    def blocks(self) -> BlockGrid:
-        """Block state ids of the box; what was handed out does not change later."""
-        self._handed_out = True
-        return self._facts.blocks
-
-    @property
-    def signs(self) -> Mapping[Position, str]:
-        """What is written on signs."""
-        return dict(self._facts.signs)
 
     def deposit(self, name: str, position: Position, items: Items) -> None:
         """An agent puts items of its inventory into a container."""
@@ -361,37 +378,6 @@ class ScriptedWorld:
         except InputError as fault:
             raise WorldError(str(fault)) from None
 
-    def _change(self, pending: Pending, place: Position, state: int, actor: str | None) -> None:
-        """Replace a block by another one, in the tick that is being made."""
-        if self._handed_out or not pending.changed:
-            self._facts.blocks = self._facts.blocks.copy()
-            pending.changed, self._handed_out = True, False
-        held = self._facts.containers.get(place)
-        self._put(place, self._registry.text(state))
-        if self._facts.containers.get(place) is not held:
-            pending.containers.add(place)
-        pending.blocks[place] = self._block(place)
-        detail = {"position": place, "block": self._registry.text(state)}
-        pending.events.append(Event(EventKind.BLOCK_UPDATE, actor, detail))
-
-    def _state_at(self, place: Position) -> int:
-        """Block state at a position; air outside the box."""
-        return int(self._facts.blocks[self._box.index(place)]) if place in self._box else AIR
-
-    def _block(self, place: Position) -> Block:
-        """The block at a position, with what is written on it."""
-        state = self._state_at(place)
-        return Sign(state, self._facts.signs[place]) if place in self._facts.signs else state
-
-    def _write(self, place: Position, text: str) -> None:
-        try:
-            block = written(self._registry, self._state_at(place), text)
-        except InputError as fault:
-            raise WorldError(f"nothing is written at {place}: {fault}") from None
-        self._facts.signs.pop(place, None)
-        if isinstance(block, Sign):
-            self._facts.signs[place] = block.text
-
     @contextmanager
     def _act(self) -> Iterator[Pending]:
         """One act: a tick of its own, or a part of the one being made."""
@@ -406,6 +392,7 @@ class ScriptedWorld:
         pending = self._pending = Pending(self._facts)
         before = self._tick
         try:
+            self._release(pending)
             yield pending
             self._pending = None
             self._finish(pending)
@@ -415,6 +402,16 @@ class ScriptedWorld:
             raise
         finally:
             self._pending = None
+
+    def _release(self, pending: Pending) -> None:
+        """Let the buttons come out whose time is over with the tick that is being made."""
+        pressed = self._facts.pressed
+        for place in sorted(at for at, due in pressed.items() if due <= self._tick + 1):
+            del pressed[place]
+            state = self._state_at(place)
+            if Handling.load().is_pressed(self._registry, state):
+                out = pressed_button(self._registry, self._state_at, place, powered=False)
+                self._change(pending, place, out, None)
 
     def _finish(self, pending: Pending) -> None:
         self._tick += 1
@@ -432,78 +429,3 @@ class ScriptedWorld:
         )
         for listener in tuple(self._listeners):
             listener(frame)
-
-    def _put(self, place: Position, block: str) -> None:
-        state = self._state(block)
-        before = self._registry.name(self._state_at(place))
-        name = self._registry.name(state)
-        if before != name:
-            self._facts.signs.pop(place, None)
-        self._facts.blocks[self._box.index(place)] = state
-        if self._registry.is_container(name):
-            if before != name or place not in self._facts.containers:
-                self._facts.containers[place] = {}
-        else:
-            self._facts.containers.pop(place, None)
-
-    def _set_agent(
-        self,
-        name: str,
-        *,
-        inventory: dict[str, int] | None = None,
-        equipment: dict[str, str] | None = None,
-    ) -> None:
-        agent = self._agent(name)
-        self._facts.agents[name] = replace(
-            agent,
-            inventory=agent.inventory if inventory is None else inventory,
-            equipment=agent.equipment if equipment is None else equipment,
-        )
-
-    def _agent(self, name: str) -> AgentState:
-        if name not in self._facts.agents:
-            raise WorldError(f"no agent {name!r}; there are {sorted(self._facts.agents)}")
-        return self._facts.agents[name]
-
-    def _container(self, position: Position) -> Position:
-        place = self._inside(position)
-        if place not in self._facts.containers:
-            there = self._registry.text(self._state_at(place))
-            raise WorldError(f"there is no container at {place}, but {there}")
-        return place
-
-    def _inside(self, position: Position) -> Position:
-        place = whole_position(position)
-        if place not in self._box:
-            raise WorldError(
-                f"position {place} lies outside the box {self._box.low}..{self._box.high}"
-            )
-        return place
-
-    def _feet(self, position: Point) -> Point:
-        if len(position) != 3 or not all(math.isfinite(p) for p in position):
-            raise WorldError(f"{position!r} is no point; give three finite numbers")
-        x, y, z = (float(p) for p in position)
-        self._inside((math.floor(x), math.floor(y), math.floor(z)))
-        return (x, y, z)
-
-    def _state(self, block: str) -> int:
-        try:
-            return self._registry.state_id(block)
-        except BeliefNestError as error:
-            raise WorldError(str(error)) from None
-
-    def _items(self, items: Items) -> dict[str, int]:
-        for name, count in items.items():
-            if not self._registry.has_item(name):
-                raise WorldError(f"there is no item {name!r}")
-            if not isinstance(count, int) or isinstance(count, bool) or count <= 0:
-                raise WorldError(f"{count!r} {name} cannot be; give a whole number above 0")
-        return dict(items)
-
-    def _fitting(self, who: str, held: Items, moved: Items, slots: int) -> dict[str, int]:
-        """What somebody or something holds with what is moved there."""
-        items = sum_of(held, moved)
-        if fault := items_fault(items, self._registry, slots, who):
-            raise WorldError(f"{moved} cannot be moved: they would {fault}")
-        return items

@@ -4,6 +4,8 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+import msgspec
+
 from beliefnest.errors import WorldError
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.limits import agent_name_fault, box_fault
@@ -26,6 +28,7 @@ __all__ = [
     "checked_equipment",
     "checked_name",
     "checked_utterance",
+    "pressed_from",
     "rest_of",
     "sum_of",
     "whole_position",
@@ -41,6 +44,8 @@ class Facts:
     agents: dict[str, AgentState]
     items: dict[int, DroppedItem]
     signs: dict[Position, str] = field(default_factory=dict)
+    pressed: dict[Position, int] = field(default_factory=dict)
+    """Buttons that come out again, each with the tick at which it does."""
 
     def copied(self) -> "Facts":
         """The same facts; a tick that changes blocks changes a copy of them."""
@@ -50,7 +55,21 @@ class Facts:
             dict(self.agents),
             dict(self.items),
             dict(self.signs),
+            dict(self.pressed),
         )
+
+    def under_way(self, tick: int) -> bytes:
+        """What goes on at a tick and nobody can perceive; `pressed_from` reads it."""
+        left = [(*place, due - tick) for place, due in sorted(self.pressed.items())]
+        return msgspec.msgpack.encode(left) if left else b""
+
+
+def pressed_from(state: bytes, tick: int) -> dict[Position, int]:
+    """Buttons that come out again, and when, from what went on at a tick."""
+    if not state:
+        return {}
+    left = msgspec.msgpack.decode(state, type=list[tuple[int, int, int, int]])
+    return {(x, y, z): tick + ticks for x, y, z, ticks in left}
 
 
 class Pending:

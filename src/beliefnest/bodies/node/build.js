@@ -8,6 +8,7 @@ const path = require('node:path')
 const esbuild = require('esbuild')
 const { encode } = require('@msgpack/msgpack')
 const { MINECRAFT_VERSION, buildRegistry } = require('./registry')
+const { buildHandling } = require('./handling')
 const { interpreterBytes } = require('./src/sandbox/interpreter')
 const { INTERPRETER, replacements } = require('./bundling/replacements')
 
@@ -24,6 +25,8 @@ async function build (outdir) {
   Object.assign(inputs, await bundle(outdir, ['realtime.js'], 'client'), await bundle(outdir, ['hosting.js'], 'host'))
   fs.writeFileSync(
     path.join(outdir, `registry-${MINECRAFT_VERSION}.msgpack`), encode(buildRegistry(MINECRAFT_VERSION)))
+  fs.writeFileSync(
+    path.join(outdir, `handling-${MINECRAFT_VERSION}.msgpack`), encode(buildHandling(MINECRAFT_VERSION)))
   fs.writeFileSync(path.join(outdir, INTERPRETER), interpreterBytes())
   for (const file of SHARED) await share(path.join(SOURCE, file), outdir)
   const folders = packageFolders(inputs)

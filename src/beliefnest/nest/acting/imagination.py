@@ -18,7 +18,8 @@ from beliefnest.belief.forest import Forest
 from beliefnest.belief.initial import forked_forest
 from beliefnest.belief.node_view import NodeView
 from beliefnest.bodies.footpaths import Ground, InReach
-from beliefnest.bodies.scripted_skills import CALLS, REACH, SKILLS, Doing, Hand
+from beliefnest.bodies.scripted_hand import REACH, Doing, Hand
+from beliefnest.bodies.scripted_skills import CALLS, SKILLS
 from beliefnest.errors import BeliefNestError, PathError
 from beliefnest.programs.calls import Call
 from beliefnest.world.frames import BlockGrid, Frame

@@ -1,9 +1,7 @@
 'use strict'
 
 const { listOf } = require('./lib/positions')
-
-const STONE_BUTTON_TICKS = 20
-const WOODEN_BUTTON_TICKS = 30
+const { pressedTicks } = require('./lib/buttons')
 
 /** Levers stay as they are switched; buttons come out again after their ticks. */
 module.exports.server = (serv) => {
@@ -23,14 +21,13 @@ module.exports.server = (serv) => {
 
   function push ({ player, position, block }) {
     if (block.properties.powered) return true
-    const stone = /^(stone|polished_blackstone)_button$/.test(block.name)
     serv.blocks.set(position, serv.blocks.stateWith(block, { powered: true }), player)
     player.emitEvent({ kind: 'press_button', detail: { position: listOf(position) } })
-    serv.after(stone ? STONE_BUTTON_TICKS : WOODEN_BUTTON_TICKS, position, 'release')
+    serv.after(pressedTicks(block.name), position, 'release')
     return true
   }
   serv.onDue('release', release)
   for (const { name } of serv.registry.blocksArray) {
-    if (name.endsWith('_button')) serv.onInteraction(name, push)
+    if (pressedTicks(name) > 0) serv.onInteraction(name, push)
   }
 }

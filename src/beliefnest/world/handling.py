@@ -1,0 +1,227 @@
+"""What comes of switching, breaking and putting blocks by hand, in a world without a server.
+
+Drops and times are those of the embedded world: `bodies/node/handling.js` writes them from its
+rules into a file when the package is built. What that world decides by chance, or by how somebody
+stands, is refused here, and so is what would move something else.
+"""
+
+import functools
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+
+from beliefnest.errors import BodyError, WorldError
+from beliefnest.world.doors import is_door
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Items, Point, Position
+
+__all__ = [
+    "Handling",
+    "check_holds_nothing",
+    "free_to_put",
+    "pressed_button",
+    "put_block",
+    "switched_lever",
+]
+
+_FORMAT = 1
+_BUNDLE = Path(__file__).parents[1] / "_bundle"
+_SIDES = ((0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1), (-1, 0, 0), (1, 0, 0))
+_HALF_WIDTH, _HEIGHT = 0.3, 1.8
+_LAMP = "redstone_lamp"
+_NEEDS_HOLDER = ("lever", "torch", "ladder", "_button", "_carpet", "_sign", "_plate", "rail")
+
+StateAt = Callable[[Position], int]
+"""Block state at a position; air outside the world."""
+
+
+class _Breaking(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    tools: list[str]
+    drops: dict[str, int]
+
+
+class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    format: int
+    minecraft: str
+    breaking: dict[str, _Breaking]
+    pressed: dict[str, int]
+
+
+@dataclass(frozen=True, eq=False)
+class Handling:
+    """What comes of using and breaking the blocks of one Minecraft version by hand."""
+
+    _breaking: Mapping[str, _Breaking]
+    _pressed: Mapping[str, int]
+
+    @staticmethod
+    def load(version: str = "1.20.4") -> "Handling":
+        """That of a Minecraft version, read once per process.
+
+        Raises:
+            BodyError: The package was not built, or its file is damaged.
+        """
+        return _load(version)
+
+    def pressed_ticks(self, name: str) -> int:
+        """Ticks after which a pressed button comes out again; 0: the block is no button."""
+        return self._pressed.get(name, 0)
+
+    def is_pressed(self, registry: Registry, state: int) -> bool:
+        """Whether a block is a button that is pressed."""
+        if not self.pressed_ticks(registry.name(state)):
+            return False
+        return registry.properties(state)["powered"] == "true"
+
+    def drops(self, name: str, tools: Iterable[str]) -> Items:
+        """What a block drops that is broken by somebody who has these tools.
+
+        Raises:
+            WorldError: It cannot be broken, or what it drops is left to chance, or is nothing
+                without a tool that is not there.
+        """
+        how = self._breaking.get(name)
+        if how is None:
+            raise WorldError(
+                f"a {name} is not mined in the scripted world: it cannot be, has several parts, "
+                'or drops what chance decides; open the nest with world="embedded" for that'
+            )
+        if how.tools and not set(how.tools) & set(tools):
+            raise WorldError(f"{name} needs one of these tools: {', '.join(how.tools)}")
+        return how.drops
+
+
+def switched_lever(registry: Registry, state_at: StateAt, place: Position, *, powered: bool) -> int:
+    """The new state of a lever that is brought into another one.
+
+    Raises:
+        WorldError: There is no lever, it is so already, or it would move something.
+    """
+    text = registry.text(state_at(place))
+    if registry.name(state_at(place)) != "lever":
+        raise WorldError(f"there is no lever at {place}, but {text}")
+    if (registry.properties(state_at(place))["powered"] == "true") is powered:
+        raise WorldError(f"the lever at {place} is {'on' if powered else 'off'} already")
+    _check_moves_nothing(registry, state_at, place)
+    return _with(registry, state_at(place), powered=powered)
+
+
+def pressed_button(
+    registry: Registry, state_at: StateAt, place: Position, *, powered: bool = True
+) -> int:
+    """The new state of a button that is pressed, or comes out again.
+
+    Raises:
+        WorldError: There is no button, it is so already, or it would move something.
+    """
+    state = state_at(place)
+    if not registry.name(state).endswith("_button"):
+        raise WorldError(f"there is no button at {place}, but {registry.text(state)}")
+    if (registry.properties(state)["powered"] == "true") is powered:
+        raise WorldError(f"the button at {place} is {'in' if powered else 'out'} already")
+    _check_moves_nothing(registry, state_at, place)
+    return _with(registry, state, powered=powered)
+
+
+def put_block(
+    registry: Registry, state_at: StateAt, place: Position, name: str, bodies: Iterable[Point]
+) -> int:
+    """State of a block that is put somewhere.
+
+    Args:
+        registry: Names and shapes.
+        state_at: Block state at a position.
+        place: Where it is put.
+        name: The item, which is called as its block.
+        bodies: Where somebody's feet are.
+
+    Raises:
+        WorldError: It is no such block, there is something, or nothing to put it against.
+    """
+    if not registry.has_block(name) or len(registry.state_ids(name)) != 1:
+        raise WorldError(
+            f"{name} is not put in the scripted world: it is no block, or stands as whoever puts "
+            'it does; open the nest with world="embedded" for that'
+        )
+    if not free_to_put(registry, state_at, place):
+        raise WorldError(
+            f"{name} cannot be put at {place}: {registry.text(state_at(place))} is there, or there "
+            "is no solid block beside it"
+        )
+    state = registry.state_id(name)
+    if any(_overlaps(box, place, feet) for box in registry.boxes(state) for feet in bodies):
+        raise WorldError(f"{name} cannot be put at {place}: somebody stands there")
+    return state
+
+
+def free_to_put(registry: Registry, state_at: StateAt, place: Position) -> bool:
+    """Whether a place is free, and there is a block beside it to put something against."""
+    if state_at(place) not in registry.airs:
+        return False
+    around = (state_at(_beside(place, side)) for side in _SIDES)
+    return any(bool(registry.boxes(each)) for each in around)
+
+
+def check_holds_nothing(registry: Registry, state_at: StateAt, place: Position) -> None:
+    """Raise WorldError if something beside a block may come off with it."""
+    for side in _SIDES:
+        other = _beside(place, side)
+        name = registry.name(state_at(other))
+        if name.endswith(_NEEDS_HOLDER):
+            raise WorldError(
+                f"the block at {place} is not mined in the scripted world: the {name} at {other} "
+                'may come off with it; open the nest with world="embedded" for that'
+            )
+
+
+def _check_moves_nothing(registry: Registry, state_at: StateAt, place: Position) -> None:
+    """A switch moves what is beside it and beside the block that it is fixed to."""
+    near = [_beside(place, side) for side in _SIDES]
+    near += [_beside(other, side) for other in near for side in _SIDES]
+    for other in near:
+        name = registry.name(state_at(other))
+        if is_door(name) or name == _LAMP:
+            raise WorldError(
+                f"the switch at {place} may move the {name} at {other}; nothing is powered in the "
+                'scripted world; open the nest with world="embedded" for that'
+            )
+
+
+def _with(registry: Registry, state: int, *, powered: bool) -> int:
+    properties = {**registry.properties(state), "powered": str(powered).lower()}
+    inner = ",".join(f"{name}={value}" for name, value in properties.items())
+    return registry.state_id(f"{registry.name(state)}[{inner}]")
+
+
+def _beside(place: Position, side: tuple[int, int, int]) -> Position:
+    return (place[0] + side[0], place[1] + side[1], place[2] + side[2])
+
+
+def _overlaps(box: tuple[float, ...], place: Position, feet: Point) -> bool:
+    low = [corner + at for corner, at in zip(box[:3], place, strict=True)]
+    high = [corner + at for corner, at in zip(box[3:], place, strict=True)]
+    body_low = (feet[0] - _HALF_WIDTH, feet[1], feet[2] - _HALF_WIDTH)
+    body_high = (feet[0] + _HALF_WIDTH, feet[1] + _HEIGHT, feet[2] + _HALF_WIDTH)
+    below = all(a < b for a, b in zip(body_low, high, strict=True))
+    return below and all(a > b for a, b in zip(body_high, low, strict=True))
+
+
+@functools.lru_cache(maxsize=4)
+def _load(version: str) -> Handling:
+    path = _BUNDLE / f"handling-{version}.msgpack"
+    try:
+        file = msgspec.msgpack.decode(path.read_bytes(), type=_File)
+    except FileNotFoundError:
+        raise BodyError(f"{path} is missing: build the package with `pip install .`") from None
+    except msgspec.MsgspecError as error:
+        raise BodyError(
+            f"{path} is damaged ({error}): build it anew with `pip install .`"
+        ) from None
+    if (file.format, file.minecraft) != (_FORMAT, version):
+        raise BodyError(
+            f"{path} is of Minecraft {file.minecraft}, format {file.format}, where {version}, "
+            f"format {_FORMAT} was expected: build it anew with `pip install .`"
+        )
+    return Handling(file.breaking, file.pressed)

@@ -1,0 +1,184 @@
+"""What is the case in a scripted world, and the checks of what is asked about it."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from beliefnest.errors import BeliefNestError, InputError, WorldError
+from beliefnest.world.frames import BlockGrid
+from beliefnest.world.limits import items_fault
+from beliefnest.world.registry import AIR, Registry
+from beliefnest.world.scripted_parts import Facts, Pending, checked_box, sum_of, whole_position
+from beliefnest.world.signs import written
+from beliefnest.world.values import (
+    AgentState,
+    Block,
+    Box,
+    Event,
+    EventKind,
+    Items,
+    Point,
+    Position,
+    Sign,
+)
+
+__all__ = ["ScriptedState"]
+
+
+class ScriptedState:
+    """The facts of a scripted world, read and changed piece by piece.
+
+    Args:
+        box: Two inclusive corners of block positions.
+
+    Raises:
+        WorldError: The box is none.
+    """
+
+    def __init__(self, box: tuple[Position, Position]) -> None:
+        self._registry = Registry.load()
+        self._box = checked_box(box)
+        self._handed_out = False
+        self._facts = Facts(np.zeros(self._box.shape, dtype=np.int32), {}, {}, {})
+
+    @property
+    def box(self) -> Box:
+        """The part of space there is."""
+        return self._box
+
+    @property
+    def agents(self) -> Mapping[str, AgentState]:
+        """What is the case about all agents."""
+        return dict(self._facts.agents)
+
+    @property
+    def containers(self) -> Mapping[Position, Items]:
+        """What all containers hold; not to be written to."""
+        return self._facts.containers
+
+    def contents(self, position: Position) -> Items:
+        """What a container holds.
+
+        Raises:
+            WorldError: There is no container at the position.
+        """
+        return dict(self._facts.containers[self._container(position)])
+
+    @property
+    def blocks(self) -> BlockGrid:
+        """Block state ids of the box; what was handed out does not change later."""
+        self._handed_out = True
+        return self._facts.blocks
+
+    @property
+    def signs(self) -> Mapping[Position, str]:
+        """What is written on signs."""
+        return dict(self._facts.signs)
+
+    def _change(self, pending: Pending, place: Position, state: int, actor: str | None) -> None:
+        """Replace a block by another one, in the tick that is being made."""
+        if self._handed_out or not pending.changed:
+            self._facts.blocks = self._facts.blocks.copy()
+            pending.changed, self._handed_out = True, False
+        held = self._facts.containers.get(place)
+        self._put(place, self._registry.text(state))
+        if self._facts.containers.get(place) is not held:
+            pending.containers.add(place)
+        pending.blocks[place] = self._block(place)
+        detail = {"position": place, "block": self._registry.text(state)}
+        pending.events.append(Event(EventKind.BLOCK_UPDATE, actor, detail))
+
+    def _state_at(self, place: Position) -> int:
+        """Block state at a position; air outside the box."""
+        return int(self._facts.blocks[self._box.index(place)]) if place in self._box else AIR
+
+    def _block(self, place: Position) -> Block:
+        """The block at a position, with what is written on it."""
+        state = self._state_at(place)
+        return Sign(state, self._facts.signs[place]) if place in self._facts.signs else state
+
+    def _write(self, place: Position, text: str) -> None:
+        try:
+            block = written(self._registry, self._state_at(place), text)
+        except InputError as fault:
+            raise WorldError(f"nothing is written at {place}: {fault}") from None
+        self._facts.signs.pop(place, None)
+        if isinstance(block, Sign):
+            self._facts.signs[place] = block.text
+
+    def _put(self, place: Position, block: str) -> None:
+        state = self._state(block)
+        before = self._registry.name(self._state_at(place))
+        name = self._registry.name(state)
+        if before != name:
+            self._facts.signs.pop(place, None)
+        self._facts.blocks[self._box.index(place)] = state
+        if self._registry.is_container(name):
+            if before != name or place not in self._facts.containers:
+                self._facts.containers[place] = {}
+        else:
+            self._facts.containers.pop(place, None)
+
+    def _set_agent(
+        self,
+        name: str,
+        *,
+        inventory: dict[str, int] | None = None,
+        equipment: dict[str, str] | None = None,
+    ) -> None:
+        agent = self._agent(name)
+        self._facts.agents[name] = replace(
+            agent,
+            inventory=agent.inventory if inventory is None else inventory,
+            equipment=agent.equipment if equipment is None else equipment,
+        )
+
+    def _agent(self, name: str) -> AgentState:
+        if name not in self._facts.agents:
+            raise WorldError(f"no agent {name!r}; there are {sorted(self._facts.agents)}")
+        return self._facts.agents[name]
+
+    def _container(self, position: Position) -> Position:
+        place = self._inside(position)
+        if place not in self._facts.containers:
+            there = self._registry.text(self._state_at(place))
+            raise WorldError(f"there is no container at {place}, but {there}")
+        return place
+
+    def _inside(self, position: Position) -> Position:
+        place = whole_position(position)
+        if place not in self._box:
+            raise WorldError(
+                f"position {place} lies outside the box {self._box.low}..{self._box.high}"
+            )
+        return place
+
+    def _feet(self, position: Point) -> Point:
+        if len(position) != 3 or not all(math.isfinite(p) for p in position):
+            raise WorldError(f"{position!r} is no point; give three finite numbers")
+        x, y, z = (float(p) for p in position)
+        self._inside((math.floor(x), math.floor(y), math.floor(z)))
+        return (x, y, z)
+
+    def _state(self, block: str) -> int:
+        try:
+            return self._registry.state_id(block)
+        except BeliefNestError as error:
+            raise WorldError(str(error)) from None
+
+    def _items(self, items: Items) -> dict[str, int]:
+        for name, count in items.items():
+            if not self._registry.has_item(name):
+                raise WorldError(f"there is no item {name!r}")
+            if not isinstance(count, int) or isinstance(count, bool) or count <= 0:
+                raise WorldError(f"{count!r} {name} cannot be; give a whole number above 0")
+        return dict(items)
+
+    def _fitting(self, who: str, held: Items, moved: Items, slots: int) -> dict[str, int]:
+        """What somebody or something holds with what is moved there."""
+        items = sum_of(held, moved)
+        if fault := items_fault(items, self._registry, slots, who):
+            raise WorldError(f"{moved} cannot be moved: they would {fault}")
+        return items
