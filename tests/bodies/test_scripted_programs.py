@@ -77,7 +77,7 @@ def test_programs_go_on_together(nest: bn.Nest) -> None:
     [
         ("\nawait goToPosition(bot, new Vec3(4, 1, 8), 0)", "skill", 2, "no way to it on foot"),
         ("await bot.findBlocks({})", "refused", 1, "no bot.findBlocks"),
-        ("await mineBlock(bot, new Vec3(0, 1, 0), 'dirt')", "error", 1, "mineBlock"),
+        ("await craftItem(bot, 'stick')", "error", 1, "craftItem"),
         ("await getItemFromChest(bot, new Vec3(1, 1, 1), {apple: 1})", "skill", 1, "no container"),
         ("const = 3", "syntax", 1, ""),
         ("\n\nthrow new TypeError('oh')", "error", 3, "TypeError: oh"),

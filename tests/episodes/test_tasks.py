@@ -104,11 +104,24 @@ def test_a_goal_that_speaks_of_nobody_is_refused() -> None:
 
 
 def test_a_liar_is_counted() -> None:
-    with bn.Episode(bn.Task.load("hide-and-seek", seed=1)) as episode:
+    # To somebody who believes what he is told.
+    task = bn.Task.load("hide-and-seek", seed=1)
+    with bn.Episode(task, {"eve": "search:1", "bob": "search:0"}) as episode:
         measures = episode.play().measures
     assert measures.success
     assert measures.claims == measures.false_claims == measures.lies == measures.messages > 0
     assert measures.taken_up >= 1
+
+
+def test_who_is_seen_through_bluffs_by_the_truth() -> None:
+    task = bn.Task.load("hide-and-seek", seed=1)
+    with bn.Episode(task, {"eve": "search:1"}) as seen_through:
+        lying = seen_through.play().measures
+    assert not lying.success
+    assert lying.lies == lying.claims > 0
+    with bn.Episode(task, {"eve": "search:2"}) as bluff:
+        honest = bluff.play().measures
+    assert (honest.success, honest.claims, honest.lies) == (True, 1, 0)
 
 
 def test_a_task_is_played_in_minecraft_as_in_the_scripted_world() -> None:

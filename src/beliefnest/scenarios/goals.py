@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Protocol
 
 from beliefnest.world.paths import path_text
 from beliefnest.world.registry import Registry, parse_state
-from beliefnest.world.values import Items, Point, Position
+from beliefnest.world.values import EYE_HEIGHT, Items, Point, Position
 
 if TYPE_CHECKING:
     from beliefnest.belief.view import State
 
 __all__ = [
     "AgentAt",
-    "AgentsAt",
     "BlockIs",
     "BlocksAlike",
     "Condition",
@@ -25,15 +24,19 @@ __all__ = [
     "Goal",
     "ItemsIn",
     "ItemsWith",
+    "LeversHeld",
     "Look",
     "Progress",
     "StateFacts",
+    "agrees",
     "looking_at",
 ]
 
 Path = tuple[str, ...]
 
 _NOWHERE = 80.0
+_REACH = 6.0
+"""Blocks between eyes and the middle of what is held."""
 
 
 class Facts(Protocol):
@@ -149,7 +152,7 @@ class BlockIs:
     def holds(self, facts: Facts) -> bool:
         """Whether it is."""
         there = facts.block(self.place)
-        return there is not None and _agrees(there, self.state)
+        return there is not None and agrees(there, self.state)
 
     def __str__(self) -> str:
         return f"{self.state} at {self.place}"
@@ -162,70 +165,71 @@ class BlocksAlike:
     Attributes:
         place: Where it is.
         model: Where the other one is.
-        property: The property in which they are to agree.
+        property: The property in which they are to agree; empty: in all that it is.
     """
 
     place: Position
     model: Position
-    property: str = "open"
+    property: str = ""
 
     def holds(self, facts: Facts) -> bool:
         """Whether they agree."""
         wanted = self.wanted(facts)
-        return wanted is not None and wanted == _property(facts.block(self.place), self.property)
+        return wanted is not None and wanted == self._of(facts.block(self.place))
 
     def wanted(self, facts: Facts) -> str | None:
-        """The value that the model has; None: unknown."""
-        return _property(facts.block(self.model), self.property)
+        """What the model has: the property's value, or the whole block; None: unknown."""
+        return self._of(facts.block(self.model))
+
+    def _of(self, text: str | None) -> str | None:
+        return _property(text, self.property) if self.property else text
 
     def __str__(self) -> str:
-        return f"{self.property} at {self.place} as at {self.model}"
+        return f"{self.property or 'the block'} at {self.place} as at {self.model}"
 
 
 @dataclass(frozen=True, slots=True)
-class AgentsAt:
-    """Agents stand on all the plates of one site at once, whoever on which.
-
-    A site is one where the block below each of its places is known to be a plate.
+class LeversHeld:
+    """All the levers of one site are on at once, each with somebody else at it.
 
     Attributes:
-        agents: As many as a site has places.
-        sites: Block positions in which to stand, of each site.
-        plate: Name of the block.
+        agents: As many as a site has levers, whoever is at which.
+        sites: Block positions of levers, of each site.
     """
 
     agents: tuple[str, ...]
     sites: tuple[tuple[Position, ...], ...]
-    plate: str
 
     def holds(self, facts: Facts) -> bool:
-        """Whether they do."""
-        return any(self.off(facts, site) == 0 for site in self.known(facts))
+        """Whether they are."""
+        return any(self.missing(facts, site) == (0, 0.0) for site in self.known(facts))
 
     def known(self, facts: Facts) -> list[tuple[Position, ...]]:
-        """The sites whose plates are known."""
+        """The sites whose levers are known."""
         return [
             site
             for site in self.sites
-            if all(_is_named(facts.block((x, y - 1, z)), self.plate) for x, y, z in site)
+            if all(_is_named(facts.block(place), "lever") for place in site)
         ]
 
-    def off(self, facts: Facts, site: tuple[Position, ...]) -> float:
-        """How far the agents are from the places of a site, all together, in blocks."""
-        return min(
+    def missing(self, facts: Facts, site: tuple[Position, ...]) -> tuple[int, float]:
+        """How many levers of a site are off, and how far off their holders are, in blocks."""
+        is_off = sum(_property(facts.block(place), "powered") != "true" for place in site)
+        far = min(
             sum(
-                _from_place(facts.feet_of(agent), place)
+                _beyond_reach(facts.feet_of(agent), place)
                 for agent, place in zip(self.agents, places, strict=True)
             )
             for places in itertools.permutations(site)
         )
+        return is_off, far
 
     def __str__(self) -> str:
         sites = " or ".join(str(list(site)) for site in self.sites)
-        return f"{' and '.join(self.agents)} at once on the plates at {sites}"
+        return f"{' and '.join(self.agents)} at once at levers that are on, at {sites}"
 
 
-Fact = ItemsIn | ItemsWith | AgentAt | AgentsAt | BlockIs | BlocksAlike
+Fact = ItemsIn | ItemsWith | AgentAt | LeversHeld | BlockIs | BlocksAlike
 
 
 @dataclass(frozen=True, slots=True)
@@ -346,7 +350,8 @@ def looking_at(states: "Mapping[Path, State]") -> Look:
 
 
 @cache
-def _agrees(there: str, wanted: str) -> bool:
+def agrees(there: str, wanted: str) -> bool:
+    """Whether a block is in a state; properties that are not named may be any."""
     name, stated = parse_state(wanted)
     is_named, properties = parse_state(there)
     return is_named == name and stated.items() <= properties.items()
@@ -356,14 +361,12 @@ def _is_named(text: str | None, name: str) -> bool:
     return text is not None and text.partition("[")[0] == name
 
 
-def _from_place(feet: Point | None, place: Position) -> float:
-    """Blocks between somebody and a place; 0 for who stands in it."""
+def _beyond_reach(feet: Point | None, place: Position) -> float:
+    """Blocks between somebody and where a hand reaches a place; 0 for who is within reach."""
     if feet is None:
         return _NOWHERE
-    if tuple(math.floor(value) for value in feet) == place:
-        return 0.0
-    x, y, z = place
-    return max(1.0, math.dist(feet, (x + 0.5, float(y), z + 0.5)))
+    middle = tuple(value + 0.5 for value in place)
+    return max(0.0, math.dist((feet[0], feet[1] + EYE_HEIGHT, feet[2]), middle) - _REACH)
 
 
 @cache

@@ -8,7 +8,6 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.scenarios.goals import (
     AgentAt,
-    AgentsAt,
     BlockIs,
     BlocksAlike,
     Condition,
@@ -16,6 +15,7 @@ from beliefnest.scenarios.goals import (
     Goal,
     ItemsIn,
     ItemsWith,
+    LeversHeld,
 )
 from beliefnest.world.paths import parse_path
 from beliefnest.world.registry import Registry
@@ -34,7 +34,7 @@ class _Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defau
 
 
 class ConditionEntry(_Entry, frozen=True):
-    """A condition: `container` or `agent` with `items`, `agent` or `agents` at places, `block`."""
+    """A condition: of a container, an agent, agents at levers, or a block."""
 
     path: Annotated[str, _note("Where it is to be the case; / is reality.")] = "/"
     container: Annotated[Position | None, _note("A container that holds `items`.")] = None
@@ -45,10 +45,9 @@ class ConditionEntry(_Entry, frozen=True):
     block: Annotated[Position | None, _note("A block that is in a state.")] = None
     state: Annotated[str | None, _note("name or name[property=value,...].")] = None
     like: Annotated[Position | None, _note("A block that it is to be like.")] = None
-    agents: Annotated[list[str], _note("Agents that stand on the plates of a site at once.")] = []
-    sites: Annotated[list[list[Position]], _note("Where one stands on the plates of each.")] = []
-    plate: Annotated[str, _note("Name of the block below.")] = "lodestone"
-    property: Annotated[str, _note("The property in which these are to agree.")] = "open"
+    agents: Annotated[list[str], _note("Agents at levers that are on, each at one, at once.")] = []
+    sites: Annotated[list[list[Position]], _note("Levers of each site; one will do.")] = []
+    property: Annotated[str, _note("In which it is to be `like`; empty: in all that it is.")] = ""
 
 
 class GoalEntry(_Entry, frozen=True):
@@ -125,7 +124,7 @@ def conditions_of(entry: ConditionEntry, agents: Collection[str]) -> list[Condit
         if name not in agents:
             raise InputError(f"a condition is about {name!r}, who is no agent")
     if any(len(site) != len(entry.agents) for site in entry.sites):
-        raise InputError("a site of a condition has not as many places as there are `agents`")
+        raise InputError("a site of a condition has not as many levers as there are `agents`")
     facts = _facts(entry)
     if not facts:
         plain = msgspec.to_builtins(entry)
@@ -148,7 +147,7 @@ def _facts(entry: ConditionEntry) -> list[Fact]:
             return [AgentAt(agent, place, entry.within)]
         case ConditionEntry(agents=[_, *_], sites=[_, *_]):
             sites = tuple(tuple(site) for site in entry.sites)
-            return [AgentsAt(tuple(entry.agents), sites, entry.plate)]
+            return [LeversHeld(tuple(entry.agents), sites)]
         case ConditionEntry(agent=agent) if agent is not None:
             return [ItemsWith(agent, item, count) for item, count in entry.items.items()]
     return _block_facts(entry)

@@ -2,17 +2,18 @@
 
 from collections.abc import Iterator, Sequence
 
-from beliefnest.episodes.policies.distance import MindFacts
+from beliefnest.episodes.policies.distance import MindFacts, name_of
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.programs.calls import Call
 from beliefnest.scenarios.goals import (
     AgentAt,
-    AgentsAt,
     BlockIs,
     BlocksAlike,
     Goal,
     ItemsIn,
     ItemsWith,
+    LeversHeld,
+    agrees,
 )
 from beliefnest.world.claims import Claim
 from beliefnest.world.doors import is_door, is_open
@@ -31,7 +32,8 @@ def items_of(goals: Sequence[Goal]) -> list[str]:
 def calls_of(mind: Imagination, agent: str, goals: Sequence[Goal]) -> list[Call]:
     """Deeds that bear on goals, in an order that depends on nothing else; none is an utterance."""
     places = _places(mind, agent, goals)
-    return [*_moving_items(mind, agent, goals), *places, *_doors(mind, goals)]
+    blocks = _building(mind, agent, goals)
+    return [*_moving_items(mind, agent, goals), *places, *blocks, *_doors(mind, goals)]
 
 
 def claims_of_mind(mind: Imagination, goals: Sequence[Goal], *, lies: bool) -> Iterator[Claim]:
@@ -56,8 +58,10 @@ def claims_of_mind(mind: Imagination, goals: Sequence[Goal], *, lies: bool) -> I
         state = int(mind.world.blocks[box.index(place)])
         if not mind.is_unknown(place):
             name, properties = registry.name(state), registry.properties(state)
-            if "open" in properties:
+            if is_door(name):
                 yield Claim.block(place, f"{name}[open={properties['open']}]")
+            elif name != "air":
+                yield Claim.block(place, registry.text(state))
 
 
 def is_news(mind: Imagination, claim: Claim, speaker: str) -> bool:
@@ -73,7 +77,7 @@ def is_news(mind: Imagination, claim: Claim, speaker: str) -> bool:
                 return True
         elif claim.state is not None:
             state = int(view.blocks[box.index(claim.cell)])
-            if state < 0 or f"open={registry.properties(state).get('open')}" not in claim.state:
+            if state < 0 or not agrees(registry.text(state), claim.state):
                 return True
     return False
 
@@ -94,7 +98,7 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
         (at, held) for at, held in sorted(world.containers.items()) if mind.may_reach(agent, at)
     ]
     wanted = {c.fact.place for g in goals for c in g.conditions if isinstance(c.fact, ItemsIn)}
-    for item in items_of(goals):
+    for item in [*items_of(goals), *_materials(mind, agent, goals)]:
         for place, items in near:
             if items.get(item, 0):
                 yield Call("getItemFromChest", (place, {item: 1}))
@@ -111,13 +115,59 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
 def _places(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[Call]:
     facts = MindFacts(mind)
     places: set[Position] = set()
+    levers: set[Position] = set()
     for fact in (condition.fact for goal in goals for condition in goal.conditions):
         if isinstance(fact, AgentAt) and fact.agent == agent:
             places.add(fact.place)
-        elif isinstance(fact, AgentsAt) and agent in fact.agents:
-            places |= {place for site in fact.known(facts) for place in site}
+        elif isinstance(fact, LeversHeld) and agent in fact.agents:
+            levers |= {place for site in fact.known(facts) for place in site}
     for place in sorted(places):
         yield Call("goToPosition", (place, 0))
+    for place in sorted(levers):
+        yield Call("turnOnLever", (place,))
+
+
+def _sought(mind: Imagination, goals: Sequence[Goal]) -> Iterator[tuple[Position, str | None]]:
+    """Places of blocks that are not as they are to be, and what is to be there; None: unknown."""
+    facts = MindFacts(mind)
+    for goal in goals:
+        for fact in (condition.fact for condition in goal.conditions):
+            match fact:
+                case BlockIs(place=place, state=state):
+                    wanted: str | None = state
+                case BlocksAlike(place=place, property=""):
+                    wanted = fact.wanted(facts)
+                case _:
+                    continue
+            if facts.block(place) is not None and not fact.holds(facts):
+                yield place, None if wanted is None else name_of(wanted)
+
+
+def _materials(mind: Imagination, agent: str, goals: Sequence[Goal]) -> list[str]:
+    """Blocks that an agent may want at hand; any there are, for who does not know which."""
+    world, registry = mind.world, Registry.load()
+    sought = {name for _, name in _sought(mind, goals)}
+    there = {item for held in world.containers.values() for item in held}
+    if agent in world.agents:
+        there |= world.agents[agent].inventory.keys()
+    blocks = {item for item in there if registry.has_block(item)}
+    return sorted(blocks if None in sought else blocks & {n for n in sought if n is not None})
+
+
+def _building(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[Call]:
+    """Blocks put where they are to be, and others broken that are there."""
+    if agent not in mind.world.agents:
+        return
+    facts, mine = MindFacts(mind), mind.world.agents[agent].inventory
+    for place, wanted in sorted(_sought(mind, goals), key=lambda each: each[0]):
+        there = facts.block(place)
+        if there is None or is_door(name_of(there)) or not mind.may_reach(agent, place):
+            continue
+        if name_of(there) != "air":
+            yield Call("mineBlock", (place, name_of(there)))
+        for item in _materials(mind, agent, goals):
+            if mine.get(item, 0) and wanted in (None, item) and name_of(there) == "air":
+                yield Call("placeItem", (item, place))
 
 
 def _doors(mind: Imagination, goals: Sequence[Goal]) -> Iterator[Call]:

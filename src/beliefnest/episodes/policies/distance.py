@@ -10,7 +10,6 @@ from collections.abc import Iterable
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.scenarios.goals import (
     AgentAt,
-    AgentsAt,
     BlockIs,
     BlocksAlike,
     Condition,
@@ -18,12 +17,13 @@ from beliefnest.scenarios.goals import (
     Goal,
     ItemsIn,
     ItemsWith,
+    LeversHeld,
 )
 from beliefnest.world.paths import normalised
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Point, Position
 
-__all__ = ["BeliefFacts", "MindFacts", "distance", "held", "is_visible"]
+__all__ = ["BeliefFacts", "MindFacts", "distance", "held", "is_visible", "name_of"]
 
 Path = tuple[str, ...]
 
@@ -32,6 +32,7 @@ _UNKNOWN = 6.0
 _HANDED_OVER = 1.5
 """For what somebody else has to take over, since whoever has it cannot get to where it belongs."""
 _FAR = 80.0
+_ON_THE_WAY = 0.4
 
 
 class MindFacts:
@@ -143,13 +144,32 @@ def _still_to_do(fact: Fact, facts: MindFacts) -> float:
         case AgentAt(agent=agent):
             feet = facts.feet_of(agent)
             return 1.0 + (_FAR if feet is None else fact.distance(feet)) * _PER_BLOCK
-        case AgentsAt():
-            off = [fact.off(facts, site) for site in fact.known(facts)]
-            return 1.0 + min(off, default=2 * _FAR) * _PER_BLOCK
-        case BlocksAlike():
-            return 1.0 if fact.wanted(facts) is not None else 1.5
-        case BlockIs():
-            return 1.0
+        case LeversHeld():
+            left = [fact.missing(facts, site) for site in fact.known(facts)]
+            off = [deeds + far * _PER_BLOCK for deeds, far in left]
+            return 1.0 + min(off, default=2 * _FAR * _PER_BLOCK)
+        case BlocksAlike(place=place):
+            return _to_block(facts, place, fact.wanted(facts))
+        case BlockIs(place=place, state=state):
+            return _to_block(facts, place, state)
+
+
+def _to_block(facts: MindFacts, place: Position, wanted: str | None) -> float:
+    """How far a block is from being another one; a deed on the way counts less than the last."""
+    if wanted is None:
+        return 2.0
+    there, name = facts.block(place), name_of(wanted)
+    if there is None or name_of(there) == name or not Registry.load().has_item(name):
+        return 1.0
+    cleared = 0.0 if name_of(there) == "air" else _ON_THE_WAY
+    able = [agent for agent in facts.agents if facts.may_reach(agent, place)]
+    at_hand = any(facts.items_of(agent).get(name, 0) for agent in able)
+    return 1.0 + cleared + (0.0 if at_hand else _ON_THE_WAY)
+
+
+def name_of(state: str) -> str:
+    """Name of a block state's block."""
+    return state.partition("[")[0]
 
 
 def _to_agent(facts: MindFacts, agent: str, item: str) -> float:

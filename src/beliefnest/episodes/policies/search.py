@@ -1,8 +1,9 @@
 """A planner without a language model, of any order of Theory of Mind.
 
 It tries courses of calls on forks of the agent's own belief. Of order 0 it reckons with nobody
-else's doing. Of order k the others act meanwhile as planners of order k - 1 would in what the agent
-believes that they believe; conditions on beliefs are seen down to k beliefs below its own.
+else's doing, and believes what it is told. Of order k the others act meanwhile as planners of order
+k - 1 would in what the agent believes that they believe; what somebody says of containers who is
+after something else is taken for a lie; conditions on beliefs are seen down to k beliefs below.
 """
 
 from collections.abc import Sequence
@@ -20,6 +21,7 @@ from beliefnest.episodes.view import AgentView, Brief
 from beliefnest.nest.acting.imagination import Imagination, Performer
 from beliefnest.programs.calls import Call, program_of
 from beliefnest.scenarios.goals import Goal
+from beliefnest.world.values import Position
 
 __all__ = ["Bounds", "Omniscient", "Plan", "Planner", "Search"]
 
@@ -161,10 +163,14 @@ class _Planning:
         self._horizon, self._bounds = horizon, bounds
         self._round = max(1, brief.round_ticks // brief.pace)
         self._goal: Goal = brief.goals[agent]
-        self._conflict = any(goal != self._goal for goal in brief.goals.values())
+        self._opponents = [name for name, goal in brief.goals.items() if goal != self._goal]
         self._speaks = agent in brief.talk and order > 0
+        self._doubted: frozenset[Position] = frozenset()
 
     def best(self, mind: Imagination) -> Plan:
+        if self._order and self._opponents:
+            # Who reckons with what others are after does not take their word.
+            mind, self._doubted = mind.doubting(self._opponents)
         first = _Node(mind.fork() if self._order else mind.bare(), {})
         first.others = {
             name: _Course(Performer(self._guess(mind, name, 0)), 0, self._bounds.changes)
@@ -223,7 +229,7 @@ class _Planning:
         goals = list(self._brief.goals.values())
         calls = calls_of(mind, self._agent, [self._goal])
         if self._speaks:
-            told = claims_of_mind(mind, goals, lies=self._conflict)
+            told = claims_of_mind(mind, goals, lies=bool(self._opponents))
             calls += [said(claim) for claim in told if is_news(mind, claim, self._agent)]
         return calls
 
@@ -321,12 +327,20 @@ class _Planning:
         wanted = [
             item
             for item in items_of([self._goal])
-            if not any(content.items.get(item, 0) for content in known.values())
+            if not any(
+                content.items.get(item, 0)
+                for place, content in known.items()
+                if place not in self._doubted
+            )
             and not any(each.inventory.get(item, 0) for each in world.agents.values())
         ]
         if me is None or not wanted:
             return ()
-        unknown = [place for place, content in known.items() if not content.complete]
+        unknown = [
+            place
+            for place, content in known.items()
+            if not content.complete and place not in self._doubted
+        ]
         for place in sorted(unknown, key=lambda at: (_apart(me.position, at), at)):
             call = Call("openContainer", (place,))
             if self._succeeds(mind, call):

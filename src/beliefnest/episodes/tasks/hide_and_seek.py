@@ -1,7 +1,9 @@
-"""Hide and seek with a deceiver (Sodian 1991; Wimmer and Perner 1983).
+"""Hide and seek with a deceiver (Sodian 1991; Happé 1994, double bluff).
 
-Bob saw where the treasure was put and runs for it. Eve stands behind glass and can do nothing but
-speak; Bob takes her at her word. Who reckons with what he will make of it tells him a lie.
+Bob looks for a treasure and has the time to go to one end of the hall. Eve knows where it is,
+stands behind glass and can do nothing but speak; Bob knows that she does not want him to find it.
+Who takes him for somebody who believes her tells him a lie, which he sees through; who reckons with
+what he makes of what she is after tells him the truth.
 """
 
 import random
@@ -28,11 +30,13 @@ def instance(chance: random.Random, chests: int, reach: int) -> dict[str, Any]:
     places = [(ends[number > 0], 1, rows[ends[number > 0]].pop()) for number in range(chests)]
     contents = {place: ({item: 1} if place == places[0] else {}) for place in places}
     booth = 4
+    # The treasure is at the end that he is nearer to.
+    start = reach + (2 if ends[0] > reach else -2)
     return {
         "description": (
-            f"Bob runs for the {item}. Eve does not want him to get it in time; she can only speak."
+            f"Bob looks for the {item}. Eve does not want him to get it; she can only speak."
         ),
-        "order": 1,
+        "order": 2,
         "scenario": {
             "name": "hide-and-seek",
             **hall(
@@ -45,19 +49,19 @@ def instance(chance: random.Random, chests: int, reach: int) -> dict[str, Any]:
             ),
             "containers": [chest(place, contents[place]) for place in places],
             "agents": {
-                "bob": {"position": [reach + 0.5, 1, 5.5], "facing": "north"},
+                "bob": {"position": [start + 0.5, 1, 5.5], "facing": "north"},
                 "eve": {"position": [booth + 0.5, 1, 11.5], "facing": "north"},
             },
             "perception": {"max_visible_distance": 64, "testimony": "accept"},
             "initial_beliefs": [
-                belief("/**", {places[0]: {item: 1}}, complete=False),
+                belief("/**", {place: {} for place in places}, complete=False),
                 belief("/eve", contents),
             ],
         },
         "goal": {"never": [{"agent": "bob", "items": {item: 1}}]},
         "goals": {"bob": {"reach": [{"agent": "bob", "items": {item: 1}}]}},
         "players": ["eve"],
-        "policies": {"bob": "search:0"},
+        "policies": {"bob": "search:1"},
         "talk": ["eve"],
         "round_ticks": 5,
         "rounds": -(-(reach + 8) // 5),

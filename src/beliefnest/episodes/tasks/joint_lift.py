@@ -1,8 +1,8 @@
 """A joint lift without a word (Sebanz, Bekkering and Knoblich 2006; Tomasello 2014).
 
-A lift rises when both of its plates are stood on at once. There are two; both people stand nearer
-to one that Anne sees and Bob does not know of. They do not talk: who reckons with what the other
-sees goes where the other will be.
+A lift rises while both of its levers are on and somebody is at each of them. There are two lifts;
+both people stand nearer to one that Anne sees and Bob does not know of. They do not talk: who
+reckons with what the other sees goes where the other will be.
 """
 
 import random
@@ -20,23 +20,23 @@ def instance(chance: random.Random, far: int) -> dict[str, Any]:
         chance: Draws the side and the places.
         far: Blocks between the lift that Bob does not see and the one that he does.
     """
-    hidden, corner = (2, 0), 5
+    corner = 5
     width, depth = corner + far + 5, 12
-    seen = (corner + far + chance.randint(0, 2), chance.randint(7, 9))
-    sites = [[(x, 1, z), (x, 1, z + 2)] for x, z in (hidden, seen)]
+    x, z = corner + far + chance.randint(0, 2), chance.randint(1, 3)
+    sites = [[(0, 1, 0), (0, 1, 6)], [(x, 1, z), (x, 1, z + 8)]]
     # Behind these walls, with a gap at their corner, is the lift that Bob does not see.
     blocks = [
         wall((corner, 1, 0), (corner, 2, 5)),
-        wall((0, 1, 7), (corner, 2, 7)),
+        wall((0, 1, 7), (corner + 1, 2, 7)),
     ]
     # Both stand nearer to it than to the other one.
     anne, bob = (corner - 1.5, 1, 4.5), (corner + 2.5, 1, 10.5)
     mirrored = chance.random() < 0.5
-    plates = [place for site in sites for place in site]
+    levers = [place for site in sites for place in site]
     content = {
         "description": (
-            "A lift rises when somebody stands on both of its plates at once. Anne and Bob do not "
-            "talk."
+            "A lift rises while both of its levers are on, with somebody at each. Anne and Bob do "
+            "not talk."
         ),
         "order": 1,
         "scenario": {
@@ -46,7 +46,7 @@ def instance(chance: random.Random, far: int) -> dict[str, Any]:
                 depth,
                 [
                     *blocks,
-                    *(wall((x, 0, z), (x, 0, z), "lodestone") for x, _, z in plates),
+                    *map(_lever, levers),
                 ],
             ),
             "agents": {
@@ -58,10 +58,10 @@ def instance(chance: random.Random, far: int) -> dict[str, Any]:
             "initial_beliefs": [
                 {
                     "path": path,
-                    "blocks": [{"block": "lodestone", "at": [x, 0, z]} for x, _, z in known],
+                    "blocks": [_lever(place) for place in known],
                     "agents": {"anne": list(anne), "bob": list(bob)},
                 }
-                for path, known in (("/anne", plates), ("/**", [tuple(p) for p in sites[-1]]))
+                for path, known in (("/anne", levers), ("/**", sites[-1]))
             ],
         },
         "goal": {
@@ -78,6 +78,10 @@ def instance(chance: random.Random, far: int) -> dict[str, Any]:
         "rounds": -(-(far + 11) // 5),
     }
     return _mirror(content, width) if mirrored else content
+
+
+def _lever(at: tuple[int, int, int]) -> dict[str, Any]:
+    return {"block": "lever[face=floor,facing=north,powered=false]", "at": list(at)}
 
 
 def _mirror(content: dict[str, Any], width: int) -> dict[str, Any]:

@@ -7,13 +7,13 @@ Of whatever lies above the believer nothing is in it.
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from beliefnest.belief.columns import Columns
-from beliefnest.belief.entries import PerceivedEvent
+from beliefnest.belief.entries import PerceivedEvent, Source
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.initial import forked_forest
 from beliefnest.belief.node_view import NodeView
@@ -234,6 +234,25 @@ class Imagination:
         )
         made.happened += self.happened
         return made
+
+    def doubting(self, speakers: Collection[str]) -> tuple["Imagination", frozenset[Position]]:
+        """The same with what some have said of containers taken for lies.
+
+        Returns:
+            That, and the containers in which things are not that were claimed to be there.
+        """
+        made = self.fork()
+        held = {place: dict(items) for place, items in made.world.containers.items()}
+        doubted = frozenset(
+            place
+            for place, content in made.view().containers.items()
+            if content.basis.source is Source.HEARD and content.basis.speaker in speakers
+        )
+        for place in doubted & held.keys():
+            held[place] = {}
+        if doubted:
+            made.world.set_state(replace(made.world.snapshot(), containers=held))
+        return made, doubted
 
     def below(self, agent: str, depth: int) -> "Imagination":
         """What an agent in it believes, as a world of its own.
