@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from beliefnest.bodies.protocol import World
+from beliefnest.bodies.protocol import RunRules, World
 from beliefnest.bodies.worlds import WORLDS, open_world
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
@@ -154,3 +154,26 @@ def test_what_cannot_be_done_is_not_done(world: World, program: str) -> None:
     assert played.told == []
     assert np.array_equal(played.there.blocks, start().blocks)
     assert played.held("sally") == {"dirt": 2}
+
+
+def test_what_is_said_is_heard_when_the_time_it_takes_is_over(world: World) -> None:
+    frames: list[Frame] = []
+    body = world.open_body("/", "seed", start(), frames.append)
+    program = """
+      bot.chat('one')
+      await say(bot, 'two')
+      await whisper(bot, 'anne', 'three')
+    """
+    result = body.run({"sally": program}, 200, None, RunRules(speech_ticks=10))["sally"]
+    assert result.ok, result.error
+    ticks = {text: tick for tick, text in result.said}
+    # As long as it takes, up to the tick in which the game passes it on.
+    assert [ticks["two"] - ticks["one"], ticks["three"] - ticks["two"]] == pytest.approx(
+        [10, 10], abs=2
+    )
+    assert ticks["one"] == pytest.approx(10, abs=2)
+    late = body.run({"sally": "bot.chat('too late')"}, 5, None, RunRules(speech_ticks=10))["sally"]
+    assert late.said == ()
+    again = body.run({"sally": "await say(bot, 'at once')"}, 200)["sally"]
+    assert again.said[0][0] <= body.tick <= late.ticks + result.ticks + 4
+    body.close()

@@ -132,3 +132,35 @@ def test_a_task_is_played_in_minecraft_as_in_the_scripted_world() -> None:
     assert (measures.success, measures.messages, measures.taken_up) == (True, 1, 1)
     with bn.Episode(task, {"anne": "search:0"}, world="embedded") as idle:
         assert not idle.play().success
+
+
+class Teller:
+    """Says so many things, those first that Max does not know, and then fetches the book."""
+
+    def __init__(self, things: int) -> None:
+        self._things = things
+
+    def act(self, view: bn.AgentView) -> str:
+        mine, known = view.state.containers, view.about("max").containers
+        places = {item: at for at, content in sorted(mine.items()) for item in content.items}
+        book = places.pop("book")
+        left = self._things - len(view.state.chat)
+        told = sorted(
+            places.items(), key=lambda each: each[1] in known and each[0] in known[each[1]].items
+        )
+        calls = [
+            f"await say(bot, 'look', [located('{item}', new Vec3{at})])"
+            for item, at in told[: max(0, left)]
+        ]
+        return "\n".join([*calls, f"await getItemFromChest(bot, new Vec3{book}, {{book: 1}})"])
+
+
+def test_talk_costs_ticks() -> None:
+    task = bn.Task.load("tell-what-is-needed", seed=2)
+    succeeded = []
+    for things in (1, 2):
+        with bn.Episode(task, {"nora": Teller(things)}) as episode:
+            succeeded.append(episode.play().success)
+            assert episode.messages == things
+    # One more than what he does not know is too much.
+    assert succeeded == [True, False]

@@ -9,7 +9,7 @@ from beliefnest.bodies import messages
 from beliefnest.bodies.channel import PROTOCOL, Channel
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.node_files import EMBEDDED, node_command
-from beliefnest.bodies.protocol import ProgramResult, Sense, Sink
+from beliefnest.bodies.protocol import AS_USUAL, ProgramResult, RunRules, Sense, Sink
 from beliefnest.errors import BodyError, BodyLostError, WorldError
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.values import Box, Event
@@ -113,6 +113,7 @@ class EmbeddedBody:
         programs: Mapping[str, str],
         timeout_ticks: int,
         senses: Mapping[str, Sense] | None = None,
+        rules: RunRules = AS_USUAL,
     ) -> Mapping[str, ProgramResult]:
         """Run programs by agent, together, until the last has ended."""
         for agent in programs:
@@ -130,6 +131,7 @@ class EmbeddedBody:
             region=self._region,
             programs=dict(programs),
             timeout_ticks=timeout_ticks,
+            speech_ticks=rules.speech_ticks,
             senses={agent: each.whole() for agent, each in telling.items()},
         )
         self._tick, self._internal_state = answer["tick"], answer["hidden"]

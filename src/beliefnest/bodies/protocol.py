@@ -8,12 +8,14 @@ from beliefnest.world.frames import BlockGrid, Frame, Snapshot
 from beliefnest.world.values import AgentState, DroppedItem, Event, EventKind, Point, Position
 
 __all__ = [
+    "AS_USUAL",
     "KILLED",
     "NO_WAY",
     "Aim",
     "Body",
     "Fault",
     "ProgramResult",
+    "RunRules",
     "Sense",
     "Sensed",
     "Sink",
@@ -198,6 +200,21 @@ Sense = Callable[[], Sensed]
 """What a program may read of the world as of the latest tick that is over."""
 
 
+@dataclass(frozen=True, slots=True)
+class RunRules:
+    """How programs run in a body.
+
+    Attributes:
+        speech_ticks: Ticks that it takes to say something; 0: it is said in the next tick.
+    """
+
+    speech_ticks: int = 0
+
+
+AS_USUAL = RunRules()
+"""The rules of who says nothing about them."""
+
+
 class Body(Protocol):
     """One simulator's part of a world; its clock stands still between the calls, or it `goes_on`.
 
@@ -230,6 +247,7 @@ class Body(Protocol):
         programs: Mapping[str, str],
         timeout_ticks: int,
         senses: Mapping[str, Sense] | None = None,
+        rules: RunRules = AS_USUAL,
     ) -> Mapping[str, ProgramResult]:
         """Run programs by agent, together, until the last has ended.
 
@@ -237,6 +255,7 @@ class Body(Protocol):
             programs: Their texts.
             timeout_ticks: Ticks after which they are stopped.
             senses: Of agents whose programs may read no more than they are told by this.
+            rules: How they run.
 
         Raises:
             WorldError: An agent is not in this body, or the world cannot run such programs;

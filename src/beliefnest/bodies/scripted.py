@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from beliefnest.bodies.engines import Engines
 from beliefnest.bodies.grounds import Grounds
-from beliefnest.bodies.protocol import ProgramResult, Sense, Sink
+from beliefnest.bodies.protocol import AS_USUAL, ProgramResult, RunRules, Sense, Sink
 from beliefnest.errors import WorldError
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.scripted import ScriptedWorld
@@ -47,8 +47,8 @@ class ScriptedBody:
 
     @property
     def internal_state(self) -> bytes:
-        """Nothing: all there is can be seen."""
-        return b""
+        """Which buttons come out again, and when."""
+        return self.world.under_way
 
     def snapshot(self) -> Snapshot:
         """All there is in it now."""
@@ -59,6 +59,7 @@ class ScriptedBody:
         programs: Mapping[str, str],
         timeout_ticks: int,
         senses: Mapping[str, Sense] | None = None,
+        rules: RunRules = AS_USUAL,
     ) -> Mapping[str, ProgramResult]:
         """Run programs by agent, together, until the last has ended; see docs/scripted-world.md."""
         for agent in programs:
@@ -72,6 +73,7 @@ class ScriptedBody:
             programs,
             timeout_ticks,
             senses or {},
+            rules,
             self._seed,
             self._grounds,
             self._engines,

@@ -6,7 +6,7 @@ Walking takes one tick for each cell.
 import math
 from collections.abc import Callable, Generator, Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from beliefnest.bodies.footpaths import Goal, Ground, InReach, feet_in
@@ -63,6 +63,8 @@ class Hand:
         others: The agents that it knows to be there.
         signs: What it may know to be written on signs.
         ground: The ground as it is, which carries and stops a body.
+        speech_ticks: Ticks that it takes it to say something; 0: it is said in the next one.
+        mouth: What it is about to say, in order.
     """
 
     name: str
@@ -71,6 +73,8 @@ class Hand:
     others: Callable[[], Mapping[str, AgentState]]
     signs: Callable[[], Mapping[Position, str]]
     ground: Callable[[], Ground]
+    speech_ticks: int = 0
+    mouth: list[object] = field(default_factory=list)
 
     @property
     def feet(self) -> Point:

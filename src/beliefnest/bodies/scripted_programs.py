@@ -12,7 +12,15 @@ from typing import Any
 from beliefnest.bodies.engines import Engines
 from beliefnest.bodies.grounds import Grounds
 from beliefnest.bodies.javascript import JavaScriptProgram
-from beliefnest.bodies.protocol import Aim, Fault, ProgramResult, Sense, Sensed, Unfinished
+from beliefnest.bodies.protocol import (
+    Aim,
+    Fault,
+    ProgramResult,
+    RunRules,
+    Sense,
+    Sensed,
+    Unfinished,
+)
 from beliefnest.bodies.scripted_hand import Doing, Hand, SkillError
 from beliefnest.bodies.scripted_skills import CALLS, SKILLS
 from beliefnest.errors import BeliefNestError
@@ -58,6 +66,7 @@ def run_programs(
     programs: Mapping[str, str],
     timeout_ticks: int,
     senses: Mapping[str, Sense],
+    rules: RunRules,
     seed: str,
     grounds: Grounds,
     engines: Engines,
@@ -69,6 +78,7 @@ def run_programs(
         programs: JavaScript by agent.
         timeout_ticks: Ticks after which they are ended.
         senses: By agent, what its program may read now; those left out read what is the case.
+        rules: How they run.
         seed: Decides about random numbers.
         grounds: What was made of grids of blocks already.
         engines: Engines of programs that may be used again.
@@ -85,7 +95,10 @@ def run_programs(
             agent: JavaScriptProgram(agent, SKILLS, code, f"{seed} {first} {agent}", engines)
             for agent, code in programs.items()
         }
-        runs = [_begun(world, agent, program, senses, grounds) for agent, program in begun.items()]
+        runs = [
+            _begun(world, agent, program, senses, rules, grounds)
+            for agent, program in begun.items()
+        ]
         while True:
             with world.tick():
                 done = [(run, _act(run)) for run in runs]
@@ -113,6 +126,7 @@ def _begun(
     agent: str,
     program: JavaScriptProgram,
     senses: Mapping[str, Sense],
+    rules: RunRules,
     grounds: Grounds,
 ) -> _Run:
     def all_of_it() -> Sensed:
@@ -126,6 +140,7 @@ def _begun(
         others=lambda: sense().agents,
         signs=lambda: sense().signs,
         ground=lambda: grounds.of(world.box, world.blocks).ground,
+        speech_ticks=rules.speech_ticks,
     )
     run = _Run(hand, program, sense)
     _show(run, grounds)

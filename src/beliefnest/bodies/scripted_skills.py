@@ -128,13 +128,27 @@ def _read_sign(hand: Hand, position: Any) -> Doing:
 
 
 def _say(hand: Hand, text: Any, claims: Any = ()) -> Doing:
-    yield
+    yield from _speak(hand)
     hand.world.say(hand.name, text_in(text), claims_from_plain(claims or ()))
 
 
 def _whisper(hand: Hand, other: Any, text: Any, claims: Any = ()) -> Doing:
-    yield
+    yield from _speak(hand)
     hand.world.whisper(hand.name, text_in(other), text_in(text), claims_from_plain(claims or ()))
+
+
+def _speak(hand: Hand) -> Doing:
+    """The ticks that it takes to say something; who says several things does so in turn."""
+    if not hand.speech_ticks:
+        yield
+        return
+    words = object()
+    hand.mouth.append(words)
+    while hand.mouth[0] is not words:
+        yield
+    for _ in range(hand.speech_ticks):
+        yield
+    hand.mouth.remove(words)
 
 
 def _think(hand: Hand, text: Any) -> Doing:

@@ -347,7 +347,7 @@ class Episode:
             len(self._parts) // len(self._slots),
             self._ended(agent),
             nest.at(nest.tick)[path],
-            own.imagine,
+            lambda depth: own.imagine(depth, self.task.form.pace),
             own.noting,
         )
 

@@ -170,13 +170,18 @@ class Task:
         return goal_of(entry, self.form.scenario["agents"])
 
     def at_pace(self, pace: int) -> "Task":
-        """The same with as much longer rounds as it takes longer to walk a block.
+        """The same with rounds and speech as much longer as it takes longer to walk a block.
 
         Args:
             pace: Ticks that one block on foot takes: 1 in the scripted world, about 5 in Minecraft.
         """
         ticks = self.form.round_ticks * pace // self.form.pace
-        return replace(self, form=msgspec.structs.replace(self.form, pace=pace, round_ticks=ticks))
+        scenario = dict(self.form.scenario)
+        if speech := (scenario.get("perception") or {}).get("speech_ticks"):
+            slower = speech * pace // self.form.pace
+            scenario["perception"] = {**scenario["perception"], "speech_ticks": slower}
+        form = msgspec.structs.replace(self.form, pace=pace, round_ticks=ticks, scenario=scenario)
+        return replace(self, form=form)
 
     def plain(self) -> dict[str, Any]:
         """As plain values; `from_mapping` is the inverse."""

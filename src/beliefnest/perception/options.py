@@ -68,6 +68,8 @@ class Perception:
             something, under `informed`.
         sincere: Whether speakers are taken to believe what they say; if not, a hearer who does
             not take a claim up does not credit the speaker with it either, under `informed`.
+        speech_ticks: Ticks that it takes a program's agent to say or whisper something; it is heard
+            at their end. 0: it is said in the next tick.
 
     Raises:
         InputError: An option is out of range or of the wrong kind.
@@ -82,6 +84,7 @@ class Perception:
     testimony: Testimony = "none"
     grace: int = 100
     sincere: bool = True
+    speech_ticks: int = 0
 
     def __post_init__(self) -> None:
         distance = self.max_visible_distance
@@ -101,5 +104,8 @@ class Perception:
             )
         if not isinstance(self.grace, int) or isinstance(self.grace, bool) or self.grace < 0:
             raise InputError(f"grace is {self.grace!r}; it must be a whole number of ticks from 0")
+        speech = self.speech_ticks
+        if not isinstance(speech, int) or isinstance(speech, bool) or speech < 0:
+            raise InputError(f"speech_ticks is {speech!r}; it must be a whole number from 0")
         object.__setattr__(self, "hearing", _hearing(self.hearing))
         object.__setattr__(self, "transparent_blocks", tuple(sorted(set(self.transparent_blocks))))

@@ -317,6 +317,7 @@ class _Builder:
                 testimony=entry.testimony,
                 grace=entry.grace,
                 sincere=entry.sincere,
+                speech_ticks=entry.speech_ticks,
             )
 
     def _initial_belief(self, number: int, entry: InitialBeliefEntry) -> InitialBelief:

@@ -172,6 +172,9 @@ class PerceptionEntry(_Entry, frozen=True):
     sincere: Annotated[
         bool, _note("Whether speakers are taken to believe what is not believed of them.")
     ] = True
+    speech_ticks: Annotated[
+        int, msgspec.Meta(ge=0, le=1200, description="Ticks that it takes to say something.")
+    ] = 0
 
 
 class _BelievedContainerEntry(_Entry, frozen=True):

@@ -272,6 +272,16 @@ class Goal:
         """All of them."""
         return (*self.reach, *self.never)
 
+    def differs(self, other: "Goal") -> bool:
+        """Whether each of two who are after these wants something that the other does not."""
+        mine, theirs = self._wanted, other._wanted
+        return not (mine <= theirs or theirs <= mine)
+
+    @property
+    def _wanted(self) -> frozenset[tuple[bool, Condition]]:
+        wanted = [(True, each) for each in self.reach] + [(False, each) for each in self.never]
+        return frozenset(wanted)
+
     @property
     def paths(self) -> frozenset[Path]:
         """The simulators that it is about."""

@@ -106,6 +106,7 @@ class _PerceptionLine(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     testimony: Testimony | msgspec.UnsetType = msgspec.UNSET
     grace: int | msgspec.UnsetType = msgspec.UNSET
     sincere: bool | msgspec.UnsetType = msgspec.UNSET
+    speech_ticks: int | msgspec.UnsetType = msgspec.UNSET
 
     def value(self, registry: Registry) -> Perception:
         given = msgspec.to_builtins(self)

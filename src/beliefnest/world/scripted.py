@@ -128,6 +128,11 @@ class ScriptedWorld(ScriptedState):
         """The latest tick."""
         return self._tick
 
+    @property
+    def under_way(self) -> bytes:
+        """What goes on and nobody can perceive, as a snapshot has it: buttons that come out."""
+        return self._facts.under_way(self._tick)
+
     def listen(self, listener: Listener) -> None:
         """Hand every further frame to `listener`."""
         self._listeners.append(listener)
@@ -146,7 +151,7 @@ class ScriptedWorld(ScriptedState):
             {place: dict(items) for place, items in facts.containers.items()},
             dict(facts.agents),
             dict(facts.items),
-            facts.under_way(self._tick),
+            self.under_way,
             dict(facts.signs),
         )
 

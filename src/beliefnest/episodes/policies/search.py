@@ -163,7 +163,7 @@ class _Planning:
         self._horizon, self._bounds = horizon, bounds
         self._round = max(1, brief.round_ticks // brief.pace)
         self._goal: Goal = brief.goals[agent]
-        self._opponents = [name for name, goal in brief.goals.items() if goal != self._goal]
+        self._opponents = [n for n, goal in brief.goals.items() if goal.differs(self._goal)]
         self._speaks = agent in brief.talk and order > 0
         self._doubted: frozenset[Position] = frozenset()
 

@@ -1,8 +1,9 @@
 """Tell only what the other does not know (Grice 1975; Bard and others 2020 on costly hints).
 
 Max has to fetch several things and knows where they were. Some were moved while he was away; Nora
-sees from behind glass where everything is. She may speak as often as things were moved and not once
-more, and Max has not the time to look around.
+sees from behind glass where everything is, and has to fetch a book herself, down a long passage.
+Talk takes time: who tells nothing helps nobody, and who tells all there is to tell comes too late
+to the book.
 """
 
 import random
@@ -12,6 +13,7 @@ from beliefnest.episodes.tasks.building import belief, chest, hall, wall
 
 PARAMETERS = {"items": (3, 1, 4), "moved": (1, 1, 2), "reach": (26, 26, 32), "agents": (2, 2, 4)}
 
+_SPEECH, _ROUND, _REACH = 12, 15, 3
 _ITEMS = ("diamond", "emerald", "apple", "compass", "bread")
 _ONLOOKERS = ("ben", "cleo")
 
@@ -42,36 +44,73 @@ def instance(
             before[near[number]] = now[near[number]] = {item: 1}
     places = sorted(before.keys() | now.keys())
     onlookers = _ONLOOKERS[: agents - 2]
-    booths = {name: 4 + 4 * number for number, name in enumerate(("nora", *onlookers))}
+    booths = {name: 8 + 4 * number for number, name in enumerate(onlookers)}
     glass = [wall((x - 1, 1, 10), (x + 1, 2, 12), "glass") for x in booths.values()]
     glass += [wall((x, 1, 11), (x, 2, 11), "air") for x in booths.values()]
+    rounds = -(-(reach + 24 + 6 * items + 20 * (moved - 1)) // _ROUND)
+    # As far as she gets in the time that saying what has to be said leaves, and no further.
+    book, passage = _passage(width, rounds * _ROUND - _SPEECH * moved - 10)
     return {
         "description": (
             f"Max fetches {', '.join(wanted)}. Some of it was moved while he was away. Nora sees "
-            f"where everything is; she may speak {moved} times at most."
+            "where everything is; she has to fetch a book herself, and talk takes time."
         ),
         "order": 1,
         "scenario": {
             "name": "tell-what-is-needed",
-            **hall(width, 12, glass),
-            "containers": [chest(place, now.get(place, {})) for place in places],
+            **hall(width, 22, [*glass, *passage]),
+            "containers": [
+                *(chest(place, now.get(place, {})) for place in places),
+                chest(book, {"book": 1}),
+            ],
             "agents": {
+                "nora": {"position": [2.5, 1, 14.5], "facing": "north"},
                 "max": {"position": [reach + 0.5, 1, 5.5], "facing": "north"},
                 **{
                     name: {"position": [x + 0.5, 1, 11.5], "facing": "north"}
                     for name, x in booths.items()
                 },
             },
-            "perception": {"max_visible_distance": 80, "testimony": "accept"},
+            "perception": {
+                "max_visible_distance": 80,
+                "testimony": "accept",
+                "speech_ticks": _SPEECH,
+            },
             "initial_beliefs": [
                 belief("/**", before, complete=False),
-                belief("/nora", {place: now.get(place, {}) for place in places}),
+                belief("/nora", {**{p: now.get(p, {}) for p in places}, book: {"book": 1}}),
             ],
         },
-        "goal": {"reach": [{"agent": "max", "items": dict.fromkeys(wanted, 1)}], "messages": moved},
+        "goal": {
+            "reach": [
+                {"agent": "max", "items": dict.fromkeys(wanted, 1)},
+                {"agent": "nora", "items": {"book": 1}},
+            ]
+        },
+        "goals": {"max": {"reach": [{"agent": "max", "items": dict.fromkeys(wanted, 1)}]}},
         "players": ["nora"],
         "policies": {"max": "search:0", **dict.fromkeys(onlookers, "search:0")},
         "talk": ["nora", *onlookers],
-        "round_ticks": 5,
-        "rounds": -(-(reach + 20 + 6 * items) // 5),
+        "round_ticks": _ROUND,
+        "rounds": rounds,
     }
+
+
+def _passage(width: int, errand: int) -> tuple[tuple[int, int, int], list[dict[str, Any]]]:
+    """Where the book is at the end of a passage behind glass, there and back, and its blocks.
+
+    Args:
+        width: Of the hall.
+        errand: Steps from the passage's beginning to where the book can be reached.
+    """
+    # Its two ends lie too far apart to reach from one into the other.
+    straight, turn = width - 4, 6
+    back = errand + _REACH - straight - turn
+    book = (2 + errand + _REACH, 1, 14) if back <= 0 else (width - 2 - back, 1, 20)
+    blocks = [
+        wall((1, 1, 13), (width, 3, 21), "glass"),
+        wall((2, 1, 14), (width - 2, 3, 14), "air"),
+        wall((2, 1, 20), (width - 2, 3, 20), "air"),
+        wall((width - 2, 1, 15), (width - 2, 3, 19), "air"),
+    ]
+    return book, blocks

@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import wraps
 from typing import Concatenate, ParamSpec, Self, TypeVar
 
-from beliefnest.bodies.protocol import KILLED, Body, Fault, ProgramResult, World
+from beliefnest.bodies.protocol import KILLED, Body, Fault, ProgramResult, RunRules, World
 from beliefnest.errors import BodyLostError, BranchError, TickError
 from beliefnest.nest.acting.bodies import Bodies
 from beliefnest.nest.acting.hearsay import ClaimReader
@@ -203,7 +203,7 @@ class Engine:
         before = self.recording.info(path)
         try:
             with self.bodies.acting(path) as body:
-                results = body.run(programs, timeout_ticks, limited)
+                results = body.run(programs, timeout_ticks, limited, self._rules)
                 self._note(before, programs, results, timeout_ticks, step, senses)
             if placed := placed_in(self.recording, path):
                 results = {name: replace(each, placed=placed) for name, each in results.items()}
@@ -242,6 +242,7 @@ class Engine:
             f"{path_text(path)} ahead",
             self.bodies.seed_of(path),
             self.bodies.start(path, base).snapshot,
+            self._rules,
         )
         worlds = [self.bodies.world, *self.bodies.further_worlds(processes - 1)]
         return speculate(worlds, start, jobs, timeout_ticks)
@@ -282,6 +283,10 @@ class Engine:
             note_internal_state(journal, present(journal, info.key), state)
             if path in self.bodies:
                 self.bodies.of(path).set_state(self.bodies.recorded(info.key))
+
+    @property
+    def _rules(self) -> RunRules:
+        return RunRules(self.recording.setting.perception.speech_ticks)
 
     def close(self) -> None:
         """Give up all bodies, the world and the journal."""

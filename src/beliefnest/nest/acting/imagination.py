@@ -94,6 +94,7 @@ class Imagination:
         world: What is the case in it.
         grounds: Where one can stand, by blocks; shared by forks.
         news: Where the forest looks up what has happened.
+        speech_ticks: Ticks that it takes somebody in it to say something.
 
     Attributes:
         root: The believer's path.
@@ -109,6 +110,7 @@ class Imagination:
         world: ScriptedWorld,
         grounds: dict[bytes, Ground],
         news: _News,
+        speech_ticks: int = 0,
     ) -> None:
         self.root = root
         self.world = world
@@ -118,6 +120,7 @@ class Imagination:
         self._grounds = grounds
         self._ground: tuple[BlockGrid, Ground] | None = None
         self._news = news
+        self._speech_ticks = speech_ticks
         self._columns: Columns | None = None
         self._held = 0
         if forest is not None:
@@ -134,6 +137,7 @@ class Imagination:
         depth: int,
         tick: int,
         grounds: dict[bytes, Ground] | None = None,
+        speech_ticks: int | None = None,
     ) -> "Imagination":
         """What a node of a forest would be as a world of its own.
 
@@ -143,6 +147,7 @@ class Imagination:
             depth: How deep below it beliefs are followed.
             tick: The tick it is.
             grounds: As for the class.
+            speech_ticks: As for the class; None: as many as it takes in the world.
         """
         wanted = nodes_below(root, depth, source.context.agents)
         news = _News()
@@ -151,7 +156,8 @@ class Imagination:
         believed = NodeView(forest, root)
         world = ScriptedWorld.from_snapshot(replace(believed.snapshot(), tick=tick))
         known = {} if grounds is None else grounds
-        return cls(forest, root, believed.blocks < 0, world, known, news)
+        speech = source.context.options.speech_ticks if speech_ticks is None else speech_ticks
+        return cls(forest, root, believed.blocks < 0, world, known, news, speech)
 
     @property
     def tick(self) -> int:
@@ -222,7 +228,13 @@ class Imagination:
                 forest, news, self.root, self.root, self.world.now, further=nodes
             )
         made = Imagination(
-            forest, self.root, self._unknown, self.world.again(), self._grounds, news
+            forest,
+            self.root,
+            self._unknown,
+            self.world.again(),
+            self._grounds,
+            news,
+            self._speech_ticks,
         )
         made.happened += self.happened
         return made
@@ -230,7 +242,13 @@ class Imagination:
     def bare(self) -> "Imagination":
         """A fork in which beliefs are not followed: only what the believer takes for real."""
         made = Imagination(
-            None, self.root, self._unknown, self.world.again(), self._grounds, _News()
+            None,
+            self.root,
+            self._unknown,
+            self.world.again(),
+            self._grounds,
+            _News(),
+            self._speech_ticks,
         )
         made.happened += self.happened
         return made
@@ -264,7 +282,9 @@ class Imagination:
         forest = self._fold()
         if forest is None or root not in forest.table.index:
             raise PathError(f"{path_text(root)} is deeper than this imagination goes")
-        return Imagination.of(forest, root, depth, self.world.now, self._grounds)
+        return Imagination.of(
+            forest, root, depth, self.world.now, self._grounds, self._speech_ticks
+        )
 
     def play(
         self,
@@ -305,6 +325,7 @@ class Imagination:
                 others=lambda: self.world.agents,
                 signs=lambda: self.world.signs,
                 ground=self._standing,
+                speech_ticks=self._speech_ticks,
             )
             try:
                 doing = _doing(hand, call)

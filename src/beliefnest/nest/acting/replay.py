@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from beliefnest.bodies.protocol import Body, Sense, World
+from beliefnest.bodies.protocol import Body, RunRules, Sense, World
 from beliefnest.nest.acting.hearsay import recalled
 from beliefnest.nest.acting.sensing import Sensing, believer_of
 from beliefnest.nest.acting.starting import start_of
@@ -119,13 +119,14 @@ def replay(
         BodyError: The Minecraft side died.
     """
     history = History(journal, setting)
+    rules = RunRules(setting.perception.speech_ticks)
     for info in journal.timelines():
         mine = [
             p for p in programs if (p.path, p.branch) == (info.key.path, info.key.branch) and p.kept
         ]
         entries = list(journal.entries(info.key, 0, info.entries))
         calls = [_call(list(group)) for _, group in groupby(mine, key=lambda p: p.group)]
-        found = _run_again(world, _Recorded(journal, history, info), entries, calls, seed)
+        found = _run_again(world, _Recorded(journal, history, info), entries, calls, seed, rules)
         yield Replayed(info.key, len(mine), first_difference(entries, found))
 
 
@@ -142,6 +143,7 @@ def _run_again(
     entries: Sequence[Entry],
     calls: Sequence[_Call],
     seed: int,
+    rules: RunRules,
 ) -> list[Entry]:
     info = recorded.info
     # Where agents begin who could not be where they were believed to be is no body's doing.
@@ -170,7 +172,7 @@ def _run_again(
         for tick, number, act in sorted(acts, key=lambda each: each[:2]):
             recorded.wait_until(body, tick)
             if isinstance(act, _Call):
-                body.run(act.programs, act.timeout_ticks, recorded.senses(act, body))
+                body.run(act.programs, act.timeout_ticks, recorded.senses(act, body), rules)
                 continue
             if isinstance(act, Frame) or act.path == info.key.path:
                 body.set_state(recorded.after(number + 1, act.tick, world))

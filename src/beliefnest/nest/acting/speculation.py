@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from queue import Empty, SimpleQueue
 from threading import Event
 
-from beliefnest.bodies.protocol import Body, ProgramResult, Sense, Sink, World
+from beliefnest.bodies.protocol import AS_USUAL, Body, ProgramResult, RunRules, Sense, Sink, World
 from beliefnest.errors import BeliefNestError, BodyError, BodyLostError, WorldError
 from beliefnest.nest.acting.lives import Lives
 from beliefnest.world.frames import Frame, Snapshot
@@ -26,11 +26,13 @@ class SpeculationStart:
         name: Name of the body, of no other one in its world.
         seed: Seed of its random numbers.
         snapshot: What it is filled with.
+        rules: How programs run in it.
     """
 
     name: str
     seed: str
     snapshot: Snapshot
+    rules: RunRules = AS_USUAL
 
 
 @dataclass(slots=True)
@@ -89,6 +91,7 @@ class SpeculatedBody:
         programs: Mapping[str, str],
         timeout_ticks: int,
         senses: Mapping[str, Sense] | None = None,
+        rules: RunRules = AS_USUAL,
     ) -> Mapping[str, ProgramResult]:
         """Hand out the frames of the programs, which have run already."""
         self._ran = True
@@ -168,7 +171,7 @@ def _run(
     if body is None:
         return None
     try:
-        speculation.results = body.run(programs, timeout_ticks)
+        speculation.results = body.run(programs, timeout_ticks, None, start.rules)
     except BeliefNestError as error:
         speculation.error = error
     speculation.tick, speculation.internal_state = body.tick, body.internal_state

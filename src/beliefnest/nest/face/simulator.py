@@ -279,13 +279,14 @@ class Simulator(ShownSimulator):
             embodying.end(self._path)
 
     @in_turn
-    def imagine(self, depth: int = 1) -> Imagination:
+    def imagine(self, depth: int = 1, pace: int = 1) -> Imagination:
         """What it holds now as a world of its own, to try courses in; nothing is recorded.
 
         It is scripted, whatever the real world is: see docs/scripted-world.md.
 
         Args:
             depth: How deep below it beliefs are followed.
+            pace: Ticks of the real world that are as one tick in it.
 
         Raises:
             InputError: The depth is below 0.
@@ -295,7 +296,8 @@ class Simulator(ShownSimulator):
         info = self._recording.info(self._path)
         for path in nodes_below(self._path, depth, self._recording.agents):
             forest = self._recording.history.shared(info.key, path, info.entries)
-        return Imagination.of(forest, self._path, depth, info.head)
+        speech = -(-forest.context.options.speech_ticks // pace)
+        return Imagination.of(forest, self._path, depth, info.head, speech_ticks=speech)
 
 
 def check_senses(senses: object) -> None:

@@ -30,6 +30,7 @@ class _Perception(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True
     testimony: Testimony = "none"
     grace: int = 100
     sincere: bool = True
+    speech_ticks: int = 0
 
 
 class _Start(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
@@ -124,6 +125,7 @@ def _perception_to(options: Perception) -> _Perception:
         testimony=options.testimony,
         grace=options.grace,
         sincere=options.sincere,
+        speech_ticks=options.speech_ticks,
     )
 
 
@@ -139,4 +141,5 @@ def _perception_from(stored: _Perception) -> Perception:
         testimony=stored.testimony,
         grace=stored.grace,
         sincere=stored.sincere,
+        speech_ticks=stored.speech_ticks,
     )

@@ -18,7 +18,7 @@ module.exports = {
     const text = speech(context, 'msg', msg)
     const told = checked(context, claims)
     if (told.length > 0) context.emit({ kind: 'claims', detail: { text, claims: told } })
-    context.bot.chat(text)
+    await context.bot.chat(text)
     await ticks(1)
   }
 }

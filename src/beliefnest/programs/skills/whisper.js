@@ -23,7 +23,7 @@ module.exports = {
     const text = speech(context, 'msg', msg, LONGEST)
     const told = checked(context, claims)
     if (told.length > 0) context.emit({ kind: 'claims', detail: { text, to, claims: told } })
-    context.bot.whisper(to, text)
+    await context.bot.whisper(to, text)
     await ticks(1)
   }
 }

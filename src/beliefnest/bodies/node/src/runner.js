@@ -4,6 +4,7 @@ const { stopBot } = require('./bots/bot')
 const { View } = require('./percepts/view')
 const { statesOf } = require('./regions/box')
 const { Random } = require('./time/random')
+const { slowSpeech } = require('./bots/speech')
 
 const MOST_AIMS = 100
 
@@ -32,9 +33,10 @@ class Runner {
    * @param {object} programs code by agent
    * @param {number} timeoutTicks after which programs that still run are ended
    * @param {object} [senses] PERCEPTS by agent, of those whose programs are to read nothing else
+   * @param {{speechTicks?: number}} [rules] ticks that it takes to say something
    * @returns {Promise<{tick: number, hidden: Uint8Array, results: object}>} RESULT by agent
    */
-  async run (name, programs, timeoutTicks, senses = {}) {
+  async run (name, programs, timeoutTicks, senses = {}, { speechTicks = 0 } = {}) {
     const region = this.regions.get(name)
     const bodies = Object.keys(programs).map(agent => region.body(agent))
     const first = region.tick
@@ -42,7 +44,7 @@ class Runner {
     const ended = await this.regions.resumed(region, async () => {
       Object.entries(programs).forEach(([agent, code], index) => {
         const view = senses[agent] === undefined ? null : this.viewOf(region, bodies[index], senses[agent])
-        runs.push(this.start(region, agent, { bot: view?.bot ?? bodies[index].bot, view }, code))
+        runs.push(this.start(region, agent, { bot: view?.bot ?? bodies[index].bot, view, speechTicks }, code))
       })
       try {
         await this.untilEnded(region, runs, timeoutTicks)
@@ -59,7 +61,7 @@ class Runner {
     return new View({ bot, clock: this.regions.clock, box: region.box, names: region.known, percepts: { ...percepts, states } })
   }
 
-  start (region, agent, { bot, view }, code) {
+  start (region, agent, { bot, view, speechTicks }, code) {
     const abort = new AbortController()
     const run = { agent, view, abort, result: null, endTick: null, end: null, crash: null }
     const aims = []
@@ -68,8 +70,11 @@ class Runner {
     const request = { code, bot, scope: this.scopeOf(bot, emit, abort.signal), signal: abort.signal, aim }
     // Numbers that others draw, too, would tell of what they do.
     if (view !== null) request.random = randomOf(region, agent)
-    this.runProgram(request).then(report => {
+    const speech = speechTicks > 0 ? slowSpeech(bot, speechTicks, abort.signal) : null
+    this.runProgram(request).then(async report => {
+      if (speech !== null) await speech.over()
       abort.abort()
+      speech?.quicken()
       const stopped = stopBot(bot)
       if (view !== null) stopBot(view.close())
       run.result = { ...resultOf(report, stopped, run.end), aims }
