@@ -1,5 +1,6 @@
 """The same programs are the same deeds in the scripted world as in Minecraft."""
 
+import json
 from collections.abc import Iterator
 
 import numpy as np
@@ -177,3 +178,42 @@ def test_what_is_said_is_heard_when_the_time_it_takes_is_over(world: World) -> N
     again = body.run({"sally": "await say(bot, 'at once')"}, 200)["sally"]
     assert again.said[0][0] <= body.tick <= late.ticks + result.ticks + 4
     body.close()
+
+
+def test_programs_hear_what_is_said_and_answer(world: World) -> None:
+    asks = """
+      const got = []
+      bot.on('chat', (who, text) => { got.push(`${who}: ${text}`) })
+      bot.once('whisper', (who, text) => { got.push(`${who} whispers ${text}`) })
+      await say(bot, 'where is it?')
+      const first = await waitForChat(bot, 60)
+      const second = await waitForChat(bot, 60)
+      const third = await waitForChat(bot, 10)
+      console.log(JSON.stringify([first, second, third, got]))
+    """
+    answers = """
+      const asked = await waitForChat(bot)
+      await say(bot, `you said ${asked.text}`)
+      await waitTicks(bot, 4)
+      await whisper(bot, 'sally', 'psst')
+    """
+    played = Played(world, {"sally": asks, "anne": answers})
+    assert all(each.ok for each in played.results.values()), played.results
+    first, second, third, got = json.loads(played.results["sally"].log[0])
+    assert first == {"speaker": "anne", "text": "you said where is it?", "whispered": False}
+    assert second == {"speaker": "anne", "text": "psst", "whispered": True}
+    assert third is None
+    assert got == [
+        "sally: where is it?",
+        "anne: you said where is it?",
+        "anne whispers psst",
+    ]
+
+
+def test_a_listener_that_fails_ends_its_program(world: World) -> None:
+    listens = "bot.on('chat', () => { throw new Error('oh') }); await waitTicks(bot, 20)"
+    speaks = "await waitTicks(bot, 5); bot.chat('hi')"
+    results = Played(world, {"sally": listens, "anne": speaks}).results
+    assert not results["sally"].ok
+    assert "oh" in str(results["sally"].error)
+    assert results["sally"].ticks < 20

@@ -6,7 +6,7 @@ but the values it is given, has 64 MB, and computes for two seconds at most betw
 
 import json
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from beliefnest.bodies.engines import MEMORY_BYTES, Engine, Engines, leaves_nothing
@@ -15,6 +15,7 @@ from beliefnest.bodies.protocol import Fault
 __all__ = ["JavaScriptProgram"]
 
 _MOST_JOBS = 100_000
+_NOTHING = {"log": [], "done": None, "waiting": 0, "listens": False}
 _FIRST_LINE = 1000
 """Lines before a program's own: the engine names no files, so that they tell its places apart."""
 _PLACE = re.compile(r"<input>:(\d+)(?::(\d+))?")
@@ -42,7 +43,13 @@ class JavaScriptProgram:
         self._call = self._engine.scope(username, skills, seed)
         self._fault: Fault | None = None
         self._blocks: str | None = None
-        self._taken: dict[str, Any] = {"calls": [], "log": [], "done": None, "waiting": 0}
+        self._taken: dict[str, Any] = {
+            "calls": [],
+            "log": [],
+            "done": None,
+            "waiting": 0,
+            "listens": False,
+        }
 
     @property
     def reads(self) -> bool:
@@ -77,10 +84,23 @@ class JavaScriptProgram:
         self._blocks = blocks
         self._call("see", json.dumps(told), blocks if new else None)
 
+    @property
+    def listens(self) -> bool:
+        """Whether it wants to be told what is said."""
+        return bool(self._taken["listens"])
+
+    def hear(self, heard: Sequence[tuple[str, str, str | None]]) -> None:
+        """Tell what its agent heard: speaker, text, and to whom it was whispered."""
+        self._turn("hear", json.dumps(heard))
+
     def settle(self, number: int, *, ok: bool, value: object) -> None:
         """Answer a call, and run until the program waits again."""
+        self._turn("settle", number, ok, json.dumps(value))
+
+    def _turn(self, part: str, *given: object) -> None:
+        """Call a part of the prelude, and run until the program waits again."""
         try:
-            self._call("settle", number, ok, json.dumps(value))
+            self._call(part, *given)
             self._drain()
         except self._engine.failed as error:
             self._fault = _fault_of(str(error), kind="error")

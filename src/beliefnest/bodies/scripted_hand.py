@@ -65,6 +65,7 @@ class Hand:
         ground: The ground as it is, which carries and stops a body.
         speech_ticks: Ticks that it takes it to say something; 0: it is said in the next one.
         mouth: What it is about to say, in order.
+        heard: What it heard in the latest tick: speaker, text, and to whom it was whispered.
     """
 
     name: str
@@ -75,6 +76,7 @@ class Hand:
     ground: Callable[[], Ground]
     speech_ticks: int = 0
     mouth: list[object] = field(default_factory=list)
+    heard: list[tuple[str, str, str | None]] = field(default_factory=list)
 
     @property
     def feet(self) -> Point:

@@ -1,5 +1,5 @@
 // What programs of the scripted world find in scope. Evaluates to a function of (Vec3, hints, time, skills, username)
-// that gives what Python calls: start, take, settle, see. Nothing here calls Python: it takes what is asked for after each turn.
+// that gives what Python calls: start, take, settle, see, hear. Nothing here calls Python: it takes what is asked for after each turn.
 (Vec3, hints, time, skills, username) => {
   'use strict'
   const { parse, stringify } = JSON
@@ -75,8 +75,40 @@
     return offering({ containerItems: () => items, close: () => undefined }, 'the window of a container')
   }
 
+  // Of what happens a program can listen to what is said.
+  const EVENTS = ['chat', 'whisper', 'messagestr']
+  const listeners = []
+
+  function listen (event, listener, once) {
+    if (!EVENTS.includes(event)) refuse(`event ${shown(event)}`)
+    listeners.push({ event, listener, once })
+    return bot
+  }
+
+  function unlisten (event, listener) {
+    const index = listeners.findIndex(each => each.event === event && each.listener === listener)
+    if (index >= 0) listeners.splice(index, 1)
+    return bot
+  }
+
+  function tell (event, ...values) {
+    for (const each of listeners.filter(each => each.event === event)) {
+      if (each.once) unlisten(event, each.listener)
+      try {
+        each.listener.call(bot, ...values)
+      } catch (error) {
+        ended(error)
+      }
+    }
+  }
+
   const bot = offering({
     username,
+    on: (event, listener) => listen(event, listener, false),
+    addListener: (event, listener) => listen(event, listener, false),
+    once: (event, listener) => listen(event, listener, true),
+    off: unlisten,
+    removeListener: unlisten,
     get entity () { return entity(username, seen.agents[username]) },
     get players () {
       const told = Object.entries(seen.players).map(([name, there]) => [name, { username: name, entity: there ? entity(name, seen.agents[name]) : null }])
@@ -111,7 +143,8 @@
     absent: (item, place) => ({ kind: 'absent', item, place }),
     positionOf: (agent, place) => ({ kind: 'position', agent, place }),
     blockAt: (place, state) => ({ kind: 'block', place, state }),
-    ...Object.fromEntries(skills.map(name => [name, skill(name)]))
+    ...Object.fromEntries(skills.map(name => [name, skill(name)])),
+    waitForChat: (...args) => skill('waitForChat')(...args).then(heard => heard ?? null)
   }
   Vec3.prototype.toJSON = function () { return [this.x, this.y, this.z] }
 
@@ -132,7 +165,7 @@
       for (const { answer, error } of failed.splice(0)) {
         if (!answer.isHeard && done?.ok !== false) ended(Object.assign(error, { slip: hints.NOT_AWAITED }))
       }
-      const taken = stringify({ calls, log, done, waiting: waiting.size })
+      const taken = stringify({ calls, log, done, waiting: waiting.size + listeners.length, listens: listeners.length > 0 })
       calls = []
       return taken
     },
@@ -144,6 +177,14 @@
       const error = failure(`${name}: ${value.message}`, { skill: name, reason: value.reason, place })
       failed.push({ answer, error })
       reject(error)
+    },
+    hear (text) {
+      for (const [speaker, words, to] of parse(text)) {
+        if (to === null) tell('chat', speaker, words)
+        else if (to === username) tell('whisper', speaker, words)
+        const line = to === username ? `${speaker} whispers to you: ${words}` : `You whisper to ${to}: ${words}`
+        tell('messagestr', to === null ? `<${speaker}> ${words}` : line)
+      }
     },
     see (text, newBlocks) {
       seen = parse(text)

@@ -5,7 +5,7 @@ tick acts in the next ones. Agents act in the order in which their programs are 
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -26,7 +26,7 @@ from beliefnest.bodies.scripted_skills import CALLS, SKILLS
 from beliefnest.errors import BeliefNestError
 from beliefnest.world.frames import Frame
 from beliefnest.world.scripted import ScriptedWorld
-from beliefnest.world.values import AgentState, Event, Point
+from beliefnest.world.values import AgentState, Event, EventKind, Point
 
 __all__ = ["run_programs"]
 
@@ -56,6 +56,7 @@ class _Run:
     program: JavaScriptProgram
     sense: Sense
     doing: dict[int, tuple[str, Doing]] = field(default_factory=dict)
+    read: Sensed | None = None
     aims: list[Aim] = field(default_factory=list)
     end_tick: int | None = None
     end: Fault | None = None
@@ -85,9 +86,11 @@ def run_programs(
     """
     first = world.now
     happened: list[tuple[int, Event]] = []
+    latest: list[Event] = []
 
     def hear(frame: Frame) -> None:
         happened.extend((frame.tick, event) for event in frame.events)
+        latest[:] = frame.events
 
     world.listen(hear)
     try:
@@ -96,13 +99,15 @@ def run_programs(
             for agent, code in programs.items()
         }
         runs = [
-            _begun(world, agent, program, senses, rules, grounds)
+            _begun(world, agent, program, senses, rules, grounds, latest)
             for agent, program in begun.items()
         ]
         while True:
             with world.tick():
                 done = [(run, _act(run)) for run in runs]
             # What came of the tick can be perceived now that it is over.
+            for run in runs:
+                _hear(run, grounds)
             for run, answers in done:
                 for number, ok, value in answers:
                     _settle(run, grounds, number, ok=ok, value=value)
@@ -128,9 +133,11 @@ def _begun(
     senses: Mapping[str, Sense],
     rules: RunRules,
     grounds: Grounds,
+    latest: Sequence[Event],
 ) -> _Run:
     def all_of_it() -> Sensed:
-        return Sensed(world.blocks, _others(world.agents, agent), signs=world.signs)
+        others, heard = _others(world.agents, agent), _heard_by(agent, latest)
+        return Sensed(world.blocks, others, heard=heard, signs=world.signs)
 
     sense = senses.get(agent, all_of_it)
     hand = Hand(
@@ -147,6 +154,34 @@ def _begun(
     program.start()
     _take_calls(run)
     return run
+
+
+def _heard_by(agent: str, events: Sequence[Event]) -> tuple[tuple[str, str, str | None], ...]:
+    """What was said in a tick and not whispered to others."""
+    said = (event for event in events if event.kind is EventKind.CHAT)
+    words = [(e.actor or "", str(e.detail["text"]), e.detail.get("to")) for e in said]
+    return tuple(each for each in words if each[2] is None or agent in (each[0], each[2]))
+
+
+def _listens(run: _Run) -> bool:
+    """Whether a program is told what its agent hears, or its agent waits for that."""
+    return run.program.listens or any(name == "waitForChat" for name, _ in run.doing.values())
+
+
+def _hear(run: _Run, grounds: Grounds) -> None:
+    """Tell an agent, and its program, what was heard in the tick that is over."""
+    run.hand.heard.clear()
+    if not _listens(run) or run.end_tick is not None:
+        return
+    sensed = run.sense()
+    if sensed is run.read or not sensed.heard:
+        return
+    run.read = sensed
+    run.hand.heard.extend(sensed.heard)
+    if run.program.listens and not run.program.ended:
+        _show(run, grounds)
+        run.program.hear(sensed.heard)
+        _take_calls(run)
 
 
 def _act(run: _Run) -> list[tuple[int, bool, object]]:
@@ -192,6 +227,9 @@ def _take_calls(run: _Run) -> None:
             except (BeliefNestError, TypeError) as error:
                 run.program.settle(number, ok=False, value=_told(error))
         calls = run.program.calls()
+    if _listens(run) and run.read is None:
+        # What was heard before it listened is none of its.
+        run.read = run.sense()
 
 
 def _told(error: Exception) -> dict[str, object]:

@@ -172,6 +172,15 @@ def _wait_ticks(hand: Hand, ticks: Any) -> Doing:
         yield
 
 
+def _wait_for_chat(hand: Hand, ticks: Any = 100) -> Doing:
+    for _ in range(math.ceil(number_in("ticks", ticks))):
+        yield
+        for speaker, text, to in hand.heard:
+            if speaker != hand.name:
+                return {"speaker": speaker, "text": text, "whispered": to is not None}
+    return None
+
+
 def _do_nothing(hand: Hand) -> Doing:
     yield
 
@@ -195,6 +204,7 @@ SKILLS: Mapping[str, Callable[..., Doing]] = {
     "whisper": _whisper,
     "think": _think,
     "waitTicks": _wait_ticks,
+    "waitForChat": _wait_for_chat,
     "doNothing": _do_nothing,
 }
 """By name."""

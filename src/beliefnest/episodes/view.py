@@ -1,6 +1,6 @@
 """What a policy is given: its agent's own belief, what lies below it, and its task."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, Protocol
 
@@ -128,6 +128,16 @@ class AgentView:
     def state(self) -> State:
         """What the agent believes."""
         return _settled(self._own.state)
+
+    @property
+    def heard(self) -> Sequence[tuple[int, str, str]]:
+        """What others said since the agent was asked last: (tick, speaker, text)."""
+        since = self.tick - self.brief.whole_round if self.round else -1
+        return [
+            (tick, speaker, text)
+            for tick, speaker, text in self.state.chat
+            if tick > since and speaker != self.agent
+        ]
 
     def about(self, *agents: str) -> State:
         """What it believes that another believes, and so on: `about("bob", "anne")`.

@@ -43,6 +43,7 @@ const SKILLS = [
   require('./checkValidPosition'),
   require('./waitTicks'),
   require('./waitUntil'),
+  require('./waitForChat'),
   require('./doNothing')
 ]
 
