@@ -15,7 +15,7 @@ from beliefnest.bodies.protocol import Fault
 __all__ = ["JavaScriptProgram"]
 
 _MOST_JOBS = 100_000
-_NOTHING = {"log": [], "done": None, "waiting": 0, "listens": False}
+_NOTHING: Mapping[str, Any] = {"log": [], "done": None, "waiting": 0, "listens": False}
 _FIRST_LINE = 1000
 """Lines before a program's own: the engine names no files, so that they tell its places apart."""
 _PLACE = re.compile(r"<input>:(\d+)(?::(\d+))?")
