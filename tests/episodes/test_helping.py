@@ -39,7 +39,9 @@ def test_help_that_was_not_given_was_needed_all_the_same() -> None:
 
 
 def test_a_lie_helps_nobody_but_its_speaker_and_is_not_superfluous() -> None:
-    with bn.Episode(bn.Task.load("hide-and-seek", seed=1)) as episode:
+    # To somebody who believes what he is told.
+    policies = {"eve": "search:1", "bob": "search:0"}
+    with bn.Episode(bn.Task.load("hide-and-seek", seed=1), policies) as episode:
         found = episode.play().help()
         assert found.needed == ()
         assert [act.worse for act in found.acts] == [("eve",)]

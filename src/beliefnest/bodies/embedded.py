@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Self
 
+import msgspec
 import numpy as np
 
 from beliefnest.bodies import messages
@@ -132,6 +133,8 @@ class EmbeddedBody:
             programs=dict(programs),
             timeout_ticks=timeout_ticks,
             speech_ticks=rules.speech_ticks,
+            remembers=rules.remembers,
+            past={agent: msgspec.to_builtins(each) for agent, each in rules.past.items()},
             senses={agent: each.whole() for agent, each in telling.items()},
         )
         self._tick, self._internal_state = answer["tick"], answer["hidden"]

@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from beliefnest.bodies.protocol import Aim, Fault, ProgramResult, Sensed, Unfinished
+from beliefnest.bodies.protocol import Aim, Called, Fault, ProgramResult, Sensed, Unfinished
 from beliefnest.errors import BeliefNestError, BodyError
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.frames import Frame, Snapshot
@@ -65,6 +65,7 @@ class _Result(msgspec.Struct, frozen=True):
     unfinished: tuple[Unfinished, ...]
     aims: tuple[Aim, ...] = ()
     error: Fault | None = None
+    calls: tuple[Called, ...] = ()
 
 
 def frame_of(message: Mapping[str, Any]) -> tuple[str, Frame]:
@@ -205,7 +206,16 @@ def results_of(
     got = _converted(message, dict[str, _Result])
     return {
         agent: ProgramResult(
-            agent, r.ok, r.error, r.ticks, happened, r.lines, r.log, r.unfinished, r.aims
+            agent,
+            r.ok,
+            r.error,
+            r.ticks,
+            happened,
+            r.lines,
+            r.log,
+            r.unfinished,
+            r.aims,
+            calls=r.calls,
         )
         for agent, r in got.items()
     }

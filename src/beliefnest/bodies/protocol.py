@@ -13,7 +13,9 @@ __all__ = [
     "NO_WAY",
     "Aim",
     "Body",
+    "Called",
     "Fault",
+    "Past",
     "ProgramResult",
     "RunRules",
     "Sense",
@@ -105,6 +107,40 @@ class Unfinished:
 
 
 @dataclass(frozen=True, slots=True)
+class Called:
+    """A call that a program made: of a skill, or of its bot to speak.
+
+    Attributes:
+        name: What it called.
+        given: With which arguments, as JSON.
+        answer: What came of it, as JSON: `{"ok", "value"}`; None: it was under way in the end.
+        ticks: For how long it was under way; 0 if it is over.
+    """
+
+    name: str
+    given: str
+    answer: str | None = None
+    ticks: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Past:
+    """What a program had done when it was cut, from where it goes on.
+
+    Its text is run again, and the calls that were over give what they gave, without being done
+    once more; the one that was under way is begun anew. From where it calls something else, since
+    it reads another world now, it does whatever it calls.
+
+    Attributes:
+        tick: The tick at which it began at first, which its random numbers hang on.
+        calls: In the order in which it made them.
+    """
+
+    tick: int
+    calls: tuple[Called, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class ProgramResult:
     """What became of a program.
 
@@ -118,6 +154,7 @@ class ProgramResult:
         log: What it wrote to its console, bounded.
         unfinished: What was stopped because it was still going on at the program's end.
         aims: What it asked its bot to make for, in order, bounded.
+        calls: What it called, in order; empty where that was too much to go on from.
         placed: Whom the body had to move when it began, agent to from where and to where, because
             they cannot be where they are believed to be.
     """
@@ -132,6 +169,7 @@ class ProgramResult:
     unfinished: tuple[Unfinished, ...] = ()
     aims: tuple[Aim, ...] = ()
     placed: Mapping[str, tuple[Point, Point]] = field(default_factory=dict)
+    calls: tuple[Called, ...] = ()
 
     def __repr__(self) -> str:
         ended = "ended well" if self.ok else f"failed: {self.error}"
@@ -206,9 +244,13 @@ class RunRules:
 
     Attributes:
         speech_ticks: Ticks that it takes to say something; 0: it is said in the next tick.
+        remembers: Whether results tell what programs called, so that they can go on when cut.
+        past: Of agents whose programs go on where they were cut.
     """
 
     speech_ticks: int = 0
+    remembers: bool = False
+    past: Mapping[str, Past] = field(default_factory=dict)
 
 
 AS_USUAL = RunRules()

@@ -22,6 +22,7 @@ from beliefnest.bodies.protocol import (
     Unfinished,
 )
 from beliefnest.bodies.scripted_hand import Doing, Hand, SkillError
+from beliefnest.bodies.scripted_memory import Memory
 from beliefnest.bodies.scripted_skills import CALLS, SKILLS
 from beliefnest.errors import BeliefNestError
 from beliefnest.world.frames import Frame
@@ -56,6 +57,7 @@ class _Run:
     program: JavaScriptProgram
     sense: Sense
     doing: dict[int, tuple[str, Doing]] = field(default_factory=dict)
+    memory: Memory = field(default_factory=Memory)
     read: Sensed | None = None
     aims: list[Aim] = field(default_factory=list)
     end_tick: int | None = None
@@ -95,7 +97,9 @@ def run_programs(
     world.listen(hear)
     try:
         begun = {
-            agent: JavaScriptProgram(agent, SKILLS, code, f"{seed} {first} {agent}", engines)
+            agent: JavaScriptProgram(
+                agent, SKILLS, code, f"{seed} {_begin_of(rules, agent, first)} {agent}", engines
+            )
             for agent, code in programs.items()
         }
         runs = [
@@ -123,7 +127,16 @@ def run_programs(
         world.unlisten(hear)
     for run in runs:
         run.program.end()
-    return {run.hand.name: _result(run, first, tuple(happened)) for run in runs}
+    return {
+        run.hand.name: _result(run, first, tuple(happened), remembers=rules.remembers)
+        for run in runs
+    }
+
+
+def _begin_of(rules: RunRules, agent: str, now: int) -> int:
+    """The tick at which a program began at first."""
+    past = rules.past.get(agent)
+    return now if past is None else past.tick
 
 
 def _begun(
@@ -149,7 +162,8 @@ def _begun(
         ground=lambda: grounds.of(world.box, world.blocks).ground,
         speech_ticks=rules.speech_ticks,
     )
-    run = _Run(hand, program, sense)
+    past = rules.past.get(agent)
+    run = _Run(hand, program, sense, memory=Memory(() if past is None else past.calls))
     _show(run, grounds)
     program.start()
     _take_calls(run)
@@ -208,8 +222,13 @@ def _goes_on(run: _Run) -> bool:
 def _settle(run: _Run, grounds: Grounds, number: int, *, ok: bool, value: object) -> None:
     del run.doing[number]
     _show(run, grounds)
-    run.program.settle(number, ok=ok, value=value)
+    _answer(run, number, ok=ok, value=value)
     _take_calls(run)
+
+
+def _answer(run: _Run, number: int, *, ok: bool, value: object) -> None:
+    run.memory.answered(number, ok=ok, value=value)
+    run.program.settle(number, ok=ok, value=value)
 
 
 def _take_calls(run: _Run) -> None:
@@ -217,15 +236,19 @@ def _take_calls(run: _Run) -> None:
     calls = run.program.calls()
     while calls:
         for number, name, args in calls:
+            known = run.memory.called(number, name, args, run.hand.world.now)
+            if known is not None:
+                run.program.settle(number, ok=known[0], value=known[1])
+                continue
             _note_aim(run, name, args)
             try:
-                doing = _DOINGS[name](run.hand, *args)
+                doing = _DOINGS[name](run.hand, *run.memory.left(number, args))
                 next(doing)
                 run.doing[number] = (name, doing)
             except StopIteration as ended:
-                run.program.settle(number, ok=True, value=ended.value)
+                _answer(run, number, ok=True, value=ended.value)
             except (BeliefNestError, TypeError) as error:
-                run.program.settle(number, ok=False, value=_told(error))
+                _answer(run, number, ok=False, value=_told(error))
         calls = run.program.calls()
     if _listens(run) and run.read is None:
         # What was heard before it listened is none of its.
@@ -295,7 +318,9 @@ def _time_out(runs: list[_Run], tick: int, timeout_ticks: int) -> None:
             run.end = Fault(f"the program did not end within {timeout_ticks} ticks", "timeout")
 
 
-def _result(run: _Run, first: int, happened: tuple[tuple[int, Event], ...]) -> ProgramResult:
+def _result(
+    run: _Run, first: int, happened: tuple[tuple[int, Event], ...], *, remembers: bool
+) -> ProgramResult:
     fault = run.end or run.program.fault
     return ProgramResult(
         agent=run.hand.name,
@@ -306,4 +331,5 @@ def _result(run: _Run, first: int, happened: tuple[tuple[int, Event], ...]) -> P
         log=run.program.log,
         unfinished=tuple(Unfinished(name) for name, _ in run.doing.values()),
         aims=tuple(run.aims),
+        calls=run.memory.calls(run.end_tick or first) if remembers else (),
     )

@@ -56,11 +56,12 @@ const SKILLS = [
  * @param {Function} body.Vec3
  * @param {object} body.goals of mineflayer-pathfinder
  * @param {AbortSignal} [body.signal] once it is aborted, a skill that still runs does nothing more
+ * @param {object | null} [body.memory] `call(name, args, act)` does what a skill does, or gives what came of it before
  * @returns {Object<string, Function>} by name; each rejects with an Error that has `skill`
  */
-function bindSkills ({ bot, emit, Vec3, goals, signal }) {
+function bindSkills ({ bot, emit, Vec3, goals, signal, memory = null }) {
   const body = { bot, emit, Vec3, goals, nextNumber: numbers(), inTurn: turns() }
-  return Object.fromEntries(SKILLS.map(skill => [skill.name, bind(skill, body, signal)]))
+  return Object.fromEntries(SKILLS.map(skill => [skill.name, bind(skill, body, signal, memory)]))
 }
 
 /**
@@ -73,7 +74,7 @@ function untilAborted ({ bot, emit }, signal, fail) {
     bot: new Proxy(bot, {
       get (target, key) {
         check()
-        return target[key]
+        return target[key]?.ofSkills ?? target[key]
       }
     }),
     emit (event) {
@@ -87,19 +88,22 @@ function untilAborted ({ bot, emit }, signal, fail) {
   }
 }
 
-function bind (skill, body, signal) {
+function bind (skill, body, signal, memory) {
   const fail = (message, cause) => { throw new SkillError(skill.name, shortened(`${skill.name}: ${message}`, LONGEST_MESSAGE), cause) }
   const context = { ...body, ...untilAborted(body, signal, fail), fail }
   const place = skill.parameters.findIndex(({ name }) => name === 'bot')
-  return async (...args) => {
-    if (place !== -1 && args[place] !== body.bot) fail(`argument ${place + 1} of ${skill.signature} must be bot, your own bot`)
-    const own = args.filter((_, index) => index !== place)
+  const act = async (...own) => {
     try {
       return await skill.run(context, ...own)
     } catch (error) {
       if (error instanceof SkillError) throw error
       fail(error instanceof Error ? error.message : show(error), error)
     }
+  }
+  return async (...args) => {
+    if (place !== -1 && args[place] !== body.bot) fail(`argument ${place + 1} of ${skill.signature} must be bot, your own bot`)
+    const own = args.filter((_, index) => index !== place)
+    return memory === null ? act(...own) : memory.call(skill.name, own, act)
   }
 }
 

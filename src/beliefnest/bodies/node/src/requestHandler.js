@@ -51,7 +51,7 @@ class RequestHandler {
       case 'create_region': return this.regions.create(request)
       case 'destroy_region': return this.regions.destroy(request.region).then(() => null)
       case 'step': return this.regions.step(request.region, request.ticks)
-      case 'run': return this.runner.run(request.region, request.programs, request.timeout_ticks, request.senses, { speechTicks: request.speech_ticks })
+      case 'run': return this.runner.run(request.region, request.programs, request.timeout_ticks, request.senses, rulesOf(request))
       case 'apply': return this.regions.apply(request)
       case 'snapshot': return this.regions.snapshot(this.regions.get(request.region))
       case 'shutdown': return null
@@ -91,6 +91,10 @@ class RequestHandler {
   get tick () {
     return this.regions?.serv.region?.tick ?? null
   }
+}
+
+function rulesOf ({ speech_ticks: speechTicks = 0, remembers = false, past = {} }) {
+  return { speechTicks, remembers, past }
 }
 
 module.exports = { PROTOCOL, RequestHandler }

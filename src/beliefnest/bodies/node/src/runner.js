@@ -4,9 +4,11 @@ const { stopBot } = require('./bots/bot')
 const { View } = require('./percepts/view')
 const { statesOf } = require('./regions/box')
 const { Random } = require('./time/random')
-const { slowSpeech } = require('./bots/speech')
+const { ruleSpeech } = require('./bots/speech')
+const { Memory } = require('./memory')
 
 const MOST_AIMS = 100
+const USUAL = { speechTicks: 0, remembers: false, past: {} }
 
 class Runner {
   /**
@@ -33,10 +35,11 @@ class Runner {
    * @param {object} programs code by agent
    * @param {number} timeoutTicks after which programs that still run are ended
    * @param {object} [senses] PERCEPTS by agent, of those whose programs are to read nothing else
-   * @param {{speechTicks?: number}} [rules] ticks that it takes to say something
+   * @param {{speechTicks: number, remembers: boolean, past: object}} [rules] ticks that it takes to say something; whether
+   *   what programs call is remembered, and PAST by agent, of those that go on where they were cut
    * @returns {Promise<{tick: number, hidden: Uint8Array, results: object}>} RESULT by agent
    */
-  async run (name, programs, timeoutTicks, senses = {}, { speechTicks = 0 } = {}) {
+  async run (name, programs, timeoutTicks, senses = {}, rules = USUAL) {
     const region = this.regions.get(name)
     const bodies = Object.keys(programs).map(agent => region.body(agent))
     const first = region.tick
@@ -44,7 +47,7 @@ class Runner {
     const ended = await this.regions.resumed(region, async () => {
       Object.entries(programs).forEach(([agent, code], index) => {
         const view = senses[agent] === undefined ? null : this.viewOf(region, bodies[index], senses[agent])
-        runs.push(this.start(region, agent, { bot: view?.bot ?? bodies[index].bot, view, speechTicks }, code))
+        runs.push(this.start(region, agent, { bot: view?.bot ?? bodies[index].bot, view, rules }, code))
       })
       try {
         await this.untilEnded(region, runs, timeoutTicks)
@@ -61,23 +64,26 @@ class Runner {
     return new View({ bot, clock: this.regions.clock, box: region.box, names: region.known, percepts: { ...percepts, states } })
   }
 
-  start (region, agent, { bot, view, speechTicks }, code) {
+  start (region, agent, { bot, view, rules }, code) {
     const abort = new AbortController()
     const run = { agent, view, abort, result: null, endTick: null, end: null, crash: null }
     const aims = []
     const aim = made => { if (aims.length < MOST_AIMS) aims.push({ tick: region.tick, ...made }) }
     const emit = event => region.report(agent, event)
-    const request = { code, bot, scope: this.scopeOf(bot, emit, abort.signal), signal: abort.signal, aim }
+    const past = rules.past[agent] ?? null
+    const memory = rules.remembers ? new Memory(past?.calls ?? [], () => region.tick, abort.signal) : null
+    const request = { code, bot, scope: this.scopeOf(bot, emit, abort.signal, memory), signal: abort.signal, aim }
     // Numbers that others draw, too, would tell of what they do.
-    if (view !== null) request.random = randomOf(region, agent)
-    const speech = speechTicks > 0 ? slowSpeech(bot, speechTicks, abort.signal) : null
+    if (view !== null) request.random = randomOf(region, agent, past?.tick ?? region.tick)
+    const isRuled = rules.speechTicks > 0 || memory !== null
+    const speech = isRuled ? ruleSpeech(bot, { ticks: rules.speechTicks, memory, signal: abort.signal }) : null
     this.runProgram(request).then(async report => {
       if (speech !== null) await speech.over()
       abort.abort()
-      speech?.quicken()
+      speech?.undo()
       const stopped = stopBot(bot)
       if (view !== null) stopBot(view.close())
-      run.result = { ...resultOf(report, stopped, run.end), aims }
+      run.result = { ...resultOf(report, stopped, run.end), aims, ...(memory && { calls: memory.calls }) }
     }).catch(error => { run.crash = error })
     return run
   }
@@ -158,8 +164,8 @@ function resultOf ({ ok, error, lines, log, unfinished }, stopped, end) {
   }
 }
 
-function randomOf (region, agent) {
-  const random = new Random(`${region.seed} ${region.tick} ${agent}`)
+function randomOf (region, agent, tick) {
+  const random = new Random(`${region.seed} ${tick} ${agent}`)
   return () => random.next()
 }
 

@@ -8,10 +8,11 @@ const { bindSkills } = require('../../../programs/skills')
  * @param {object} bot
  * @param {(event: {kind: string, detail: object}) => void} emit hears what the skills report
  * @param {AbortSignal} signal aborted when the program has ended
+ * @param {import('./memory').Memory | null} [memory] remembers what it calls
  * @returns {object} by name
  */
-function scopeOf (bot, emit, signal) {
-  return { ...bindSkills({ bot, emit, Vec3, goals, signal }), Vec3, goals, mcData: bot.registry }
+function scopeOf (bot, emit, signal, memory = null) {
+  return { ...bindSkills({ bot, emit, Vec3, goals, signal, memory }), Vec3, goals, mcData: bot.registry }
 }
 
 module.exports = { scopeOf }

@@ -1,25 +1,33 @@
 'use strict'
-/** Speech that takes time: whoever says something is heard when its ticks are over, one thing after the other. */
+/** What a program says by its bot: it may take time, and be remembered. */
 
 const TICK_MS = 50
 
 /**
- * Lets a bot take so many ticks for each thing it says; those calls then give promises.
+ * Lets a bot take so many ticks for each thing it says, one after the other, and remember what a program says by it.
  * @param {object} bot
- * @param {number} ticks
- * @param {AbortSignal} signal once it is aborted, what has not been said is not said any more
- * @returns {{over: () => Promise<void>, quicken: () => void}} `over` waits until all is said that was begun, `quicken` lets
- *   it speak as before
+ * @param {object} options
+ * @param {number} options.ticks if above 0, what says something gives a promise
+ * @param {import('../memory').Memory | null} options.memory
+ * @param {AbortSignal} options.signal once it is aborted, what has not been said is not said any more
+ * @returns {{over: () => Promise<void>, undo: () => void}} `over` waits until all is said that was begun, `undo` lets it
+ *   speak as before
  */
-function slowSpeech (bot, ticks, signal) {
+function ruleSpeech (bot, { ticks, memory, signal }) {
   const { chat, whisper } = bot
   let last = Promise.resolve()
   const inTurn = speak => (...words) => {
     last = last.then(() => passed(ticks, signal)).then(() => { if (!signal.aborted) speak(...words) })
     return last
   }
-  Object.assign(bot, { chat: inTurn(chat.bind(bot)), whisper: inTurn(whisper.bind(bot)) })
-  return { over: () => last, quicken: () => { Object.assign(bot, { chat, whisper }) } }
+  const ruled = (name, speak) => {
+    const act = ticks > 0 ? inTurn(speak) : speak
+    if (memory === null) return act
+    // A skill that speaks is remembered as a whole.
+    return Object.assign((...words) => memory.say(name, words, act), { ofSkills: act })
+  }
+  Object.assign(bot, { chat: ruled('bot.chat', chat.bind(bot)), whisper: ruled('bot.whisper', whisper.bind(bot)) })
+  return { over: () => last, undo: () => { Object.assign(bot, { chat, whisper }) } }
 }
 
 /** Resolves after so many ticks, or when the signal is aborted. */
@@ -35,4 +43,4 @@ function passed (ticks, signal) {
   })
 }
 
-module.exports = { slowSpeech }
+module.exports = { ruleSpeech }

@@ -1,0 +1,99 @@
+'use strict'
+/**
+ * What a program has called, so that it can go on where it was cut: its text is run again, and what was over gives what
+ * it gave, without being done once more (design/channel.md).
+ */
+const { SkillError } = require('../../../programs/skills')
+
+const MOST = 2000
+const DEEPEST = 6
+const WIDEST = 100
+const NO_WAY = 'NoPath'
+const DONE = JSON.stringify({ ok: true, value: null })
+
+class Memory {
+  /**
+   * @param {object[]} past CALLED, in order
+   * @param {() => number} now the tick
+   * @param {AbortSignal} signal aborted when the program has ended
+   */
+  constructor (past, now, signal) {
+    Object.assign(this, { past: [...past], now, signal, entries: [] })
+  }
+
+  /** Takes note of a call; `answer` is what came of it if it was over before the cut, else null. */
+  note (name, args) {
+    const given = JSON.stringify(plain(args))
+    let known = this.past.shift() ?? null
+    if (known !== null && (known.name !== name || known.given !== given)) {
+      // From here on it does something else.
+      this.past = []
+      known = null
+    }
+    const entry = { name, given, answer: known?.answer ?? null, before: known?.ticks ?? 0, since: this.now() }
+    this.entries.push(entry)
+    return entry
+  }
+
+  /** Does what a skill does, or gives what came of it before. */
+  async call (name, args, act) {
+    const entry = this.note(name, args)
+    if (entry.answer !== null) return recalled(name, JSON.parse(entry.answer))
+    try {
+      const value = await act(...this.left(entry, args))
+      this.answered(entry, { ok: true, value: plain(value) })
+      return value
+    } catch (error) {
+      const noWay = [error, error?.cause].some(each => each?.name === NO_WAY)
+      this.answered(entry, { ok: false, value: { message: String(error?.message), noWay } })
+      throw error
+    }
+  }
+
+  /** Says something, unless it was said before. */
+  say (name, words, speak) {
+    const entry = this.note(name, words)
+    if (entry.answer !== null) return undefined
+    const said = speak(...words)
+    if (said instanceof Promise) return said.then(() => this.answered(entry, DONE))
+    this.answered(entry, DONE)
+    return said
+  }
+
+  /** The arguments of what was under way: who waits has waited for some time. */
+  left ({ name, before }, args) {
+    return name === 'waitTicks' && before > 0 && Number.isInteger(args[0]) ? [Math.max(1, args[0] - before), ...args.slice(1)] : args
+  }
+
+  // What ends since the program was ended is not over.
+  answered (entry, answer) {
+    if (!this.signal.aborted) entry.answer = typeof answer === 'string' ? answer : JSON.stringify(answer)
+  }
+
+  /** @returns {object[]} CALLED, in order; none if they are too many to go on from */
+  get calls () {
+    if (this.entries.length > MOST) return []
+    return this.entries.map(({ name, given, answer, before, since }) =>
+      ({ name, given, answer, ticks: answer === null ? before + this.now() - since : 0 }))
+  }
+}
+
+function recalled (name, { ok, value }) {
+  if (ok) return value ?? undefined
+  const cause = value.noWay ? Object.assign(new Error(value.message), { name: NO_WAY }) : undefined
+  throw new SkillError(name, value.message, cause)
+}
+
+/** A value as far as it is plain data; what is not is told by its kind. */
+function plain (value, depth = 0) {
+  if (value === null || value === undefined) return null
+  if (typeof value !== 'object') return typeof value === 'function' || typeof value === 'bigint' ? String(value).slice(0, 1000) : value
+  if (depth > DEEPEST) return 'deep'
+  if (Array.isArray(value)) return value.slice(0, WIDEST).map(each => plain(each, depth + 1))
+  if (typeof value.x === 'number' && typeof value.z === 'number') return [value.x, value.y, value.z]
+  const proto = Object.getPrototypeOf(value)
+  if (proto !== Object.prototype && proto !== null) return 'an object of the game'
+  return Object.fromEntries(Object.entries(value).slice(0, WIDEST).map(([key, each]) => [key, plain(each, depth + 1)]))
+}
+
+module.exports = { Memory }
