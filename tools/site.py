@@ -6,7 +6,7 @@ code they describe. Papers beside `docs/` become pages below `project/`; links a
 
 import inspect
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -25,6 +25,13 @@ from beliefnest.world.values import EventKind
 
 ROOT = Path(__file__).parents[1]
 PAPERS = ("CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "LICENSE", "THIRD_PARTY_NOTICES.md")
+_HOLE = "Hole"
+_PLAIN = {
+    "integer": "a whole number",
+    "number": "a number",
+    "string": "text",
+    "boolean": "true or false",
+}
 NAMES_OF_KINDS = {"class": "Classes", "function": "Functions", "value": "Values"}
 
 
@@ -36,6 +43,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         "reference/scenario.md": scenario_page,
         "reference/events.md": events_page,
         "reference/errors.md": errors_page,
+        "about.md": about_page,
     }
     for name, write in pages.items():
         files.append(File.generated(config, name, content=write()))
@@ -57,6 +65,10 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
     )
     here = PurePosixPath(source).parent
 
+    if "\n## " not in markdown:
+        # Nothing to list: the room of the contents goes to the page, whose tables may be wide.
+        page.meta["hide"] = ["toc"]
+
     def lead(match: re.Match[str]) -> str:
         target, anchor = match[1], match[2] or ""
         if "://" in target or not target:
@@ -76,6 +88,17 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
         return f"]({_relative(page_name, here)}{anchor})"
 
     return re.sub(r"\]\(([^)#\s]*)(#[^)\s]*)?\)", lead, markdown)
+
+
+def on_post_page(output: str, page: Page, config: MkDocsConfig) -> str:
+    """Refuse a page that loads anything from elsewhere."""
+    # A link that only names the page's own address loads nothing.
+    loads = (
+        r"<(?:script|link(?! rel=.?canonical)|img|iframe)\b[^>]*\b(?:src|href)=\"?https?://[^>]*>"
+    )
+    if foreign := re.search(loads, output):
+        raise PluginError(f"{page.file.src_uri} loads from elsewhere: {foreign[0]}")
+    return output
 
 
 def project_page(file: Path) -> str:
@@ -156,10 +179,11 @@ def scenario_page() -> str:
         "# Keys of a scenario file",
         "",
         "The same as [the JSON schema](../scenario.schema.json), to read. How the keys are used is",
-        "shown in [Writing a scenario](../scenarios.md).",
+        "shown in [Writing a scenario](../scenarios.md). Positions are blocks, x, y up and z.",
+        "Anything but text may also be `${...}`: a parameter, or an expression of parameters.",
     ]
     for name, entry in defs.items():
-        if name.endswith("Override"):
+        if name.endswith("Override") or name == _HOLE:
             continue
         lines += ["", f"## {_title(name)}", "", entry.get("description", ""), ""]
         lines += ["| key | type | default | meaning |", "|---|---|---|---|"]
@@ -184,19 +208,35 @@ def _short(default: object) -> str:
 
 
 def _type(value: Mapping[str, Any]) -> str:
+    """The form of a value in words; that it may be null or a parameter is not said each time."""
     if "$ref" in value:
         title = _title(value["$ref"].rsplit("/", 1)[-1])
         return f"[{title}](#{title.lower().replace(' ', '-')})"
     if "anyOf" in value:
-        return " or ".join(_type(each) for each in value["anyOf"])
+        forms = [each for each in value["anyOf"] if not _goes_without_saying(each)]
+        return " or ".join(dict.fromkeys(_type(each) for each in forms))
     if "enum" in value:
         return " or ".join(f"`{each}`" for each in value["enum"])
     if "prefixItems" in value:
-        return "[" + ", ".join(_type(each) for each in value["prefixItems"]) + "]"
+        return _several([_type(each) for each in value["prefixItems"]])
     inside = value.get("items") or value.get("additionalProperties")
     if isinstance(inside, dict):
-        return ("list of " if "items" in value else "mapping to ") + _type(inside)
-    return str(value.get("type", "anything"))
+        form = _type(inside)
+        return f"list of {form}" if "items" in value else f"mapping of names to {form}"
+    return _PLAIN.get(value.get("type", "anything"), value.get("type", "anything"))
+
+
+def _goes_without_saying(form: Mapping[str, Any]) -> bool:
+    return form.get("type") == "null" or form.get("$ref", "").endswith(f"/{_HOLE}")
+
+
+def _several(forms: Sequence[str]) -> str:
+    """A list of so many values, with x, y and z for three numbers."""
+    if len(set(forms)) > 1:
+        return f"[{', '.join(forms)}]"
+    if len(forms) == 3 and forms[0] in _PLAIN.values():
+        return f"[x, y, z], each {forms[0]}"
+    return f"list of {len(forms)}, each {forms[0]}"
 
 
 def events_page() -> str:
@@ -217,6 +257,15 @@ def events_page() -> str:
 
 def _code(text: str | None) -> str:
     return f"`{text}`" if text else ""
+
+
+def about_page() -> str:
+    """Limits, the paper, how to cite and the licence: the last sections of the README."""
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    text = readme[readme.index("\n## Limits") :].replace("](CITATION.cff)", "](#citationcff)")
+    text = re.sub(r"\]\((?!#|https?:)", "](../", text)
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    return f"# Limits, citing, licence\n{text}\n## CITATION.cff\n\n```yaml\n{citation}```\n"
 
 
 def errors_page() -> str:

@@ -22,8 +22,9 @@ _HEAD = """\
 BeliefNest's wheel carries a JavaScript bundle made of the npm packages below, facts about
 Minecraft's blocks and items from minecraft-data, and the fonts Liberation Sans and Liberation Sans
 Bold (copyright Google Corporation and Red Hat, Inc.; SIL Open Font License 1.1, whose text stands
-in `src/beliefnest/pictures/fonts/LICENSE.txt`). Everything else it needs is installed as a
-dependency of its own, under its own licence.
+in `src/beliefnest/pictures/fonts/LICENSE.txt`). The documentation carries iframe-worker (copyright
+Martin Donath; MIT, `docs/assets/iframe-worker/LICENSE.txt`). Everything else it needs is installed
+as a dependency of its own, under its own licence.
 
 "Minecraft" is a trademark of Mojang AB. BeliefNest is not an official Minecraft product and is
 not approved by or associated with Mojang or Microsoft. It contains no Mojang code or assets.

@@ -97,7 +97,7 @@ class SignEntry(_Entry, frozen=True):
 class BelievedSignEntry(_Entry, frozen=True):
     """A sign that is believed to be somewhere, and to say something."""
 
-    at: Position
+    at: Annotated[Position, _note("Its position.")]
     text: _SignText = ""
     block: Annotated[
         str | None, _note("A block state of a sign; null: that of the sign which stands there.")
@@ -107,12 +107,12 @@ class BelievedSignEntry(_Entry, frozen=True):
 class EquipmentEntry(_Entry, frozen=True):
     """What an agent wears or holds: slot to item."""
 
-    head: str | None = None
-    chest: str | None = None
-    legs: str | None = None
-    feet: str | None = None
-    main_hand: str | None = None
-    off_hand: str | None = None
+    head: Annotated[str | None, _note("A helmet, or another item that is worn there.")] = None
+    chest: Annotated[str | None, _note("A chestplate.")] = None
+    legs: Annotated[str | None, _note("Leggings.")] = None
+    feet: Annotated[str | None, _note("Boots.")] = None
+    main_hand: Annotated[str | None, _note("What it holds; mostly the right hand.")] = None
+    off_hand: Annotated[str | None, _note("What it holds in the other hand.")] = None
 
 
 class AgentEntry(_Entry, frozen=True):
@@ -129,7 +129,7 @@ class AgentEntry(_Entry, frozen=True):
         dict[str, int],
         _note("Item name to count; what is worn or held counts in and need not be listed."),
     ] = {}
-    equipment: EquipmentEntry = EquipmentEntry()
+    equipment: Annotated[EquipmentEntry, _note("What it wears and holds.")] = EquipmentEntry()
     health: Annotated[float, msgspec.Meta(gt=0, le=20, description="Half hearts.")] = 20.0
     food: Annotated[float, msgspec.Meta(ge=0, le=20, description="Half drumsticks.")] = 20.0
     type: Annotated[
@@ -180,7 +180,7 @@ class PerceptionEntry(_Entry, frozen=True):
 class _BelievedContainerEntry(_Entry, frozen=True):
     """What a container is believed to hold."""
 
-    at: Position
+    at: Annotated[Position, _note("Its position.")]
     items: _ItemsField = {}
     complete: Annotated[bool, _note("Whether these are believed to be all.")] = True
 
@@ -192,7 +192,9 @@ class InitialBeliefEntry(_Entry, frozen=True):
         str,
         _note("A belief path such as /observer/sally; /** at its end: that and all below it."),
     ]
-    containers: list[_BelievedContainerEntry] = []
+    containers: Annotated[
+        list[_BelievedContainerEntry], _note("What containers are believed to hold.")
+    ] = []
     blocks: Annotated[list[BlockEntry], _note("Believed blocks; block null: unknown.")] = []
     signs: Annotated[list[BelievedSignEntry], _note("Believed signs.")] = []
     agents: Annotated[dict[str, Point], _note("Believed positions of the feet.")] = {}
@@ -340,7 +342,10 @@ class ScenarioFile(_Entry, frozen=True):
     box: Annotated[
         tuple[Position, Position], _note("Two inclusive corners of the part of space it plays in.")
     ]
-    agents: Annotated[dict[str, AgentEntry], msgspec.Meta(min_length=1)]
+    agents: Annotated[
+        dict[str, AgentEntry],
+        msgspec.Meta(min_length=1, description="Who lives there: name to agent."),
+    ]
     description: Annotated[str, _note("What it is about.")] = ""
     reported_by: Annotated[
         str, _note("Who reported what is expected, as in 'as the paper reports'.")
@@ -352,10 +357,15 @@ class ScenarioFile(_Entry, frozen=True):
         list[str], _note("Expressions over parameters that hold, such as `gap < 4`.")
     ] = []
     blocks: Annotated[list[BlockEntry], _note("The rest of the box is air.")] = []
-    containers: list[ContainerEntry] = []
-    signs: list[SignEntry] = []
+    containers: Annotated[
+        list[ContainerEntry], _note("What containers hold at the start, and what people call them.")
+    ] = []
+    signs: Annotated[list[SignEntry], _note("Signs, and what is written on them.")] = []
     places: Annotated[dict[str, Position], _note("What people call places: name to block.")] = {}
-    perception: PerceptionEntry = PerceptionEntry()
+    perception: Annotated[
+        PerceptionEntry,
+        _note("How far agents see and hear, and what they make of what they are told."),
+    ] = PerceptionEntry()
     senses: Annotated[
         Literal["world", "percepts"],
         _note("What programs read: everything, or what their agents perceive or remember."),
@@ -368,10 +378,14 @@ class ScenarioFile(_Entry, frozen=True):
         bool,
         _note("Whether prompts say what containers are called and look as if they held."),
     ] = False
-    initial_beliefs: list[InitialBeliefEntry] = []
+    initial_beliefs: Annotated[
+        list[InitialBeliefEntry], _note("What is believed before anything happens.")
+    ] = []
     script: Annotated[list[StepEntry], _note("What happens in the real world, in order.")] = []
-    probes: list[ProbeEntry] = []
-    expectations: list[ExpectationEntry] = []
+    probes: Annotated[list[ProbeEntry], _note("What is asked once the script has ended.")] = []
+    expectations: Annotated[
+        list[ExpectationEntry], _note("What should be believed once the script has ended.")
+    ] = []
     episode: Annotated[
         EpisodeEntry | None,
         _note("What agents are after, and the rules by which they act round after round."),
