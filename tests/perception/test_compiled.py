@@ -29,6 +29,9 @@ def test_a_kernel_is_compiled_once_and_again_when_its_source_changed(tmp_path):
     assert first.twice(2) == 4
     assert is_compiled(first.twice)
     assert is_compiled(loaded(file).twice)
+    # Installed once more, as it was.
     later = file.stat().st_mtime + 60
     os.utime(file, (later, later))
+    assert is_compiled(loaded(file).twice)
+    file.write_text(SOURCE.replace("2 * number", "number + number"))
     assert not is_compiled(loaded(file).twice)

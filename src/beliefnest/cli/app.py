@@ -36,9 +36,13 @@ def run_command_line(arguments: Sequence[str]) -> int:
     """Run a command; every fault becomes one line on stderr and an exit status."""
     command = typer.main.get_command(app)
     try:
-        status: Any = command.main(list(arguments), prog_name="beliefnest", standalone_mode=False)
+        status: Any = command.main(
+            list(arguments) or ["--help"], prog_name="beliefnest", standalone_mode=False
+        )
     except _UsageFault as error:
-        return _fail(f"{error.format_message()} (see beliefnest --help)", _BAD_USAGE)
+        context = getattr(error, "ctx", None)
+        asked = "beliefnest" if context is None else context.command_path
+        return _fail(f"{error.format_message()} (see {asked} --help)", _BAD_USAGE)
     except BeliefNestError as error:
         return _fail(str(error), error.exit_status)
     except (KeyboardInterrupt, typer.Abort):

@@ -9,9 +9,7 @@ axis, as all shapes of Minecraft do; tests/world/test_registry.py holds that.
 """
 
 import math
-import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, NamedTuple, TypeVar, cast
 
 import numba
@@ -152,14 +150,9 @@ def is_compiled(function: Callable[..., object]) -> bool:
     kernel: Any = function
     if not hasattr(kernel, "py_func") or kernel.signatures:
         return True
-    folder = kernel.stats.cache_path
-    if folder is None:
-        return False
-    source = Path(kernel.py_func.__code__.co_filename)
-    changed = source.stat().st_mtime
-    version = f"py{sys.version_info.major}{sys.version_info.minor}"
-    names = f"{source.stem}.{kernel.py_func.__qualname__}-*.{version}.nbi"
-    return any(kept.stat().st_mtime >= changed for kept in Path(folder).glob(names))
+    # Only numba can tell whether what it kept was compiled from this source, and has no public way.
+    kept = getattr(kernel._cache, "_cache_file", None)
+    return kept is not None and bool(kept._load_index())
 
 
 @inlined
