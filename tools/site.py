@@ -8,7 +8,8 @@ import inspect
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
-from typing import Any
+from types import ModuleType, NoneType
+from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 import click
 import typer
@@ -17,7 +18,10 @@ from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
-import beliefnest
+import beliefnest.env
+import beliefnest.frames
+import beliefnest.llm
+import beliefnest.prompts
 from beliefnest import errors
 from beliefnest.cli.app import app
 from beliefnest.scenarios.schema import schema
@@ -39,6 +43,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the pages that are not in `docs/`."""
     pages: dict[str, Callable[[], str]] = {
         "reference/python.md": python_page,
+        "reference/modules.md": modules_page,
         "reference/commands.md": commands_page,
         "reference/scenario.md": scenario_page,
         "reference/events.md": events_page,
@@ -114,28 +119,67 @@ def _relative(target: str, here: PurePosixPath) -> str:
 
 def python_page() -> str:
     """Every public name with its docstring."""
-    groups: dict[str, list[str]] = {kind: [] for kind in NAMES_OF_KINDS}
-    for name in sorted(beliefnest.__all__):
-        value = getattr(beliefnest, name)
-        if inspect.isclass(value) and issubclass(value, Exception):
-            continue
-        if not inspect.getdoc(value):
-            raise PluginError(f"beliefnest.{name} is public and has no docstring")
-        kind = "class" if inspect.isclass(value) else "function" if callable(value) else "value"
-        home = getattr(value, "__module__", None)
-        groups[kind].append(f"::: {home}.{value.__qualname__}" if home else f"### {name}")
+    return "\n".join(
+        [
+            "# From Python",
+            "",
+            "`import beliefnest as bn`; everything below is `bn.NAME`, and what rooms such as",
+            "`beliefnest.llm` offer has [a page of its own](modules.md). Positions are scenario",
+            "coordinates in blocks, y up; angles are Mineflayer's radians; 20 ticks are a second.",
+            "Errors have [a page of their own](errors.md). Sections of the semantics are the rules",
+            "that [How beliefs are computed](../project/design/beliefs.md) follows.",
+            "",
+            *_names(beliefnest, "##"),
+        ]
+    )
+
+
+def modules_page() -> str:
+    """Every public name of the rooms that users import from."""
     lines = [
-        "# From Python",
+        "# From Python: models, prompts, tables, environments",
         "",
-        "`import beliefnest as bn`; everything below is `bn.NAME`. Positions are scenario",
-        "coordinates in blocks, y up; angles are Mineflayer's radians; 20 ticks are a second.",
-        "Errors have [a page of their own](errors.md).",
+        "What is imported from rooms of the package. A model of one's own is any object that is a",
+        "`Model`: see [Language models](../models.md).",
         "",
     ]
+    for module in (beliefnest.llm, beliefnest.prompts, beliefnest.frames, beliefnest.env):
+        lines += [f"## {module.__name__}", "", inspect.getdoc(module) or "", ""]
+        lines += _names(module, "###")
+    return "\n".join(lines)
+
+
+def _names(module: ModuleType, heading: str) -> Iterator[str]:
+    """The names that a module offers, by kind, each with its docstring."""
+    groups: dict[str, list[str]] = {kind: [] for kind in NAMES_OF_KINDS}
+    offered = {name: getattr(module, name) for name in sorted(module.__all__)}
+    for name, value in offered.items():
+        if inspect.isclass(value) and issubclass(value, Exception):
+            continue
+        is_defined = inspect.isclass(value) or inspect.isfunction(value)
+        if is_defined and not inspect.getdoc(value):
+            raise PluginError(f"{module.__name__}.{name} is public and has no docstring")
+        kind = "value" if not is_defined else "class" if inspect.isclass(value) else "function"
+        home = value.__module__ if is_defined else module.__name__
+        groups[kind].append(f"::: {home}.{name}")
+        if kind == "class":
+            groups[kind] += [f"::: {base.__module__}.{base.__qualname__}" for base in _parts(value)]
     for kind, title in NAMES_OF_KINDS.items():
         if groups[kind]:
-            lines += [f"## {title}", "", *(f"{each}\n" for each in groups[kind])]
-    return "\n".join(lines)
+            yield from (
+                f"{heading} {title}",
+                "",
+                *(f"{each}\n" for each in dict.fromkeys(groups[kind])),
+            )
+
+
+def _parts(value: type) -> Iterator[type]:
+    """Bases of a class that tell of attributes and are not offered themselves."""
+    for base in value.__mro__[1:]:
+        is_ours = base.__module__.startswith("beliefnest.")
+        is_hidden = base.__name__.startswith("_") or base.__name__ in beliefnest.__all__
+        if is_ours and not is_hidden and "Attributes:" in (base.__doc__ or ""):
+            yield base
 
 
 def commands_page() -> str:
@@ -149,27 +193,63 @@ def commands_page() -> str:
         "where), 3 if a world or a model failed.",
     ]
     subcommands: Mapping[str, click.Command] = getattr(command, "commands", {})
+    registered = [each for each in app.registered_commands if each.callback is not None]
+    callbacks = {each.name or each.callback.__name__: each.callback for each in registered}
     for name, sub in sorted(subcommands.items()):
-        lines += ["", f"## {name}", "", sub.help or "", "", *_parameters(name, sub)]
+        lines += [
+            "",
+            f"## {name}",
+            "",
+            sub.help or "",
+            "",
+            *_parameters(name, sub, callbacks[name]),
+        ]
     return "\n".join(lines)
 
 
-def _parameters(name: str, command: Any) -> Iterator[str]:
+def _parameters(name: str, command: Any, callback: Callable[..., object]) -> Iterator[str]:
     arguments = [each for each in command.params if each.param_type_name == "argument"]
     usage = " ".join(
         each.name.upper() if each.required else f"[{each.name.upper()}]" for each in arguments
     )
     yield f"`beliefnest {name} {usage} [OPTIONS]`".replace("  ", " ")
     yield ""
-    yield "| argument or option | default | meaning |"
-    yield "|---|---|---|"
+    yield "| argument or option | takes | default | meaning |"
+    yield "|---|---|---|---|"
+    behind = _written_behind(callback)
     for each in command.params:
         is_argument = each.param_type_name == "argument"
         label = each.name.upper() if is_argument else ", ".join([*each.opts, *each.secondary_opts])
-        default = (
-            "" if each.default in (None, (), [], False) or is_argument else f"`{each.default}`"
+        is_left_out = each.default is None or each.default is False or is_argument
+        default = "" if is_left_out or each.default in ((), []) else f"`{each.default}`"
+        takes = behind.get(each.name if is_argument else each.opts[0], "")
+        yield f"| `{label}` | {takes} | {default} | {each.help or ''} |"
+
+
+def _written_behind(callback: Callable[..., object]) -> dict[str, str]:
+    """What is written behind each option of a command, with its bounds; by its first name."""
+    found = {}
+    for name, hint in get_type_hints(callback, include_extras=True).items():
+        if not hasattr(hint, "__metadata__"):
+            continue
+        kind, info = get_args(hint)[:2]
+        first = next(iter(info.param_decls or ()), f"--{name.replace('_', '-')}")
+        bounds = [f"from {info.min:g}" if info.min is not None else ""]
+        bounds += [f"to {info.max:g}" if info.max is not None else ""]
+        found[first if first.startswith("-") else name] = " ".join(
+            filter(None, [_words(kind), *bounds])
         )
-        yield f"| `{label}` | {default} | {each.help or ''} |"
+    return found
+
+
+def _words(kind: Any) -> str:
+    if get_origin(kind) is Literal:
+        return " or ".join(f"`{each}`" for each in get_args(kind))
+    inside = [each for each in get_args(kind) if each is not NoneType]
+    if inside:
+        several = "; may be repeated" if get_origin(kind) is list else ""
+        return " or ".join(_words(each) for each in inside) + several
+    return {bool: "", int: "a whole number", float: "a number", Path: "a path"}.get(kind, "text")
 
 
 def scenario_page() -> str:
@@ -281,6 +361,7 @@ def errors_page() -> str:
     ]
     for name in errors.__all__:
         error = getattr(errors, name)
-        when = " ".join((inspect.getdoc(error) or "").split())
-        lines.append(f"| `bn.{name}` | {error.exit_status} | {when} |")
+        when = " ".join((inspect.getdoc(error) or "").partition("\n\n")[0].split())
+        home = "bn" if hasattr(beliefnest, name) else "bn.errors"
+        lines.append(f"| `{home}.{name}` | {error.exit_status} | {when} |")
     return "\n".join(lines)

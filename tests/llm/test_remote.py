@@ -167,7 +167,8 @@ def test_a_server_that_says_nothing_is_given_up(fake, clock):
 
 def test_nobody_listens(clock):
     own = {"OLLAMA_BASE_URL": "http://127.0.0.1:1/v1"}
-    with pytest.raises(TransientModelError, match=r"ollama:x at http://127\.0\.0\.1:1/v1"):
+    nobody = r"no server for ollama:x at http://127\.0\.0\.1:1/v1: start it, or set OLLAMA_BASE_URL"
+    with pytest.raises(TransientModelError, match=nobody):
         resolve_model("ollama:x", own, clock=clock).answer(ASK, Sampling())
 
 

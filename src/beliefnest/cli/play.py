@@ -82,7 +82,10 @@ def play_task(options: PlayOptions) -> int:
 def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> Episode:
     store = None
     if options.out is not None:
-        options.out.mkdir(parents=True, exist_ok=True)
+        try:
+            options.out.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise InputError(f"{options.out} cannot be made: {error.strerror}") from None
         store = options.out / "run.bn"
         if store.exists():
             return Episode.resume(store, policies, patience_s=options.patience_s)

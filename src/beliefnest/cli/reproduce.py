@@ -1,6 +1,7 @@
 """`beliefnest reproduce`: the paper's experiments, as written and varied, beside its claims."""
 
 import json
+import os
 import sys
 import tempfile
 import time
@@ -81,8 +82,14 @@ def run_reproduction(copies: int, jobs: int, page: Path | None, *, as_json: bool
         BeliefNestError: A number is wrong, or a world failed.
     """
     names = tuple(dict.fromkeys(claim.scenario for claim in _CLAIMS))
-    written = _played(Study(names), jobs, "as written")
-    varied = _played(Study(names, variations=copies), jobs, "copies") if copies else ([], 0.0)
+    studies = Study(names), Study(names, variations=copies) if copies else None
+    for study in filter(None, studies):
+        # What is missing is said before anything is played.
+        study.plan()
+    if page is not None and not os.access(page if page.exists() else page.parent, os.W_OK):
+        raise InputError(f"{page} cannot be written: name a file in a folder that can")
+    written = _played(studies[0], jobs, "as written")
+    varied = _played(studies[1], jobs, "copies") if studies[1] is not None else ([], 0.0)
     lines = [_line(claim, written[0], varied[0]) for claim in _CLAIMS]
     rows = [*written[0], *varied[0]]
     right = sum(_is_right(row) for row in rows)
@@ -157,7 +164,7 @@ def _is_of(row: Mapping[str, Any], claim: _Claim) -> bool:
 
 
 _HEADINGS = (
-    *("experiment", "belief asked", "the paper's claim, or what a control changes"),
+    *("section of the paper", "belief asked", "the paper's claim, or what a control changes"),
     *("expected", "our result", "copies as expected", "run time", "where we differ"),
 )
 

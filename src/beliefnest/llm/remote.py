@@ -345,6 +345,17 @@ def _clean(model: RemoteModel, text: str) -> str:
     return without_secrets(text, [model.endpoint.key.value or ""])
 
 
+def _is_nobody_there(error: BaseException | None) -> bool:
+    """Whether the cause of all was that no connection could be made."""
+    import httpx2
+
+    while error is not None:
+        if isinstance(error, httpx2.ConnectError):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
+
+
 def _refuse(model: RemoteModel, error: Exception) -> NoReturn:
     """Raise the project's error for one of the library's, without its cause: it holds headers."""
     from pydantic_ai import exceptions as library
@@ -364,12 +375,18 @@ def _refuse(model: RemoteModel, error: Exception) -> NoReturn:
             message = f"{where}: the prompt is longer than the model can read; shorten it"
         case library.ModelRateLimitError(retry_after=seconds):
             raise TransientModelError(f"{where} limits the rate of requests", seconds) from None
+        case library.ModelConnectionError() if _is_nobody_there(error):
+            variable = model.endpoint.provider.url_variable
+            told = f"no server for {model.name} at {model.endpoint.url}"
+            raise TransientModelError(f"{told}: start it, or set {variable}") from None
         case library.ModelConnectionError():
             raise TransientModelError(f"{where} dropped the connection ({said})") from None
         case library.ModelServerError(retry_after=s) | library.ModelUnavailableError(retry_after=s):
             raise TransientModelError(f"{where} failed ({said})", s) from None
         case library.ModelAPIError():
             message = f"{where} rejected the request ({said})"
+        case library.UnexpectedModelBehavior():
+            message = f"{where} gave no usable answer ({said}); it has to stream what it answers"
         case _:
             message = f"{where} gave no usable answer ({said})"
     raise ModelError(message) from None

@@ -20,7 +20,14 @@ __all__ = ["Claim", "ClaimKind", "claims_from_plain", "claims_of", "with_claims"
 
 
 class ClaimKind(StrEnum):
-    """What a claim is about (semantics, section 8)."""
+    """What a claim is about (semantics, section 8).
+
+    Attributes:
+        LOCATED: That a container holds an item.
+        ABSENT: That a container does not hold an item.
+        POSITION: Where an agent is.
+        BLOCK: Which block is at a place, and in which state.
+    """
 
     LOCATED = "located"
     ABSENT = "absent"
