@@ -2,23 +2,44 @@
 
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from jinja2 import Environment, StrictUndefined
 
 from beliefnest.errors import UnknownNameError
+from beliefnest.studies.counting import Pairs
 from beliefnest.studies.plot import plot_accuracy, svg_of
 from beliefnest.studies.rows import variation_columns
-
-if TYPE_CHECKING:
-    from beliefnest.studies.result import StudyResult
+from beliefnest.studies.table import Table
 
 __all__ = ["page_text"]
 
 _MOST_ROWS = 2_000
 
 
-def page_text(result: "StudyResult", by: Sequence[str]) -> str:
+class Counted(Protocol):
+    """What a page shows of a study: `StudyResult` is one."""
+
+    @property
+    def plan(self) -> Mapping[str, Any]:
+        """What was planned last, as plain values."""
+
+    @property
+    def rows(self) -> Sequence[Mapping[str, Any]]:
+        """The rows of `frame` as plain values."""
+
+    @property
+    def table(self) -> Table:
+        """The form of the rows."""
+
+    def counted(self, by: Sequence[str]) -> Sequence[Mapping[str, Any]]:
+        """The rows of `summary` as plain values."""
+
+    def paired(self, between: str) -> Sequence[Pairs]:
+        """The rows of `differences` as values."""
+
+
+def page_text(result: Counted, by: Sequence[str]) -> str:
     """The page, the same text for the same study.
 
     Args:
