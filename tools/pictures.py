@@ -11,6 +11,7 @@ from beliefnest.studies.plot import svg_of
 IMAGES = Path(__file__).parents[1] / "docs" / "img"
 CHEST = (-2, -51, -4)
 PATHS = ("/", "/observer", "/sally", "/observer/sally")
+FIGURE_1 = ("/", "/agent_1", "/agent_2", "/agent_1/agent_2", "/agent_2/agent_1")
 BATTERIES = (
     "unexpected-contents",
     "unexpected-transfer",
@@ -40,6 +41,10 @@ def write_pictures(images: Path) -> None:
             if run_command_line(["run", name, "--out", str(run)]) != 0:
                 raise SystemExit(f"{name} is not as expected: mend that first")
             (images / f"{name}.png").write_bytes((run / "picture.png").read_bytes())
+        figure_1 = Path(folder, "figure 1")
+        run_command_line(["run", "red-green-blue", "--condition", "1", "--out", str(figure_1)])
+        with bn.Nest.read(figure_1 / "condition-1" / STORE) as nest:
+            nest.figure(FIGURE_1).save(images / "red-green-blue.png")
         write_study(images, Path(folder, "study"))
 
 

@@ -2,6 +2,7 @@
 
 import json
 import re
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -66,6 +67,14 @@ def play_of_a_person():
     for part in ("probes", "conditions", "expectations"):
         written.pop(part)
     return Scenario.from_mapping(written)
+
+
+def test_the_example_of_the_page_runs(capsys):
+    page = (Path(__file__).parents[2] / "docs" / "visiting.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    exec(compile(example.replace("listen=25565", "listen=0"), "visiting.md", "exec"), {})
+    (printed,) = re.findall(r"```text\n(.*?)```", page, re.DOTALL)
+    assert capsys.readouterr().out == printed
 
 
 def where(nest, path):

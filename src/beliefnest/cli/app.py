@@ -100,6 +100,10 @@ def run(
         str | None,
         typer.Option(help="Where they do: a port, or HOST:PORT; 25565 of this machine if none."),
     ] = None,
+    embody: Annotated[
+        list[str] | None,
+        typer.Option(help="Let people visit this belief, till you press Enter; can be repeated."),
+    ] = None,
     model: Annotated[
         str, typer.Option(help="Who answers: offline, PROVIDER:MODEL, replay: or scripted:FILE.")
     ] = "offline",
@@ -152,6 +156,7 @@ def run(
             as_json=json,
             asking=ModelOptions(cache, answers, limits, attempts, temperature),
             claims_from=claims_from,
+            embody=tuple(embody or ()),
         )
     )
 

@@ -23,6 +23,7 @@ from beliefnest.scenarios.expected import (
     Hears,
     Holds,
     Intends,
+    Is,
     Judge,
     Opens,
     Reads,
@@ -237,6 +238,9 @@ def _found(outcome: ExpectationOutcome, state: State, scenario: Scenario) -> tup
         text = state.signs.get(content.sign)
         what = f"sign ({', '.join(map(str, content.sign))})"
         found = "unknown" if text is None else escape(sign_words(text) or "nothing")
+    elif isinstance(content, Is):
+        what = f"block ({', '.join(map(str, content.block))})"
+        found = state.blocks[content.block] or "unknown"
     elif isinstance(content, Hears):
         heard = any(content.text in text for _, _, text in state.chat)
         what, found = f"{content.text!r}", "heard" if heard else "not heard"

@@ -23,6 +23,7 @@ from beliefnest.cli.pictures import read_condition
 from beliefnest.cli.plan import Cell, plan_cells
 from beliefnest.cli.report import outcome_json, outcome_table, report_json
 from beliefnest.cli.run_report import report_html
+from beliefnest.cli.visits import check_visits, visited
 from beliefnest.errors import InputError, ModelError, ScenarioError
 from beliefnest.llm.asking import NoUsableProgramError
 from beliefnest.llm.budget import Budget, RunLimits
@@ -82,6 +83,7 @@ class RunOptions:
         as_json: Whether to print the report as JSON instead of a table.
         asking: How models are asked.
         claims_from: Name of the model that reads claims out of what is said; None: nobody.
+        embody: Belief paths of simulators that people can visit.
     """
 
     scenario: str
@@ -94,6 +96,7 @@ class RunOptions:
     as_json: bool
     asking: ModelOptions
     claims_from: str | None = None
+    embody: tuple[str, ...] = ()
 
     @property
     def settings(self) -> dict[str, object]:
@@ -125,6 +128,7 @@ def run_scenarios(options: RunOptions) -> int:
     """
     scenarios = _scenarios(options)
     check_world(options.world)
+    check_visits(options.embody, options.world)
     _check_numbers(options)
     for name in options.named_models:
         resolve_model(name, os.environ)
@@ -276,7 +280,8 @@ def _run(
             scenario, options.world, place.store, cell.seed, worlds, claims_from=claims_from
         ) as nest,
     ):
-        outcome = run_scenario(nest, scenario, model, cell.seed, started, on_progress, asking)
+        with visited(nest, options.embody):
+            outcome = run_scenario(nest, scenario, model, cell.seed, started, on_progress, asking)
         for number, probe in enumerate(outcome.probes, start=1):
             place.write_probe(number, probe)
         with SqliteJournal.read(place.store) as journal:

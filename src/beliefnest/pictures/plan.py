@@ -36,6 +36,25 @@ _KINDS: Mapping[str, str] = {
     "log": "#96744c",
     "sand": "#e0d2a0",
 }
+_DYES: Mapping[str, str] = {
+    "white": "#e6e4df",
+    "orange": "#dc8a4a",
+    "magenta": "#b866b0",
+    "light_blue": "#82b4d2",
+    "yellow": "#e0c860",
+    "lime": "#9cbe5a",
+    "pink": "#dca0b0",
+    "gray": "#5e6064",
+    "light_gray": "#a8a8a4",
+    "cyan": "#5a9aa0",
+    "purple": "#8064a0",
+    "blue": "#5068a8",
+    "brown": "#7a5a44",
+    "green": "#64864a",
+    "red": "#b0504c",
+    "black": "#33323a",
+}
+_DYED = ("_wool", "_concrete", "_concrete_powder", "_terracotta", "_carpet")
 _MOST_QUOTED = 24
 _STORES = ("chest", "barrel", "furnace", "smoker")
 
@@ -410,6 +429,9 @@ def _standing(text: str) -> tuple[tuple[float, float, float, float], ...]:
 @cache
 def _colour(text: str, default: str) -> str:
     name = text.partition("[")[0]
+    for dyed in _DYED:
+        if name.removesuffix(dyed) in _DYES:
+            return _DYES[name.removesuffix(dyed)]
     for part, colour in _KINDS.items():
         if part in name:
             return colour

@@ -18,11 +18,13 @@ from beliefnest.scenarios.expected import (
     Answers,
     Arrives,
     Believes,
+    Content,
     Expectation,
     Expected,
     Hears,
     Holds,
     Intends,
+    Is,
     Opens,
     Reads,
     Says,
@@ -257,8 +259,15 @@ class _Builder:
             check_rules(rules, agents)
         return rules
 
-    def _expected(self, path: KeyPath, entry: ExpectationEntry) -> Holds | Stands | Hears | Reads:
-        kinds = (entry.container, entry.agent, entry.sign, entry.heard, entry.not_heard)
+    def _expected(self, path: KeyPath, entry: ExpectationEntry) -> Content:
+        kinds = (
+            entry.container,
+            entry.agent,
+            entry.sign,
+            entry.block,
+            entry.heard,
+            entry.not_heard,
+        )
         alone = sum(kind is not None for kind in kinds) == 1
         if alone and entry.container is not None and entry.items is not None:
             self._check_container((*path, "container"), entry.container)
@@ -270,14 +279,24 @@ class _Builder:
         if alone and entry.sign is not None and entry.items is None:
             check_inside(self._document, (*path, "sign"), entry.sign, self._snapshot.box)
             return Reads(entry.sign, entry.text)
+        if alone and entry.block is not None and entry.items is None:
+            check_inside(self._document, (*path, "block"), entry.block, self._snapshot.box)
+            return Is(entry.block, self._state_text((*path, "state"), entry.state))
         spoken = entry.heard or entry.not_heard
         if alone and spoken and entry.items is None:
             return Hears(spoken, ever=entry.heard is not None)
         raise self._document.fault(
             path,
             "give one of 'container' and 'items', 'agent' and 'position', 'sign' and 'text', "
-            "'heard', 'not_heard'",
+            "'block' and 'state', 'heard', 'not_heard'",
         )
+
+    def _state_text(self, path: KeyPath, text: str | None) -> str | None:
+        """A block state as states are written everywhere."""
+        if text is None:
+            return None
+        with self._document.naming(path):
+            return self._registry.text(self._registry.state_id(text))
 
     def _step(self, number: int, entry: StepEntry) -> Step:
         path = ("script", number)

@@ -13,11 +13,13 @@ __all__ = [
     "Answers",
     "Arrives",
     "Believes",
+    "Content",
     "Expectation",
     "Expected",
     "Hears",
     "Holds",
     "Intends",
+    "Is",
     "Judge",
     "Opens",
     "Reads",
@@ -172,6 +174,23 @@ class Reads:
 
 
 @dataclass(frozen=True, slots=True)
+class Is:
+    """Something is to be a block as far as a simulator knows.
+
+    Attributes:
+        block: Where the block is.
+        state: The block state, as `State.blocks` has it; None: it is to be unknown.
+    """
+
+    block: Position
+    state: str | None
+
+
+Content = Holds | Stands | Hears | Reads | Is
+"""What a simulator is to hold."""
+
+
+@dataclass(frozen=True, slots=True)
 class Expectation:
     """What a simulator is to hold after the script.
 
@@ -182,7 +201,7 @@ class Expectation:
     """
 
     path: str
-    content: Holds | Stands | Hears | Reads
+    content: Content
     label: str = ""
 
 

@@ -237,7 +237,7 @@ class AnswersEntry(_Entry, frozen=True):
 
 
 class ExpectationEntry(_Entry, frozen=True):
-    """What a belief should hold in the end: of a container, an agent, a sign, or what was heard."""
+    """What a belief should hold in the end: a container, agent, sign, block, or what was heard."""
 
     path: Annotated[str, _note("The belief; / is the real world.")]
     label: Annotated[str, _note("A name for tables and overrides.")] = ""
@@ -246,6 +246,8 @@ class ExpectationEntry(_Entry, frozen=True):
     agent: Annotated[str | None, _note("An agent that stands at `position`.")] = None
     sign: Annotated[Position | None, _note("A sign that says `text`.")] = None
     text: Annotated[str | None, _note("Exactly what is written; null: that is not known.")] = None
+    block: Annotated[Position | None, _note("A block that is `state`.")] = None
+    state: Annotated[str | None, _note("A block state; null: it is not known.")] = None
     heard: Annotated[str | None, _note("Part of an utterance that is known of.")] = None
     not_heard: Annotated[str | None, _note("Part of no utterance that is known of.")] = None
     position: Annotated[Point | None, _note("Middle of the feet.")] = None

@@ -12,10 +12,12 @@ from beliefnest.scenarios.expected import (
     Answers,
     Arrives,
     Believes,
+    Content,
     Expected,
     Hears,
     Holds,
     Intends,
+    Is,
     Judge,
     Opens,
     Reads,
@@ -143,7 +145,7 @@ def answer_verdict(expected: Answers, answer: str | None) -> Verdict:
     return _verdict(expected, ok, f"answered {answer!r}", by_deed=True)
 
 
-def found_instead(content: Holds | Stands | Hears | Reads, state: State) -> str | None:
+def found_instead(content: Content, state: State) -> str | None:
     """What a simulator holds in place of what was expected of it; None: just that."""
     match content:
         case Holds(place, items):
@@ -154,9 +156,8 @@ def found_instead(content: Holds | Stands | Hears | Reads, state: State) -> str 
                 return None
             return f"{place_text(place)} holds {items_text(held)}, not {items_text(items)}"
         case Hears(text, ever):
-            if ever is any(text in line for _, _, line in state.chat):
-                return None
-            return f"{text!r} was {'not ' if ever else ''}heard"
+            heard = any(text in line for _, _, line in state.chat)
+            return None if ever is heard else f"{text!r} was {'not ' if ever else ''}heard"
         case Reads(place, written):
             meant = "unknown" if written is None else repr(sign_words(written))
             return (
@@ -164,15 +165,24 @@ def found_instead(content: Holds | Stands | Hears | Reads, state: State) -> str 
                 if state.signs.get(place) == written
                 else f"{sign_found(state, place)}, not {meant}"
             )
-        case Stands(agent, wanted, within):
-            position = state.agents[agent].position
-            if wanted is None or position is None:
-                ok = wanted is None and position is None
-            else:
-                ok = math.dist(wanted, position) <= within
-            there = "nowhere" if position is None else f"at {place_text(position)}"
-            meant = "nowhere" if wanted is None else f"at {place_text(wanted)}"
-            return None if ok else f"{agent} is {there}, not {meant}"
+        case Is(place, wanted):
+            found = state.blocks[place]
+            there, meant = ("unknown" if each is None else each for each in (found, wanted))
+            return None if found == wanted else f"{place_text(place)} is {there}, not {meant}"
+        case Stands():
+            return _stands_instead(content, state)
+
+
+def _stands_instead(content: Stands, state: State) -> str | None:
+    agent, wanted = content.agent, content.place
+    position = state.agents[agent].position
+    if wanted is None or position is None:
+        ok = wanted is None and position is None
+    else:
+        ok = math.dist(wanted, position) <= content.within
+    there = "nowhere" if position is None else f"at {place_text(position)}"
+    meant = "nowhere" if wanted is None else f"at {place_text(wanted)}"
+    return None if ok else f"{agent} is {there}, not {meant}"
 
 
 def sign_found(state: State, place: Position) -> str:

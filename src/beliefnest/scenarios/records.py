@@ -15,6 +15,7 @@ from beliefnest.scenarios.expected import (
     Hears,
     Holds,
     Intends,
+    Is,
     Judge,
     Opens,
     Reads,
@@ -142,6 +143,8 @@ def _expected_of(expectation: Expectation) -> dict[str, object]:
         expected = {"container": list(content.container), "items": dict(content.items)}
     elif isinstance(content, Reads):
         expected = {"sign": list(content.sign), "text": content.text}
+    elif isinstance(content, Is):
+        expected = {"block": list(content.block), "state": content.state}
     elif isinstance(content, Hears):
         expected = {"heard" if content.ever else "not_heard": content.text}
     else:

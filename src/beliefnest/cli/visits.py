@@ -1,0 +1,65 @@
+"""`beliefnest run --embody`: beliefs that people visit, until whoever runs it has seen enough."""
+
+import sys
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from beliefnest.bodies.address import is_server
+from beliefnest.bodies.embedded import MINECRAFT
+from beliefnest.bodies.listening import is_hosted
+from beliefnest.errors import InputError
+from beliefnest.nest.face.nest import Nest
+
+__all__ = ["check_visits", "visited"]
+
+_DAY_S = 24 * 60 * 60.0
+
+
+def check_visits(paths: Sequence[str], world: str) -> None:
+    """Refuse what nobody could visit, before anything is started.
+
+    Raises:
+        InputError: People cannot come into that world.
+    """
+    if paths and not (is_hosted(world) or is_server(world)):
+        raise InputError(
+            f"--embody {paths[0]}: nobody can visit a belief in the world {world}, whose time does "
+            "not go on by itself; add --realtime --listen 25565, or --world minecraft://HOST:PORT"
+        )
+
+
+@contextmanager
+def visited(nest: Nest, paths: Sequence[str]) -> Iterator[None]:
+    """Embody beliefs; at the end, go on until a line, or the end, comes on standard input.
+
+    Where they stand is told on stderr.
+
+    Raises:
+        BeliefNestError: One cannot be embodied.
+    """
+    if not paths:
+        yield
+        return
+    for path in paths:
+        nest[path].embody()
+    if nest.address is not None:
+        _tell(
+            f"to visit, join by a name that no agent has: Minecraft Java edition {MINECRAFT}, "
+            f"Multiplayer, Direct Connection, {nest.address}; then type"
+        )
+    _tell(repr(nest.layout()))
+    yield
+    _tell("beliefs can be visited until you press Enter")
+    entered = threading.Event()
+
+    def listen() -> None:
+        sys.stdin.readline()
+        entered.set()
+
+    threading.Thread(target=listen, daemon=True).start()
+    nest.wait(entered.is_set, _DAY_S)
+
+
+def _tell(line: str) -> None:
+    sys.stderr.write(f"{line}\n")
