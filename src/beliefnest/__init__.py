@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from beliefnest.bodies.protocol import ProgramResult
     from beliefnest.episodes.episode import Episode
     from beliefnest.episodes.task import Task
-    from beliefnest.episodes.view import AgentView
+    from beliefnest.episodes.view import GO_ON, AgentView
     from beliefnest.errors import (
         BeliefNestError,
         BodyError,
@@ -48,6 +48,7 @@ if TYPE_CHECKING:
 __version__ = VERSION
 
 __all__ = [
+    "GO_ON",
     "AgentView",
     "Attempt",
     "BeliefNestError",
@@ -87,6 +88,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "GO_ON": "beliefnest.episodes.view",
     "AgentView": "beliefnest.episodes.view",
     "Attempt": "beliefnest.nest.face.exploration",
     "Claim": "beliefnest.world.claims",

@@ -7,7 +7,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from beliefnest.belief.view import State
-from beliefnest.bodies.protocol import ProgramResult
+from beliefnest.bodies.protocol import Past, ProgramResult
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.episodes.choosing import chosen, name_of
 from beliefnest.episodes.helping import Help, help_in
@@ -455,15 +455,23 @@ class Episode:
         programs = {a: d.program for a, d in part.decisions.items() if d.program}
         with nest.together():
             results: Mapping[str, ProgramResult] = {}
+            past: Mapping[str, Past] = {}
             if programs:
-                results = nest["/"].run_all(programs, ticks, senses="percepts")
+                past = {a: self._cut(a) for a, d in part.decisions.items() if d.goes_on}
+                results = nest["/"].run_all(programs, ticks, senses="percepts", past=past)
             if nest.tick < end:
                 nest["/"].step(end - nest.tick)
             _look_around(nest)
             ended = {
                 agent: ended_as(each, results.get(agent)) for agent, each in part.decisions.items()
             }
-            self._parts[-1] = Part(part.decisions, ended)
+            begun = end - ticks
+            cut = {
+                agent: Past(past[agent].tick if agent in past else begun, result.calls)
+                for agent, result in results.items()
+                if ended[agent].how == "cut"
+            }
+            self._parts[-1] = Part(part.decisions, ended, cut)
             self._keep()
 
     def _is_spent(self) -> bool:
@@ -503,6 +511,10 @@ class Episode:
     def _said_at(self, tick: int, reality: State) -> int:
         players = self.task.players
         return sum(1 for when, who, _ in reality.chat if when == tick and who in players)
+
+    def _cut(self, agent: str) -> Past:
+        """What the agent's latest program had done when it was cut."""
+        return next(p.cut[agent] for p in reversed(self._parts[:-1]) if agent in p.cut)
 
     def _ended(self, agent: str) -> Ended:
         return next((p.ended[agent] for p in reversed(self._parts) if agent in p.ended), Ended())

@@ -85,7 +85,7 @@ def ended_as(decision: Decision, result: ProgramResult | None) -> Ended:
     if fault is None:
         return Ended(decision.program, "ok" if decision.program else "none")
     if fault.kind == "timeout":
-        return Ended(decision.program, "cut", "the round was over before the program was")
+        return Ended(decision.program, "cut", "the round was over first; it may go on")
     if fault.reason == NO_WAY:
         return Ended(decision.program, "no_way", str(fault))
     if fault.skill is not None:

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import msgspec
 
-from beliefnest.episodes.view import AgentView, Ended, Policy
+from beliefnest.bodies.protocol import Past
+from beliefnest.episodes.view import GO_ON, AgentView, Ended, Policy
 from beliefnest.world.texts import is_well_formed
 
 __all__ = ["Asker", "Decision", "Part", "Replayed", "Spent", "slots_of"]
@@ -46,11 +47,13 @@ class Decision(msgspec.Struct, frozen=True):
         program: The program; empty: nothing.
         fault: Why there is none; empty: it is as the policy wanted.
         spent: What that took.
+        goes_on: Whether it is the last one, which was cut, and goes on from there.
     """
 
     program: str = ""
     fault: str = ""
     spent: Spent = Spent()
+    goes_on: bool = False
 
 
 class Part(msgspec.Struct, frozen=True):
@@ -59,10 +62,12 @@ class Part(msgspec.Struct, frozen=True):
     Attributes:
         decisions: By agent.
         ended: By agent; empty until it is done.
+        cut: Of agents whose programs were cut, what these had done.
     """
 
     decisions: dict[str, Decision]
     ended: dict[str, Ended] = {}
+    cut: dict[str, Past] = {}
 
 
 @dataclass(frozen=True)
@@ -144,6 +149,10 @@ def _decided(policy: Policy, view: AgentView) -> Decision:
         fault = "its program has half of a character in it"
     if fault or not isinstance(program, str):
         return Decision(fault=fault, spent=spent)
+    if program.strip() == GO_ON:
+        if view.last.how != "cut":
+            return Decision(fault="there is no program of its that was cut and could go on")
+        return Decision(program=view.last.program, spent=spent, goes_on=True)
     return Decision(program=program if program.strip() else "", spent=spent)
 
 

@@ -14,7 +14,10 @@ from beliefnest.world.values import Position
 if TYPE_CHECKING:
     from beliefnest.llm.messages import Model
 
-__all__ = ["AgentView", "Brief", "Ended", "Policy", "Told"]
+__all__ = ["GO_ON", "AgentView", "Brief", "Ended", "Policy", "Told"]
+
+GO_ON = "go on"
+"""What a policy returns in place of a program to let its last one, which was cut, go on."""
 
 HowEnded = Literal["none", "ok", "cut", "no_way", "failed", "lost"]
 
@@ -261,7 +264,7 @@ class Policy(Protocol):
     """Who decides what an agent does."""
 
     def act(self, view: AgentView) -> str:
-        """The agent's program for the round; empty: it does nothing.
+        """The agent's program for the round; empty: it does nothing; `GO_ON`: its last one goes on.
 
         Args:
             view: What the agent knows.

@@ -70,6 +70,7 @@ class ProgramRecord:
         step: Number of the script's step that it is part of, from 0; None: it is in no script.
         kept: Whether what it did was recorded; not if the world's process ended under it.
         senses: What it read; files of earlier versions, which do not say it, are read as `world`.
+        past: What it had done when it was cut, from where it went on; unset if it began anew.
     """
 
     path: tuple[str, ...]
@@ -89,6 +90,7 @@ class ProgramRecord:
     step: int | None = None
     kept: bool = True
     senses: Senses = "world"
+    past: bytes | msgspec.UnsetType = msgspec.UNSET
 
 
 @dataclass(frozen=True, slots=True)

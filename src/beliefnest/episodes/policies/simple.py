@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, said
-from beliefnest.episodes.view import AgentView
+from beliefnest.episodes.view import GO_ON, AgentView
 
 __all__ = ["Program", "Random", "Scripted"]
 
@@ -27,7 +27,7 @@ class Scripted:
 
 @dataclass(frozen=True)
 class Program:
-    """One program, begun in the first round and again as long as it is cut.
+    """One program, begun in the first round, which goes on as long as it is cut.
 
     Attributes:
         text: The program.
@@ -37,7 +37,9 @@ class Program:
 
     def act(self, view: AgentView) -> str:
         """The program, until it has ended by itself."""
-        return self.text if view.round == 0 or view.last.how == "cut" else ""
+        if view.round == 0:
+            return self.text
+        return GO_ON if view.last.how == "cut" else ""
 
 
 @dataclass(frozen=True)

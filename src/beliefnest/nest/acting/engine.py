@@ -11,9 +11,10 @@ from dataclasses import replace
 from functools import wraps
 from typing import Concatenate, ParamSpec, Self, TypeVar
 
-from beliefnest.bodies.protocol import KILLED, Body, Fault, ProgramResult, RunRules, World
+from beliefnest.bodies.protocol import KILLED, Body, Fault, Past, ProgramResult, RunRules, World
 from beliefnest.errors import BodyLostError, BranchError, TickError
 from beliefnest.nest.acting.bodies import Bodies
+from beliefnest.nest.acting.going_on import encoded_past
 from beliefnest.nest.acting.hearsay import ClaimReader
 from beliefnest.nest.acting.speculation import Speculation, SpeculationStart, speculate
 from beliefnest.nest.past.body_state import internal_state_at, note_internal_state, present
@@ -166,6 +167,7 @@ class Engine:
         timeout_ticks: int,
         step: int | None = None,
         senses: Senses = "world",
+        past: Mapping[str, Past] | None = None,
     ) -> Mapping[str, ProgramResult]:
         """Run programs in a body, record what happens, and note them with their results.
 
@@ -179,10 +181,15 @@ class Engine:
             timeout_ticks: Ticks after which they are stopped.
             step: Number of the script's step that they are; None: they are none.
             senses: What they read.
+            past: Of agents whose programs go on where they were cut. None: none does, and results
+                do not tell what a later one would have to know.
         """
+        rules = self._rules if past is None else replace(self._rules, remembers=True, past=past)
         lives = self.bodies.lives()
         while True:
-            results = lives.call(lambda: self._run(path, programs, timeout_ticks, step, senses))
+            results = lives.call(
+                lambda: self._run(path, programs, timeout_ticks, step, senses, rules)
+            )
             killed = any(result.killed for result in results.values())
             if not killed or step is None or not lives.spend():
                 return results
@@ -194,6 +201,7 @@ class Engine:
         timeout_ticks: int,
         step: int | None,
         senses: Senses,
+        rules: RunRules,
     ) -> Mapping[str, ProgramResult]:
         self.bodies.of(path)
         self.bodies.catch_up(path)
@@ -203,8 +211,8 @@ class Engine:
         before = self.recording.info(path)
         try:
             with self.bodies.acting(path) as body:
-                results = body.run(programs, timeout_ticks, limited, self._rules)
-                self._note(before, programs, results, timeout_ticks, step, senses)
+                results = body.run(programs, timeout_ticks, limited, rules)
+                self._note(before, programs, results, timeout_ticks, step, senses, rules)
             if placed := placed_in(self.recording, path):
                 results = {name: replace(each, placed=placed) for name, each in results.items()}
         except BodyLostError as lost:
@@ -215,7 +223,9 @@ class Engine:
             fault = Fault(message, KILLED)
             results = {agent: ProgramResult(agent, False, fault, 0) for agent in programs}
             with self.recording.journal.together():
-                self._note(before, programs, results, timeout_ticks, step, senses, kept=False)
+                self._note(
+                    before, programs, results, timeout_ticks, step, senses, rules, kept=False
+                )
         return results
 
     def speculate(
@@ -303,6 +313,7 @@ class Engine:
         timeout_ticks: int,
         step: int | None,
         senses: Senses,
+        rules: RunRules,
         *,
         kept: bool = True,
     ) -> None:
@@ -329,5 +340,6 @@ class Engine:
                     step=step,
                     kept=kept,
                     senses=senses,
+                    past=encoded_past(rules.past.get(agent)),
                 )
             )

@@ -1,10 +1,11 @@
 """Replays: recorded programs run again, each timeline in a fresh body, and frames compared."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 
-from beliefnest.bodies.protocol import Body, RunRules, Sense, World
+from beliefnest.bodies.protocol import Body, Past, RunRules, Sense, World
+from beliefnest.nest.acting.going_on import decoded_past
 from beliefnest.nest.acting.hearsay import recalled
 from beliefnest.nest.acting.sensing import Sensing, believer_of
 from beliefnest.nest.acting.starting import start_of
@@ -46,6 +47,7 @@ class _Call:
     timeout_ticks: int
     senses: Senses
     ticks: int
+    past: Mapping[str, Past]
 
     def made(self, entry: Entry) -> bool:
         """Whether an entry lies in its time."""
@@ -134,7 +136,11 @@ def _call(group: Sequence[ProgramRecord]) -> _Call:
     first = group[0]
     programs = {program.agent: program.code for program in group}
     ticks = max(program.ticks for program in group)
-    return _Call(first.tick, first.entries, programs, first.timeout_ticks, first.senses, ticks)
+    known = {program.agent: decoded_past(program.past) for program in group}
+    past = {agent: each for agent, each in known.items() if each is not None}
+    return _Call(
+        first.tick, first.entries, programs, first.timeout_ticks, first.senses, ticks, past
+    )
 
 
 def _run_again(
@@ -172,7 +178,8 @@ def _run_again(
         for tick, number, act in sorted(acts, key=lambda each: each[:2]):
             recorded.wait_until(body, tick)
             if isinstance(act, _Call):
-                body.run(act.programs, act.timeout_ticks, recorded.senses(act, body), rules)
+                going_on = replace(rules, remembers=bool(act.past), past=act.past)
+                body.run(act.programs, act.timeout_ticks, recorded.senses(act, body), going_on)
                 continue
             if isinstance(act, Frame) or act.path == info.key.path:
                 body.set_state(recorded.after(number + 1, act.tick, world))

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Literal
 
-from beliefnest.bodies.protocol import ProgramResult
+from beliefnest.bodies.protocol import Past, ProgramResult
 from beliefnest.bodies.scripted import ScriptedBody
 from beliefnest.errors import BranchError, InputError, PositionError, WorldError
 from beliefnest.nest.acting.engine import Engine
@@ -166,8 +166,16 @@ class Simulator(ShownSimulator):
         programs: Mapping[str, str],
         timeout_ticks: int = 1200,
         senses: Senses = "world",
+        past: Mapping[str, Past] | None = None,
     ) -> Mapping[str, ProgramResult]:
         """Run programs of several agents at the same time, tick by tick together.
+
+        Args:
+            programs: Their texts by agent.
+            timeout_ticks: As for `run`.
+            senses: As for `run`.
+            past: What programs had done when they were cut, by agent: they go on from there. With a
+                mapping, be it empty, results tell what programs called.
 
         Raises:
             InputError: There is no program, or as for `run`.
@@ -184,7 +192,7 @@ class Simulator(ShownSimulator):
                     "character, or an escape such as \\u{1f600}"
                 )
         check_senses(senses)
-        return self._engine.run(self._path, programs, _timeout(timeout_ticks), None, senses)
+        return self._engine.run(self._path, programs, _timeout(timeout_ticks), None, senses, past)
 
     def noting(self, model: "Model", **detail: str) -> "Model":
         """A model whose conversation with the caller is kept in the run, request by request.
