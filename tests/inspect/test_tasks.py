@@ -107,6 +107,33 @@ for name, file in FILES.items():
 """
 
 
+EPISODES = """
+import beliefnest as bn
+
+with bn.Episode(bn.Task.load("help-find", seed=1), {"anne": "search:1"}) as told:
+    program = told.play(1).parts[0].decisions["anne"].program
+
+asked = []
+def answer(messages):
+    assert messages[0].role == "system"
+    asked.append(messages)
+    code = program if len(asked) == 1 else "await bot.waitForTicks(1)"
+    return f"```javascript\\n{code}\\n```"
+
+arguments = {"seed": 1, "seeds": 1, "order": 1}
+(log,) = read(
+    eval("beliefnest/help_find", task_args=arguments, model=mock(answer), display="none")
+)
+(sample,) = log.samples
+score = sample.scores["goal_reached"]
+measures = score.metadata
+print(score.value, measures["messages"], measures["requests"] == len(asked))
+print(measures["policies"], measures["tokens"] == 2 * len(asked))
+print(score.explanation.splitlines()[0])
+assert sample.messages[0].role == "system" and sample.messages[-1].role == "assistant"
+assert program in score.explanation
+"""
+
 LISTENER = """
 import contextlib, io, json, os, sys, traceback
 
@@ -179,6 +206,14 @@ def test_suites_are_tasks_whose_answers_are_scored_and_explained(run, tmp_path):
         line
         for name in files
         for line in (f"{name} 1 box box C", f"{name} 0 jar in none of them I")
+    ]
+
+
+def test_episodes_are_samples_whose_players_a_model_plays(run, tmp_path):
+    assert run(MODEL + EPISODES, tmp_path) == [
+        "C 1 True",
+        "anne=model:inspect:1,sally=search:0 True",
+        "sally has 1 apple: tick 25",
     ]
 
 

@@ -12,14 +12,16 @@ from inspect_ai.model import (
 )
 from inspect_ai.tool import ToolChoice, ToolInfo
 
+from beliefnest.episodes.tasks import builtin_tasks
 from beliefnest.errors import UnknownNameError
+from beliefnest.inspect.episodes import episode_task
 from beliefnest.inspect.stories import suite_task
 from beliefnest.inspect.tasks import belief_prompt, in_the_belief, scenario_task
 from beliefnest.llm.messages import Message, Sampling
 from beliefnest.llm.offline import OfflineModel
 from beliefnest.scenarios.loading import builtin_names
 
-__all__ = ["belief_prompt", "hi_tom", "in_the_belief", "scenario", "stories"]
+__all__ = ["belief_prompt", "episode", "hi_tom", "in_the_belief", "scenario", "stories"]
 
 
 @task
@@ -46,6 +48,53 @@ def stories(file: str, stories: int | None = None) -> Task:
     return suite_task("stories", file, stories)
 
 
+@task
+def episode(
+    file: str,
+    order: int | str | None = None,
+    seeds: int = 1,
+    seed: int = 0,
+    world: str = "scripted",
+    condition: int | None = None,
+    players: str | list[str] | None = None,
+) -> Task:
+    """Episodes of one's own task or scenario, in `file`; other arguments as for built-in tasks."""
+    return episode_task(
+        file,
+        order=order,
+        seeds=seeds,
+        seed=seed,
+        world=world,
+        condition=condition,
+        players=players,
+        parameters={},
+    )
+
+
+def _register_episodes(name: str) -> None:
+    """Make a task of a built-in task; a hyphen of its name becomes an underline."""
+
+    @task(name=name.replace("-", "_"))
+    def builtin(
+        order: int | str | None = None,
+        seeds: int = 10,
+        seed: int = 0,
+        world: str = "scripted",
+        players: str | list[str] | None = None,
+        **parameters: int,
+    ) -> Task:
+        return episode_task(
+            name,
+            order=order,
+            seeds=seeds,
+            seed=seed,
+            world=world,
+            condition=None,
+            players=players,
+            parameters=parameters,
+        )
+
+
 def _register(name: str) -> None:
     """Make a task of a built-in scenario; a hyphen of its name becomes an underline."""
 
@@ -63,6 +112,8 @@ def _register(name: str) -> None:
 
 for _name in builtin_names():
     _register(_name)
+for _name in builtin_tasks():
+    _register_episodes(_name)
 
 
 @modelapi(name="beliefnest")

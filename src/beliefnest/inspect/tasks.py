@@ -6,20 +6,19 @@ from typing import Any
 from anyio.to_thread import run_sync
 from inspect_ai import Task
 from inspect_ai.dataset import Sample
-from inspect_ai.model import ChatMessage, ChatMessageSystem, ChatMessageUser
 from inspect_ai.scorer import Score, Scorer, Target, scorer
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
 from beliefnest.errors import InputError
+from beliefnest.inspect.messages import messages_of
 from beliefnest.inspect.parts import metrics_by, score_of, task_of
 from beliefnest.inspect.stage import Stage, requests_of
-from beliefnest.llm.messages import Message
 from beliefnest.scenarios.loading import read_document
 from beliefnest.scenarios.records import expected_json, probe_json
 from beliefnest.studies.design import Design
 from beliefnest.studies.plan import Cell, plan_cells
 
-__all__ = ["belief_prompt", "in_the_belief", "messages_of", "scenario_task"]
+__all__ = ["belief_prompt", "in_the_belief", "scenario_task"]
 
 _KEPT = ("intended", "opened", "arrived", "program", "ticks", "error", "log", "replies", "checks")
 
@@ -87,16 +86,6 @@ def _samples(cell: Cell, scenario: str) -> list[Sample]:
         name = f"{key.name}-{number}"
         found.append(Sample(input=asks, target=target, id=name, metadata=about))
     return found
-
-
-def messages_of(messages: tuple[Message, ...]) -> list[ChatMessage]:
-    """A conversation in Inspect's form."""
-    return [
-        ChatMessageSystem(content=each.text)
-        if each.role == "system"
-        else ChatMessageUser(content=each.text)
-        for each in messages
-    ]
 
 
 @solver

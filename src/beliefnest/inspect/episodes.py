@@ -1,0 +1,186 @@
+"""Tasks of episodes: a model plays the players, round after round, by what they believe."""
+
+import threading
+from collections.abc import Callable, Coroutine, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from anyio import from_thread
+from anyio.to_thread import run_sync
+from inspect_ai import Task
+from inspect_ai.dataset import MemoryDataset, Sample
+from inspect_ai.model import GenerateConfig, ModelOutput, get_model
+from inspect_ai.scorer import Score, Scorer, Target, scorer
+from inspect_ai.solver import Generate, Solver, TaskState, solver
+
+from beliefnest.episodes.episode import Episode
+from beliefnest.episodes.policies.model import ModelPolicy, OmniscientModelPolicy
+from beliefnest.episodes.task import Task as Played
+from beliefnest.errors import InputError
+from beliefnest.inspect.messages import messages_of
+from beliefnest.inspect.parts import metrics_by, score_of
+from beliefnest.llm.messages import Answer, Message, Sampling, Usage
+
+__all__ = ["episode_task", "goal_reached", "play_episode"]
+
+_OMNISCIENT = "omniscient"
+
+
+def episode_task(
+    name: str,
+    *,
+    order: int | str | None,
+    seeds: int,
+    seed: int,
+    world: str,
+    condition: int | None,
+    players: str | list[str] | None,
+    parameters: dict[str, Any],
+) -> Task:
+    """The task of episodes; each instance is a sample.
+
+    Args:
+        name: A built-in task or scenario, or the path of a file of either.
+        order: Order of Theory of Mind at which the model plays, or `omniscient`; None: the one
+            that the task needs.
+        seeds: How many instances.
+        seed: The first of them.
+        world: Name of the world.
+        condition: Number of a scenario's condition; None: as written.
+        players: Whom the model plays; None: all players. The others are played as the task says.
+        parameters: Values of the task's parameters.
+
+    Raises:
+        BeliefNestError: There is no such task, or an argument is wrong.
+    """
+    if seeds < 1:
+        raise InputError(f"seeds is {seeds}; give at least 1")
+    if order not in (None, 0, 1, 2, _OMNISCIENT):
+        raise InputError(f"order is {order!r}; give 0, 1, 2 or {_OMNISCIENT}")
+    chosen = [players] if isinstance(players, str) else players
+    samples = []
+    for instance in range(seed, seed + seeds):
+        task = Played.load(name, instance, condition=condition, **parameters)
+        by_model = list(task.players) if chosen is None else chosen
+        strange = sorted(set(by_model) - set(task.agents))
+        if strange:
+            raise InputError(f"{name} has no agent {strange[0]!r}; it has {task.agents}")
+        about = {
+            "task": task.name,
+            "plain": task.plain(),
+            "instance": instance,
+            "needs": f"needs order {task.order}",
+            "order": task.order if order is None else order,
+            "world": world,
+            "players": by_model,
+        }
+        samples.append(
+            Sample(
+                input=task.form.description or str(task.goal),
+                target=str(task.goal),
+                id=f"{task.name}-{instance}",
+                metadata=about,
+            )
+        )
+    return Task(
+        dataset=MemoryDataset(samples, name=name), solver=play_episode(), scorer=goal_reached()
+    )
+
+
+@dataclass
+class _Asked:
+    """Inspect's model, asked from the thread in which an episode is played.
+
+    Attributes:
+        generate: Asks it, on the event loop.
+        said: What was asked and answered, in order.
+    """
+
+    generate: Callable[[Sequence[Message], Sampling], Coroutine[Any, Any, ModelOutput]]
+    said: list[Message] = field(default_factory=list)
+    output: ModelOutput | None = None
+    name: str = "inspect"
+
+    def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
+        """Ask it, and wait."""
+        self.output = output = from_thread.run(self.generate, messages, sampling)
+        self.said += [*messages, Message("assistant", output.completion)]
+        used = output.usage
+        usage = Usage(requests=1, cost=None)
+        if used is not None:
+            usage += Usage(0, used.input_tokens, used.output_tokens)
+        return Answer(output.completion, usage)
+
+
+@solver
+def play_episode() -> Solver:
+    """Play the sample's episode; the model is asked for the programs of its players."""
+    # A world in Minecraft is a process: one at a time.
+    turn = threading.Lock()
+
+    async def generated(messages: Sequence[Message], sampling: Sampling) -> ModelOutput:
+        config = GenerateConfig(temperature=sampling.temperature, seed=sampling.seed)
+        return await get_model().generate(messages_of(messages), config=config)
+
+    def played(sample: dict[str, Any], asked: _Asked) -> dict[str, Any]:
+        if sample["world"] == "scripted":
+            return _report(sample, asked)
+        with turn:
+            return _report(sample, asked)
+
+    async def solve(state: TaskState, generate: Generate) -> TaskState:
+        asked = _Asked(generated)
+        state.metadata["episode"] = await run_sync(played, dict(state.metadata), asked)
+        state.messages = messages_of(asked.said)
+        if asked.output is not None:
+            state.output = asked.output
+        return state
+
+    return solve
+
+
+def _report(sample: dict[str, Any], asked: _Asked) -> dict[str, Any]:
+    """Play an episode, and what came of it as plain values."""
+    task = Played.from_mapping(sample["plain"], sample["instance"])
+    if sample["order"] == _OMNISCIENT:
+        policy: ModelPolicy = OmniscientModelPolicy(asked, 2)
+    else:
+        policy = ModelPolicy(asked, sample["order"])
+    name = f"model:inspect:{sample['order']}"
+    policies = dict.fromkeys(sample["players"], policy)
+    names = dict.fromkeys(sample["players"], name)
+    with Episode(
+        task, policies, world=sample["world"], seed=sample["instance"], names=names
+    ) as episode:
+        episode.play()
+        return {
+            "success": episode.success,
+            "goal": [list(each) for each in episode.conditions],
+            "measures": episode.measures.row(),
+            "rounds": [
+                f"{number}. {agent}: {decided.program or decided.fault or 'nothing'} "
+                f"({part.ended[agent].how})"
+                for number, part in enumerate(episode.parts, start=1)
+                for agent, decided in part.decisions.items()
+            ],
+        }
+
+
+@scorer(metrics=metrics_by("needs"))
+def goal_reached() -> Scorer:
+    """Whether the episode's goal was reached; when each condition came true, and who did what."""
+
+    async def score(state: TaskState, target: Target) -> Score:
+        found = state.metadata["episode"]
+        lines = [
+            f"{condition}: {'never' if tick is None else f'tick {tick}'}"
+            for condition, tick in found["goal"]
+        ]
+        return score_of(
+            ok=found["success"],
+            answer=state.output.completion,
+            lines=[*lines, "", *found["rounds"]],
+            metadata=found["measures"],
+        )
+
+    return score
