@@ -1,5 +1,6 @@
 """Every world keeps the same contract: the same acts are the same facts, told the same way."""
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
@@ -203,3 +204,20 @@ def test_the_same_seed_tells_the_same_frames(world, body, frames):
 def test_a_program_of_an_agent_who_is_not_there_is_refused(body):
     with pytest.raises(WorldError, match=r"nobody has no bot|nobody is not there"):
         body.run({"nobody": "await think(bot, 'hm')"}, 20)
+
+
+def test_one_walk_leads_through_two_doors_and_another_into_a_doorway(world, frames):
+    registry, blocks = Registry.load(), start().blocks.copy()
+    for x, leaf in ((3, "open=true"), (5, "open=false")):
+        blocks[x, 1:, :] = registry.state_id("stone")
+        for y, half in ((1, "lower"), (2, "upper")):
+            state = f"oak_door[half={half},facing=east,{leaf}]"
+            blocks[BOX.index((x, y, 3))] = registry.state_id(state)
+    agents = {"sally": AgentState(SALLY)}
+    body = world.open_body("/doors", "seed", Snapshot(7, BOX, blocks, {}, agents), frames.append)
+    for x in (6, 3):
+        program = f"await goToPosition(bot, new Vec3({x}, 1, 3), 0)"
+        result = body.run({"sally": program}, 400)["sally"]
+        assert result.ok, result.error
+        assert math.floor(body.snapshot().agents["sally"].position[0]) == x
+    body.close()

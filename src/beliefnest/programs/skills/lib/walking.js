@@ -2,7 +2,7 @@
 /** Walking: every walk ends where it was to go, or in an error that says how near it came. */
 const { until } = require('./waiting')
 const { show } = require('./arguments')
-const { passOneDoor } = require('./doors')
+const { passDoors } = require('./doors')
 const { hindranceOf, sees, shapesOf } = require('./sight')
 const { stepUntil } = require('./stepping')
 
@@ -62,7 +62,7 @@ async function walk (context, goal, arrived, target, what, doors = ANY_DOOR) {
     fault = await attempt(bot, goal)
     if (arrived()) return
     const walled = fault === null || fault.name === 'NoPath'
-    if (!walled || !await passOneDoor(context, target, tried, doors)) break
+    if (!walled || !await passDoors(context, goal, target, tried, doors)) break
   }
   if (arrived()) return
   const near = bot.entity.position.distanceTo(target)

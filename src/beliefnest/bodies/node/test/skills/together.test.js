@@ -130,6 +130,33 @@ test('a door on the way is shut behind oneself on request, and not opened if tha
   })
 })
 
+const doorAt = (x, z, properties) => ['lower', 'upper'].map((half, up) => [x, FLOOR + up, z, 'oak_door', { half, facing: 'north', ...properties }])
+const wallAt = z => [0, 1, 2].flatMap(up => Array.from({ length: 23 }, (_, i) => [i - 11, FLOOR + up, z, 'stone']))
+
+test('one walk leads through two doors, wherever the target is seen from', async () => {
+  for (const [first, open] of [[4, true], [-6, false]]) {
+    await withSkills(both({}, [...wallAt(-3), ...doorAt(first, -3, { open }), ...wallAt(-6), ...doorAt(4, -6, { open })]), async world => {
+      const { bots: { sally }, skills } = world
+      await world.during(skills.sally.goToPosition(sally, new Vec3(4, FLOOR, -9), 0))
+      assert.equal((await world.events('use_door')).length, open ? 0 : 2)
+    })
+  }
+})
+
+test('a doorway is stood in, and a room that leads nowhere not gone into', async () => {
+  const cell = [[3, -5], [5, -5], [3, -4], [5, -4], [4, -6]].flatMap(([x, z]) => [0, 1, 2].map(up => [x, FLOOR + up, z, 'stone']))
+  await withSkills(both({}, wallWith(door(false)).concat(cell)), async world => {
+    const { bots: { sally }, skills } = world
+    const go = z => skills.sally.goToPosition(sally, new Vec3(4, FLOOR, z), 0)
+    assert.match((await failure(world, go(-9))).message, /no way to it on foot/)
+    assert.deepEqual(await world.events('use_door'), [])
+    for (const z of [-3, -5, -3, 2]) {
+      await world.during(go(z))
+      assert.equal(sally.entity.position.floored().z, z)
+    }
+  })
+})
+
 test('doors, trapdoors and gates are opened and shut once, iron ones not by hand', async () => {
   const trapdoor = [-4, FLOOR, 3, 'oak_trapdoor', { half: 'bottom', open: false }]
   const gate = [-6, FLOOR, 3, 'oak_fence_gate', { open: false, facing: 'north' }]
@@ -154,10 +181,10 @@ test('walks of one agent that look for ways through doors at the same time take 
   await withSkills(both({}, [...wallWith([]), [4, FLOOR, -3, 'stone'], [4, FLOOR + 1, -3, 'stone'], ...boxed, ...behind]), async world => {
     const { bots: { sally }, skills } = world
     let [searches, most] = [0, 0]
-    const { getPathTo } = sally.pathfinder
-    sally.pathfinder.getPathTo = (...args) => {
+    const { getPathFromTo } = sally.pathfinder
+    sally.pathfinder.getPathFromTo = (...args) => {
       searches += 1
-      return getPathTo(...args)
+      return getPathFromTo(...args)
     }
     sally.on('physicsTick', () => { [searches, most] = [0, Math.max(most, searches)] })
     const walks = Array.from({ length: 6 }, () => skills.sally.goToPosition(sally, new Vec3(4, FLOOR, -9), 0).catch(error => error.message))
