@@ -15,6 +15,8 @@ from beliefnest.cli.folder import store_in
 from beliefnest.errors import InputError
 from beliefnest.timeline.store import SqliteJournal
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 SECONDS = 120
 
 ROOM = """\

@@ -10,6 +10,8 @@ from rich.table import Table
 from beliefnest.cli.app import run_command_line
 from beliefnest.cli.console import folded, progress_on, stdout
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:

@@ -4,6 +4,8 @@ import pytest
 
 from beliefnest.cli.app import run_command_line
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 ODD = r"""
 name: odd
 description: "[/x] \e[31m \u2028"

@@ -11,6 +11,8 @@ from tests.profiles import at_night
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 ROOM = """\
 name: room
 box: [[0, 0, 0], [6, 3, 6]]

@@ -14,6 +14,8 @@ from beliefnest.timeline.store import SqliteJournal
 
 __all__ = ["fake"]
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 KEY = "sk-a-very-secret-key"
 MODEL = "openai:gpt-4o-mini"
 ROOM = """\

@@ -8,6 +8,8 @@ import pytest
 
 from beliefnest.cli.app import run_command_line
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 TWICE = """\
 name: twice
 description: "Ann <b>& Bob</b>"

@@ -8,6 +8,8 @@ from PIL import Image
 
 from beliefnest.cli.app import run_command_line
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
