@@ -105,7 +105,7 @@ def test_run_prints_a_table(capsys: pytest.CaptureFixture[str]) -> None:
 def test_an_expectation_that_does_not_hold_ends_with_1(capsys: pytest.CaptureFixture[str]) -> None:
     wrong = ROOM.replace("items: {}}", "items: {apple: 1}}")
     assert run_command_line(["run", scenario(wrong), "--out", "r"]) == 1
-    assert "NO" in capsys.readouterr().out
+    assert "NO: /ann: " in capsys.readouterr().out
     assert json.loads(Path("r/run.json").read_text())["runs"][0]["ok"] is False
 
 

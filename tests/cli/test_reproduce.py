@@ -11,15 +11,17 @@ def test_the_papers_claims_hold_as_written_and_in_a_copy(tmp_path, capsys):
     found = json.loads(capsys.readouterr().out)
     assert found["right"] == found["rows"] == 24
     reported = [each for each in found["claims"] if not each["is_control"]]
-    claims = {(each["scenario"], each["condition"]): each for each in reported}
-    assert [each["as_the_paper"] for each in claims.values()] == [True, True, True, False]
-    assert claims["sally-anne", 2]["result"] == "sally opens 2,-51,-4"
+    claims = {(each["scenario"], each["condition"], each["probe"]): each for each in reported}
+    others = [True, True]  # Mary, in the observer's belief and herself.
+    assert [each["as_the_paper"] for each in claims.values()] == [True, True, True, False, *others]
+    assert len(found["claims"]) * 2 == found["rows"]
+    assert claims["sally-anne", 2, "prediction"]["result"] == "sally opens 2,-51,-4"
     assert all(each["copies_ok"] == each["copies"] == 1 for each in found["claims"])
-    assert "does not know" in claims["ice-cream-van", 1]["differs"]
+    assert "does not know" in claims["ice-cream-van", 1, "third order"]["differs"]
     controls = [each for each in found["claims"] if each["is_control"]]
     assert {each["condition"] for each in controls} == {2, 3}
     places = {(each["condition"], each["path"]): each["expected"] for each in controls}
     (to_a, to_b) = ("arrives 4.5,1,4.5, within 3", "arrives 20.5,1,16.5, within 3")
     for path in ("/observer/john/mary", "/observer/mary", "/mary"):
         assert (places[2, path], places[3, path]) == (to_b, to_a)
-    assert page.read_text().count("\n| Example") == 10
+    assert page.read_text().count("\n| Example") == 12

@@ -129,7 +129,7 @@ def test_worlds_that_nobody_can_join_refuse_people(scenario):
     for world in ("embedded", "scripted"):
         with pytest.raises(InputError, match=r"anne .* is of type human.*realtime=True"):
             Nest.open(scenario(1), world)
-    with pytest.raises(InputError, match="realtime=True as well"):
+    with pytest.raises(InputError, match=r"realtime=True .--realtime. as well"):
         Nest.open(scenario(1), listen=0)
     with (
         Nest.open(Scenario.load("sally-anne", 1), realtime=True, listen=0) as nest,

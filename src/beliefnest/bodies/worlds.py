@@ -97,7 +97,9 @@ def world_name(world: str, *, realtime: bool, listen: int | str | None) -> str:
     """
     if not realtime:
         if listen is not None:
-            raise InputError("people join worlds in real time only: give realtime=True as well")
+            raise InputError(
+                "people join worlds in real time only: give realtime=True (--realtime) as well"
+            )
         return world
     if world != "embedded":
         raise InputError(f"the world {world!r} has no choice of time; realtime is for embedded")

@@ -122,8 +122,12 @@ def run(
     answers: Annotated[
         Path | None, typer.Option(help="Folder of kept answers; OUT/answers if none.")
     ] = None,
-    max_tokens: Annotated[int, typer.Option(help="What the run may use in all.")] = 1_000_000,
-    max_cost: Annotated[float, typer.Option(help="US dollars the run may cost in all.")] = 5.0,
+    max_tokens: Annotated[
+        int, typer.Option(help="What the run may use in all.", min=1)
+    ] = 1_000_000,
+    max_cost: Annotated[
+        float, typer.Option(help="US dollars the run may cost in all.", min=0)
+    ] = 5.0,
     temperature: Annotated[float, typer.Option(help="0 for the likeliest answer.")] = 0.0,
     attempts: Annotated[
         int,

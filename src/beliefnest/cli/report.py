@@ -40,6 +40,7 @@ from beliefnest.world.values import Point
 
 __all__ = [
     "cost_text",
+    "failure_lines",
     "outcome_json",
     "outcome_table",
     "placed_lines",
@@ -195,10 +196,18 @@ def _verb(scenario: Scenario) -> str:
 
 
 def _verdict(outcome: Outcome) -> str:
-    """Whether all was as expected, and if not, what was not."""
+    """Whether all was as expected, and if not, what was not; `failure_lines` says why."""
     if outcome.ok:
         return "[green]yes[/green]"
-    return "\n".join(["[bold red]NO[/bold red]", *map(escape, outcome.failures)])
+    names = (failure.partition(": ")[0] for failure in outcome.failures)
+    return "\n".join(["[bold red]NO[/bold red]", *map(escape, names)])
+
+
+def failure_lines(outcome: Outcome) -> list[str]:
+    """What was not as expected, for people, a line each."""
+    number = outcome.scenario.condition
+    where = "" if number is None else f"condition {number}: "
+    return [f"NO: {where}{failure}" for failure in outcome.failures]
 
 
 def _headings(outcomes: Iterable[Outcome]) -> list[str]:

@@ -61,6 +61,8 @@ _CLAIMS = (
         "Mary goes to A: as the paper says, John does not know that she was told of B, and what "
         "she was told before is A",
     ),
+    _Claim(_VAN[0], 1, "second order", _VAN[1], "what Mary believes: she was told of location B"),
+    _Claim(_VAN[0], 1, "reality", _VAN[1], "Mary herself: she was told of location B"),
     *(
         _Claim(_VAN[0], condition, probe, _VAN[1], text, is_control=True)
         for condition, text in ((2, _SEES), (3, _STAYS))

@@ -21,7 +21,7 @@ from beliefnest.cli.folder import ConditionFolder, RunFolder, kept_scenario_file
 from beliefnest.cli.matrix import score_runs, score_table, scores_json
 from beliefnest.cli.pictures import read_condition
 from beliefnest.cli.plan import Cell, plan_cells
-from beliefnest.cli.report import outcome_json, outcome_table, report_json
+from beliefnest.cli.report import failure_lines, outcome_json, outcome_table, report_json
 from beliefnest.cli.run_report import report_html
 from beliefnest.cli.visits import check_visits, visited
 from beliefnest.errors import InputError, ModelError, ScenarioError
@@ -333,6 +333,9 @@ def _print(
             if any(cell.scenario.condition == number for cell in cells):
                 console.print(f"condition {number}: {about}", highlight=False)
         console.print(folded(_table(run, cells, console)))
+        if _is_one_round(run, cells):
+            for line in (line for outcome in run.outcomes for line in failure_lines(outcome)):
+                console.print(line, highlight=False, markup=False, soft_wrap=True)
         console.print(f"recorded in {run.folder.path}", highlight=False, soft_wrap=True)
     text = captured.get()
     run.folder.write_summary(text)
@@ -341,7 +344,11 @@ def _print(
 
 def _table(run: _Run, cells: Sequence[Cell], console: Console) -> Table:
     """Of one round what was found in each condition, of several how often it was as expected."""
-    flat = len(cells[0].folder.parts) == 1
-    if flat and run.outcomes and len(run.outcomes) == len(cells):
+    if _is_one_round(run, cells):
         return outcome_table(run.outcomes, console)
     return score_table(cells[0].scenario.name, score_runs(run.results, run.failures))
+
+
+def _is_one_round(run: _Run, cells: Sequence[Cell]) -> bool:
+    flat = len(cells[0].folder.parts) == 1
+    return flat and bool(run.outcomes) and len(run.outcomes) == len(cells)

@@ -116,7 +116,7 @@ def listening(options: ServeOptions) -> Iterator[socket.socket]:
                 if port == 0 or options.port is not None:
                     raise InputError(
                         f"{options.address} port {port} cannot be listened on ({error}); "
-                        "choose another with --port"
+                        "give an address of this machine, or another port with --port"
                     ) from None
         # Whoever reads where the page is may ask for it at once.
         listener.listen()

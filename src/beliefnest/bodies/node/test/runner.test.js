@@ -78,6 +78,12 @@ describe('programs', () => {
     assert.doesNotMatch(results.anne.error.message, /mean/)
   })
 
+  it('are told what stands here for what other systems have', async () => {
+    const { results } = await run({ sally: 'new GoalNear(1, 2, 3, 1)', anne: "const mineflayer = require('mineflayer')" })
+    assert.match(results.sally.error.message, /GoalNear.*; write goals\.GoalNear/)
+    assert.match(results.anne.error.message, /require.*a program loads no modules/)
+  })
+
   it('name the skill that failed', async () => {
     const { results } = await run({ sally: '\nawait goToPosition(bot, "there")' })
     assert.equal(results.sally.error.skill, 'goToPosition')

@@ -4,7 +4,7 @@
 class CannotListen extends Error {
   constructor (host, port, { code, message }) {
     const why = { EADDRINUSE: 'another program listens there', EACCES: 'only the system may listen there', EADDRNOTAVAIL: 'this machine has no such address' }[code] ?? message
-    super(`people cannot come in at ${host}:${port}: ${why}; give another port, or listen=0 for any that is free`)
+    super(`people cannot come in at ${host}:${port}: ${why}; give another port, or 0 for any that is free`)
   }
 
   /** Of the channel: the world failed, and the message is all there is to say. */

@@ -33,13 +33,23 @@ function distance (one, other) {
   return row[other.length]
 }
 
+// What programs that were written for other systems call, and what stands in its place.
+const ELSEWHERE = {
+  require: 'a program loads no modules: bot, Vec3, goals, mcData and the skills are there',
+  mineflayer: 'the bot is there already: write bot',
+  pathfinder: 'write bot.pathfinder, or goToPosition(bot, position)'
+}
+
 /**
  * @param {string} message of an error
  * @param {string[]} names that a program finds in scope
- * @returns {string} what to add to a message that a name is not there, if one that is looks like it; else empty
+ * @returns {string} what to add to a message that a name is not there, if one that is looks like it, or other systems
+ *   have it; else empty
  */
 function nearName (message, names) {
   const found = UNDEFINED.exec(message)
+  if (found !== null && /^Goal[A-Z]/.test(found[1]) && names.includes('goals')) return `; write goals.${found[1]}`
+  if (found !== null && Object.hasOwn(ELSEWHERE, found[1])) return `; ${ELSEWHERE[found[1]]}`
   const near = found === null ? null : nearest(found[1], names)
   return near === null ? '' : `; did you mean ${near}?`
 }
