@@ -125,12 +125,15 @@ class Exhibit:
         """Whether the process that shows it has ended."""
         return self._channel.lost
 
-    def show(self, shown: Shown) -> None:
-        """Let it be this; only what is another than before is sent, and no answer awaited."""
+    def show(self, shown: Shown, tick: int) -> None:
+        """Let it be this, as of a tick of reality.
+
+        Only what is another than before is sent, and no answer awaited.
+        """
         changes = shown.changes(self._shown, self._low)
         self._shown = shown
         if changes is not None:
-            self._channel.post("show", exhibit=self._name, **changes)
+            self._channel.post("show", exhibit=self._name, tick=tick, **changes)
 
     def close(self) -> None:
         """Take it down; on a server there is again what was there before."""

@@ -106,6 +106,11 @@ class RealtimeWorld(ABC):
         """
         return Exhibit.opened(self._live(), name, plot, shown)
 
+    def lags(self) -> Mapping[str, int]:
+        """By how many ticks what changed in exhibits was shown later, at most, by name."""
+        lags: Mapping[str, int] = self._live().request("lags")
+        return lags
+
     def _live(self) -> Channel:
         """The channel to the process of the real world, started if none is running."""
         if self._closed:

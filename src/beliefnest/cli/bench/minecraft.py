@@ -1,5 +1,6 @@
-"""The real world on a server of this machine: how soon it stands, and what bots there take."""
+"""The real world in real time: beliefs that keep up with it, and what a server elsewhere takes."""
 
+import itertools
 import os
 import time
 from collections.abc import Sequence
@@ -9,7 +10,7 @@ from pathlib import Path
 from beliefnest.bodies.address import ServerAddress
 from beliefnest.bodies.minecraft import MinecraftWorld
 from beliefnest.cli.bench.figures import Figure, median_seconds
-from beliefnest.errors import InputError
+from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.values import TICKS_PER_SECOND
@@ -20,19 +21,67 @@ _SERVER = "BELIEFNEST_BENCH_SERVER"
 _RUNS = 3
 _BOTS = 32
 _WATCHED_S = 60
+_DEPTH = 3
+_EMBODIED = 3
+_WALKED_S = 10
+_WALK = """
+while (true) {{
+  await goToPosition(bot, new Vec3(-8, -51, {z}), 0)
+  await goToPosition(bot, new Vec3(2, -51, {z}), 0)
+}}
+"""
 
 
 def measure() -> Sequence[Figure]:
-    """A verified body of Sally-Anne's box, and the processor time of many bots.
-
-    Raises:
-        InputError: No server is named in the environment.
-    """
+    """Beliefs during a run in real time; on a server, if one is named, a body and many bots."""
     named = os.environ.get(_SERVER)
-    if named is None:
-        raise InputError(
-            f"name a server on which BeliefNest is an operator: {_SERVER}=minecraft://HOST:PORT"
-        )
+    return [*_beliefs(), *([] if named is None else _server(named))]
+
+
+def _beliefs() -> Sequence[Figure]:
+    """Three agents walk, all beliefs down to depth 3 are followed, and three are embodied."""
+    scenario = Scenario.load("sally-anne", 1)
+    agents = sorted(scenario.setting.snapshot.agents)
+    nodes = [
+        names
+        for depth in range(1, _DEPTH + 1)
+        for names in itertools.product(agents, repeat=depth)
+        if all(one != other for one, other in itertools.pairwise(names))
+    ]
+    paths = ["/" + "/".join(names) for names in nodes]
+    walks = {name: _WALK.format(z=2 * number + 3) for number, name in enumerate(agents)}
+    with Nest.open(scenario, realtime=True, listen=0) as nest:
+        # Who has been asked for once is followed from then on; what is begun first takes longer.
+        nest.states(paths)
+        nest["/"].run_all(walks, 2 * TICKS_PER_SECOND)
+        nest.states(paths)
+        for path in paths[-_EMBODIED:]:
+            nest[path].embody()
+        nest.wait(timeout_s=1)
+        began, used = time.perf_counter(), time.process_time()
+        start = nest.tick
+        nest["/"].run_all(walks, _WALKED_S * TICKS_PER_SECOND)
+        nest.states(paths)
+        ticks, seconds = nest.tick - start, time.perf_counter() - began
+        per_tick = 1000 * (time.process_time() - used) / ticks
+        lag = max(each.lag for each in nest.layout())
+    return [
+        Figure(
+            f"a tick of {len(paths)} beliefs, {_EMBODIED} of them embodied", per_tick, "ms", 5.0
+        ),
+        Figure(
+            "ticks that a run of 10 s is late, its call included", _late(seconds, ticks), "", 2.0
+        ),
+        Figure(f"a change is seen in {_EMBODIED} embodied beliefs after", lag, "ticks", 4.0),
+    ]
+
+
+def _late(seconds: float, ticks: int) -> float:
+    return max(0.0, seconds * TICKS_PER_SECOND - ticks)
+
+
+def _server(named: str) -> Sequence[Figure]:
+    """A verified body of Sally-Anne's box, and the processor time of many bots."""
     world = MinecraftWorld.start(ServerAddress.parse(named), 0)
     snapshot = Scenario.load("sally-anne", 1).setting.snapshot
     try:

@@ -89,11 +89,11 @@ class Embodying:
             when = (info.key, info.entries)
             exhibit = standing.exhibit
             if exhibit is None or exhibit.lost:
-                shown = self._shown(path, standing)
+                shown, _ = self._shown(path, standing)
                 world = self._realtime()
                 standing.exhibit = world.open_exhibit(path_text(path), standing.plot, shown)
             elif when != standing.when:
-                exhibit.show(self._shown(path, standing))
+                exhibit.show(*self._shown(path, standing))
             standing.when = when
 
     def look_again(self) -> None:
@@ -109,6 +109,13 @@ class Embodying:
         standing = {path: each.plot for path, each in self._standing.items()}
         reality = standing.pop(_REALITY, None) or self._plot(_REALITY, 0, world)
         return {_REALITY: reality, **standing}
+
+    def lags(self) -> Mapping[Path, int]:
+        """By how many ticks changes were shown later than they happened, at most, by simulator."""
+        if not self._standing:
+            return {}
+        lags = self._realtime().lags()
+        return {path: lags.get(path_text(path), 0) for path in self._standing}
 
     def _show(self, world: RealtimeWorld, path: Path, unknown: int) -> None:
         before = self._standing.get(path)
@@ -161,7 +168,8 @@ class Embodying:
         x, y, z = (math.floor(value) for value in middle)
         return x, y, z
 
-    def _shown(self, path: Path, standing: _Standing) -> Shown:
+    def _shown(self, path: Path, standing: _Standing) -> tuple[Shown, int]:
+        """What a simulator's state is to be shown as, and the tick of its latest change."""
         reading = self._recording.reading(path)
         blocks = reading.blocks
         agents = {
@@ -176,12 +184,13 @@ class Embodying:
             if agent.position is not None
         }
         contents = reading.containers.items()
-        return Shown(
+        shown = Shown(
             np.where(blocks < 0, np.int32(standing.unknown), blocks),
             {place: (dict(held.items), held.complete) for place, held in contents},
             dict(reading.signs),
             agents,
         )
+        return shown, reading.tick
 
     def _close(self, path: Path) -> None:
         standing = self._standing.pop(path, None)

@@ -24,6 +24,7 @@ class Standing:
         high: The highest one.
         origin: Where scenario (0, y, 0) lies: x and z, in blocks of Minecraft.
         command: What to type in the game to go there.
+        lag: Ticks by which what changed was shown there later than it happened, at most so far.
     """
 
     path: str
@@ -31,6 +32,7 @@ class Standing:
     high: Position
     origin: tuple[int, int]
     command: str
+    lag: int = 0
 
 
 class Layout(Sequence[Standing]):
@@ -80,6 +82,7 @@ class Visiting:
             raise InputError(
                 "nothing stands where people could go: this world's time does not go on by itself"
             )
+        lags = self._engine.bodies.embodying.lags()
         return Layout(
             [
                 Standing(
@@ -87,6 +90,7 @@ class Visiting:
                     *plot.corners,
                     plot.origin,
                     "/tp {} {} {}".format(*plot.stand),
+                    lags.get(path, 0),
                 )
                 for path, plot in plots.items()
             ]

@@ -8,4 +8,4 @@ const { LiveHandler } = require('./live/liveHandler')
 
 const [descriptor, lifeline] = process.argv.slice(2).map(Number)
 require('./prepare').prepare()
-serve((post, beat, ask) => new LiveHandler(null, post, beat, ask), descriptor, lifeline)
+serve((post, beat, ask) => new LiveHandler(null, post, beat, ask), descriptor, lifeline, { atOnce: true })

@@ -8,4 +8,4 @@ const { RemoteHandler } = require('./remote/remoteHandler')
 
 const [descriptor, lifeline] = process.argv.slice(2).map(Number)
 require('./prepare').prepare()
-serve((post, beat, ask) => new RemoteHandler(null, post, beat, ask), descriptor, lifeline)
+serve((post, beat, ask) => new RemoteHandler(null, post, beat, ask), descriptor, lifeline, { atOnce: true })

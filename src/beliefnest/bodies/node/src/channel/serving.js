@@ -13,8 +13,10 @@ const LIFELINE_FILE = 'lifeline.js'
  *   gives who answers: `answer(request)`, `prepare()`, `note(message)` of what asks for no answer; `ask` sends a question and resolves with what the other side says to it
  * @param {number} descriptor of the channel
  * @param {number} lifeline another one
+ * @param {object} [options]
+ * @param {boolean} [options.atOnce] whether what is posted is sent at once, for those who look on in real time
  */
-function serve (makeHandler, descriptor, lifeline) {
+function serve (makeHandler, descriptor, lifeline, { atOnce = false } = {}) {
   new Worker(path.join(__dirname, LIFELINE_FILE), { workerData: { descriptor: lifeline } })
     .on('error', fail)
   const stream = new net.Socket({ fd: descriptor, readable: true, writable: true })
@@ -24,7 +26,7 @@ function serve (makeHandler, descriptor, lifeline) {
     channel.send(question)
     return asking.promise
   }
-  const handler = makeHandler(message => channel.post(message), message => channel.beat(message), ask)
+  const handler = makeHandler(message => atOnce ? channel.send(message) : channel.post(message), message => channel.beat(message), ask)
   let turn = Promise.resolve()
   const channel = new Channel(stream, request => {
     // What answers a question is no request.

@@ -18,6 +18,8 @@ class Exhibit {
     this.containers = new Map(containers.map(([x, y, z, items, complete]) => [keyOf({ x, y, z }), { items, complete }]))
     this.signs = new Map(signs.map(([x, y, z, text]) => [keyOf({ x, y, z }), text]))
     this.agents = new Map(Object.entries(agents))
+    // Ticks by which a change was told later than it happened, at most.
+    this.lag = 0
   }
 
   /**

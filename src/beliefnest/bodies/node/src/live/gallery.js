@@ -40,15 +40,25 @@ class Gallery {
     this.exhibits.set(told.exhibit, new Exhibit(told))
   }
 
-  /** What is another in an exhibit is told to those who look at it. */
-  show ({ exhibit: name, ...changes }) {
+  /**
+   * What is another in an exhibit is told to those who look at it.
+   * @param {object} message `show` of the channel
+   * @param {number} now tick of reality
+   */
+  show ({ exhibit: name, tick, ...changes }, now) {
     const exhibit = this.exhibits.get(name)
     if (exhibit === undefined) return
+    exhibit.lag = Math.max(exhibit.lag, now - tick)
     const before = new Set(exhibit.agents.keys())
     const { signs } = exhibit.take(changes)
     for (const visitor of this.visitors) {
       if (visitor.exhibit === exhibit) visitor.tell({ ...changes, signs }, before)
     }
+  }
+
+  /** @returns {object} by how many ticks each was late, by name */
+  lags () {
+    return Object.fromEntries([...this.exhibits.values()].map(({ name, lag }) => [name, lag]))
   }
 
   /** @returns {Visitor[]} who looked at it, and has to go elsewhere */

@@ -21,13 +21,14 @@ class LiveHandler extends RealtimeHandler {
   async perform (request) {
     if (request.op === 'people') return { here: this.door.invite(request.invited), port: this.port }
     if (request.op === 'exhibit') return this.door.gallery.open(request) ?? null
+    if (request.op === 'lags') return this.door.gallery.lags()
     if (request.op === 'close_exhibit') return this.door.closeExhibit(request.exhibit) ?? null
     if (request.op === 'run') this.requireBots(Object.keys(request.programs))
     return super.perform(request)
   }
 
   note (message) {
-    this.door.gallery.show(message)
+    this.door.gallery.show(message, this.tick)
   }
 
   requireBots (agents) {
