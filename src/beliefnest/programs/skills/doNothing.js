@@ -5,6 +5,7 @@ module.exports = {
   name: 'doNothing',
   signature: 'doNothing(bot)',
   description: 'Do nothing for one tick.',
+  fails: 'never',
   parameters: [{ name: 'bot', type: 'Bot', description: 'your own bot' }],
   example: 'await doNothing(bot)',
   run: () => ticks(1)

@@ -10,6 +10,7 @@ module.exports = {
   name: 'eat',
   signature: 'eat(bot, name)',
   description: 'Eat one piece of food from your inventory. Works only when you are not full.',
+  fails: 'the item is no food, or not carried; you are not hungry; it was not eaten',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'name', type: 'string', description: 'name of the food' }

@@ -27,11 +27,11 @@ U+2029, or a longer one, is refused with an error.
 This page is generated from the skills' own files by \`src/beliefnest/programs/skills/generate.js\`.
 `
 
-function markdown ({ name, signature, description, parameters, example }) {
+function markdown ({ name, signature, description, parameters, example, fails }) {
   const rows = parameters.map(parameter => `| \`${parameter.name}\` | \`${parameter.type.replaceAll('|', '\\|')}\` | ${parameter.description} |`)
   return [
     `## ${name}`, '', `\`${signature}\``, '', description, '', '| argument | type | meaning |', '|---|---|---|', ...rows, '',
-    '```js', example, '```', ''
+    `Fails: ${fails}.`, '', '```js', example, '```', ''
   ].join('\n')
 }
 

@@ -7,6 +7,7 @@ module.exports = {
   name: 'givePlacedItemBack',
   signature: 'givePlacedItemBack(bot, name, position)',
   description: 'Take back a block that was placed, such as a crafting table: mine it and pick it up.',
+  fails: 'no way there; the block is another one; no tool for it; it did not come back',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'name', type: 'string', description: 'name of the placed item' },

@@ -1,7 +1,7 @@
 'use strict'
 /**
  * The skills: what a program can do besides Mineflayer's own calls. Each file is one manifest
- * `{name, signature, description, parameters, example, run(context, ...args)}`; `args` are the
+ * `{name, signature, description, fails, parameters, example, run(context, ...args)}`; `fails` says when, `args` are the
  * arguments of the signature without `bot`, which is `context.bot`.
  */
 const { numbers } = require('./lib/answers')

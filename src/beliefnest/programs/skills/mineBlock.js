@@ -6,6 +6,7 @@ module.exports = {
   name: 'mineBlock',
   signature: 'mineBlock(bot, position, name)',
   description: 'Go to the block, mine it with the best tool you carry, and pick up what it drops.',
+  fails: 'no way there; another block is there; it cannot be mined, or not with what is carried; no room for what it drops',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'position of the block' },

@@ -44,6 +44,7 @@ module.exports = {
   name: 'placeItem',
   signature: 'placeItem(bot, name, position)',
   description: 'Go there and place a block from your inventory at the position, which must be free and beside a solid block.',
+  fails: 'the item is not carried; the place is not free, or has nothing beside it; no way there; somebody stands there',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'name', type: 'string', description: 'name of the item to place' },

@@ -90,6 +90,7 @@ module.exports = {
   name: 'smeltItem',
   signature: 'smeltItem(bot, itemName, fuelName, furnacePos, count)',
   description: 'Go to the furnace, smelt count of an item with the fuel, wait for it, and take out what was made and what is left.',
+  fails: 'no way there; no furnace there, or a busy one; less is carried; the fuel does not burn, or runs out (what is made is taken); the item does not smelt',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'itemName', type: 'string', description: 'what to smelt' },
