@@ -7,6 +7,7 @@ from pathlib import Path
 
 from beliefnest.cli.console import stdout
 from beliefnest.cli.folder import stores_in
+from beliefnest.episodes.telling import told_episode
 from beliefnest.errors import InputError, TickError
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.scenarios.scenario import Scenario
@@ -96,4 +97,5 @@ def about_run(journal: SqliteJournal, nest: RecordedNest, paths: Sequence[str] =
         description=scenario.description,
         labels=scenario.labels,
         paths=tuple(dict.fromkeys(path for path in wanted if path)),
+        episode=lambda: told_episode(nest),
     )

@@ -436,7 +436,11 @@ class Episode:
         self._progress = {name: Progress.begun(goal) for name, goal in goals.items()}
 
     def _keep(self) -> None:
-        keep_branch(self._opened(), self._branch, Branch(self._names, self._parts))
+        goal = self._progress[""]
+        branch = Branch(
+            self._names, self._parts, list(goal.came_true()), goal.reached, goal.violated
+        )
+        keep_branch(self._opened(), self._branch, branch)
 
     def _decide(self) -> None:
         """Ask for a part's programs, and keep them before they are run."""
@@ -472,6 +476,7 @@ class Episode:
                 if ended[agent].how == "cut"
             }
             self._parts[-1] = Part(part.decisions, ended, cut)
+            self._watch()
             self._keep()
 
     def _is_spent(self) -> bool:

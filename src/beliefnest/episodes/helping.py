@@ -14,7 +14,7 @@ from typing import Protocol, Self
 
 from beliefnest.episodes.rounds import Decision, Part
 from beliefnest.episodes.task import Task
-from beliefnest.episodes.view import AgentView, Policy
+from beliefnest.episodes.view import GO_ON, AgentView, Policy
 from beliefnest.nest.face.nest import Nest
 from beliefnest.world.values import EventKind
 
@@ -109,7 +109,10 @@ class _Without:
         """What was decided for the round, if it is not left out."""
         if self.first <= view.round <= self.last or view.round >= len(self.decisions):
             return ""
-        return self.decisions[view.round].program
+        decision = self.decisions[view.round]
+        if decision.goes_on:
+            return GO_ON if view.last.how == "cut" else ""
+        return decision.program
 
 
 def help_in(episode: Branching, policies: Mapping[str, Policy]) -> Help:
@@ -167,12 +170,7 @@ def _acts(episode: Branching, agent: str) -> list[Act]:
     found: list[Act] = []
     first = 0
     for number, part in enumerate(own):
-        goes_on = (
-            number > 0
-            and own[number - 1].ended[agent].how == "cut"
-            and own[number - 1].decisions[agent].program == part.decisions[agent].program
-        )
-        first = first if goes_on else number
+        first = first if part.decisions[agent].goes_on else number
         if any(episode.beginnings[number] < tick <= ends[number] for tick in said):
             if found and found[-1].first == first:
                 found.pop()

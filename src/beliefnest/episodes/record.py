@@ -9,7 +9,17 @@ from beliefnest.episodes.rounds import Decision, Part
 from beliefnest.episodes.view import Ended
 from beliefnest.errors import StoreError
 
-__all__ = ["Branch", "Budget", "Start", "ended_as", "keep_branch", "keep_start", "kept_in"]
+__all__ = [
+    "Branch",
+    "Budget",
+    "Keeps",
+    "Start",
+    "ended_as",
+    "holds_episode",
+    "keep_branch",
+    "keep_start",
+    "kept_in",
+]
 
 _START, _BRANCHES = "episode", "episode branches"
 
@@ -54,10 +64,21 @@ class Start(msgspec.Struct, frozen=True):
 
 
 class Branch(msgspec.Struct, frozen=True):
-    """What a run keeps of an episode's branch: policies in words, and what was decided."""
+    """What a run keeps of an episode's branch.
+
+    Attributes:
+        policies: By agent, in words.
+        parts: What was decided.
+        goal: The task's conditions in words, each with the tick at which it came true first.
+        reached: The tick at which the task's goal was reached; None: not yet.
+        violated: The tick at which something happened that must not; None: nothing has.
+    """
 
     policies: dict[str, str]
     parts: list[Part]
+    goal: list[tuple[str, int | None]] = []
+    reached: int | None = None
+    violated: int | None = None
 
 
 def keep_start(nest: Writes, start: Start) -> None:
@@ -92,6 +113,11 @@ def ended_as(decision: Decision, result: ProgramResult | None) -> Ended:
         told = Fault(f"{fault.skill} did not work", line=fault.line)
         return Ended(decision.program, "failed", str(told))
     return Ended(decision.program, "failed", str(fault))
+
+
+def holds_episode(nest: Keeps) -> bool:
+    """Whether there is an episode in a run."""
+    return nest.kept(_BRANCHES) is not None
 
 
 def kept_in(nest: Keeps) -> tuple[Start, dict[str, Branch]]:

@@ -36,6 +36,11 @@ class About:
         description: What it is about.
         labels: What people call containers and places.
         paths: Beliefs that the scenario asks about; they are shown from the start.
+        episode: Gives the rounds of the run's episode by now, as plain values: `task`, `instance`,
+            `start` (a tick), `rounds` (how many there may be), and `branches` by name, each with
+            `policies`, `goal` (words and tick or None), `reached`, `violated` (ticks or None) and
+            `parts` (`round`, `t`, `end`, `agents` with `agent`, `program`, `goes_on`, `fault`,
+            `ended`, `message`). None where there is none.
     """
 
     title: str
@@ -43,6 +48,7 @@ class About:
     description: str = ""
     labels: Mapping[Position, str] = field(default_factory=dict)
     paths: tuple[Path, ...] = ()
+    episode: Callable[[], Mapping[str, Any] | None] = field(default=lambda: None)
 
 
 def paths_below(agents: Iterable[str], path: Path, depth: int) -> list[Path]:
@@ -92,6 +98,7 @@ class RunData:
         self._lines: dict[TimelineKey, _Line] = {}
         self._sent: dict[str, int] = {}
         self._begun = False
+        self._episode: Mapping[str, Any] | None = None
 
     def update(self) -> dict[str, Any]:
         """What is new since the last call; at first everything. Empty if nothing is."""
@@ -110,6 +117,9 @@ class RunData:
             fresh = fresh_rows(self._sent, name, rows)
             if fresh is not None:
                 new[name] = fresh
+        episode = self.about.episode()
+        if episode != self._episode:
+            self._episode = new["episode"] = episode
         if not self._begun:
             self._begun = True
             new["head"] = self._head()

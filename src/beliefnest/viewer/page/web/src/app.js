@@ -5,6 +5,7 @@ import { Detail } from './detail.js'
 import { badge, button, element, refill } from './elements.js'
 import { noteNamed } from './notes.js'
 import { rayOf } from './ray.js'
+import { Rounds } from './rounds.js'
 import { Stages } from './stages.js'
 import { mainStorey, thingsOf } from './things.js'
 import { Tree } from './tree.js'
@@ -17,12 +18,13 @@ export class App {
     const choose = changes => chooser.set(changes)
     this.tree = new Tree(choose, (line, path) => this.deepen(line, path))
     this.tree.again = () => this.draw()
+    this.rounds = new Rounds(choose)
     this.stages = new Stages(choose)
     this.detail = new Detail(choose, source)
     this.clock = new Clock(choose, () => this.play())
     this.message = element('p', { class: 'message', role: 'status', hidden: true })
     this.header = element('header', {})
-    refill(root, this.header, this.message, element('main', { class: 'middle' }, this.tree.element, this.stages.element, this.detail.element, this.clock.element))
+    refill(root, this.header, this.message, element('main', { class: 'middle' }, element('div', { class: 'side' }, this.tree.element, this.rounds.element), this.stages.element, this.detail.element, this.clock.element))
     chooser.listeners.push((_, changes) => { if ('tick' in changes) this.atEnd = false; this.later() })
     new ResizeObserver(() => this.later()).observe(this.stages.element)
     addEventListener('keydown', event => this.key(event))
@@ -47,6 +49,7 @@ export class App {
     const scene = this.scene()
     this.drawHeader()
     this.tree.draw(scene.run, { ...scene.choice, on: scene.timeline.number, at: scene.track.path }, scene.tick)
+    this.rounds.draw(scene)
     this.stages.draw(scene)
     this.detail.draw(scene)
     this.clock.draw(scene)

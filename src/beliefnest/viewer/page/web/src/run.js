@@ -220,6 +220,7 @@ export class Run {
     this.prompts = []
     this.timelines = []
     this.ahead = { explanations: {}, looks: {}, sights: {} }
+    this.episode = null
   }
 
   put (told) {
@@ -229,6 +230,7 @@ export class Run {
       (this.timelines[number] ??= new Timeline(this, Number(number))).put(rows)
     }
     if (told.ahead !== undefined) this.ahead = told.ahead
+    if (told.episode !== undefined) this.episode = told.episode
   }
 
   get shape () {

@@ -1,0 +1,60 @@
+"""What a run's page tells of its episode: rounds, who did what, when goals were reached."""
+
+from typing import Any
+
+from beliefnest.episodes.record import Branch, Keeps, Start, holds_episode, kept_in
+from beliefnest.episodes.rounds import Part, slots_of
+from beliefnest.episodes.task import Task
+
+__all__ = ["told_episode"]
+
+
+def told_episode(run: Keeps) -> dict[str, Any] | None:
+    """The episode in a run as plain values; None: there is none.
+
+    Raises:
+        StoreError: It cannot be read.
+    """
+    if not holds_episode(run):
+        return None
+    start, branches = kept_in(run)
+    task = Task.from_mapping(start.task, start.task_seed)
+    return {
+        "task": task.name,
+        "instance": task.seed,
+        "start": start.start,
+        "rounds": task.form.rounds,
+        "branches": {name: _branch(task, start, branch) for name, branch in branches.items()},
+    }
+
+
+def _branch(task: Task, start: Start, branch: Branch) -> dict[str, Any]:
+    slots = len(slots_of(task.agents, turns=task.form.play == "turns"))
+    ticks = task.form.round_ticks
+    return {
+        "policies": branch.policies,
+        "goal": [list(each) for each in branch.goal],
+        "reached": branch.reached,
+        "violated": branch.violated,
+        "parts": [
+            {
+                "round": number // slots,
+                "t": start.start + number * ticks,
+                "end": start.start + (number + 1) * ticks,
+                "agents": [_done(part, agent) for agent in part.decisions],
+            }
+            for number, part in enumerate(branch.parts)
+        ],
+    }
+
+
+def _done(part: Part, agent: str) -> dict[str, Any]:
+    decision, ended = part.decisions[agent], part.ended.get(agent)
+    return {
+        "agent": agent,
+        "program": decision.program,
+        "goes_on": decision.goes_on,
+        "fault": decision.fault,
+        "ended": "" if ended is None else ended.how,
+        "message": "" if ended is None else ended.message,
+    }
