@@ -5,8 +5,8 @@ Where the text leaves something open, the choice made here is:
 * What is current in a node is what its holder perceives; the tick of the claim counts.
 * Somebody whose last place is seen empty has no known place, as an item has none then.
 * An item seen taken out of a container has no known place, unless more of it was perceived there.
-* `located` takes the item from where it was believed last; it moves nothing if it is believed
-  to be where the claim says. `absent` where nothing of it is believed has no effect.
+* `located` takes the item from where it was believed last, and what is left there rests on what
+  it rested on; it moves nothing if it is believed to be where the claim says. `absent` where nothing of it is believed has no effect.
 * Properties that a claim about a block does not name stay as they are believed.
 * Nobody can be told where they are themselves.
 """
@@ -229,7 +229,8 @@ def _believe_located(node: "Node", item: str, place: Position, basis: Basis) -> 
             donor = min(holding, key=lambda p: (-holding[p].basis.observed_at, p))
             left = dict(holding[donor].items)
             left[item] -= 1
-            _hold(node, donor, {name: n for name, n in left.items() if n}, basis)
+            left = {name: n for name, n in left.items() if n}
+            _hold(node, donor, left, holding[donor].basis if left else basis)
         items[item] = 1
     _hold(node, place, items, basis)
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 import beliefnest as bn
+from beliefnest.prompts import built_in_template
 from beliefnest.world.values import Point
 
 LEFT, RIGHT = (3, 0, 3), (17, 0, 3)
@@ -79,6 +80,37 @@ def test_of_any_belief_it_is_told_whether_it_was_taken_up_and_by_which_condition
         lie.taken_up("/zed")
 
 
+def test_what_is_left_where_something_was_said_to_have_gone_is_explained_by_both() -> None:
+    world = bn.ScriptedWorld(
+        ((0, 0, 0), (20, 3, 20)),
+        agents={"max": HALL, "nora": BESIDE},
+        containers={LEFT: {}, RIGHT: {}},
+        inventories={"nora": {"diamond": 2}},
+    )
+    nest = bn.Nest(world, bn.Perception(testimony="accept"))
+    world.deposit("nora", LEFT, {"diamond": 2})
+    world.say("nora", "One is on the right.", claims=[LIE])
+    told = str(nest["/max"].explain(container=LEFT))
+    assert "saw what happened at tick 1: nora put 2 diamond in; since then nora told max at tick 2 " in told
+    world.say("nora", "Nothing on the right.", claims=[bn.Claim.absent("diamond", RIGHT)])
+    told = str(nest["/max"].explain(container=RIGHT))
+    assert "nora told max at tick 3 that diamond is not in (17, 0, 3)" in told
+
+
+def test_prompts_tell_hearsay_from_what_was_seen_and_from_ones_own_words() -> None:
+    world = bn.ScriptedWorld(
+        ((0, 0, 0), (20, 3, 20)), agents={"max": HALL, "nora": BESIDE, "sal": FAR}
+    )
+    nest = bn.Nest(world, bn.Perception(max_visible_distance=6, testimony="accept"))
+    world.say("nora", "Sal is there.", claims=[bn.Claim.position("sal", (9.5, 0, 9.5))])
+    template = built_in_template("default")
+    max_, nora = (nest[path].render(template, task="-") for path in ("/max", "/max/nora"))
+    for prompt in (max_, nora):
+        assert "1;heardOf;sal;position:[9.5, 0, 9.5];" in prompt
+    assert "sal: at [9.5, 0, 9.5]; heard from nora 0 s ago" in max_
+    assert "sal: at [9.5, 0, 9.5]; said 0 s ago" in nora
+
+
 def test_the_same_is_told_of_the_past_and_of_what_was_recorded(tmp_path: Path) -> None:
     store = tmp_path / "run.bn"
     with played(store) as nest:
@@ -104,4 +136,6 @@ def test_hearsay_is_explained_as_such() -> None:
     assert "nora told max so at tick 15; max could not have looked" in told
     assert "nora said so at tick 15" in str(nest["/max/nora"].explain(container=RIGHT))
     accepting = played(testimony="accept")
+    taken = str(nest["/max"].explain(container=LEFT))
+    assert "nora told max at tick 15 that diamond is in (17, 0, 3); max could not" in taken
     assert "nora told max so at tick 15." in str(accepting["/max"].explain(container=RIGHT))

@@ -14,7 +14,7 @@ import beliefnest as bn
 from beliefnest.belief.entries import Basis, ContainerBelief, Source
 from beliefnest.world.values import EventKind, Position
 
-LEFT, RIGHT = (3, 0, 3), (17, 0, 3)
+LEFT, MIDDLE, RIGHT = (3, 0, 3), (10, 0, 3), (17, 0, 3)
 HALL, BESIDE, OUTSIDE, FAR = (3.5, 0, 5.5), (5.5, 0, 5.5), (9.5, 0, 14.5), (1.5, 0, 19.5)
 BY_RIGHT, NEAR_OUTSIDE = (17.5, 0, 5.5), (8.5, 0, 14.5)
 GRACE = 10
@@ -29,7 +29,7 @@ class Hall:
         self.world = bn.ScriptedWorld(
             ((0, 0, 0), (20, 3, 20)),
             agents={"max": HALL, "nora": BESIDE, "bob": FAR},
-            containers={LEFT: {}, RIGHT: {}},
+            containers={LEFT: {}, MIDDLE: {}, RIGHT: {}},
             inventories={"max": {"diamond": 2}, "nora": {"diamond": 1}},
         )
         perception = bn.Perception(**options)
@@ -170,6 +170,19 @@ def test_2_one_such_item_is_moved_and_the_others_stay() -> None:
     hall.world.say("nora", "One is on the right.", claims=SAYS_RIGHT)
     contents = hall.contents("/max")
     assert (contents[LEFT].items, contents[RIGHT].items) == ({"diamond": 1}, {"diamond": 1})
+
+
+def test_2_what_is_left_in_a_container_rests_on_what_was_perceived_there() -> None:
+    hall = Hall(testimony="accept", max_visible_distance=20)
+    hall.world.deposit("max", LEFT, {"diamond": 2})
+    before = hall.contents("/max")[LEFT].basis
+    hall.world.say("nora", "One is on the right.", claims=SAYS_RIGHT)
+    left = hall.contents("/max")[LEFT]
+    assert (left.items, left.basis, left.current) == ({"diamond": 1}, before, False)
+    # Hearsay is younger than that: the next one comes out of the right chest.
+    there = bn.Claim.located("diamond", MIDDLE)
+    hall.world.say("nora", "Now it is in the middle.", claims=[there])
+    assert hall.where("/max") == [LEFT, MIDDLE]
 
 
 def test_2_absent_removes_what_was_believed_to_be_there() -> None:

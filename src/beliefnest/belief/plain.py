@@ -73,7 +73,8 @@ def place_key(place: Position) -> str:
 def _basis_json(basis: Basis | None) -> dict[str, object]:
     if basis is None:
         return {"observed_at": None, "source": None}
-    return {"observed_at": basis.observed_at, "source": basis.source.value}
+    speaker = {} if basis.speaker is None else {"speaker": basis.speaker}
+    return {"observed_at": basis.observed_at, "source": basis.source.value, **speaker}
 
 
 def _list(point: Iterable[float] | None) -> list[float] | None:

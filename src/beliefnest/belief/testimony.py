@@ -15,7 +15,7 @@ from beliefnest.belief.arrays import UNKNOWN, Nodes
 from beliefnest.belief.columns import Columns, cell_of
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis, Source
-from beliefnest.belief.holdings import NEVER, Content, Holdings, replaced_block
+from beliefnest.belief.holdings import NEVER, Content, Holdings, changed_items, replaced_block
 from beliefnest.belief.holdings_table import HoldingsTable
 from beliefnest.belief.node_table import NodeTable
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
@@ -251,7 +251,10 @@ def stated(context: BeliefContext, text: str, believed: int) -> int:
 
 
 def believe_located(holdings: Holdings, cell: int, item: str, basis: Basis) -> None:
-    """Put one such item into a container, out of the one in which it was believed last."""
+    """Put one such item into a container, out of the one in which it was believed last.
+
+    What is left there rests on what it rested on: nobody spoke of it.
+    """
     there = holdings.containers.get(cell)
     items = {} if there is None else there.items
     if item not in items:
@@ -261,9 +264,9 @@ def believe_located(holdings: Holdings, cell: int, item: str, basis: Basis) -> N
             if item in held.items and (donor < 0 or seen > last or (seen == last and at < donor)):
                 donor, last = at, seen
         if donor >= 0:
-            left = dict(holdings.containers[donor].items)
-            left[item] -= 1
-            _hold(holdings, donor, {name: n for name, n in left.items() if n}, basis)
+            source = holdings.containers[donor]
+            left = changed_items(source.items, {item: 1}, -1)
+            _hold(holdings, donor, left, source.basis if left else basis)
         items = {**items, item: 1}
     _hold(holdings, cell, items, basis)
 

@@ -6,7 +6,7 @@ word such as `No data`; a fault is raised.
 
 from collections.abc import Iterable, Mapping
 
-from beliefnest.belief.entries import AgentBelief, PerceivedEvent
+from beliefnest.belief.entries import AgentBelief, PerceivedEvent, Source
 from beliefnest.belief.view import State
 from beliefnest.prompts import actions, text
 from beliefnest.prompts.filterset import FilterSet, filter
@@ -239,10 +239,11 @@ def events(branch: BranchView) -> str:
 
 @filter("events_and_visibilities")
 def events_and_visibilities(branch: BranchView, me: str | None = None) -> str:
-    """Perceived actions, who else perceived each, and when each agent was last seen.
+    """Perceived actions, who else perceived each, and when each agent was last seen or heard of.
 
     `me` is an agent whose perspective is taken instead of the owner's, as the owner
-    believes it to be. `perceived_by` names the others that `me` credits with it.
+    believes it to be. `perceived_by` names the others that `me` credits with it. Where an agent
+    is only said to be is `heardOf`.
     """
     mine = branch if me is None else branch.child(_known(branch, me))
     state = mine.state
@@ -252,8 +253,8 @@ def events_and_visibilities(branch: BranchView, me: str | None = None) -> str:
         (event.tick, f"{actions.row(event)};{_witnesses(event, others)}") for event in state.events
     ]
     rows += [
-        (row_tick, f"{row_tick};{'visible' if now else 'lastSeen'};{name};position:{where};")
-        for name, row_tick, now, where in _sightings(state, list(others))
+        (row_tick, f"{row_tick};{how};{name};position:{where};")
+        for name, row_tick, how, where in _sightings(state, list(others))
     ]
     if not rows:
         return text.NOT_OBSERVED
@@ -275,12 +276,20 @@ def _witnesses(event: PerceivedEvent, others: Mapping[str, State]) -> str:
     )
 
 
-def _sightings(state: State, names: Iterable[str]) -> list[tuple[str, int, bool, str]]:
+def _sightings(state: State, names: Iterable[str]) -> list[tuple[str, int, str, str]]:
+    """Agent, tick, how its place is known, and that place."""
     return [
-        (name, believed.basis.observed_at, believed.current, text.point(believed.position))
+        (name, believed.basis.observed_at, _how_known(believed), text.point(believed.position))
         for name, believed in ((name, state.agents[name]) for name in names)
         if believed.basis is not None and believed.position is not None
     ]
+
+
+def _how_known(believed: AgentBelief) -> str:
+    if believed.current:
+        return "visible"
+    heard = believed.basis is not None and believed.basis.source is Source.HEARD
+    return "heardOf" if heard else "lastSeen"
 
 
 def _known_blocks(state: State, names: Iterable[str] | None) -> dict[str, list[Position]]:

@@ -155,9 +155,16 @@ def memory(state: State, basis: Basis, *, current: bool) -> str:
         case Source.WITNESSED:
             return f"witnessed {age}"
         case Source.HEARD:
-            return f"heard {age}" if basis.speaker is None else f"heard from {basis.speaker} {age}"
+            return f"{_heard(state, basis)} {age}"
         case Source.EDITED:
             return f"edited {age}"
+
+
+def _heard(state: State, basis: Basis) -> str:
+    """How a state's owner came by hearsay; in a model of the speaker these are its own words."""
+    if basis.speaker is None:
+        return "heard"
+    return "said" if basis.speaker == state.owner else f"heard from {basis.speaker}"
 
 
 def _age(state: State, tick: int) -> str:

@@ -22,7 +22,7 @@ _CONTAINER = re.compile(
 _PLAYER = re.compile(rf"(\w+): (?:unknown|at ({_POINT.pattern}); ([^;]*)).*")
 _CHAT = re.compile(r"\d+;([A-Za-z0-9_]+)(?: whispers to \w+)?;(.*)")
 _SIGHTING = re.compile(
-    rf"\d+;(?:goToPosition|lastSeen|visible);(\w+);(?:destination|position):({_POINT.pattern}).*"
+    rf"\d+;(?:goToPosition|lastSeen|heardOf|visible);(\w+);(?:destination|position):({_POINT.pattern}).*"
 )
 _OTHERS_TASK = re.compile(r"(\w+)'s task:\s*(.+)")
 _PLACE = re.compile(rf"(?:-\s*)?([A-Za-z][\w' ]*?)(?: is at|:)\s*({_POINT.pattern})\.?")

@@ -1,7 +1,7 @@
 """The chain of perceptions behind a belief, worked out from the log by the rules of sight."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.entries import Basis, PerceivedEvent
@@ -19,10 +19,12 @@ from beliefnest.nest.explain.element_history import (
     value_in,
 )
 from beliefnest.nest.explain.explanation import Explanation
-from beliefnest.nest.explain.parts import Absence, Element, Fact, Level, Missed, Sighting, Value
+from beliefnest.nest.explain.parts import Absence, Element, Fact, Level, Missed, Sighting, Told, Value
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Edit
+from beliefnest.world.claims import ClaimKind, claims_of
+from beliefnest.world.frames import Frame
 from beliefnest.world.values import Point, Position
 
 __all__ = ["element_of", "explain"]
@@ -131,6 +133,8 @@ class _Trace:
     parent: Value = None
     was_known: bool = False
     missed: Missed | None = None
+    value: Value = None
+    told: list[Told] = field(default_factory=list)
 
     @property
     def observed_at(self) -> int | None:
@@ -225,6 +229,9 @@ def _take(recording: Recording, trace: _Trace, step: Step, element: Element) -> 
     forest = step.forest
     outside = value_in(forest, trace.path[:-1], element)
     mine = value_in(forest, trace.path, element), grounded_at(forest, trace.path, element)
+    if mine[0] != trace.value:
+        trace.value = mine[0]
+        trace.told += _told(recording, trace.path, step, element)
     if mine != (trace.held.value, trace.observed_at):
         trace.was_known = True
         trace.since, trace.missed = None, None
@@ -272,6 +279,25 @@ def _missed(
         sightings=_sightings(recording, parent, path[-1], element, acts) if present else (),
         saw_acts=bool(acts) and all(act in mine for act in acts),
     )
+
+
+def _told(
+    recording: Recording, path: Path, step: Step, element: Element
+) -> Iterable[Told]:
+    """The claims of one entry by which a node may have moved something out of a container."""
+    if element.kind != "container" or step.place.entries == 0:
+        return
+    number = step.place.entries
+    (entry,) = recording.journal.entries(step.place.key, number - 1, number)
+    if not isinstance(entry, Frame):
+        return
+    node = step.forest.table.index[path]
+    for row, event in enumerate(entry.events):
+        for index, claim in enumerate(claims_of(event)):
+            is_here = claim.cell == element.where
+            takes = claim.kind is (ClaimKind.ABSENT if is_here else ClaimKind.LOCATED)
+            if takes and step.forest.verdicts[row, index][node].believed:
+                yield Told(entry.tick, str(event.actor), claim)
 
 
 def _is_edit(recording: Recording, place: Place, path: Path) -> bool:
@@ -333,4 +359,5 @@ def _level(trace: _Trace, element: Element) -> Level:
         since=trace.since,
         stood=trace.stood,
         missed=trace.missed,
+        told=tuple(each for each in trace.told if at is not None and each.tick >= at),
     )

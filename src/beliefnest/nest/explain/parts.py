@@ -6,6 +6,7 @@ from enum import StrEnum
 from typing import Literal
 
 from beliefnest.belief.entries import Basis, PerceivedEvent
+from beliefnest.world.claims import Claim
 from beliefnest.world.values import Point, Position
 
 __all__ = [
@@ -16,6 +17,7 @@ __all__ = [
     "Level",
     "Missed",
     "Sighting",
+    "Told",
     "Value",
     "View",
 ]
@@ -126,6 +128,21 @@ class Missed:
 
 
 @dataclass(frozen=True, slots=True)
+class Told:
+    """A claim by which something went out of a container, as it is believed.
+
+    Attributes:
+        tick: When it was made.
+        speaker: Who made it.
+        claim: What was claimed.
+    """
+
+    tick: int
+    speaker: str
+    claim: Claim
+
+
+@dataclass(frozen=True, slots=True)
 class Fact:
     """How the element is in the world of the timeline that everything rests on.
 
@@ -168,6 +185,7 @@ class Level:
         missed: The first change since that did not reach the belief, or for what was never
             known, why it is not perceived now; None: there is none.
         weighed: Whether hearsay is believed of those alone who may know better.
+        told: Claims by which something went out of the container since the basis' tick.
     """
 
     path: tuple[str, ...]
@@ -181,3 +199,4 @@ class Level:
     stood: Point | None
     missed: Missed | None
     weighed: bool = False
+    told: tuple[Told, ...] = ()

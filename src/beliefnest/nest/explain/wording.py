@@ -11,6 +11,7 @@ from beliefnest.nest.explain.parts import (
     Level,
     Missed,
     Sighting,
+    Told,
     Value,
     View,
 )
@@ -78,6 +79,7 @@ def _context(level: Level, basis: Basis, name: str) -> str:
     """What a belief rests on."""
     tick, holder = basis.observed_at, level.holder
     late = level.since is not None and level.since > tick
+    moved = [told for told in level.told if told.tick > tick]
     match basis.source:
         case Source.PRIOR:
             text = f"a prior belief, held since tick {tick}"
@@ -94,7 +96,10 @@ def _context(level: Level, basis: Basis, name: str) -> str:
         case _:
             place = "" if level.stood is None or late else f", at {_point(level.stood)},"
             text = f"{_knows(level)}{holder}{place} last saw {name} at tick {tick}"
-    if late:
+    if moved:
+        claims = "; and ".join(_told_text(level, told) for told in moved)
+        text += f"; since then {claims}"
+    elif late:
         text += f"; {holder} took it over at tick {level.since}"
         text += "" if level.stood is None else f", at {_point(level.stood)}"
     return text
@@ -102,12 +107,25 @@ def _context(level: Level, basis: Basis, name: str) -> str:
 
 def _heard(level: Level, basis: Basis) -> str:
     holder, speaker, tick = level.holder, basis.speaker, basis.observed_at
+    moved = [told for told in level.told if (told.tick, told.speaker) == (tick, speaker)]
     if speaker is None:
         return f"{holder} heard so at tick {tick}"
+    if moved:
+        text = "; and ".join(_told_text(level, told) for told in moved)
+    elif speaker == holder:
+        text = f"{holder} said so at tick {tick}"
+    else:
+        text = f"{speaker} told {holder} so at tick {tick}"
     if speaker == holder:
-        return f"{holder} said so at tick {tick}"
-    text = f"{speaker} told {holder} so at tick {tick}"
+        return text
     return f"{text}; {holder} could not have looked" if level.weighed else text
+
+
+def _told_text(level: Level, told: Told) -> str:
+    """Who told the holder what."""
+    holder, speaker = level.holder, told.speaker
+    said = f"{holder} said" if speaker == holder else f"{speaker} told {holder}"
+    return f"{said} at tick {told.tick} that {told.claim}"
 
 
 def _missed_text(missed: Missed, level: Level, fact: Fact, element: Element) -> str:
