@@ -71,7 +71,7 @@ def test_a_claim_is_found_and_the_request_noted_with_what_it_took(fake, clock):
     [
         ("The diamond is in the chest.", "JSON is malformed"),
         (answer({"kind": "located", "place": CHEST}), "lacks 'item'"),
-        (answer({**IN_CHEST, "sure": True}), "unknown field `sure`"),
+        (answer({**IN_CHEST, "sure": True}), "unknown field 'sure'"),
         ('{"claims": [], "more": 1}', "unknown field `more`"),
         (answer({**IN_CHEST, "item": "dimond"}), "dimond"),
         (answer(IN_CHEST, {**IN_CHEST, "place": [99, 0, 0]}), "outside the box"),

@@ -6,7 +6,8 @@ Where the text leaves something open, the choice made here is:
 * Somebody whose last place is seen empty has no known place, as an item has none then.
 * An item seen taken out of a container has no known place, unless more of it was perceived there.
 * `located` takes the item from where it was believed last, and what is left there rests on what
-  it rested on; it moves nothing if it is believed to be where the claim says. `absent` where nothing of it is believed has no effect.
+  it rested on; it moves nothing if it is believed to be where the claim says.
+* `absent` where nothing of it is believed has no effect.
 * Properties that a claim about a block does not name stay as they are believed.
 * Nobody can be told where they are themselves.
 """

@@ -91,7 +91,7 @@ def test_what_is_left_where_something_was_said_to_have_gone_is_explained_by_both
     world.deposit("nora", LEFT, {"diamond": 2})
     world.say("nora", "One is on the right.", claims=[LIE])
     told = str(nest["/max"].explain(container=LEFT))
-    assert "saw what happened at tick 1: nora put 2 diamond in; since then nora told max at tick 2 " in told
+    assert "nora put 2 diamond in; since then nora told max at tick 2 that diamond is in" in told
     world.say("nora", "Nothing on the right.", claims=[bn.Claim.absent("diamond", RIGHT)])
     told = str(nest["/max"].explain(container=RIGHT))
     assert "nora told max at tick 3 that diamond is not in (17, 0, 3)" in told

@@ -4,6 +4,7 @@ import sqlite3
 from collections.abc import Iterable
 from contextlib import closing
 from pathlib import Path
+from typing import Any
 
 import pytest
 from tests.nest.comparing import values
@@ -109,6 +110,8 @@ def test_the_one_who_is_asked_last_knows_what_has_happened_before() -> None:
         ([bn.Claim.located("diamond", (99, 0, 0))], "outside the box"),
         ([bn.Claim.position("otto", (1, 0, 1))], "names no agent of this world"),
         (["the diamond is right"], "is no claim"),
+        (None, "claims_from .*gave None for 'right'; it has to give a list of claims"),
+        ("left", "claims_from .*gave 'left'"),
     ],
 )
 def test_what_does_not_fit_the_world_is_not_said(found: Iterable[bn.Claim], message: str) -> None:
@@ -123,6 +126,12 @@ def test_what_does_not_fit_the_world_is_not_said(found: Iterable[bn.Claim], mess
     assert not nest["/"].state.chat
     there.step(1)
     assert nest.tick == there.now
+
+
+@pytest.mark.parametrize("hook", ["x", lambda text: []])
+def test_a_hook_that_cannot_be_asked_is_refused_at_once(hook: Any) -> None:
+    with pytest.raises(bn.InputError, match=r"claims_from is .*; give a function of three"):
+        bn.Nest(world(), INFORMED, claims_from=hook)
 
 
 def test_a_run_with_claims_read_is_that_with_claims_made(tmp_path: Path) -> None:

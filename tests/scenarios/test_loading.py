@@ -184,6 +184,41 @@ FAULTS = [
 ]
 
 
+TALK = """
+signs: [{at: [3, 1, 3], text: mine}]
+perception:
+  testimony: informed
+  grace: 5
+initial_beliefs:
+  - {path: /bob, blocks: [{at: [1, 1, 1], block: stone}]}
+  - {path: /ann, blocks: [{at: [1, 1, 1], block: stone}]}
+"""
+FAULTS_OF_TALK = [
+    ("at: [3, 1, 3]", "at: [4, 1, 4]", 1, "signs[0].at", "has a container already"),
+    ("text: mine", "text: 17", 1, "signs[0].text", "put it into quotes"),
+    ("grace: 5", "grace: -1", 4, "perception.grace", "got -1"),
+    ("grace: 5", "hearing: maybe", 4, "perception.hearing", "global, sight, {radius: ...}"),
+    ("perception:", "testimony: accept\nperception:", 2, "testimony", "stands under 'perception'"),
+    ("path: /ann", "path: /bob/", 7, "initial_beliefs[1].path", "put them into one"),
+    ("path: /ann", "path: /ann/**/bob", 7, "initial_beliefs[1].path", "at the end of one alone"),
+    ("path: /ann", "path: ann/**", 7, "initial_beliefs[1].path", "'ann/**' is no belief path"),
+    ("path: /ann", "path: /eve/**", 7, "initial_beliefs[1].path", "'/eve/**' names 'eve'"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "line", "key", "hint"), FAULTS_OF_TALK)
+def test_a_fault_in_what_is_said_and_believed_is_named(
+    tmp_path: Path, old: str, new: str, line: int, key: str, hint: str
+) -> None:
+    head = BASE.partition("conditions:")[0].rstrip("\n")
+    file = write(tmp_path, head + TALK.replace(old, new, 1))
+    with pytest.raises(ScenarioError) as caught:
+        Scenario.load(file)
+    message = str(caught.value)
+    assert message.startswith(f"{file}:{head.count(chr(10)) + 1 + line}: {key}: "), message
+    assert hint in message
+
+
 @pytest.mark.parametrize(("old", "new", "line", "key", "hint"), FAULTS)
 def test_a_fault_is_named_with_file_line_and_key(
     tmp_path: Path, old: str, new: str, line: int, key: str, hint: str

@@ -1,6 +1,7 @@
 """Claims: what they may speak of, and that they keep their meaning on every way."""
 
 from collections.abc import Callable
+from typing import Any
 
 import msgspec
 import pytest
@@ -70,8 +71,17 @@ def test_an_utterance_without_claims_is_as_ever() -> None:
         (lambda: bn.Claim.block(CHEST, "oak_door[opn=true]"), "no property 'opn'"),
         (lambda: bn.Claim.block(CHEST, "ok_door"), "no block 'ok_door'.*oak_door"),
         (lambda: claims_from_plain([{"kind": "located", "place": [1, 2, 3]}]), "lacks 'item'"),
-        (lambda: claims_from_plain([{"kind": "guess", "place": [1, 2, 3]}]), "Invalid enum"),
-        (lambda: claims_from_plain(7), "Expected `array`"),
+        (
+            lambda: claims_from_plain([{"kind": "guess", "place": [1, 2, 3]}]),
+            "1: invalid enum",
+        ),
+        (lambda: claims_from_plain(7), "claims are 7; give a list of claims"),
+        (lambda: claims_from_plain(["in red"]), "claim 1 is 'in red', which is no claim"),
+        (lambda: claims_from_plain([{"kind": "absent", "item": "apple"}]), "lacks 'place'"),
+        (
+            lambda: claims_from_plain([{"kind": "absent", "item": "apple", "place": "red"}]),
+            "claim 1: a claim is about the place 'red'; give three finite numbers",
+        ),
         (
             lambda: event_from("think", "anne", {"text": "hm", "claims": []}, ["anne"]),
             "only a chat has",
@@ -102,8 +112,17 @@ def test_a_claim_about_what_is_not_there_is_not_said(claim: bn.Claim, message: s
     assert there.now == 0
 
 
+@pytest.mark.parametrize("claims", [bn.Claim.located("diamond", CHEST), "diamond", None])
+def test_claims_that_are_no_list_are_not_said(claims: Any) -> None:
+    there = world()
+    with pytest.raises(bn.WorldError, match=r"claims are .*; give a list of claims"):
+        there.say("sally", "x", claims=claims)
+    assert there.now == 0
+
+
 @pytest.mark.parametrize(
-    "options", [{"testimony": "all"}, {"grace": -1}, {"grace": 1.5}, {"grace": True}]
+    "options",
+    [{"testimony": "all"}, {"grace": -1}, {"grace": 1.5}, {"grace": True}, {"sincere": 1}],
 )
 def test_options_of_testimony_are_checked(options: dict[str, object]) -> None:
     with pytest.raises(bn.InputError, match=next(iter(options))):

@@ -25,8 +25,8 @@ from beliefnest.bodies.scripted_hand import (
     walk,
     walk_to_use,
 )
-from beliefnest.errors import WorldError
-from beliefnest.world.claims import claims_from_plain
+from beliefnest.errors import InputError, WorldError
+from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.doors import is_open
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.signs import sign_fault
@@ -127,14 +127,24 @@ def _read_sign(hand: Hand, position: Any) -> Doing:
     return hand.signs().get(place, "")
 
 
+def _claims(told: Any) -> tuple[Claim, ...]:
+    try:
+        return claims_from_plain(told or ())
+    except InputError as fault:
+        raise SkillError(
+            f"{fault}; make each with located, absent, positionOf or blockAt, "
+            "like [located('diamond', new Vec3(3, 1, 3))]"
+        ) from fault
+
+
 def _say(hand: Hand, text: Any, claims: Any = ()) -> Doing:
     yield from _speak(hand)
-    hand.world.say(hand.name, text_in(text), claims_from_plain(claims or ()))
+    hand.world.say(hand.name, text_in(text), _claims(claims))
 
 
 def _whisper(hand: Hand, other: Any, text: Any, claims: Any = ()) -> Doing:
     yield from _speak(hand)
-    hand.world.whisper(hand.name, text_in(other), text_in(text), claims_from_plain(claims or ()))
+    hand.world.whisper(hand.name, text_in(other), text_in(text), _claims(claims))
 
 
 def _speak(hand: Hand) -> Doing:

@@ -107,5 +107,7 @@ class Perception:
         speech = self.speech_ticks
         if not isinstance(speech, int) or isinstance(speech, bool) or speech < 0:
             raise InputError(f"speech_ticks is {speech!r}; it must be a whole number from 0")
+        if not isinstance(self.sincere, bool):
+            raise InputError(f"sincere is {self.sincere!r}; it must be True or False")
         object.__setattr__(self, "hearing", _hearing(self.hearing))
         object.__setattr__(self, "transparent_blocks", tuple(sorted(set(self.transparent_blocks))))

@@ -129,7 +129,7 @@ class _Builder:
         box = build_box(document, file)
         grid = build_grid(document, file, box, registry)
         containers = build_containers(document, file.containers, grid, box, registry)
-        signs = build_signs(document, file.signs, grid, box, registry)
+        signs = build_signs(document, file, grid, box, registry)
         agents = build_agents(document, file, grid, box, registry)
         grid.flags.writeable = False
         self._snapshot = Snapshot(0, box, grid, containers, agents, signs=signs)
@@ -345,6 +345,11 @@ class _Builder:
             names = parse_pattern(entry.path, self._snapshot.agents)
         if not names:
             raise self._document.fault((*path, "path"), "'/' is the real world, not a belief")
+        earlier = self._file.initial_beliefs[:number]
+        if names in [parse_pattern(each.path, self._snapshot.agents) for each in earlier]:
+            raise self._document.fault(
+                (*path, "path"), f"{entry.path!r} has initial beliefs already; put them into one"
+            )
         box = self._snapshot.box
         blocks: dict[Position, Block] = {}
         for index, block in enumerate(entry.blocks):

@@ -67,13 +67,33 @@ def _fault(document: Document, error: str) -> ScenarioError:
     if missing := _MISSING_FIELD.fullmatch(what):
         return document.fault(path, f"the key {missing['name']!r} is missing")
     what = what[:1].lower() + what[1:].replace("`", "'")
+    if match["key"]:
+        return document.fault(path, f"a key in it: {what}")
+    return document.fault(path, what + _found(document.root, path, what) + _allowed(path, what))
+
+
+def _found(root: Node, path: KeyPath, what: str) -> str:
+    """What stands there, where the fault does not say so."""
+    value = _node_at(root, list(path)).value
+    if not what.startswith("expected") or isinstance(value, dict | list):
+        return ""
+    return "" if ", got" in what else f", got {value!r}"
+
+
+def _allowed(path: KeyPath, what: str) -> str:
+    """What may stand there."""
     if values := allowed_values(path):
-        what += f"; allowed are {', '.join(values)}"
-    return document.fault(path, f"a key in it: {what}" if match["key"] else what)
+        forms = [f"{{{key}: ...}}" for key in allowed_keys(path)]
+        return f"; allowed are {', '.join([*values, *forms])}"
+    is_text = what.startswith("expected 'str', got") and not what.endswith(("'array'", "'object'"))
+    return "; put it into quotes" if is_text else ""
 
 
 def _hint(name: str, path: KeyPath) -> str:
     allowed = allowed_keys(path)
+    inner = [key for key in allowed if name in allowed_keys((*path, key))]
+    if inner:
+        return f"; it stands under {inner[0]!r}"
     close = difflib.get_close_matches(name, allowed, n=1)
     return f"; did you mean {close[0]!r}?" if close else f"; keys are {', '.join(allowed)}"
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.scenarios.document import Document, KeyPath
-from beliefnest.scenarios.format import BlockEntry, ContainerEntry, ScenarioFile, SignEntry
+from beliefnest.scenarios.format import BlockEntry, ContainerEntry, ScenarioFile
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.limits import box_fault, container_slots, items_fault
 from beliefnest.world.registry import Registry
@@ -68,16 +68,22 @@ def build_grid(document: Document, file: ScenarioFile, box: Box, registry: Regis
 
 def build_signs(
     document: Document,
-    entries: Iterable[SignEntry],
+    file: ScenarioFile,
     grid: BlockGrid,
     box: Box,
     registry: Registry,
 ) -> dict[Position, str]:
     """What is written on signs; those on which nothing is are left out."""
     places: set[Position] = set()
+    containers = {container.at for container in file.containers}
     texts = {}
-    for number, entry in enumerate(entries):
+    for number, entry in enumerate(file.signs):
         path = ("signs", number)
+        if entry.at in containers:
+            raise document.fault(
+                (*path, "at"),
+                f"{list(entry.at)} has a container already; put the sign beside or above it",
+            )
         if entry.at in places:
             raise document.fault((*path, "at"), f"{list(entry.at)} has a sign already")
         places.add(entry.at)

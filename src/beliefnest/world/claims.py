@@ -146,24 +146,28 @@ class Claim:
 
 
 class _Plain(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A claim as it is written; what its values are `Claim` checks, in words of its own."""
+
     kind: Literal["located", "absent", "position", "block"]
-    place: Point
-    item: str | None = None
-    agent: str | None = None
-    state: str | None = None
+    place: Any = None
+    item: Any = None
+    agent: Any = None
+    state: Any = None
 
     def value(self) -> Claim:
-        x, y, z = self.place
-        match self.kind:
-            case "located" | "absent" if self.item is not None:
-                make = Claim.located if self.kind == "located" else Claim.absent
-                return make(self.item, _block_position(self.place))
-            case "position" if self.agent is not None:
-                return Claim.position(self.agent, (x, y, z))
-            case "block" if self.state is not None:
-                return Claim.block(_block_position(self.place), self.state)
         needed = {"position": "agent", "block": "state"}.get(self.kind, "item")
-        raise InputError(f"a claim of kind {self.kind!r} lacks {needed!r}")
+        for name in (needed, "place"):
+            if getattr(self, name) is None:
+                raise InputError(f"a claim of kind {self.kind!r} lacks {name!r}")
+        match self.kind:
+            case "located":
+                return Claim.located(self.item, self.place)
+            case "absent":
+                return Claim.absent(self.item, self.place)
+            case "position":
+                return Claim.position(self.agent, self.place)
+            case "block":
+                return Claim.block(self.place, self.state)
 
 
 def claims_from_plain(plain: object) -> tuple[Claim, ...]:
@@ -173,10 +177,21 @@ def claims_from_plain(plain: object) -> tuple[Claim, ...]:
         InputError: It is of another form; the message says which claim and where.
         UnknownNameError: There is no such item or block.
     """
+    if not isinstance(plain, list | tuple):
+        raise InputError(f"claims are {plain!r}; give a list of claims")
+    return tuple(_claim(number, each) for number, each in enumerate(plain, 1))
+
+
+def _claim(number: int, plain: object) -> Claim:
+    if not isinstance(plain, Mapping):
+        raise InputError(f"claim {number} is {plain!r}, which is no claim")
     try:
-        return tuple(each.value() for each in msgspec.convert(plain, tuple[_Plain, ...]))
+        return msgspec.convert(plain, _Plain).value()
     except msgspec.ValidationError as fault:
-        raise InputError(f"claims: {fault}") from fault
+        what = str(fault).replace("`", "'").removesuffix(" - at '$.kind'")
+        raise InputError(f"claim {number}: {what[:1].lower()}{what[1:]}") from fault
+    except BeliefNestError as fault:
+        raise type(fault)(f"claim {number}: {fault}") from fault
 
 
 def claims_of(event: Event) -> tuple[Claim, ...]:
@@ -191,8 +206,10 @@ def with_claims(
     """An utterance's detail with claims in it; as it is where there are none.
 
     Raises:
-        InputError: One is no claim, or does not fit the world.
+        InputError: They are no list, one is no claim, or does not fit the world.
     """
+    if isinstance(claims, str) or not isinstance(claims, Iterable):
+        raise InputError(f"claims are {claims!r}; give a list of claims, [] for none")
     given = tuple(claims)
     for claim in given:
         if not isinstance(claim, Claim):

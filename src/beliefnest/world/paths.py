@@ -21,18 +21,22 @@ def parse_path(text: str, agents: Collection[str]) -> tuple[str, ...]:
     Raises:
         PathError: The text is no path, names an agent that there is not, or is too deep.
     """
+    return _parsed(text, text, agents)
+
+
+def _parsed(text: str, written: str, agents: Collection[str]) -> tuple[str, ...]:
+    """Agent names of a path that is a part of what messages show."""
     if not isinstance(text, str) or not text.startswith("/"):
-        raise PathError(f"{_short(text)} is no belief path; write '/' or '/agent/agent'")
+        raise PathError(f"{_short(written)} is no belief path; write '/' or '/agent/agent'")
     if text == "/":
         return ()
     names = text[1:].removesuffix("/").split("/")
     if "" in names:
-        raise PathError(f"{_short(text)} is no belief path: a name between slashes is empty")
+        raise PathError(f"{_short(written)} is no belief path: a name between slashes is empty")
     for name in names:
         if name not in agents:
-            raise PathError(
-                f"{_short(text)} names {_short(name)}; the agents are {', '.join(sorted(agents))}"
-            )
+            there = ", ".join(sorted(agents))
+            raise PathError(f"{_short(written)} names {_short(name)}; the agents are {there}")
     return normalised(names)
 
 
@@ -42,9 +46,14 @@ def parse_pattern(text: str, agents: Collection[str]) -> tuple[str, ...]:
     Raises:
         PathError: As for `parse_path`.
     """
-    if isinstance(text, str) and text.endswith(f"/{AND_BELOW}"):
-        return (*parse_path(text.removesuffix(AND_BELOW), agents), AND_BELOW)
-    return parse_path(text, agents)
+    if not isinstance(text, str) or AND_BELOW not in text.split("/"):
+        return parse_path(text, agents)
+    above = text.removesuffix(f"/{AND_BELOW}")
+    if above == text or AND_BELOW in above.split("/"):
+        raise PathError(
+            f"{_short(text)} is no belief path: '/{AND_BELOW}' stands at the end of one alone"
+        )
+    return (*_parsed(above or "/", text, agents), AND_BELOW)
 
 
 def normalised(names: Iterable[str]) -> tuple[str, ...]:

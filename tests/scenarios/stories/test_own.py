@@ -87,8 +87,11 @@ def test_the_command_lists_what_is_answered_otherwise(file, capsys) -> None:
 @pytest.mark.parametrize(
     ("change", "what"),
     [
-        ({"events": [{"event": "juggle"}]}, "line 1: .*juggle"),
-        ({"events": ["Sally juggled."]}, "line 1: line 1: 'Sally juggled.'"),
+        ({"events": [{"event": "juggle"}]}, "line 1: event 1: .*'juggle'; there are enter, leave"),
+        ({"events": [{"event": "wisper"}]}, "event 1: .*'wisper'; did you mean 'whisper'"),
+        ({"events": ["Sally juggled."]}, "line 1: event 1: 'Sally juggled.'"),
+        ({"event": []}, "line 1: unknown key 'event'; did you mean 'events'"),
+        ({"testimony": "maybe"}, "testimony: .*'maybe'; allowed are none, accept, informed"),
         ({"events": []}, "the story is empty"),
         ({"colour": "red"}, "colour"),
         ({"questions": [{"thing": "pear", "answer": "barn"}]}, "the answer 'barn' is none"),
@@ -105,7 +108,7 @@ def test_what_is_wrong_is_said_with_the_line(file, change, what: str) -> None:
 
 def test_a_door_that_is_open_already_is_a_fault(file) -> None:
     events = ["Sally entered the den.", "Sally opened the door of the den."]
-    with pytest.raises(bn.InputError, match=r"line 2: .*is open already"):
+    with pytest.raises(bn.InputError, match=r"event 2: .*is open already"):
         read_own(file({"events": events, "questions": []}))
 
 
@@ -152,10 +155,22 @@ def test_what_is_written_on_a_sign_is_known_to_who_saw_it(tmp_path, world):
     [
         ({"events": ['Anne wrote "x" on the sign of the den.']}, "Anne is in no room"),
         ({"questions": [{"sign": "attic", "answer": "x"}]}, "nobody writes on a sign of the attic"),
-        ({"questions": [{"sign": "den", "answer": "x"}]}, "the answer 'x' is none; there are "),
+        (
+            {"questions": [{"sign": "den", "answer": "x"}]},
+            "'x' is none; there are '', 'no\\\\npears', 'pears'",
+        ),
         (
             {"events": [*SIGNS["events"][:2], f'Anne wrote "{"x" * 46}" on the sign of the den.']},
             "46",
+        ),
+        (
+            {
+                "events": [
+                    *SIGNS["events"][:2],
+                    'Anne wrote "1\n2\n3\n4\n5" on the sign of the den.',
+                ]
+            },
+            "event 3: .*a text of 5 lines",
         ),
     ],
 )
@@ -164,3 +179,12 @@ def test_what_cannot_be_on_a_sign_is_named(tmp_path, change, fault):
     file.write_text(json.dumps(SIGNS | change))
     with pytest.raises(bn.InputError, match=fault):
         read_own(file)
+
+
+def test_what_a_sentence_writes_on_a_sign_stays_as_it_is(tmp_path):
+    file = tmp_path / "stories.jsonl"
+    events = [*SIGNS["events"][:2], 'Anne wrote "a  b\nc" on the  sign of the den.']
+    asked = {"sign": "den", "believers": ["Sally"], "answer": "a  b\nc"}
+    file.write_text(json.dumps({"events": events, "questions": [asked]}))
+    (told,) = read_own(file)
+    assert all(judged.ok for judged in answer_story(told, "scripted", 0))

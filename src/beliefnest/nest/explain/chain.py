@@ -19,7 +19,16 @@ from beliefnest.nest.explain.element_history import (
     value_in,
 )
 from beliefnest.nest.explain.explanation import Explanation
-from beliefnest.nest.explain.parts import Absence, Element, Fact, Level, Missed, Sighting, Told, Value
+from beliefnest.nest.explain.parts import (
+    Absence,
+    Element,
+    Fact,
+    Level,
+    Missed,
+    Sighting,
+    Told,
+    Value,
+)
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Edit
@@ -281,9 +290,7 @@ def _missed(
     )
 
 
-def _told(
-    recording: Recording, path: Path, step: Step, element: Element
-) -> Iterable[Told]:
+def _told(recording: Recording, path: Path, step: Step, element: Element) -> Iterable[Told]:
     """The claims of one entry by which a node may have moved something out of a container."""
     if element.kind != "container" or step.place.entries == 0:
         return

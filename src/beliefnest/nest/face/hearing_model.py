@@ -1,9 +1,10 @@
 """What reads claims out of text in a nest: a function, or a model whose requests are noted."""
 
+import inspect
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
-from beliefnest.errors import ModelError
+from beliefnest.errors import InputError, ModelError
 from beliefnest.nest.acting.hearsay import ClaimReader
 from beliefnest.nest.face.recording_model import RecordingModel
 from beliefnest.nest.past.recording import Recording
@@ -29,13 +30,35 @@ class AsksModel(Protocol):
 
 
 def reader_of(hook: ClaimsFrom | None, recording: Recording) -> ClaimReader | None:
-    """What asks a hook in a nest; None for none."""
+    """What asks a hook in a nest; None for none.
+
+    Raises:
+        InputError: It cannot be called with a text, its speaker and what can be named.
+    """
     if hook is None:
         return None
     given: object = hook
     if isinstance(given, AsksModel):
         return _ModelReader(given, recording)
+    if not _takes_three(given):
+        raise InputError(
+            f"claims_from is {given!r}; give a function of three arguments: text, speaker, nameable"
+        )
     return _FunctionReader(hook)
+
+
+def _takes_three(hook: object) -> bool:
+    """Whether something can be called with three arguments, as far as it tells."""
+    if not callable(hook):
+        return False
+    try:
+        inspect.signature(hook).bind("text", "speaker", "nameable")
+    except TypeError:
+        return False
+    except ValueError:
+        # Some functions of C do not tell.
+        return True
+    return True
 
 
 class _FunctionReader:
@@ -48,7 +71,13 @@ class _FunctionReader:
     def read(
         self, path: tuple[str, ...], tick: int, text: str, speaker: str, nameable: Nameable
     ) -> Iterable[Claim]:
-        return self._hook(text, speaker, nameable)
+        found: object = self._hook(text, speaker, nameable)
+        if isinstance(found, str) or not isinstance(found, Iterable):
+            raise InputError(
+                f"claims_from ({self.name}) gave {found!r} for {text!r}; "
+                "it has to give a list of claims, [] for none"
+            )
+        return found
 
 
 class _ModelReader:

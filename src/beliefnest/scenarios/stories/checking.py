@@ -38,7 +38,7 @@ def data_fault(story: Story, question: Question, expected: str | None) -> str | 
     there = f" while {who} {'are' if ' and ' in who else 'is'} there" if who else ""
     never = "" if shown else f"; it is never in the {expected}{there}"
     return (
-        f"wrong in the data: from line {line.number} ({line.text}) on the {thing} is in the "
+        f"wrong in the data: from {line.place} ({line.text}) on the {thing} is in the "
         f"{last[1].container} of the {last[1].room}{there}, and nothing after that is known to "
         f"them{never}"
     )

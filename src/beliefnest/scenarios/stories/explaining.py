@@ -91,4 +91,4 @@ def _since(played: PlayedStory, basis: Basis) -> str:
     if number is None:
         return f"{text}, before line 1"
     line = played.story.lines[number]
-    return f"{text}, during line {line.number}: {line.text}"
+    return f"{text}, during {line.place}: {line.text}"

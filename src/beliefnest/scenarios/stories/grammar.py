@@ -128,18 +128,25 @@ class Line:
     """A sentence and where it stands.
 
     Attributes:
-        number: Line of the story's text, from 1.
+        number: Line of the story's text, or event of its list, from 1.
         text: The line as it is written.
         sentence: What it says.
+        unit: What is counted: `line` or `event`.
     """
 
     number: int
     text: str
     sentence: Sentence
+    unit: str = "line"
+
+    @property
+    def place(self) -> str:
+        """Where it stands, as `line 3`."""
+        return f"{self.unit} {self.number}"
 
     def fault(self, what: str) -> InputError:
         """The error to raise for this line."""
-        return InputError(f"line {self.number}: {self.text!r}: {what}")
+        return InputError(f"{self.place}: {self.text!r}: {what}")
 
 
 _AGENT = r"[A-Za-z0-9_]{1,16}"
@@ -147,6 +154,7 @@ _AND = r"(?:,\s*(?:and\s+)?|\s+and\s+)"
 _AGENTS = rf"(?P<agents>{_AGENT}(?:{_AND}{_AGENT})*)"
 _NAME = r"[A-Za-z0-9][\w'-]*(?: [\w'-]+)*?"
 _NUMBER = re.compile(r"^\d+[.:)]?\s+")
+_SPACE = re.compile(r'(?P<text>"[^"]*")|\s+')
 _JOINT = re.compile(_AND)
 _A = r"(?:the|a|an|his|her|their)"
 _ALL = r"(?:(?:both|all|together)\s+)?"
@@ -235,23 +243,26 @@ def parse_lines(text: str) -> tuple[Line, ...]:
     )
 
 
-def parse_line(number: int, text: str) -> Line:
-    """One sentence of a story, the line of that number.
+def parse_line(number: int, text: str, unit: str = "line") -> Line:
+    """One sentence of a story, the line or event of that number.
 
     Raises:
         InputError: It is none of the sentences known.
     """
-    return Line(number, text.strip(), _parse(number, text.strip()))
+    line = text.strip()
+    return Line(number, line, _parse(line, f"{unit} {number}"), unit)
 
 
-def _parse(number: int, line: str) -> Sentence:
-    words = " ".join(_NUMBER.sub("", line, count=1).split()).removesuffix(".")
+def _parse(line: str, place: str) -> Sentence:
+    # What is written on a sign stays as it is.
+    spaced = _SPACE.sub(lambda found: found["text"] or " ", _NUMBER.sub("", line, count=1))
+    words = spaced.strip().removesuffix(".")
     for form, make in _KINDS:
         match = form.fullmatch(words)
         if match is not None:
             return make(match)
     raise InputError(
-        f"line {number}: {line!r} is no sentence of a story; write that someone entered, exited "
+        f"{place}: {line!r} is no sentence of a story; write that someone entered, exited "
         "or stayed in a room, moved a thing to a container, opened a container, opened or shut "
         'the door of a room, wrote "..." on the sign of a room, said or whispered to someone that '
         "a thing is in a container, likes "

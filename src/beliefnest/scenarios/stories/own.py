@@ -11,6 +11,7 @@ from beliefnest.files import decode_json, read_regular
 from beliefnest.perception.options import ContainerMode, Testimony
 from beliefnest.scenarios.stories import grammar
 from beliefnest.scenarios.stories.data import Item, StoryItems
+from beliefnest.scenarios.stories.faults import form_fault
 from beliefnest.scenarios.stories.grammar import Line, Sentence, parse_line
 from beliefnest.scenarios.stories.playing import Knowing, check_question
 from beliefnest.scenarios.stories.questions import Question, parse_question
@@ -162,7 +163,10 @@ def read_own(path: Path, rows: Collection[int] | None = None) -> tuple[StoryItem
             continue
         try:
             stories.append(_story(number, decode_json(line, _OwnStory)))
-        except (InputError, msgspec.DecodeError) as error:
+        except msgspec.DecodeError as error:
+            words = form_fault(error, _OwnStory, _Happening)
+            raise InputError(f"{path}, line {number}: {words}") from None
+        except InputError as error:
             raise InputError(f"{path}, line {number}: {error}") from None
     return tuple(stories)
 
@@ -180,8 +184,8 @@ def _story(number: int, told: _OwnStory) -> StoryItems:
 
 def _line(number: int, event: str | _Happening) -> Line:
     if not isinstance(event, str):
-        return Line(number, msgspec.json.encode(event).decode(), event.sentence())
-    return parse_line(number, " ".join(event.split()))
+        return Line(number, msgspec.json.encode(event).decode(), event.sentence(), "event")
+    return parse_line(number, event, "event")
 
 
 def _question(asked: _Asked) -> Question:
@@ -215,5 +219,5 @@ def _check_answer(story: Story, item: Item) -> None:
     if item.expected not in there:
         raise InputError(
             f"{item.question.text!r}: the answer {item.expected!r} is none; there are "
-            f"{', '.join(sorted(there))}, and null for unknown"
+            f"{', '.join(map(repr, sorted(there)))}, and null for unknown"
         )

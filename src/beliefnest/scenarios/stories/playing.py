@@ -296,7 +296,7 @@ def _play(story: Story, plan: FloorPlan, nest: Nest, world: str, grace: int) -> 
             shuts = isinstance(act, Come | Go) and act.shuts
             steps = [{a: p} for a, p in programs.items()] if shuts else [programs]
             for together in steps:
-                _perform(nest, together, f"line {line.number}: {line.text!r}")
+                _perform(nest, together, f"{line.place}: {line.text!r}")
             if grace and isinstance(act, Go):
                 nest["/"].step(grace + 1)
         ends.append(nest.tick)

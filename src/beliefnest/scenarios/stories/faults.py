@@ -1,0 +1,51 @@
+"""What is wrong with the form of a story, in the words of the format."""
+
+import difflib
+import re
+from collections.abc import Sequence
+from typing import Any, get_args
+
+import msgspec
+
+__all__ = ["form_fault"]
+
+_FAULT = re.compile(r"(?P<what>.*?)(?: - at `\$\.?(?P<path>.*)`)?", re.DOTALL)
+_EVENT = re.compile(r"events\[(\d+)\]\.?")
+_UNKNOWN = re.compile(r"Object contains unknown field `(?P<name>.*)`", re.DOTALL)
+
+
+def form_fault(fault: msgspec.DecodeError, story: type[Any], event: Any) -> str:
+    """Where a story is not of the form it should have, and what would be.
+
+    Args:
+        fault: What reading it raised.
+        story: The type of a story.
+        event: The union of the types of events.
+    """
+    match = _FAULT.fullmatch(str(fault))
+    if match is None:
+        return str(fault)
+    what, path = match["what"], match["path"] or ""
+    words = what[:1].lower() + what[1:].replace("`", "'")
+    if unknown := _UNKNOWN.fullmatch(what):
+        words = f"unknown key {unknown['name']!r}{_nearest(unknown['name'], _keys(story, path))}"
+    if what.startswith("Invalid value") and path.endswith(".event"):
+        kinds = [str(kind.__struct_config__.tag) for kind in get_args(event)]
+        words += _nearest(what.split("'")[1], kinds)
+    choices = {field.name: get_args(field.type) for field in msgspec.structs.fields(story)}
+    if what.startswith("Invalid enum value"):
+        words += f"; allowed are {', '.join(map(str, choices.get(path, ())))}"
+    where = _EVENT.sub(lambda found: f"event {int(found[1]) + 1}: ", path).removesuffix(": ")
+    return f"{where}: {words}" if where else words
+
+
+def _keys(story: type[Any], path: str) -> Sequence[str]:
+    """The keys of a story; none where it is another part."""
+    return [] if path else [field.name for field in msgspec.structs.fields(story)]
+
+
+def _nearest(name: str, known: Sequence[str]) -> str:
+    if not known:
+        return ""
+    close = difflib.get_close_matches(name, known, n=1)
+    return f"; did you mean {close[0]!r}?" if close else f"; there are {', '.join(known)}"
