@@ -208,9 +208,10 @@ def with_claims(
     Raises:
         InputError: They are no list, one is no claim, or does not fit the world.
     """
-    if isinstance(claims, str) or not isinstance(claims, Iterable):
-        raise InputError(f"claims are {claims!r}; give a list of claims, [] for none")
-    given = tuple(claims)
+    told: object = claims
+    if isinstance(told, str) or not isinstance(told, Iterable):
+        raise InputError(f"claims are {told!r}; give a list of claims, [] for none")
+    given = tuple(told)
     for claim in given:
         if not isinstance(claim, Claim):
             raise InputError(
