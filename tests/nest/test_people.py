@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 import yaml
 from tests.people import Person
+from tests.servers import GameServer
 
 from beliefnest import Nest, Scenario
 from beliefnest.cli.app import run_command_line
@@ -22,6 +23,35 @@ await getItemFromChest(bot, new Vec3(-2, -51, -4), {diamond: 1})
 await goToPosition(bot, new Vec3(2, -51, -3), 0)
 await depositItemIntoChest(bot, new Vec3(2, -51, -4), {diamond: 1})
 """
+WORKSHOP = """
+name: workshop
+box: [[0, 0, 0], [12, 5, 12]]
+blocks:
+  - {block: stone, fill: [[0, 0, 0], [12, 0, 12]]}
+  - {block: "lever[face=floor,facing=north]", at: [4, 1, 4]}
+  - {block: "oak_door[half=lower,facing=north]", at: [6, 1, 4]}
+  - {block: "oak_door[half=upper,facing=north]", at: [6, 2, 4]}
+  - {block: dirt, at: [9, 1, 9]}
+containers:
+  - {at: [6, 1, 9], block: "chest[facing=south]", items: {apple: 3}}
+  - {at: [8, 1, 11], block: barrel}
+agents:
+  sally: {position: [7.5, 1, 7.5]}
+  anne: {position: [4.5, 1, 5.5], type: human, inventory: {diamond: 2, cobblestone: 2}}
+"""
+WORK = """
+bot.chat('Hello.'); bot.chat('/msg sally Psst.')
+await turnOnLever(bot, new Vec3(4, 1, 4))
+await openDoor(bot, new Vec3(6, 1, 4))
+await getItemFromChest(bot, new Vec3(6, 1, 9), {apple: 2})
+await mineBlock(bot, new Vec3(9, 1, 9), 'dirt')
+await placeItem(bot, 'cobblestone', new Vec3(9, 1, 9))
+await depositItemIntoChest(bot, new Vec3(8, 1, 11), {apple: 1})
+await giveItemToOther(bot, 'sally', 'diamond', 1)
+"""
+DEEDS = ["use_lever", "use_door", "open_container", "get_item_from_chest", "mine_block"]
+DEEDS += ["place_block", "open_container", "deposit_item_into_chest", "give_item_to_other"]
+SILENT = ("move_to", "block_update", "chat")
 BELIEFS = ("/", "/sally", "/anne", "/observer", "/observer/sally", "/observer/anne")
 
 
@@ -54,21 +84,75 @@ def contents(nest):
     }
 
 
-@pytest.mark.parametrize("condition", [1, 3])
-def test_a_person_moves_the_diamond_and_all_believe_as_if_a_bot_had(condition, scenario):
-    with Nest.open(Scenario.load("sally-anne", condition), "embedded") as nest:
-        nest.play()
-        as_with_bots = contents(nest)
-        kinds = {e.kind for e in nest["/"].state.events if e.actor == "anne"}
+@pytest.fixture(scope="module")
+def server():
+    with GameServer(latency=10) as running:
+        yield running
+
+
+def acted_by_a_person(scenario, world, **options):
+    """Anne, a person, moves the diamond; what all believe in the end, and what she did."""
     with (
-        Nest.open(scenario(condition), realtime=True, listen=0) as nest,
+        Nest.open(scenario, world, **options) as nest,
         Person(nest.address, "anne") as anne,
     ):
         nest.play()
         anne.does(MOVE)
         assert nest.wait(lambda: anne.is_done, LONG_S)
-        assert contents(nest) == as_with_bots
-        assert {e.kind for e in nest["/"].state.events if e.actor == "anne"} == kinds
+        assert nest.wait(lambda: contents(nest)["/"][RIGHT] == {"diamond": 1}, LONG_S)
+        return contents(nest), {e.kind for e in nest["/"].state.events if e.actor == "anne"}
+
+
+@pytest.mark.parametrize("condition", [1, 3])
+def test_a_person_moves_the_diamond_and_all_believe_as_if_a_bot_had(condition, scenario, server):
+    with Nest.open(Scenario.load("sally-anne", condition), "embedded") as nest:
+        nest.play()
+        as_with_bots = contents(nest), {e.kind for e in nest["/"].state.events if e.actor == "anne"}
+    if condition == 1:
+        # Nobody hears what her client sends there: what comes of it tells.
+        assert acted_by_a_person(scenario(1), server.address()) == as_with_bots
+    else:
+        hosted = acted_by_a_person(scenario(3), "embedded", realtime=True, listen=0)
+        assert hosted == as_with_bots
+
+
+def test_what_a_person_does_on_a_server_becomes_the_same_actions(server, tmp_path):
+    path = tmp_path / "workshop.yaml"
+    path.write_text(WORKSHOP, encoding="utf-8")
+    with (
+        Nest.open(Scenario.load(str(path)), server.address(at="0,16")) as nest,
+        Person(nest.address, "anne") as anne,
+    ):
+        nest.wait_for_people()
+        anne.does(WORK)
+        assert nest.wait(lambda: anne.is_done, LONG_S)
+        done = "receive_item_from_other"
+        assert nest.wait(lambda: done in {e.kind for e in nest["/"].state.events}, LONG_S)
+        state = nest["/"].state
+        told = [(e.kind.value, e.actor) for e in state.events if e.kind.value not in SILENT]
+        assert sorted(told) == [
+            *sorted((kind, "anne") for kind in DEEDS),
+            (done, "sally"),
+        ]
+        assert [words[1:] for words in state.chat] == [("anne", "Hello."), ("anne", "Psst.")]
+        assert [words[1:] for words in nest["/sally"].state.chat] == [
+            ("anne", "Hello."),
+            ("anne", "Psst."),
+        ]
+        assert state.containers[(6, 1, 9)].items == {"apple": 1}
+        assert state.containers[(8, 1, 11)].items == {"apple": 1}
+        left = {"apple": 1, "cobblestone": 1, "diamond": 1, "dirt": 1}
+        assert nest.wait(lambda: nest["/"].state.agents["anne"].inventory == left, LONG_S)
+        with pytest.raises(WorldError, match=r"anne is a person.*nest\.take_over"):
+            nest["/"].run("anne", "bot.chat('I am a program.')")
+        nest.take_over("anne")
+        assert anne.left() == "anne is played by BeliefNest from now on"
+        assert nest["/"].run("anne", "bot.chat('I am a program.')").ok
+        assert nest["/"].state.agents["anne"].inventory == left
+        nest.hand_back("anne")
+        with Person(nest.address, "anne"):
+            nest.wait_for_people()
+            assert nest.people == {"anne"}
 
 
 def test_who_leaves_stands_there_until_they_come_back(scenario, tmp_path):

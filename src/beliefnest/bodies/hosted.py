@@ -1,6 +1,5 @@
 """The embedded world in real time, where people are agents as well; beliefs in another process."""
 
-from collections.abc import Iterable
 from dataclasses import replace
 from typing import Self
 
@@ -29,7 +28,6 @@ class HostedWorld(RealtimeWorld):
     ) -> None:
         super().__init__(seed, limits)
         self._address = address
-        self._invited: frozenset[str] = frozenset()
 
     @classmethod
     def start(cls, address: ListenAddress, seed: int, limits: ProcessLimits | None = None) -> Self:
@@ -61,21 +59,6 @@ class HostedWorld(RealtimeWorld):
     def minecraft(self) -> str:
         """The version that it has to be."""
         return MINECRAFT
-
-    @property
-    def invited(self) -> frozenset[str]:
-        """Who may join."""
-        return self._invited
-
-    def invite(self, people: Iterable[str]) -> None:
-        """Say who may join; one who is there and may no longer be is sent away."""
-        self._invited = frozenset(people)
-        self.here()
-
-    def here(self) -> frozenset[str]:
-        """The people who are there now."""
-        told = self._live().request("people", invited=sorted(self._invited))
-        return frozenset(told["here"])
 
     def close(self) -> None:
         """End both processes; people are disconnected."""

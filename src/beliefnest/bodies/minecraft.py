@@ -4,7 +4,7 @@ from typing import Self
 
 from beliefnest.bodies.address import ServerAddress
 from beliefnest.bodies.channel import Channel
-from beliefnest.bodies.embedded import started
+from beliefnest.bodies.embedded import MINECRAFT, started
 from beliefnest.bodies.exhibits import Exhibit, Plot, Shown
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.node_files import REALTIME
@@ -63,6 +63,16 @@ class MinecraftWorld(RealtimeWorld):
         )
 
     @property
+    def address(self) -> str:
+        """Where a Minecraft client joins: `HOST:PORT`."""
+        return f"{self._address.host}:{self._address.port}"
+
+    @property
+    def minecraft(self) -> str:
+        """The version that it has to be."""
+        return MINECRAFT
+
+    @property
     def pid(self) -> int:
         """Process id of the Node that speaks to the server; it is started if it has not been."""
         return self._live().pid
@@ -88,5 +98,6 @@ class MinecraftWorld(RealtimeWorld):
 
     def _started(self) -> Channel:
         channel, versions = started(self._seed, self._limits, REALTIME, server=self._address.told)
+        channel.request("people", invited=sorted(self._invited))
         self._versions = {**versions, "server": str(self._address)}
         return channel

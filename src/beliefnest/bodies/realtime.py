@@ -1,7 +1,7 @@
 """Reality in real time, in a process of its own that has sockets; beliefs in the embedded world."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from beliefnest.bodies.channel import Channel
 from beliefnest.bodies.embedded import EmbeddedBody, EmbeddedWorld
@@ -46,6 +46,36 @@ class RealtimeWorld(ABC):
         self._channel: Channel | None = None
         self._versions: Mapping[str, str] = {}
         self._closed = False
+        self._invited: frozenset[str] = frozenset()
+
+    @property
+    @abstractmethod
+    def address(self) -> str:
+        """Where a Minecraft client joins: `HOST:PORT`."""
+
+    @property
+    @abstractmethod
+    def minecraft(self) -> str:
+        """The version that it has to be."""
+
+    @property
+    def invited(self) -> frozenset[str]:
+        """Who may join."""
+        return self._invited
+
+    def invite(self, people: Iterable[str]) -> None:
+        """Say who may join; one who is there and may no longer be is sent away.
+
+        Raises:
+            WorldError: A server's operator cannot send people away.
+        """
+        self._invited = frozenset(people)
+        self.here()
+
+    def here(self) -> frozenset[str]:
+        """The people who are there now."""
+        told = self._live().request("people", invited=sorted(self._invited))
+        return frozenset(told["here"])
 
     @property
     def has_physics(self) -> bool:

@@ -19,7 +19,7 @@ __all__ = [
     "LazyWorld",
     "Worlds",
     "check_world",
-    "hosted_of",
+    "joined_of",
     "open_world",
     "realtime_of",
     "world_name",
@@ -106,13 +106,13 @@ def world_name(world: str, *, realtime: bool, listen: int | str | None) -> str:
     return ListenAddress.of(DEFAULT_PORT if listen is None else listen).world
 
 
-def hosted_of(world: World) -> HostedWorld | None:
+def joined_of(world: World) -> RealtimeWorld | None:
     """The world that people can join, also if it is lent; None if it is of another kind."""
     match world:
-        case HostedWorld():
+        case RealtimeWorld():
             return world
         case LazyWorld() | _SharedWorld():
-            return None if world.inner is None else hosted_of(world.inner)
+            return None if world.inner is None else joined_of(world.inner)
         case _:
             return None
 

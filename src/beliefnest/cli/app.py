@@ -258,6 +258,28 @@ def new(
 
 
 @app.command()
+def capture(
+    where: Annotated[str, typer.Argument(help="minecraft://HOST:PORT, or a .schem or .nbt file.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Scenario file to write.")],
+    box: Annotated[
+        tuple[int, int, int, int, int, int] | None,
+        typer.Option(help="Of a server: two corners of the place, X1 Y1 Z1 X2 Y2 Z2."),
+    ] = None,
+    at: Annotated[
+        tuple[int, int, int] | None,
+        typer.Option(help="Of a file: where its lowest corner comes to lie; 0 0 0 if not given."),
+    ] = None,
+    name: Annotated[
+        str | None, typer.Option(help="Name of the scenario; the file's if none.")
+    ] = None,
+) -> None:
+    """Write a place of a server, or of a file, as a scenario."""
+    from beliefnest.cli.capture import CaptureOptions, write_capture
+
+    write_capture(CaptureOptions(where, out, box, at, name))
+
+
+@app.command()
 def replay(
     run: Annotated[Path, typer.Argument(help="A run folder, or a run file.")], json: Json = False
 ) -> int:

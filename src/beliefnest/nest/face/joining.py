@@ -4,8 +4,8 @@ import sys
 from collections.abc import Callable
 from typing import Protocol
 
-from beliefnest.bodies.hosted import HostedWorld
-from beliefnest.bodies.worlds import hosted_of
+from beliefnest.bodies.realtime import RealtimeWorld
+from beliefnest.bodies.worlds import joined_of
 from beliefnest.errors import InputError, UnknownNameError, WorldError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.script import Progress
@@ -32,14 +32,14 @@ class Joining:
     @property
     def address(self: _Joined) -> str | None:
         """Where a Minecraft client joins, `HOST:PORT`; None where people cannot."""
-        host = hosted_of(self._engine.bodies.world)
+        host = joined_of(self._engine.bodies.world)
         return None if host is None else host.address
 
     @property
     @in_turn
     def people(self: _Joined) -> frozenset[str]:
         """Names of the people who are there now."""
-        host = hosted_of(self._engine.bodies.world)
+        host = joined_of(self._engine.bodies.world)
         return frozenset() if host is None else host.here()
 
     def wait_for_people(
@@ -55,7 +55,7 @@ class Joining:
             InputError: The time is below 0, or longer than a day.
             WorldError: Somebody did not come.
         """
-        host = hosted_of(self._engine.bodies.world)
+        host = joined_of(self._engine.bodies.world)
         if host is None or not host.invited:
             return
         told: frozenset[str] | None = None
@@ -102,12 +102,12 @@ class Joining:
         host.invite(host.invited | {name})
 
 
-def _host_of_person(nest: _Joined, name: str) -> HostedWorld:
+def _host_of_person(nest: _Joined, name: str) -> RealtimeWorld:
     people = nest._recording.setting.people
     if name not in people:
         known = ", ".join(sorted(people)) or "none"
         raise UnknownNameError(f"there is no person {name!r} in this scenario; there are: {known}")
-    host = hosted_of(nest._engine.bodies.world)
+    host = joined_of(nest._engine.bodies.world)
     if host is None:
         raise InputError(f"{name} is a person, and nobody can join this world")
     return host
@@ -117,7 +117,7 @@ def _names(people: frozenset[str]) -> str:
     return " and ".join(sorted(people))
 
 
-def _line(host: HostedWorld, awaited: frozenset[str]) -> str:
+def _line(host: RealtimeWorld, awaited: frozenset[str]) -> str:
     return (
         f"join as {' or '.join(sorted(awaited))}: "
         f"Minecraft Java edition {host.minecraft}, Multiplayer, Direct Connection, {host.address}"

@@ -5,10 +5,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol, Self
 
+from beliefnest.bodies.address import is_server
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.listening import is_hosted
 from beliefnest.bodies.protocol import World
-from beliefnest.bodies.worlds import LazyWorld, Worlds, hosted_of, open_world
+from beliefnest.bodies.worlds import LazyWorld, Worlds, joined_of, open_world
 from beliefnest.errors import InputError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.face.hearing_model import reader_of
@@ -135,7 +136,7 @@ def resumed(
         recording, name = read_recording(journal)
         if worlds is not None:
             world = worlds.lend(name)
-        elif is_hosted(name):
+        elif is_hosted(name) or (is_server(name) and recording.setting.people):
             # People may join before anything else needs it.
             world = open_world(name, recording.seed, limits)
         else:
@@ -150,12 +151,13 @@ def resumed(
 
 def _invite(setting: Setting, world: World) -> None:
     """Let the people of a setting join, or refuse a world that they cannot."""
-    host = hosted_of(world)
+    host = joined_of(world)
     if host is not None:
         host.invite(setting.people)
     elif setting.people:
         raise InputError(
             f"{' and '.join(sorted(setting.people))} in {setting.name!r} is of type human, and "
             "people cannot join this world; open it with "
-            "Nest.open(..., realtime=True, listen=25565), or run it with --realtime --listen 25565"
+            "Nest.open(..., realtime=True, listen=25565), run it with --realtime --listen 25565, "
+            "or play on a server: minecraft://HOST:PORT"
         )

@@ -1,4 +1,5 @@
 'use strict'
+const { BadRequest } = require('./channel/errors')
 const { RequestHandler } = require('./requestHandler')
 
 const BEAT_MS = 500
@@ -15,4 +16,11 @@ class RealtimeHandler extends RequestHandler {
   }
 }
 
-module.exports = { RealtimeHandler }
+/** @throws {BadRequest} if a program is to act for an agent whose place a person may take */
+function requireBots (invited, agents) {
+  const person = agents.find(agent => invited.has(agent))
+  if (person === undefined) return
+  throw new BadRequest(`${person} is a person, for whom no program acts; take ${person} over first: nest.take_over("${person}")`)
+}
+
+module.exports = { RealtimeHandler, requireBots }

@@ -3,6 +3,7 @@
 const { Random } = require('./time/random')
 const { rememberBlocks } = require('./blocks')
 const { createServer } = require('./server')
+const { readPlace } = require('./places/files')
 const { Regions } = require('./regions/regions')
 const { Runner } = require('./runner')
 const { createSandbox } = require('./sandbox')
@@ -54,6 +55,7 @@ class RequestHandler {
       case 'run': return this.runner.run(request.region, request.programs, request.timeout_ticks, request.senses, rulesOf(request))
       case 'apply': return this.regions.apply(request)
       case 'snapshot': return this.regions.snapshot(this.regions.get(request.region))
+      case 'read_place': return readPlace(request.bytes)
       case 'shutdown': return null
       default: throw new BadRequest(`there is no operation ${request.op}`)
     }

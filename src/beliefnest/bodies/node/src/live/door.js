@@ -79,10 +79,6 @@ class Door {
     return [...this.present.keys()].sort()
   }
 
-  isPerson (agent) {
-    return this.invited.has(agent)
-  }
-
   greet (client) {
     const refusal = this.refusal(client.username)
     if (refusal === null) this.inTurn(() => { if (!client.ended) this.letIn(client) })

@@ -1,7 +1,6 @@
 'use strict'
 /** Answers the channel's requests with the embedded server in real time, where people are agents as well. */
-const { BadRequest } = require('../channel/errors')
-const { RealtimeHandler } = require('../realtimeHandler')
+const { RealtimeHandler, requireBots } = require('../realtimeHandler')
 const { createServer } = require('../server')
 const { Door } = require('./door')
 const { LiveRegions } = require('./liveRegions')
@@ -23,18 +22,12 @@ class LiveHandler extends RealtimeHandler {
     if (request.op === 'exhibit') return this.door.gallery.open(request) ?? null
     if (request.op === 'lags') return this.door.gallery.lags()
     if (request.op === 'close_exhibit') return this.door.closeExhibit(request.exhibit) ?? null
-    if (request.op === 'run') this.requireBots(Object.keys(request.programs))
+    if (request.op === 'run') requireBots(this.door.invited, Object.keys(request.programs))
     return super.perform(request)
   }
 
   note (message) {
     this.door.gallery.show(message, this.tick)
-  }
-
-  requireBots (agents) {
-    const person = agents.find(agent => this.door.isPerson(agent))
-    if (person === undefined) return
-    throw new BadRequest(`${person} is a person, for whom no program acts; take ${person} over first: nest.take_over("${person}")`)
   }
 }
 

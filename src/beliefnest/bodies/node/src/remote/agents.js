@@ -11,10 +11,14 @@ const { hasColumns, until } = require('./waiting')
 const { Witness } = require('./witness')
 
 const NEAR = 0.02
+const NEAR_PERSON = 0.3
 const FULL = 20
+// Of a person of whom nothing is known yet.
+const NOBODY = { position: [0, 0, 0], yaw: 0, pitch: 0, on_ground: true, equipment: {}, inventory: {}, health: FULL, food: FULL }
 const SLOTS = 46
 const FIRST_HOTBAR = 36
 const PLACING_MS = 10_000
+const ASKED_EVERY_MS = 500
 const COLUMNS_MS = 5000
 const RESULT = 0
 const ANSWER_MS = 1000
@@ -26,14 +30,16 @@ class Agents {
    * @param {object} commands of commandsFor
    * @param {object} registry
    * @param {(agent: string) => object} connect begins the connection of one
+   * @param {Set<string>} invited agents whose places people may take
    */
-  constructor (scene, operator, commands, registry, connect) {
+  constructor (scene, operator, commands, registry, connect, invited) {
     this.scene = scene
     this.region = scene.region
     this.operator = operator
     this.commands = commands
     this.registry = registry
     this.connect = connect
+    this.invited = invited
     this.Item = require('prismarine-item')(registry)
     this.links = new Map()
     this.latest = new Map()
@@ -44,23 +50,60 @@ class Agents {
     const { operator, region } = this
     const players = Object.keys(operator.bot.players)
     for (const agent of Object.keys(agents)) {
-      if (players.includes(agent)) throw new BadRequest(`a player called ${agent} is on the server already; end the other run, or give the agent another name`)
+      if (players.includes(agent) && !this.invited.has(agent)) throw new BadRequest(`a player called ${agent} is on the server already; end the other run, or give the agent another name`)
     }
     await Promise.all(Object.keys(agents).sort().map(async agent => {
       const witness = new Witness(agent, region, this.scene, this.Item)
       this.scene.witnesses.set(agent, witness)
+      witness.on('event', fact => { if (witness.person === null) this.scene.lids.account(fact) })
       const link = new Link(agent, () => this.connect(agent), operator.server, patienceMs, () => this.stand(agent))
       link.on('begun', (bot, client) => witness.attach(bot, client))
       link.on('lost', reason => region.faults.push({ agent, error: new Error(`it lost its connection to the server (${reason})`) }))
+      link.on('yielded', () => this.yield(agent))
+      link.isForPerson = this.invited.has(agent)
       this.links.set(agent, link)
-      await link.open()
+      this.latest.delete(agent)
+      if (players.includes(agent)) link.yield()
+      else await link.open()
       region.bodies.set(agent, { get bot () { return link.bot }, player: witness })
     }))
     await this.place(agents)
   }
 
+  /** A person has come in by an agent's name. */
+  yield (agent) {
+    const latest = this.latest.get(agent) ?? NOBODY
+    this.scene.people.come(this.scene.witnesses.get(agent), latest)
+  }
+
+  /** Agents whose persons have left are bots again. */
+  endTick () {
+    for (const agent of this.scene.people.endTick()) {
+      this.scene.people.leave(agent)
+      this.links.get(agent).takeBack()
+    }
+  }
+
+  /** Sends away who may no longer be an agent. @returns {string[]} the agents who are people now */
+  invite () {
+    const { operator, commands } = this
+    for (const [agent, link] of this.links) {
+      link.isForPerson = this.invited.has(agent)
+      if (!link.isYielded || link.isForPerson) continue
+      if (!operator.can('kick')) throw new BadRequest(`this server has no /kick: ask who plays ${agent} to leave`)
+      operator.type(commands.sendAway(agent))
+    }
+    return [...this.links].filter(([, link]) => link.isYielded && link.isForPerson).map(([agent]) => agent).sort()
+  }
+
+  /** @returns {object[]} the bots of agents who are no people */
+  bots () {
+    return [...this.links.values()].filter(({ isHere }) => isHere).map(({ bot }) => bot)
+  }
+
   /** Lets an agent leave. */
   async remove (agent) {
+    this.scene.people.leave(agent)
     const link = this.links.get(agent)
     this.links.delete(agent)
     this.latest.delete(agent)
@@ -79,40 +122,60 @@ class Agents {
 
   /** Makes agents be where, and have what, they are to. */
   async place (agents) {
-    const { operator, commands } = this
+    const { operator } = this
     const placing = Object.entries(agents)
-    for (const [agent, state] of placing) {
-      this.bot(agent).physicsEnabled = false
-      operator.type(commands.mode(agent, 'survival'))
-      operator.type(commands.clear(agent))
-      this.slots(agent, state).forEach((stack, slot) => { if (stack) operator.type(commands.wear(agent, slot, stack)) })
-      if (operator.can('effect') && this.bot(agent).health < FULL && state.health === FULL) operator.type(commands.heal(agent))
-      if (operator.can('effect') && this.bot(agent).food < FULL && state.food === FULL) operator.type(commands.feed(agent))
-      operator.type(commands.go(agent, state.position, state))
-    }
+    for (const [agent, state] of placing) this.command(agent, state)
     // One who was there before is moved all the same.
     await operator.settled()
-    await Promise.all(placing.map(([agent]) => this.answered(agent)))
+    await Promise.all(placing.map(([agent]) => this.isPerson(agent) ? null : this.answered(agent)))
     await Promise.all(placing.map(([agent, state]) => this.arrived(agent, state)))
     for (const [agent, state] of placing) {
-      const bot = this.bot(agent)
-      bot.setQuickBarSlot(0)
-      ground(bot, state.on_ground)
-      bot.physicsEnabled = true
-      this.scene.witnesses.get(agent).stoodAt = bot.entity.position.floored()
+      this.scene.witnesses.get(agent).stoodAt = this.scene.witnesses.get(agent).position.floored()
+      if (!this.isPerson(agent)) this.settle(this.bot(agent), state)
       this.latest.set(agent, this.look(agent))
     }
   }
 
+  /** Types what puts an agent where it is to be, with what it is to have. */
+  command (agent, state) {
+    const { operator, commands } = this
+    const { health, food } = this.isPerson(agent) ? this.look(agent) : this.bot(agent)
+    if (!this.isPerson(agent)) this.bot(agent).physicsEnabled = false
+    operator.type(commands.mode(agent, 'survival'))
+    operator.type(commands.clear(agent))
+    this.slots(agent, state).forEach((stack, slot) => { if (stack) operator.type(commands.wear(agent, slot, stack)) })
+    if (operator.can('effect') && health < FULL && state.health === FULL) operator.type(commands.heal(agent))
+    if (operator.can('effect') && food < FULL && state.food === FULL) operator.type(commands.feed(agent))
+    operator.type(commands.go(agent, state.position, state))
+  }
+
+  settle (bot, state) {
+    bot.setQuickBarSlot(0)
+    ground(bot, state.on_ground)
+    bot.physicsEnabled = true
+  }
+
+  isPerson (agent) {
+    return this.links.get(agent).isYielded
+  }
+
   async arrived (agent, state) {
-    const bot = this.bot(agent)
-    const there = () => bot.entity.position.distanceTo({ x: state.position[0], y: state.position[1], z: state.position[2] }) < NEAR
+    const [x, y, z] = state.position
+    const { witnesses, people } = this.scene
+    const person = people.here.get(agent) ?? null
+    const position = () => witnesses.get(agent).position
+    // A client goes on by itself once it has been moved, and others see where it is in steps.
+    const there = () => position().distanceTo({ x, y, z }) < (person === null ? NEAR : NEAR_PERSON)
     const has = () => isDeepStrictEqual(this.look(agent).inventory, sorted(state.inventory))
-    if (await this.operator.until(() => there() && has(), PLACING_MS)) {
-      await this.sees(bot)
+    const isDone = person === null || this.operator.can('data') ? () => there() && has() : there
+    const end = performance.now() + PLACING_MS
+    do await person?.ask()
+    while (!await this.operator.until(isDone, person === null ? PLACING_MS : ASKED_EVERY_MS) && performance.now() < end)
+    if (isDone()) {
+      if (person === null) await this.sees(this.bot(agent))
       return
     }
-    const what = there() ? `has ${JSON.stringify(this.look(agent).inventory)} instead of ${JSON.stringify(state.inventory)}` : `is at ${bot.entity.position} instead of (${state.position.join(', ')})`
+    const what = there() ? `has ${JSON.stringify(this.look(agent).inventory)} instead of ${JSON.stringify(state.inventory)}` : `is at ${position()} instead of (${state.position.join(', ')})`
     throw new BadRequest(`${agent} ${what} on the server; it said last: ${this.operator.lines.at(-1) ?? 'nothing'}`)
   }
 
@@ -138,11 +201,12 @@ class Agents {
 
   /** @returns {object} AGENT by name; one who is away is as it was last */
   states () {
-    for (const [agent, link] of this.links) if (link.isHere) this.latest.set(agent, this.look(agent))
+    for (const [agent, link] of this.links) if (link.isHere || link.isYielded) this.latest.set(agent, this.look(agent))
     return Object.fromEntries([...this.latest].sort(([a], [b]) => (a < b ? -1 : 1)))
   }
 
   look (agent) {
+    if (this.isPerson(agent)) return this.scene.people.here.get(agent).state()
     const { entity, health, food, inventory, currentWindow, quickBarSlot } = this.bot(agent)
     const stacks = [currentWindow?.selectedItem ?? inventory.selectedItem, ...inventory.slots.slice(1)]
     if (currentWindow) {

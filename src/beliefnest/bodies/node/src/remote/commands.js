@@ -5,7 +5,7 @@ const { toDegrees } = require('../server/angles')
 /** What an operator needs, without which nothing can be set up. */
 const NEEDED = ['fill', 'setblock', 'tp', 'item', 'clear', 'forceload', 'gamemode', 'kill']
 /** What is used where it is there. */
-const USEFUL = ['effect', 'summon', 'data']
+const USEFUL = ['effect', 'summon', 'data', 'kick']
 
 const SLOTS = { 5: 'armor.head', 6: 'armor.chest', 7: 'armor.legs', 8: 'armor.feet', 45: 'weapon.offhand' }
 const FIRST_OWN = 9
@@ -36,6 +36,7 @@ function commandsFor (place, textOf) {
       : `fill ${at(low)} ${at(high)} minecraft:${textOf(state)}`,
     contents: (position, slot, item) => `item replace block ${at(position)} container.${slot} with ${stack(item)}`,
     wear: (agent, slot, item) => `item replace entity ${agent} ${slotName(slot)} with ${stack(item)}`,
+    sendAway: agent => `kick ${agent} ${agent} is played by BeliefNest from now on`,
     clear: agent => `clear ${agent}`,
     mode: (player, mode) => `gamemode ${mode} ${player}`,
     go (player, position, pose) {
@@ -44,6 +45,8 @@ function commandsFor (place, textOf) {
     },
     heal: agent => `effect give ${agent} minecraft:instant_health 1 5`,
     feed: agent => `effect give ${agent} minecraft:saturation 1 20`,
+    dataOf: player => `data get entity ${player}`,
+    dataAt: position => `data get block ${at(position)}`,
     removeItems () {
       const { low, shape } = place.box
       const { x, y, z } = place.toServer(low)

@@ -28,6 +28,11 @@ class Contents {
     return this.held.has(keyOf(position))
   }
 
+  /** @returns {object} ITEMS of a container that there is */
+  get (position) {
+    return this.held.get(keyOf(position)).items
+  }
+
   /** No container is left at a position. */
   forget (position) {
     if (this.held.delete(keyOf(position))) this.changed.set(keyOf(position), vecOf(position))

@@ -13,6 +13,8 @@ const LOGIN_MS = 15_000
 const GOODBYE_MS = 1000
 // Milliseconds a bot may search for a way: on a busy machine most of them pass without it.
 const THINKING_MS = 60_000
+// What the game says to a player when another one of the same name comes in.
+const ANOTHER = 'multiplayer.disconnect.duplicate_login'
 
 class Link extends EventEmitter {
   /**
@@ -35,6 +37,9 @@ class Link extends EventEmitter {
     this.isReady = false
     this.failure = null
     this.closed = false
+    // Whether a person may come in by this name, and has: then they are the player.
+    this.isForPerson = false
+    this.isYielded = false
   }
 
   /** @throws {Unplayable} if the server does not let the player in */
@@ -45,14 +50,15 @@ class Link extends EventEmitter {
     bot.physicsEnabled = false
     // Whoever waits listens for itself; an error that nobody hears would end the process.
     bot.on('error', () => {})
-    const ended = reason => this.lost(bot.lastReason ?? reason)
+    let told = null
+    const ended = reason => this.lost(told?.text ?? reason, told?.key)
     try {
       await this.spawned(bot, client)
       bot.pathfinder.thinkTimeout = THINKING_MS
       this.bot = bot
       this.isHere = true
       bot.once('end', ended)
-      bot.on('kicked', reason => { bot.lastReason = reasonOf(bot, reason).text })
+      bot.on('kicked', reason => { told = reasonOf(bot, reason) })
       await this.arrive(this)
       this.isReady = this.isHere
     } catch (error) {
@@ -86,10 +92,31 @@ class Link extends EventEmitter {
     }
   }
 
-  lost (reason) {
+  lost (reason, key) {
     this.isHere = this.isReady = false
     if (this.closed) return
+    if (key === ANOTHER && this.isForPerson) {
+      this.yield()
+      return
+    }
     this.emit('lost', reason)
+    this.reconnect(reason)
+  }
+
+  /** Lets a person be this player. */
+  yield () {
+    this.isYielded = true
+    this.emit('yielded')
+  }
+
+  /** Comes in again after a person had this player's place. */
+  takeBack () {
+    if (!this.isYielded || this.closed) return
+    this.isYielded = false
+    this.reconnect('the person left')
+  }
+
+  reconnect (reason) {
     this.again(reason).catch(error => {
       this.failure = error
       this.emit('failed', error)
@@ -111,9 +138,9 @@ class Link extends EventEmitter {
     }
   }
 
-  /** Resolves when the player is connected and has arrived. @throws {Unplayable} if it was given up */
+  /** Resolves when the player is connected and has arrived, or a person is it. @throws {Unplayable} if it was given up */
   async present () {
-    while (!this.isReady) {
+    while (!this.isReady && !(this.isYielded && this.isForPerson)) {
       if (this.failure !== null) throw this.failure
       await sleep(POLL_MS)
     }

@@ -4,12 +4,15 @@ const { once } = require('node:events')
 const { Vec3 } = require('vec3')
 const { NEEDED } = require('./commands')
 const reasons = require('./reasons')
+const { parseSnbt } = require('./snbt')
 const { until } = require('./waiting')
 
 const ANSWER_MS = 5000
 const MOST_LINES = 20
 const EYE_HEIGHT = 1.62
 const TOP = 1
+// How a server answers `/data get`, in every version of the game that has it.
+const DATA = /^.{1,200}? has the following (?:block|entity) data: (.+)$/s
 
 class Operator {
   /**
@@ -20,6 +23,8 @@ class Operator {
     this.link = link
     this.server = server
     this.lines = []
+    // The question that is asked last: answers do not say to which one they are.
+    this.asked = Promise.resolve()
     this.commandNames = null
     link.on('begun', (bot, client) => {
       this.commandNames = null
@@ -61,6 +66,35 @@ class Operator {
       if (answer !== null) return
     }
     throw reasons.stalled(this.server, this.server.patience)
+  }
+
+  /**
+   * @param {string} command a `/data get`
+   * @returns {Promise<object | Array | null>} the data; null if the server gives none that can be read
+   */
+  ask (command) {
+    const answer = this.asked.catch(() => {}).then(() => this.askNow(command))
+    this.asked = answer
+    return answer
+  }
+
+  async askNow (command) {
+    const answers = []
+    const { bot } = this
+    const hear = text => { if (DATA.test(text)) answers.push(DATA.exec(text)[1]) }
+    bot.on('messagestr', hear)
+    this.type(command)
+    try {
+      await this.settled()
+    } finally {
+      bot.off('messagestr', hear)
+    }
+    try {
+      return answers.length === 0 ? null : parseSnbt(answers.at(-1))
+    } catch (error) {
+      if (error instanceof SyntaxError) return null
+      throw error
+    }
   }
 
   /** @returns {Promise<boolean>} whether the condition held in time */

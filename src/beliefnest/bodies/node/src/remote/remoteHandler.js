@@ -1,12 +1,14 @@
 'use strict'
 /** Answers the channel's requests with a server elsewhere, in real time. */
-const { RealtimeHandler } = require('../realtimeHandler')
+const { RealtimeHandler, requireBots } = require('../realtimeHandler')
+const { capture } = require('./capture')
 const { RemoteRegions } = require('./remoteRegions')
 const { beginSession } = require('./session')
 
 class RemoteHandler extends RealtimeHandler {
   async open (registry, { server }) {
     const session = await beginSession(server)
+    this.capture = corners => capture({ ...session, registry }, { x: server.at[0], z: server.at[1] }, corners)
     return new RemoteRegions(server, session, registry, frame => this.send({ frame }))
   }
 
@@ -15,6 +17,9 @@ class RemoteHandler extends RealtimeHandler {
   }
 
   async perform (request) {
+    if (request.op === 'capture') return this.capture(request.box)
+    if (request.op === 'people') return { here: this.regions.invite(request.invited) }
+    if (request.op === 'run') requireBots(this.regions.invited, Object.keys(request.programs))
     const result = await super.perform(request)
     if (request.op === 'shutdown') await this.regions.close()
     return result

@@ -8,6 +8,7 @@ const { BadRequest } = require('../channel/errors')
 const { Box, statesOf } = require('../regions/box')
 const { Recorder } = require('../regions/recorder')
 const { vecOf } = require('../server/plugins/lib/positions')
+const { blockStates } = require('../server/plugins/lib/states')
 const { Agents } = require('./agents')
 const { commandsFor } = require('./commands')
 const { connect } = require('./connection')
@@ -33,6 +34,8 @@ class RemoteRegions {
     this.registry = registry
     this.send = send
     this.open = null
+    // Agents whose places people may take.
+    this.invited = new Set()
     // Why the place was given up, if it was.
     this.failure = null
     // What a Runner asks of regions.
@@ -66,12 +69,14 @@ class RemoteRegions {
 
   equip (region) {
     const { operator, registry, server: { host, port, at, operator: hidden } } = this
-    const scene = new Scene(region, registry)
-    const commands = commandsFor(region, state => scene.states.text(state))
+    const states = blockStates(registry)
+    const commands = commandsFor(region, state => states.text(state))
+    const scene = new Scene(region, registry, operator, commands, position => setup.asked(position).then(found => found ?? setup.read(position)))
+    scene.fail = error => { this.failure ??= error }
     const setup = new Setup(scene, operator, commands, registry)
     const agents = new Agents(scene, operator, commands, registry, agent =>
-      connect({ host, port, username: agent, origin: { x: at[0], z: at[1] }, hidden: [hidden] }))
-    const { contents, states, items } = scene
+      connect({ host, port, username: agent, origin: { x: at[0], z: at[1] }, hidden: [hidden] }), this.invited)
+    const { contents, items } = scene
     region.recorder = new Recorder(region, {
       agents: () => agents.states(), items: () => items.states(), changedContainers: () => contents.drain(), blockText: state => states.text(state), signText: ([x, y, z]) => scene.signText({ x, y, z })
     })
@@ -94,8 +99,8 @@ class RemoteRegions {
     await setup.write(signs)
     await setup.lay(items)
     await open.agents.add(agents, this.server.patience * 1000)
-    const [someone] = Object.keys(agents)
-    if (someone !== undefined) await setup.requireUse(open.agents.bot(someone))
+    const [someone] = open.agents.bots()
+    if (someone !== undefined) await setup.requireUse(someone)
   }
 
   async save ({ scene, setup }, present) {
@@ -136,8 +141,9 @@ class RemoteRegions {
   }
 
   /** @returns {boolean} whether anything has changed */
-  makeFrame ({ region, scene }) {
+  makeFrame ({ region, scene, agents }) {
     scene.endTick()
+    agents.endTick()
     const frame = region.recorder.frame()
     if (frame === null) return false
     if (region.isDriven) this.send(frame)
@@ -158,6 +164,16 @@ class RemoteRegions {
     } finally {
       region.isDriven = false
     }
+  }
+
+  /**
+   * Says whose places people may take; who has one of another agent is sent away.
+   * @returns {string[]} who is there
+   */
+  invite (names) {
+    this.invited.clear()
+    for (const name of names) this.invited.add(name)
+    return this.open === null ? [] : this.open.agents.invite()
   }
 
   /** The next tick; what happened in it is sent. @returns {Promise<boolean>} whether anything has */

@@ -7,27 +7,42 @@ const { Vec3 } = require('vec3')
 const { blockStates } = require('../server/plugins/lib/states')
 const { halvesAt } = require('../server/plugins/lib/doubleChest')
 const { handOver } = require('../server/plugins/lib/gifts')
-const { byPlace, keyOf, listOf } = require('../server/plugins/lib/positions')
+const { byPlace, keyOf, listOf, vecOf } = require('../server/plugins/lib/positions')
 const { without } = require('../server/plugins/lib/throws')
 const { textOf } = require('../../../../programs/skills/lib/signs')
 const { slotsIn } = require('./kinds')
 const { Contents } = require('./contents')
 const { Items } = require('./items')
+const { Lids } = require('./lids')
+const { People } = require('./people')
 
 const BY_HAND = /(_door|_trapdoor|_fence_gate)$/
 // Ticks after which words that nobody heard are not waited for any more.
 const UNHEARD_AFTER = 60
+// Ticks within which what lies where a block was is what was mined.
+const FALLS_WITHIN = 5
+const LID = 1
+// Ticks within which an arm is seen to swing after what it did.
+const SWINGS_WITHIN = 10
 
 class Scene {
   /**
    * @param {import('../regions/place').Place} region
    * @param {object} registry
+   * @param {import('./operator').Operator} operator
+   * @param {object} commands of commandsFor
+   * @param {(position: number[]) => Promise<object | null>} read ITEMS of a container, as the server has it
    */
-  constructor (region, registry) {
+  constructor (region, registry, operator, commands, read) {
     this.region = region
     this.states = blockStates(registry)
     this.contents = new Contents()
     this.items = new Items(region)
+    this.people = new People(region, operator, commands)
+    this.lids = new Lids(this, read)
+    // Takes why the place cannot be followed any more.
+    this.fail = () => {}
+    this.mined = []
     // What is written on signs that are written on.
     this.signs = new Map()
     this.witnesses = new Map()
@@ -35,6 +50,8 @@ class Scene {
     this.thrown = []
     // What was done with blocks in this tick, told after what it did to them.
     this.deeds = []
+    // What no bot tried, and a person may be seen to have done: {position, tick, tell}.
+    this.unexplained = []
     this.blocks = null
     this.serv = servFor(this)
   }
@@ -78,7 +95,7 @@ class Scene {
     const { box, recorder } = this.region
     if (this.blocks === null || !box.contains(position.x, position.y, position.z) || text === this.signText(position)) return
     this.writeDown(position, text)
-    const writer = this.whoTried('write', position)
+    const writer = this.whoTried('write', position) ?? this.people.whoWrote(position)
     recorder.signChanged(this.region.toServer(listOf(position)), this.at(position).stateId, text, writer?.agent ?? null)
   }
 
@@ -102,18 +119,39 @@ class Scene {
     if (before.name === after.name) {
       if (after.name === 'lever' && before.properties.powered !== properties.powered) this.used(position, 'use_lever', { ...detail, powered: properties.powered })
       if (after.name.endsWith('_button') && properties.powered && !before.properties.powered) this.used(position, 'press_button', detail)
+      if (after.name === 'barrel' && before.properties.open !== properties.open) this.lids.moved(position, Number(properties.open))
       if (BY_HAND.test(after.name) && before.properties.open !== properties.open) this.usedDoor(position, after)
     } else if (after.name === 'air' || after.name === 'water') {
-      const who = this.whoTried('dig', position)
-      if (who !== null) this.deeds.push({ who, kind: 'mine_block', detail: { ...detail, block: this.states.text(before.stateId) } })
+      this.mined.push({ position: vecOf(position), tick: this.region.tick })
+      this.did(this.whoTried('dig', position), position, 'mine_block', { ...detail, block: this.states.text(before.stateId) })
     } else {
       this.placed(position, after)
     }
   }
 
   used (position, kind, detail) {
-    const who = this.whoTried('use', position)
-    if (who !== null) this.deeds.push({ who, kind, detail })
+    this.did(this.whoTried('use', position), position, kind, detail)
+  }
+
+  /** What was done at a place, by whom if it was a bot; a person who did it is found by and by. */
+  did (who, position, kind, detail) {
+    const tell = actor => this.deeds.push({ who: actor, kind, detail })
+    if (who === null) this.explainLater(position, tell)
+    else tell(who)
+  }
+
+  /** Calls `tell` with the witness of who is seen to have acted on a place, now or within a moment; if somebody is. */
+  explainLater (position, tell) {
+    this.unexplained.push({ position: vecOf(position), tick: this.region.tick, tell })
+  }
+
+  explain () {
+    const now = this.region.tick
+    this.unexplained = this.unexplained.filter(({ position, tick, tell }) => {
+      const who = this.people.whoActed(position)
+      if (who !== null) tell(who)
+      return who === null && now - tick <= SWINGS_WITHIN
+    })
   }
 
   /** A door is where its lower half is, whichever half was used. */
@@ -121,22 +159,38 @@ class Scene {
     const isUpper = name.endsWith('_door') && properties.half === 'upper'
     const lower = isUpper ? position.offset(0, -1, 0) : position
     const who = this.whoTried('use', lower) ?? this.whoTried('use', lower.offset(0, 1, 0))
-    if (who !== null) this.deeds.push({ who, kind: 'use_door', detail: { position: listOf(lower), open: properties.open } })
+    // What both halves of a door show was done once.
+    if (who !== null || !isUpper) this.did(who, lower, 'use_door', { position: listOf(lower), open: properties.open })
   }
 
   /** What appears beside what somebody used with a block in hand, or in its place, that one has put. */
   placed (position, after) {
     if (after.properties.half === 'upper' && after.name.endsWith('_door')) return
-    for (const face of [[0, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1], [-1, 0, 0], [1, 0, 0]]) {
-      const who = this.whoTried('use', position.plus(new Vec3(...face)))
-      if (who === null) continue
-      this.deeds.push({ who, kind: 'place_block', detail: { position: listOf(position), block: this.states.text(after.stateId) } })
-      return
-    }
+    const faces = [[0, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1], [-1, 0, 0], [1, 0, 0]]
+    const who = faces.reduce((found, face) => found ?? this.whoTried('use', position.plus(new Vec3(...face))), null)
+    this.did(who, position, 'place_block', { position: listOf(position), block: this.states.text(after.stateId) })
   }
 
+  /** The agent whose bot has tried that. */
   whoTried (kind, position) {
     return [...this.witnesses.values()].find(witness => witness.hasTried(kind, position)) ?? null
+  }
+
+  /** Whether a bot has just used the block there, or is about to be shown what it holds. */
+  isUsedByBot (position) {
+    return [...this.witnesses.values()].some(witness => witness.usesNow(position))
+  }
+
+  isOpenToBot (position) {
+    return [...this.witnesses.values()].some(({ windows }) => windows.shows(position))
+  }
+
+  /** An item that nobody's bot threw appeared: a person may have, unless it is what was mined there. */
+  thrownByPerson ({ position }, { name, count }) {
+    const now = this.region.tick
+    const isMined = this.mined.some(({ position: place, tick }) => now - tick <= FALLS_WITHIN && place.offset(0.5, 0.5, 0.5).distanceTo(position) <= 1)
+    const agent = isMined ? null : this.people.whoThrew(position)
+    if (agent !== null) this.thrown.push({ agent, name, count, tick: now })
   }
 
   /** An agent has sent words: they are told when they are heard. */
@@ -156,6 +210,7 @@ class Scene {
 
   /** Whether all that agents said has been heard, or will not be. */
   get isQuiet () {
+    if (!this.lids.isQuiet) return false
     this.expected = this.expected.filter(({ tick }) => this.region.tick - tick <= UNHEARD_AFTER)
     return this.expected.length === 0
   }
@@ -165,10 +220,19 @@ class Scene {
     bot.on('blockUpdate', (_, block) => { if (block !== null) this.blockChanged(block.position, block.stateId) })
     bot.on('messagestr', text => this.heardBy(null, text))
     bot.on('blockEntityData', block => { if (block?.name.endsWith('_sign')) this.signShown(block.position, textOf(block)) })
-    bot.on('itemDrop', entity => this.items.appeared(entity, this.thrown))
+    bot.on('itemDrop', entity => this.dropped(entity))
     bot.on('entityGone', entity => this.items.gone(entity.id))
     client.on('collect', packet => this.collected(bot, packet))
+    client.on('block_action', ({ location, byte1, byte2 }) => { if (byte1 === LID) this.lids.moved(location, byte2) })
+    this.people.attach(bot)
     this.items.entities = () => bot.entities
+  }
+
+  dropped (entity) {
+    const stack = entity.getDroppedItem?.()
+    const isKnown = !stack || this.thrown.some(({ name, count }) => name === stack.name && count === stack.count)
+    if (!isKnown && !this.items.known.has(entity.id)) this.thrownByPerson(entity, stack)
+    this.items.appeared(entity, this.thrown)
   }
 
   collected (bot, { collectedEntityId, collectorEntityId, pickupItemCount }) {
@@ -182,8 +246,11 @@ class Scene {
 
   endTick () {
     for (const witness of this.witnesses.values()) witness.endTick()
+    this.explain()
     for (const { who, kind, detail } of this.deeds.splice(0)) who.emitEvent({ kind, detail })
     this.thrown = this.thrown.filter(({ tick }) => this.region.tick - tick <= UNHEARD_AFTER)
+    this.mined = this.mined.filter(({ tick }) => this.region.tick - tick <= FALLS_WITHIN)
+    this.lids.endTick()
   }
 }
 

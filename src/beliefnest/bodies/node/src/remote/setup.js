@@ -2,6 +2,7 @@
 /** Makes a place on a server elsewhere as asked, and looks whether it is. */
 const { BadRequest } = require('../channel/errors')
 const { countByName } = require('../server/plugins/lib/items')
+const { stacksIn, totals } = require('../places/held')
 const { vecOf } = require('../server/plugins/lib/positions')
 const { isDeepStrictEqual } = require('node:util')
 const { sorted } = require('../regions/facts')
@@ -136,14 +137,20 @@ class Setup {
     }
   }
 
-  /** @returns {Promise<object | null>} ITEMS of a container; null if it cannot be opened, as under a block */
+  /** @returns {Promise<object | null>} ITEMS of a container; null if it cannot be opened, as under a block, nor asked for */
   async read (position) {
     const stacks = await this.operator.lookInto(this.commands, position)
-    if (stacks === null) return null
+    if (stacks === null) return this.asked(position)
     const halves = halvesAt(place => this.scene.at(place), vec(position))
     const size = slotsIn(this.scene.at(vec(position)).name)
     const first = halves.findIndex(half => half.equals(vec(position))) * size
     return countByName(stacks.slice(first, first + size))
+  }
+
+  /** What the server says that a container holds. */
+  async asked (position) {
+    const data = this.operator.can('data') ? await this.operator.ask(this.commands.dataAt(position)) : null
+    return data === null ? null : totals(stacksIn(data.Items))
   }
 
   /** Positions of all containers that stand in the box. */

@@ -37,6 +37,11 @@ class Windows {
     this.cursor = null
   }
 
+  /** Whether what a container holds is shown. */
+  shows (position) {
+    return this.opened !== null && this.opened.positions.some(place => place.equals(position))
+  }
+
   get slots () {
     return this.opened?.slots ?? this.own
   }

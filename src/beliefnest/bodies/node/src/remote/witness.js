@@ -29,9 +29,12 @@ class Witness extends EventEmitter {
     this.region = region
     this.scene = scene
     this.bot = null
+    // Whether a person is this agent, whom the operator alone sees.
+    this.person = null
     // What it tried last with a block: {position, tick, kind}, the latest first.
     this.tries = []
     this.used = null
+    this.usedAt = -Infinity
     this.windows = new Windows(this, scene, Item)
     this.stoodAt = new Vec3(0, 0, 0)
     acts.player(this)
@@ -43,11 +46,12 @@ class Witness extends EventEmitter {
   }
 
   get position () {
-    return this.bot.entity.position
+    return (this.person ?? this.bot).entity.position
   }
 
   emitEvent ({ kind, detail }) {
     this.region.recorder.event({ kind, actor: this.agent, detail })
+    this.emit('event', { kind, detail })
   }
 
   /** Follows a connection, from its first packet on. */
@@ -61,6 +65,7 @@ class Witness extends EventEmitter {
     client.on('set_slot', packet => this.windows.showSlot(packet))
     client.on('close_window', () => this.windows.close())
     bot.on('messagestr', text => this.scene.heardBy(this.agent, text))
+    bot.on('whisper', (speaker, text) => this.scene.people.said(speaker, text, this.agent))
   }
 
   lookedAt () {
@@ -80,6 +85,11 @@ class Witness extends EventEmitter {
     return true
   }
 
+  /** Whether it has used the block there and the server may not have answered yet, or shows it what that holds. */
+  usesNow (position) {
+    return this.windows.shows(position) || (this.used !== null && this.used.equals(position) && this.region.tick - this.usedAt <= ANSWERED_WITHIN)
+  }
+
   dig ({ status, location }) {
     if (status === DIG.START || status === DIG.FINISH) this.try('dig', vecOf(location))
     if (status !== DIG.DROP_STACK && status !== DIG.DROP_ONE) return
@@ -89,6 +99,7 @@ class Witness extends EventEmitter {
 
   use ({ location }) {
     this.used = vecOf(location)
+    this.usedAt = this.region.tick
     this.try('use', this.used)
   }
 

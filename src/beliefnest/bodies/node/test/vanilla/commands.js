@@ -4,7 +4,7 @@
  * is `run(serv, words, player)`; it returns what the server says, and throws a Refusal for what it will not do.
  */
 const { Vec3 } = require('vec3')
-const { fromDegrees } = require('../../src/server/angles')
+const { fromDegrees, toDegrees } = require('../../src/server/angles')
 
 const MOST_BLOCKS = 32768
 const MODES = ['survival', 'creative', 'adventure', 'spectator']
@@ -158,14 +158,36 @@ function forceload (serv, [act]) {
   return act === 'add' ? 'Marked the chunks to be force loaded' : 'Unmarked the chunks'
 }
 
-/** `get block X Y Z`: contents, as the game writes them; `modify block X Y Z front_text.messages[N] set value '"TEXT"'` */
-function data (serv, [act, , x, y, z, ...words]) {
+/**
+ * `get block X Y Z`: contents, as the game writes them; `get entity NAME`; `modify block X Y Z
+ * front_text.messages[N] set value '"TEXT"'`
+ */
+function data (serv, [act, kind, x, y, z, ...words]) {
+  if (kind === 'entity') return entityData(playerOf(serv, x))
   const position = place([x, y, z])
   if (act === 'modify') return write(serv, position, words)
   if (serv.containers.get(position) === null) throw new Refusal('The target block is not a block entity')
   const items = serv.containers.slots(position).flatMap((stack, slot) =>
     stack ? [`{Slot: ${slot}b, id: "minecraft:${stack.name}", Count: ${stack.count}b}`] : [])
   return `${x}, ${y}, ${z} has the following block data: {Items: [${items.join(', ')}]}`
+}
+
+function entityData (player) {
+  const { position: { x, y, z }, pose, inventory, heldItemSlot, health, food } = player
+  const { yaw, pitch } = toDegrees(pose)
+  const items = inventory.slots.flatMap((stack, slot) => stack && numbers(slot) !== null
+    ? [`{Slot: ${numbers(slot)}b, id: "minecraft:${stack.name}", Count: ${stack.count}b}`]
+    : [])
+  return `${player.username} has the following entity data: {Pos: [${x}d, ${y}d, ${z}d], Rotation: [${yaw}f, ${pitch}f], ` +
+    `OnGround: ${Number(player.onGround)}b, Health: ${health}f, foodLevel: ${food}, SelectedItemSlot: ${heldItemSlot}, Inventory: [${items.join(', ')}]}`
+}
+
+/** The game's own number of a slot of an inventory; null for those of crafting. */
+function numbers (slot) {
+  if (slot === OWN_SLOTS['weapon.offhand']) return -106
+  if (slot >= 36) return slot - 36
+  if (slot >= 9) return slot
+  return slot >= 5 ? 108 - slot : null
 }
 
 function write (serv, position, [path, , , ...words]) {
@@ -185,7 +207,12 @@ function gamerule (serv, [name, value]) {
   return `Gamerule ${name} is now set to: ${value}`
 }
 
-const COMMANDS = { clear, data, effect, fill, forceload, gamemode, gamerule, give, item, kill, setblock, summon, tp }
+function kick (serv, [name, ...reason]) {
+  playerOf(serv, name)._client.end(JSON.stringify({ text: reason.join(' ') }))
+  return `Kicked ${name}`
+}
+
+const COMMANDS = { clear, data, effect, fill, forceload, gamemode, gamerule, give, item, kick, kill, setblock, summon, tp }
 
 /** @returns {string} what the server says to a command */
 function runCommand (serv, text, player) {

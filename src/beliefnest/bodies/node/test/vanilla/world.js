@@ -3,6 +3,7 @@
  * One open world without regions, as on any server: a floor of stone under air, players who join where they were last,
  * operators, time that is told. Its players come over TCP.
  */
+const nbt = require('prismarine-nbt')
 const { Box } = require('../../src/regions/box')
 const { join, showWorld } = require('../../src/regions/joining')
 const { columnsOf } = require('../../src/regions/columns')
@@ -51,6 +52,12 @@ class OpenWorld {
 
   join (client) {
     const { serv, region } = this
+    const other = serv.players.find(({ username }) => username === client.username)
+    if (other !== undefined) {
+      other.once('disconnected', () => this.join(client))
+      other._client.client.end('another', nbt.comp({ translate: nbt.string('multiplayer.disconnect.duplicate_login') }))
+      return
+    }
     const state = this.known.get(client.username) ?? NEWCOMER
     const end = new TcpEnd(client, action => action(), error => {
       if (!BROKEN_OFF.includes(error.code)) process.stderr.write(`${client.username}: ${error.stack}\n`)

@@ -1,0 +1,91 @@
+"""`beliefnest capture`: a place of a server, or of a file, as a scenario."""
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from beliefnest.bodies.address import ServerAddress, is_server
+from beliefnest.bodies.capturing import Captured, capture_file, capture_server
+from beliefnest.cli.text import printable
+from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.files import read_regular
+from beliefnest.scenarios.writing import scenario_text
+from beliefnest.world.values import Box, Position
+
+__all__ = ["CaptureOptions", "write_capture"]
+
+_LARGEST_FILE = 64 * 2**20
+_SUFFIX = ".yaml"
+
+
+@dataclass(frozen=True)
+class CaptureOptions:
+    """What was asked for on the command line.
+
+    Attributes:
+        where: The address of a server, or the path of a file.
+        out: The scenario file to write; it must not exist.
+        box: Of a server, two corners.
+        at: Of a file, where its lowest corner comes to lie.
+        name: Name of the scenario; None: that of the file to write.
+    """
+
+    where: str
+    out: Path
+    box: tuple[int, int, int, int, int, int] | None = None
+    at: Position | None = None
+    name: str | None = None
+
+
+def write_capture(options: CaptureOptions) -> None:
+    """Write the scenario; what it cannot say is named on stderr.
+
+    Raises:
+        InputError: The options do not fit together, or the file cannot be written.
+        BodyError: The server cannot be looked at.
+    """
+    out = options.out
+    if out.suffix not in (_SUFFIX, ".yml"):
+        raise InputError(f"{out} is to be a scenario; give it a name that ends in {_SUFFIX}")
+    if out.exists():
+        raise InputError(f"{out} exists already; choose another name")
+    captured = _captured(options)
+    text = scenario_text(options.name or out.stem, _description(options), captured.snapshot)
+    try:
+        with out.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except OSError as error:
+        raise InputError(f"{out} cannot be written: {error.strerror}") from None
+    for sentence in captured.left_out:
+        sys.stderr.write(printable(f"left out: {sentence}") + "\n")
+    sys.stdout.write(f"{out} is written; run it with: beliefnest run {out}\n")
+
+
+def _captured(options: CaptureOptions) -> Captured:
+    if is_server(options.where):
+        if options.box is None or options.at is not None:
+            raise InputError("of a server, give --box X1 Y1 Z1 X2 Y2 Z2, and no --at")
+        x1, y1, z1, x2, y2, z2 = options.box
+        low = (min(x1, x2), min(y1, y2), min(z1, z2))
+        high = (max(x1, x2), max(y1, y2), max(z1, z2))
+        return capture_server(ServerAddress.parse(options.where), Box(low, high))
+    if options.box is not None:
+        raise InputError("a file is captured whole: give --at X Y Z, and no --box")
+    path = Path(options.where)
+    try:
+        data = read_regular(path, _LARGEST_FILE)
+    except OSError as error:
+        raise InputError(
+            f"{path} cannot be read: {error.strerror or error}; give minecraft://HOST:PORT, or "
+            "a .schem or .nbt file"
+        ) from None
+    try:
+        return capture_file(data, options.at or (0, 0, 0))
+    except BeliefNestError as error:
+        raise InputError(f"{path}: {error}") from error
+
+
+def _description(options: CaptureOptions) -> str:
+    if not is_server(options.where):
+        return f"Captured from the file {Path(options.where).name}."
+    return f"Captured from {ServerAddress.parse(options.where)}."

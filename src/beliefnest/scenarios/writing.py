@@ -1,0 +1,174 @@
+"""Places as scenario files: what is there, written so that people can read and change it."""
+
+from collections.abc import Iterator, Mapping
+from io import StringIO
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
+
+from beliefnest.errors import InputError, ScenarioError
+from beliefnest.scenarios.loading import kept_scenario
+from beliefnest.world.frames import BlockGrid, Snapshot
+from beliefnest.world.registry import Registry
+from beliefnest.world.signs import is_sign
+from beliefnest.world.values import EQUIPMENT_SLOTS, AgentState, Box, Position
+
+__all__ = ["cuboids", "scenario_text"]
+
+_VISITOR = "visitor"
+_WIDTH = 100
+_FULL = 20.0
+
+
+def scenario_text(name: str, description: str, place: Snapshot) -> str:
+    """A scenario file of a place; where nobody stands, a `visitor` does, who has nothing.
+
+    Args:
+        name: Short name of the scenario.
+        description: What it is about.
+        place: What is there; all of its blocks are known.
+
+    Raises:
+        InputError: Nobody can stand there, or the place cannot be said in a scenario.
+    """
+    registry = Registry.load()
+    agents = place.agents or {_VISITOR: AgentState(_standing(place, registry))}
+    content = {
+        "name": name,
+        "description": description,
+        "box": [_flow(place.box.low), _flow(place.box.high)],
+        "blocks": list(_blocks(place, registry)),
+        "containers": list(_containers(place, registry)),
+        "signs": list(_signs(place, registry)),
+        "agents": {agent: _agent(state) for agent, state in agents.items()},
+    }
+    text = _yaml({key: value for key, value in content.items() if value})
+    _check(text, place)
+    return text
+
+
+def cuboids(grid: BlockGrid, skipped: npt.NDArray[np.bool_]) -> Iterator[tuple[int, Box]]:
+    """Cuboids of one block state each that are all cells of a grid which are not skipped.
+
+    Each is as long as can be along z, then along x, then along y; indices begin at 0.
+    """
+    open_cells = ~skipped
+    for i, j, k in np.argwhere(open_cells).tolist():
+        if not open_cells[i, j, k]:
+            continue
+        state = int(grid[i, j, k])
+        low, high = [i, j, k], [i, j, k]
+        for axis in (2, 0, 1):
+            while high[axis] + 1 < grid.shape[axis]:
+                part = [slice(a, b + 1) for a, b in zip(low, high, strict=True)]
+                part[axis] = slice(high[axis] + 1, high[axis] + 2)
+                there = tuple(part)
+                if not (open_cells[there].all() and (grid[there] == state).all()):
+                    break
+                high[axis] += 1
+        open_cells[tuple(slice(a, b + 1) for a, b in zip(low, high, strict=True))] = False
+        yield state, Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+
+
+def _blocks(place: Snapshot, registry: Registry) -> Iterator[CommentedMap]:
+    skipped = np.isin(place.blocks, [registry.air])
+    for position in [*place.containers, *_sign_places(place, registry)]:
+        skipped[place.box.index(position)] = True
+    for state, part in cuboids(place.blocks, skipped):
+        low, high = (_at(place.box, corner) for corner in (part.low, part.high))
+        where: dict[str, Any] = {"at": low} if low == high else {"fill": _flow([low, high])}
+        yield _flow({"block": registry.text(state), **where})
+
+
+def _containers(place: Snapshot, registry: Registry) -> Iterator[CommentedMap]:
+    for position, items in sorted(place.containers.items()):
+        block = registry.text(int(place.blocks[place.box.index(position)]))
+        yield _flow({"at": position, "block": block, **({"items": dict(items)} if items else {})})
+
+
+def _signs(place: Snapshot, registry: Registry) -> Iterator[CommentedMap]:
+    for position in _sign_places(place, registry):
+        block = registry.text(int(place.blocks[place.box.index(position)]))
+        text = place.signs.get(position, "")
+        yield _flow({"at": position, "block": block, **({"text": text} if text else {})})
+
+
+def _sign_places(place: Snapshot, registry: Registry) -> list[Position]:
+    states = [s for s in np.unique(place.blocks).tolist() if is_sign(registry.name(s))]
+    found = np.argwhere(np.isin(place.blocks, states)).tolist()
+    return [_at(place.box, index) for index in found]
+
+
+def _agent(state: AgentState) -> CommentedMap:
+    worn = {slot: state.equipment[slot] for slot in EQUIPMENT_SLOTS if slot in state.equipment}
+    said: dict[str, Any] = {"position": state.position, "yaw": state.yaw, "pitch": state.pitch}
+    said |= {"inventory": dict(state.inventory)} if state.inventory else {}
+    said |= {"equipment": worn} if worn else {}
+    said |= {"health": state.health} if state.health != _FULL else {}
+    said |= {"food": state.food} if state.food != _FULL else {}
+    return _flow(said)
+
+
+def _standing(place: Snapshot, registry: Registry) -> tuple[float, float, float]:
+    """The lowest place to stand, and of those the nearest to the middle."""
+    full = {s: _fills(registry, s) for s in np.unique(place.blocks).tolist()}
+    empty = np.isin(place.blocks, [s for s in full if not registry.boxes(s)])
+    floor = np.isin(place.blocks, [s for s, fills in full.items() if fills])
+    free = floor[:, :-2] & empty[:, 1:-1] & empty[:, 2:]
+    if free.size == 0 or not free.any():
+        raise InputError(
+            "nobody stands in the box, and nobody could: let it hold a floor with two free blocks "
+            "above it"
+        )
+    middle = [side / 2 for side in place.box.shape]
+    i, j, k = min(
+        np.argwhere(free).tolist(),
+        key=lambda at: (at[1], (at[0] - middle[0]) ** 2 + (at[2] - middle[2]) ** 2),
+    )
+    x, y, z = _at(place.box, (i, j + 1, k))
+    return (x + 0.5, float(y), z + 0.5)
+
+
+def _fills(registry: Registry, state: int) -> bool:
+    return registry.boxes(state) == ((0.0, 0.0, 0.0, 1.0, 1.0, 1.0),)
+
+
+def _at(box: Box, index: Any) -> Position:
+    x, y, z = (int(i) + low for i, low in zip(index, box.low, strict=True))
+    return (x, y, z)
+
+
+def _flow(value: Any) -> Any:
+    """The value as YAML on one line."""
+    made: Any
+    if isinstance(value, Mapping):
+        made = CommentedMap((key, _flow(part)) for key, part in value.items())
+    elif isinstance(value, list | tuple):
+        made = CommentedSeq(_flow(part) for part in value)
+    else:
+        return value
+    made.fa.set_flow_style()
+    return made
+
+
+def _yaml(content: Mapping[str, Any]) -> str:
+    yaml = YAML()
+    yaml.width = _WIDTH
+    yaml.indent(mapping=2, sequence=4, offset=2)
+    out = StringIO()
+    yaml.dump(dict(content), out)
+    return out.getvalue()
+
+
+def _check(text: str, place: Snapshot) -> None:
+    """That the text says what is there: it is read as any scenario is."""
+    try:
+        read = kept_scenario(text, {}, None, "what was captured").setting.snapshot
+    except ScenarioError as error:
+        raise InputError(f"the place cannot be said in a scenario: {error}") from error
+    same = (read.blocks == place.blocks).all() and read.containers == place.containers
+    if not same or read.signs != place.signs:
+        raise AssertionError("a scenario says something else than what was captured")
