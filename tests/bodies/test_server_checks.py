@@ -60,7 +60,7 @@ def opened(world: World, snapshot: Snapshot | None = None) -> None:
         (("lack item", "lack"), {}, r"BeliefNest may not use /item"),
         (("verify BeliefNest", "trust BeliefNest"), {}, r"asks Microsoft.*online-mode=false"),
         (("room 0", "room 9"), {}, r"is full.*raise max-players"),
-        (None, {"version": "1.21.8"}, r"speaks Minecraft 1\.21\.8; this build has 1\.20\.4"),
+        (None, {"version": "1.16.5"}, r"speaks Minecraft 1\.16\.5; .* 1\.20\.4, .*1\.21\.8.*pip"),
     ],
 )
 def test_what_the_operator_lacks_is_said(server, lines, query, said):

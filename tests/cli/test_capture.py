@@ -59,7 +59,7 @@ def believed(scenario: Scenario) -> list[Any]:
         return [
             (
                 state.containers,
-                {place: block for place, block in state.blocks.items() if block is not None},
+                state.blocks.grid.tolist(),
                 {name: agent.current for name, agent in state.agents.items()},
                 [(event.kind, event.actor, event.detail) for event in state.events],
             )

@@ -120,7 +120,7 @@ def test_what_a_person_does_on_a_server_becomes_the_same_actions(server, tmp_pat
     path = tmp_path / "workshop.yaml"
     path.write_text(WORKSHOP, encoding="utf-8")
     with (
-        Nest.open(Scenario.load(str(path)), server.address(at="0,16")) as nest,
+        Nest.open(Scenario.load(str(path)), server.address()) as nest,
         Person(nest.address, "anne") as anne,
     ):
         nest.wait_for_people()

@@ -11,6 +11,7 @@ const { MINECRAFT_VERSION, buildRegistry } = require('./registry')
 const { buildHandling } = require('./handling')
 const { interpreterBytes } = require('./src/sandbox/interpreter')
 const { INTERPRETER, replacements } = require('./bundling/replacements')
+const { FURTHER, writeVersions } = require('./bundling/versions')
 
 const SOURCE = path.join(__dirname, 'src')
 /** Programs in the scripted world have the same class, dates and random numbers, and are told the same names. */
@@ -27,6 +28,7 @@ async function build (outdir) {
     path.join(outdir, `registry-${MINECRAFT_VERSION}.msgpack`), encode(buildRegistry(MINECRAFT_VERSION)))
   fs.writeFileSync(
     path.join(outdir, `handling-${MINECRAFT_VERSION}.msgpack`), encode(buildHandling(MINECRAFT_VERSION)))
+  writeVersions(outdir, FURTHER)
   fs.writeFileSync(path.join(outdir, INTERPRETER), interpreterBytes())
   for (const file of SHARED) await share(path.join(SOURCE, file), outdir)
   const folders = packageFolders(inputs)

@@ -74,7 +74,7 @@ const STAND_INS = [
 ]
 
 /** @returns {string} minecraft-data's index of versions, with only `version` in it and without what is unused */
-function versionIndex (version, unused) {
+function versionIndex (version, unused, further = '') {
   const paths = JSON.parse(fs.readFileSync(path.join(DATA, 'dataPaths.json'))).pc[version]
   const getters = Object.entries(paths).filter(([name]) => !unused.includes(name))
     .filter(([name, folder]) => fs.existsSync(path.join(DATA, folder, `${name}.json`)))
@@ -82,7 +82,12 @@ function versionIndex (version, unused) {
       const file = JSON.stringify(`./minecraft-data/data/${folder}/${name}.json`)
       return `get ${name} () { return require(${file}) }`
     })
-  return `module.exports = { pc: { ${JSON.stringify(version)}: {\n${getters.join(',\n')}\n} }, bedrock: {} }`
+  return `const pc = { ${JSON.stringify(version)}: {\n${getters.join(',\n')}\n} }\n${further}\nmodule.exports = { pc, bedrock: {} }`
+}
+
+/** Of further versions, one file each: those beside the program, and in folders that it is told of (versions.js). */
+function furtherVersions (version) {
+  return `require(${JSON.stringify(path.join(ROOT, 'bundling', 'further'))}).add(pc, pc[${JSON.stringify(version)}], [__dirname, ...process.argv.slice(4)])`
 }
 
 /** An esbuild plugin. `version` is Minecraft's, `outdir` where data files go, `connections` a name of CONNECTIONS. */
@@ -95,13 +100,13 @@ function replacements (version, outdir, connections) {
         build.onLoad({ filter }, ({ path: file }) => ({ contents, loader: 'js', resolveDir: path.dirname(file) }))
       }
       build.onLoad({ filter: /minecraft-data\/data\.js$/ }, ({ path: file }) => ({
-        contents: versionIndex(version, connections === 'memory' ? UNUSED_IN_MEMORY : UNUSED), loader: 'js', resolveDir: path.dirname(file)
+        contents: versionIndex(version, connections === 'memory' ? UNUSED_IN_MEMORY : UNUSED, connections === 'client' ? furtherVersions(version) : ''), loader: 'js', resolveDir: path.dirname(file)
       }))
       build.onLoad({ filter: /minecraft-data\/minecraft-data\/data\/pc\/.*\.json$/ }, ({ path: file }) => ({
         contents: dataModule(file, outdir), loader: 'js'
       }))
       build.onLoad({ filter: /prismarine-physics\/lib\/features\.json$/ }, ({ path: file }) => ({
-        contents: JSON.stringify(physicsFeatures(file, version)), loader: 'json'
+        contents: connections === 'client' ? fs.readFileSync(file) : JSON.stringify(physicsFeatures(file, version)), loader: 'json'
       }))
       memoise(build)
     }

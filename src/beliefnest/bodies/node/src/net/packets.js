@@ -16,6 +16,7 @@ const chunk = (x, z, field) => ({ kind: 'chunk', x, z, field })
 
 const TO_CLIENT = {
   spawn_entity: [point],
+  sync_entity_position: [point],
   spawn_entity_experience_orb: [point],
   block_break_animation: [block],
   tile_entity_data: [block],
@@ -23,7 +24,7 @@ const TO_CLIENT = {
   block_change: [block],
   face_player: [point],
   multi_block_change: [chunk('x', 'z', 'chunkCoordinates')],
-  explosion: [point],
+  explosion: [point, { kind: 'point', field: 'center' }],
   unload_chunk: [chunk('chunkX', 'chunkZ')],
   map_chunk: [chunk('x', 'z')],
   world_event: [block],
@@ -60,6 +61,7 @@ const TO_SERVER = {
   update_sign: [block],
   block_place: [block],
   tab_complete: [{ kind: 'block', field: 'lookedAtBlock' }],
+  chat_command_signed: [{ kind: 'words', field: 'command' }],
   chat_command: [{ kind: 'words', field: 'command' }]
 }
 

@@ -65,8 +65,10 @@ const KINDS = {
 // A teleport's coordinate is a distance, not a place, where its flag says so.
 function shiftAbsolute (shift, packet) {
   const moved = shift.coordinates(packet, 1, toStep)
-  if (packet.flags & 1) moved.x = packet.x
-  if (packet.flags & 4) moved.z = packet.z
+  // Since 1.21.2 flags are told by name.
+  const isFar = (bit, name) => typeof packet.flags === 'object' ? packet.flags[name] : packet.flags & bit
+  if (isFar(1, 'x')) moved.x = packet.x
+  if (isFar(4, 'z')) moved.z = packet.z
   return moved
 }
 

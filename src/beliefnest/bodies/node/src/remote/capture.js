@@ -3,7 +3,6 @@
 const { Box } = require('../regions/box')
 const { rounded, sorted } = require('../regions/facts')
 const { fromDegrees, wrap } = require('../server/angles')
-const { blockStates } = require('../server/plugins/lib/states')
 const { byPlace, listOf, vecOf } = require('../server/plugins/lib/positions')
 const { possessionsIn } = require('../places/held')
 const { textOf } = require('../../../../programs/skills/lib/signs')
@@ -12,31 +11,32 @@ const { wornBy } = require('./person')
 const { RemotePlace } = require('./remotePlace')
 const { Scene } = require('./scene')
 const { Setup } = require('./setup')
+const { BlockMapping } = require('./versions')
 
 const FULL = 20
 const SPECTATOR = 3
 
 /**
- * @param {object} session `operator`, `clock`, `registry`
+ * @param {object} session of beginSession, and our `registry`
  * @param {{x: number, z: number}} origin where scenario (0, y, 0) lies on the server
  * @param {number[][]} corners of the box, scenario coordinates
  * @returns {Promise<object>} SNAPSHOT, with `unread`: [x, y, z] of containers that could not be looked into, and
- *   `unasked`: names of players of whom only what they wear and hold is known
+ *   `unasked`: names of players of whom only what they wear and hold is known, `strange`: names of blocks that ours has not
  */
-async function capture ({ operator, clock, registry }, origin, corners) {
+async function capture ({ operator, clock, theirs, registry }, origin, corners) {
   const region = new RemotePlace({ name: 'captured', box: new Box(...corners), origin, tick: 0, known: [] }, clock)
-  const states = blockStates(registry)
-  const commands = commandsFor(region, state => states.text(state))
-  const scene = new Scene(region, registry, operator, commands, position => setup.read(position))
-  const setup = new Setup(scene, operator, commands, registry)
+  const mapping = new BlockMapping(registry, theirs)
+  const commands = commandsFor(region, state => mapping.textForServer(state))
+  const scene = new Scene(region, mapping, operator, commands, position => setup.read(position))
+  const setup = new Setup(scene, operator, commands, theirs)
   await setup.arrive()
   try {
-    const present = operator.readStates(region.box)
+    const present = setup.present()
     scene.settle(present)
     const found = await contents(setup, present)
     await setup.goAbove()
     return {
-      tick: 0, blocks: new Uint8Array(present.buffer), items: {}, hidden: new Uint8Array(0), signs: signs(operator.bot, scene, present), ...found, ...await players(operator, commands, region)
+      tick: 0, blocks: new Uint8Array(present.buffer), items: {}, hidden: new Uint8Array(0), signs: signs(operator.bot, scene, present), ...found, ...await players(operator, commands, region), strange: [...mapping.strange].sort()
     }
   } finally {
     operator.type(commands.load('remove'))

@@ -5,7 +5,6 @@
  */
 const minecraft = require('minecraft-protocol')
 const { Translator } = require('../net/translate')
-const versions = require('../versions')
 
 // Milliseconds without a sign of the server after which a connection counts as lost.
 const SILENCE_MS = 30_000
@@ -14,6 +13,7 @@ const SILENCE_MS = 30_000
  * @param {object} options
  * @param {string} [options.host]
  * @param {number} options.port
+ * @param {string} options.version of Minecraft, one of those held
  * @param {string} options.username as the server is to know the player
  * @param {string} [options.agent] as the bot is to know itself
  * @param {{x: number, z: number}} options.origin where scenario (0, y, 0) lies on the server
@@ -22,10 +22,10 @@ const SILENCE_MS = 30_000
  * @returns {import('minecraft-protocol').Client} which emits `sent` (name, params) for every packet that its bot
  *   sends, as the bot means it
  */
-function connect ({ host = '127.0.0.1', port, username, agent = username, origin, agentOf = new Map(), hidden = [] }) {
+function connect ({ host = '127.0.0.1', port, version, username, agent = username, origin, agentOf = new Map(), hidden = [] }) {
   const translator = new Translator(origin, agentOf)
   const client = minecraft.createClient({
-    host, port, username, version: versions.minecraft, auth: 'offline', hideErrors: true, checkTimeoutInterval: SILENCE_MS
+    host, port, username, version, auth: 'offline', hideErrors: true, checkTimeoutInterval: SILENCE_MS
   })
   client.setMaxListeners(0)
   client.once('success', () => { client.username = agent })

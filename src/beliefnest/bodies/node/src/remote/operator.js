@@ -102,13 +102,17 @@ class Operator {
     return until(condition, milliseconds)
   }
 
-  /** @returns {Int32Array} the states of a box, in its array order */
-  readStates (box) {
+  /**
+   * @param {import('../regions/box').Box} box
+   * @param {import('./versions').BlockMapping} mapping
+   * @returns {Int32Array} the states of a box, in its array order, as our version counts them
+   */
+  readStates (box, mapping) {
     const states = new Int32Array(box.size)
     const place = new Vec3(0, 0, 0)
     box.forEach((x, y, z, index) => {
       place.set(x, y, z)
-      states[index] = this.bot.world.getBlockStateId(place)
+      states[index] = mapping.fromServer(this.bot.world.getBlockStateId(place))
     })
     return states
   }

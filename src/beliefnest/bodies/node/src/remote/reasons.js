@@ -37,9 +37,10 @@ const unreachable = (server, why) => new Unplayable(
 
 const onlineMode = server => refusal(server, '', { key: 'multiplayer.disconnect.unverified_username', text: '' })
 
-const wrongVersion = (server, found, wanted) => new Unplayable(
-  `${where(server)} speaks Minecraft ${found}; this build has ${wanted}. Run a server of ${wanted}` +
-  `; one that speaks several, or lies about it, is played on with ?version=${wanted}`)
+const wrongVersion = (server, found, held) => new Unplayable(
+  `${where(server)} speaks Minecraft ${found}; this installation has what is needed for ${held.join(', ')}. Run a server of one ` +
+  'of these, or install further versions: pip install beliefnest-versions; one that speaks several, or lies about it, is ' +
+  `played on with ?version=${held[0]}`)
 
 const noOperator = (server, lacking) => new Unplayable(
   `on ${where(server)} ${server.operator} may not use ${lacking.map(name => `/${name}`).join(', ')}; on its console: op ${server.operator}`)

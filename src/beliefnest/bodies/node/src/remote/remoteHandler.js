@@ -12,6 +12,10 @@ class RemoteHandler extends RealtimeHandler {
     return new RemoteRegions(server, session, registry, frame => this.send({ frame }))
   }
 
+  async hello (request) {
+    return { ...await super.hello(request), minecraft_server: this.regions.version }
+  }
+
   get tick () {
     return this.regions?.open?.region.tick ?? null
   }

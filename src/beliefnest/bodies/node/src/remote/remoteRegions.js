@@ -8,7 +8,6 @@ const { BadRequest } = require('../channel/errors')
 const { Box, statesOf } = require('../regions/box')
 const { Recorder } = require('../regions/recorder')
 const { vecOf } = require('../server/plugins/lib/positions')
-const { blockStates } = require('../server/plugins/lib/states')
 const { Agents } = require('./agents')
 const { commandsFor } = require('./commands')
 const { connect } = require('./connection')
@@ -16,6 +15,7 @@ const { RemotePlace } = require('./remotePlace')
 const { Scene } = require('./scene')
 const { Setup } = require('./setup')
 const reasons = require('./reasons')
+const { BlockMapping } = require('./versions')
 
 const POLL_MS = 5
 const NOTHING = new Uint8Array(0)
@@ -23,15 +23,17 @@ const NOTHING = new Uint8Array(0)
 class RemoteRegions {
   /**
    * @param {object} server `host`, `port`, `operator`, `at` (where scenario (0, 0) lies: x, z), `overwrite`, `keep`, `patience` (s)
-   * @param {object} session `operator`, `clock`
+   * @param {object} session of beginSession
    * @param {object} registry
    * @param {(frame: object) => void} send
    */
-  constructor (server, { operator, clock }, registry, send) {
+  constructor (server, { operator, clock, version, theirs }, registry, send) {
     this.server = server
     this.operator = operator
     this.serverClock = clock
-    this.registry = registry
+    this.version = version
+    this.registry = theirs
+    this.mapping = new BlockMapping(registry, theirs)
     this.send = send
     this.open = null
     // Agents whose places people may take.
@@ -68,14 +70,14 @@ class RemoteRegions {
   }
 
   equip (region) {
-    const { operator, registry, server: { host, port, at, operator: hidden } } = this
-    const states = blockStates(registry)
-    const commands = commandsFor(region, state => states.text(state))
-    const scene = new Scene(region, registry, operator, commands, position => setup.asked(position).then(found => found ?? setup.read(position)))
+    const { operator, registry, version, server: { host, port, at, operator: hidden } } = this
+    const { states } = this.mapping
+    const commands = commandsFor(region, state => this.mapping.textForServer(state))
+    const scene = new Scene(region, this.mapping, operator, commands, position => setup.asked(position).then(found => found ?? setup.read(position)))
     scene.fail = error => { this.failure ??= error }
     const setup = new Setup(scene, operator, commands, registry)
     const agents = new Agents(scene, operator, commands, registry, agent =>
-      connect({ host, port, username: agent, origin: { x: at[0], z: at[1] }, hidden: [hidden] }), this.invited)
+      connect({ host, port, version, username: agent, origin: { x: at[0], z: at[1] }, hidden: [hidden] }), this.invited)
     const { contents, items } = scene
     region.recorder = new Recorder(region, {
       agents: () => agents.states(), items: () => items.states(), changedContainers: () => contents.drain(), blockText: state => states.text(state), signText: ([x, y, z]) => scene.signText({ x, y, z })
@@ -90,7 +92,7 @@ class RemoteRegions {
     const { link, bot } = this.operator
     open.attach(bot, bot._client)
     link.on('begun', open.attach)
-    const present = this.operator.readStates(region.box)
+    const present = setup.present()
     if (!this.server.overwrite) setup.requireFree(present, wanted)
     open.saved = await this.save(open, present)
     const built = await setup.build(wanted)
@@ -129,7 +131,7 @@ class RemoteRegions {
   /** The operator has been away: what changed meanwhile it finds by looking. */
   async lookAgain ({ region, scene, setup }) {
     await setup.arrive()
-    const present = this.operator.readStates(region.box)
+    const present = setup.present()
     region.box.forEach((x, y, z, index) => scene.blockChanged(vecOf({ x, y, z }), present[index]))
   }
 

@@ -4,7 +4,6 @@
  * did it is found among what the agents tried just before.
  */
 const { Vec3 } = require('vec3')
-const { blockStates } = require('../server/plugins/lib/states')
 const { halvesAt } = require('../server/plugins/lib/doubleChest')
 const { handOver } = require('../server/plugins/lib/gifts')
 const { byPlace, keyOf, listOf, vecOf } = require('../server/plugins/lib/positions')
@@ -28,14 +27,15 @@ const SWINGS_WITHIN = 10
 class Scene {
   /**
    * @param {import('../regions/place').Place} region
-   * @param {object} registry
+   * @param {import('./versions').BlockMapping} mapping
    * @param {import('./operator').Operator} operator
    * @param {object} commands of commandsFor
    * @param {(position: number[]) => Promise<object | null>} read ITEMS of a container, as the server has it
    */
-  constructor (region, registry, operator, commands, read) {
+  constructor (region, mapping, operator, commands, read) {
     this.region = region
-    this.states = blockStates(registry)
+    this.mapping = mapping
+    this.states = mapping.states
     this.contents = new Contents()
     this.items = new Items(region)
     this.people = new People(region, operator, commands)
@@ -217,7 +217,7 @@ class Scene {
 
   /** Follows the operator's connection. */
   attach (bot, client) {
-    bot.on('blockUpdate', (_, block) => { if (block !== null) this.blockChanged(block.position, block.stateId) })
+    bot.on('blockUpdate', (_, block) => { if (block !== null) this.blockChanged(block.position, this.mapping.fromServer(block.stateId)) })
     bot.on('messagestr', text => this.heardBy(null, text))
     bot.on('blockEntityData', block => { if (block?.name.endsWith('_sign')) this.signShown(block.position, textOf(block)) })
     bot.on('itemDrop', entity => this.dropped(entity))

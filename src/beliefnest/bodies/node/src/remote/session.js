@@ -6,20 +6,23 @@ const { Link } = require('./link')
 const { Operator } = require('./operator')
 const { ServerClock } = require('./serverClock')
 const reasons = require('./reasons')
-const versions = require('../versions')
+const ours = require('../versions')
+const { held, heldFor, registryOf } = require('./versions')
 
 const PING_MS = 5000
 
 /**
  * @param {object} server as RemoteRegions has it; `version` if the server is not to be asked for it
- * @returns {Promise<{operator: Operator, clock: ServerClock}>}
+ * @returns {Promise<{operator: Operator, clock: ServerClock, version: string, theirs: object}>} the server's version and registry
+ *   besides
  * @throws {Unplayable} with what is missing and what to do
  */
 async function beginSession (server) {
   server.agents = []
-  await requireVersion(server)
+  const version = await versionOf(server)
+  const theirs = registryOf(version)
   const { host, port, operator: username, at: [x, z] } = server
-  const link = new Link(username, () => connect({ host, port, username, origin: { x, z } }), server, server.patience * 1000)
+  const link = new Link(username, () => connect({ host, port, version, username, origin: { x, z } }), server, server.patience * 1000)
   const clock = new ServerClock()
   link.on('begun', bot => bot.on('time', () => clock.tell(bot.time.age)))
   const operator = new Operator(link, server)
@@ -31,19 +34,22 @@ async function beginSession (server) {
     await link.close()
     throw error
   }
-  return { operator, clock }
+  return { operator, clock, version, theirs }
 }
 
-async function requireVersion (server) {
-  if (server.version !== null) {
-    if (server.version !== versions.minecraft) throw reasons.wrongVersion(server, server.version, versions.minecraft)
-    return
-  }
+/** @returns {Promise<string>} the version held that the server speaks, as the address or its answer to a ping says */
+async function versionOf (server) {
   const { host, port } = server
-  const told = await minecraft.ping({ host, port, version: versions.minecraft, closeTimeout: PING_MS, noPongTimeout: 500 })
+  const spoken = server.version === null ? await pinged(server, { host, port }) : { name: server.version, key: server.version }
+  const found = heldFor(spoken.key)
+  if (found === null) throw reasons.wrongVersion(server, spoken.name, held())
+  return found
+}
+
+async function pinged (server, where) {
+  const { version: { name, protocol } } = await minecraft.ping({ ...where, version: ours.minecraft, closeTimeout: PING_MS, noPongTimeout: 500 })
     .catch(error => { throw reasons.unreachable(server, error.code ?? error.message) })
-  const { version } = require('minecraft-data')(versions.minecraft)
-  if (told.version.protocol !== version.version) throw reasons.wrongVersion(server, told.version.name, versions.minecraft)
+  return { name, key: protocol }
 }
 
 module.exports = { beginSession }

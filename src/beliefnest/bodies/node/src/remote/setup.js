@@ -75,17 +75,22 @@ class Setup {
    */
   async build (wanted) {
     const { operator, region: { box } } = this
-    let present = operator.readStates(box)
+    let present = this.present()
     for (let attempt = 0; attempt < ATTEMPTS && this.flaws(present, wanted).length > 0; attempt++) {
       for (const cuboid of planFills(box, present, wanted, state => this.rank(state))) operator.type(this.commands.blocks(cuboid))
       await operator.settled()
-      await operator.until(() => this.flaws(operator.readStates(box), wanted).length === 0, 500)
-      present = operator.readStates(box)
+      await operator.until(() => this.flaws(this.present(), wanted).length === 0, 500)
+      present = this.present()
     }
     const flaws = this.flaws(present, wanted)
     if (flaws.length === 0) return present
     throw new BadRequest(
       `the server did not build ${flaws.length} blocks of the box, as ${flaws.slice(0, MOST_TOLD).join(', ')}; it said last: ${operator.lines.at(-1) ?? 'nothing'}`)
+  }
+
+  /** What is there now. */
+  present () {
+    return this.operator.readStates(this.region.box, this.scene.mapping)
   }
 
   /** What holds others first, what hangs on others last. */

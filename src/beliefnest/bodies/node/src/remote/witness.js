@@ -58,7 +58,7 @@ class Witness extends EventEmitter {
   attach (bot, client) {
     this.bot = bot
     this.windows.reset()
-    const sent = { block_dig: packet => this.dig(packet), block_place: packet => this.use(packet), window_click: packet => this.windows.click(packet), close_window: () => this.windows.close(), update_sign: ({ location }) => this.try('write', vecOf(location)), chat_command: ({ command }) => this.command(command), chat_message: ({ message }) => this.scene.expect({ actor: this.agent, text: message }) }
+    const sent = { block_dig: packet => this.dig(packet), block_place: packet => this.use(packet), window_click: packet => this.windows.click(packet), close_window: () => this.windows.close(), update_sign: ({ location }) => this.try('write', vecOf(location)), chat_command: ({ command }) => this.command(command), chat_command_signed: ({ command }) => this.command(command), chat_message: ({ message }) => this.scene.expect({ actor: this.agent, text: message }) }
     client.on('sent', (name, packet) => sent[name]?.(packet))
     client.on('open_window', packet => this.windows.open(packet))
     client.on('window_items', packet => this.windows.show(packet))

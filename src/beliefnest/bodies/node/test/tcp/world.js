@@ -72,7 +72,7 @@ async function inWorld (server, { agents, blocks, containers, box }, body) {
   const faults = []
   try {
     await Promise.all(Object.entries(players).map(async ([agent, username]) => {
-      const bot = startBot(connect({ port, username, agent, origin, agentOf }), REAL_TIME)
+      const bot = startBot(connect({ port, version: versions.minecraft, username, agent, origin, agentOf }), REAL_TIME)
       bots[agent] = bot
       bot.on('error', error => faults.push(error))
       await once(bot, 'spawn')

@@ -2,7 +2,7 @@
 /**
  * A Minecraft server of the project's own plugins that does what an operator bot asks of a vanilla one, as a process of
  * its own: `node server.js [OPTIONS]`, a JSON object: `port` (0: any), `ops`, `age`,
- * `latency` (milliseconds each way), `tickMs`. It prints `{"port": N}` and then
+ * `latency` (milliseconds each way), `tickMs`, `version` of Minecraft. It prints `{"port": N}` and then
  * takes lines on its standard input as a console does (world.js); it ends with that input.
  */
 require('../../src/prepare').prepare()
@@ -16,16 +16,18 @@ const { openDelayed } = require('../tcp/delay')
 const { OpenWorld, TICK_MS } = require('./world')
 
 const DEFAULTS = {
-  port: 0, ops: ['BeliefNest'], age: 1000, latency: 0, tickMs: TICK_MS
+  port: 0, ops: ['BeliefNest'], age: 1000, latency: 0, tickMs: TICK_MS, version: versions.minecraft
 }
 
 async function main (options) {
-  const registry = require('prismarine-registry')(versions.minecraft)
-  registry.loadDimensionCodec(registry.loginPacket.dimensionCodec)
+  const registry = require('prismarine-registry')(options.version)
+  if (registry.version['<']('1.20.5')) registry.loadDimensionCodec(registry.loginPacket.dimensionCodec)
   rememberBlocks(registry)
-  const world = new OpenWorld(createServer(registry), options)
+  const serv = createServer(registry)
+  if (!registry.supportFeature('chatPacketsUseNbtComponents')) serv._createNetworkEncodedChatComponent = text => JSON.stringify({ text })
+  const world = new OpenWorld(serv, options)
   const listening = minecraft.createServer({
-    host: '127.0.0.1', port: options.port, version: versions.minecraft, 'online-mode': false, maxPlayers: 100, motd: 'BeliefNest', hideErrors: true, beforeLogin: client => world.admit(client)
+    host: '127.0.0.1', port: options.port, version: options.version, 'online-mode': false, maxPlayers: 100, motd: 'BeliefNest', hideErrors: true, beforeLogin: client => world.admit(client)
   })
   listening.onlineModeExceptions = world.verified
   listening.on('playerJoin', client => world.join(client))

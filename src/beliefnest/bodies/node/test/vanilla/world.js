@@ -15,6 +15,7 @@ const BOX = [[-64, -63, -64], [63, 60, 63]]
 const FLOOR_Y = -61
 const SPAWN = [0.5, FLOOR_Y + 1, 0.5]
 const AGE_EVERY = 20
+const CRAFTER = 7
 const NEWCOMER = { position: SPAWN, yaw: 0, pitch: 0, on_ground: true, health: 20, food: 20, gameMode: 0 }
 // Who leaves does not wait for what is on its way.
 const BROKEN_OFF = ['EPIPE', 'ECONNRESET']
@@ -62,6 +63,7 @@ class OpenWorld {
     const end = new TcpEnd(client, action => action(), error => {
       if (!BROKEN_OFF.includes(error.code)) process.stderr.write(`${client.username}: ${error.stack}\n`)
     })
+    if (!serv.registry.supportFeature('chatPacketsUseNbtComponents')) speakOlder(end)
     const player = join(serv, region, end, state)
     player.gameMode = state.gameMode
     showWorld(player, region.columns)
@@ -141,6 +143,14 @@ class OpenWorld {
     else if (player === undefined) runCommand(this.serv, line, null)
     if (player !== undefined && word.endsWith('op')) this.tellCommands(player)
   }
+}
+
+/** Windows as versions before 1.20.3 have them: titles as JSON, and no crafter among their kinds. */
+function speakOlder (end) {
+  const { write } = end
+  end.write = (name, params) => write.call(end, name, name === 'open_window'
+    ? { ...params, inventoryType: params.inventoryType - (params.inventoryType > CRAFTER), windowTitle: JSON.stringify({ text: params.windowTitle.value.text.value }) }
+    : params)
 }
 
 /** Stands still, as a server does that is busy with something else. */

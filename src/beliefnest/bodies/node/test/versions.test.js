@@ -1,0 +1,72 @@
+'use strict'
+const assert = require('node:assert/strict')
+const { execFileSync } = require('node:child_process')
+const fs = require('node:fs')
+const os = require('node:os')
+const path = require('node:path')
+const { test } = require('node:test')
+const { add } = require('../bundling/further')
+const { writeVersions } = require('../bundling/versions')
+const { BlockMapping, heldFor } = require('../src/remote/versions')
+const { minecraft } = require('../src/versions')
+
+const registry = version => require('prismarine-registry')(version)
+const ours = registry(minecraft)
+// What a place is made of in ours and not in the other version.
+const NEWER = { '1.20.1': /copper_bulb|copper_door|copper_trapdoor|copper_grate|chiseled_copper|crafter|tuff_|_tuff|trial_spawner/, '1.21.11': /^$/ }
+
+for (const version of Object.keys(NEWER)) {
+  test(`blocks of ours are those of the same name in ${version}, and back`, () => {
+    const theirs = registry(version)
+    const mapping = new BlockMapping(ours, theirs)
+    const state = text => {
+      const [, name, inner] = /^(\w+)(?:\[(.*)\])?$/.exec(text)
+      const properties = Object.fromEntries((inner?.split(',') ?? []).map(each => each.split('=')))
+      return require('../src/server/plugins/lib/states').encode(theirs, name, properties)
+    }
+    let others = 0
+    for (const { name, defaultState, maxStateId } of ours.blocksArray) {
+      if (NEWER[version].test(name)) {
+        assert.throws(() => mapping.textForServer(defaultState), RangeError, name)
+        continue
+      }
+      for (const own of [defaultState, maxStateId]) {
+        const found = state(mapping.textForServer(own))
+        others += found !== own
+        assert.equal(mapping.states.text(mapping.fromServer(found)), mapping.states.text(own))
+      }
+    }
+    assert.ok(others > 100)
+    assert.deepEqual([...mapping.strange], [])
+  })
+}
+
+test('a block that ours has not is stone, or air where one walks through it', () => {
+  const theirs = registry('1.21.11')
+  const mapping = new BlockMapping(ours, theirs)
+  const name = block => mapping.states.describe(mapping.fromServer(theirs.blocksByName[block].defaultState)).name
+  assert.deepEqual(['resin_block', 'firefly_bush'].map(name), ['stone', 'air'])
+  assert.deepEqual([...mapping.strange], ['resin_block', 'firefly_bush'])
+})
+
+test('a version is spoken by any held one of the same protocol', () => {
+  assert.equal(heldFor('1.21.8'), '1.21.8')
+  assert.equal(heldFor(765), '1.20.4')
+  assert.equal(heldFor('no version'), null)
+  assert.equal(heldFor(-7), null)
+})
+
+test('further versions are found in folders, and read when asked for', () => {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'versions-'))
+  try {
+    execFileSync(process.execPath, [path.join(__dirname, '..', 'bundling', 'versions.js'), folder, '1.21.5'])
+    fs.writeFileSync(path.join(folder, 'minecraft-9.9.json.gz'), 'damaged, and never read')
+    const versions = { [minecraft]: { language: {} } }
+    add(versions, versions[minecraft], [folder])
+    assert.deepEqual(Object.keys(versions), [minecraft, '1.21.5', '9.9'])
+    assert.equal(versions['1.21.5'].version.minecraftVersion, '1.21.5')
+    assert.throws(() => writeVersions(folder, ['0.1']), /has no Minecraft 0\.1/)
+  } finally {
+    fs.rmSync(folder, { recursive: true })
+  }
+})
