@@ -12,7 +12,7 @@ from tests.servers import GameServer
 
 from beliefnest import Nest, Scenario
 from beliefnest.cli.app import run_command_line
-from beliefnest.errors import BodyError
+from beliefnest.errors import BodyError, InputError
 from beliefnest.world.values import EventKind
 
 PATIENCE = 4
@@ -160,6 +160,8 @@ def test_what_others_do_between_calls_is_recorded_with_the_next(server, tmp_path
         assert nest.wait(lambda: nest["/"].state.blocks[(4, -51, 4)] == "stone")
         told = [e for e in nest["/"].state.events if e.kind is EventKind.BLOCK_UPDATE]
         assert [(e.actor, e.detail["position"]) for e in told] == [(None, (4, -51, 4))]
+        with pytest.raises(InputError, match="real time, so that nothing can be tried out"):
+            nest.explore("/", "sally", [PUT], lambda *_: 0)
         before = nest.tick
         assert not nest.wait(lambda: False, timeout_s=0.5)
         assert before + 10 <= nest.tick

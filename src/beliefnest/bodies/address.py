@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
@@ -48,6 +49,8 @@ class ServerAddress:
         at: Where scenario (0, y, 0) lies in its world: x and z, multiples of 16.
         overwrite: Whether blocks in the box that are not the scenario's may be replaced.
         keep: Whether the box is left as it is at the end, not as it was before.
+        accounts: Folder in which tokens of Microsoft accounts are kept, by which players log in;
+            None: the server is in offline mode.
         patience: Seconds for which a lost connection, or a server that stands still, is waited for.
     """
 
@@ -58,6 +61,7 @@ class ServerAddress:
     at: tuple[int, int] = (0, 0)
     overwrite: bool = False
     keep: bool = False
+    accounts: str | None = None
     patience: float = 30.0
 
     @classmethod
@@ -71,7 +75,7 @@ class ServerAddress:
         if parts.username is not None or parts.password is not None:
             raise InputError(
                 "the address of a server has no name or password in it, which would be kept with "
-                "every run; servers in offline mode are joined without"
+                "every run; without them servers in offline mode are joined, others by ?accounts=FOLDER"
             )
         try:
             host, port = parts.hostname, parts.port
@@ -127,6 +131,10 @@ def _place(key: str, value: str) -> tuple[int, int]:
     )
 
 
+def _folder(key: str, value: str) -> str:
+    return str(Path(_text(key, value)).expanduser().resolve())
+
+
 def _seconds(key: str, value: str) -> float:
     try:
         seconds = float(value)
@@ -143,5 +151,6 @@ _OPTIONS = {
     "at": _place,
     "overwrite": _yes,
     "keep": _yes,
+    "accounts": _folder,
     "patience": _seconds,
 }

@@ -9,9 +9,10 @@ import numpy as np
 
 from beliefnest.bodies import messages
 from beliefnest.bodies.address import ServerAddress
+from beliefnest.bodies.channel import Channel
 from beliefnest.bodies.embedded import started
 from beliefnest.bodies.limits import ProcessLimits
-from beliefnest.bodies.node_files import REALTIME
+from beliefnest.bodies.minecraft import joined
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.limits import box_fault
@@ -41,6 +42,7 @@ class Captured:
 class _Found(msgspec.Struct, frozen=True):
     unread: list[_Placed] = []
     unasked: list[str] = []
+    strange: list[str] = []
 
 
 class _Place(msgspec.Struct, frozen=True):
@@ -65,7 +67,8 @@ def capture_server(address: ServerAddress, box: Box) -> Captured:
     """
     if fault := box_fault(box):
         raise InputError(f"the box {fault}")
-    told = _asked("capture", REALTIME, {"server": address.told}, box=[box.low, box.high])
+    channel, _ = joined(address, 0, ProcessLimits())
+    told = _asked(channel, "capture", box=[box.low, box.high])
     found = msgspec.convert(told, _Found)
     snapshot, left_out = _said(messages.snapshot_of(told, box), Registry.load())
     if found.unread:
@@ -74,6 +77,11 @@ def capture_server(address: ServerAddress, box: Box) -> Captured:
         left_out.append(
             f"what {', '.join(found.unasked)} have but do not wear or hold: the server has no "
             "/data that could be asked"
+        )
+    if found.strange:
+        left_out.append(
+            "blocks that this version has not, now stone, or air where one can walk: "
+            + _named(found.strange)
         )
     return Captured(snapshot, tuple(left_out))
 
@@ -89,7 +97,8 @@ def capture_file(data: bytes, corner: Position) -> Captured:
         WorldError: It is no such file, or too large.
         InputError: It does not fit into a world there.
     """
-    place = msgspec.convert(_asked("read_place", bytes=data), _Place)
+    channel, _ = started(0, ProcessLimits())
+    place = msgspec.convert(_asked(channel, "read_place", bytes=data), _Place)
     high = tuple(low + side - 1 for low, side in zip(corner, place.shape, strict=True))
     box = Box(corner, (high[0], high[1], high[2]))
     if fault := box_fault(box):
@@ -112,16 +121,10 @@ def capture_file(data: bytes, corner: Position) -> Captured:
     return Captured(snapshot, tuple(left_out))
 
 
-def _asked(op: str, program: str | None = None, hello: Any = None, **more: Any) -> Any:
-    limits = ProcessLimits()
-    if program is None:
-        channel, _ = started(0, limits)
-    else:
-        channel, _ = started(0, limits, program, **hello)
+def _asked(channel: Channel, op: str, **more: Any) -> Any:
     try:
         answer = channel.request(op, **more)
-        if program is not None:
-            channel.request("shutdown")
+        channel.request("shutdown")
     finally:
         channel.close()
     return answer

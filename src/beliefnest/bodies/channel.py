@@ -6,6 +6,7 @@ arrive before the answer of the request that caused them.
 
 import socket
 import struct
+import sys
 from collections.abc import Callable, Sequence
 from typing import Any, Self, TypeVar
 
@@ -14,6 +15,7 @@ import msgspec
 from beliefnest.bodies.child import Child
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.errors import BodyError, BodyLostError, InputError, WorldError
+from beliefnest.world.texts import escaped
 
 __all__ = ["PROTOCOL", "Channel"]
 
@@ -151,8 +153,8 @@ class Channel:
         refused: Exception | None = None
         while True:
             message = self._receive()
-            if "beat" in message:
-                self._tick = self._tick if message["beat"] is None else message["beat"]
+            if "beat" in message or "notice" in message:
+                self._note(message)
             elif "frame" in message:
                 if on_frame is None:
                     raise _BrokenError("sent a frame of its own accord")
@@ -176,6 +178,13 @@ class Channel:
                 return message, refused
             else:
                 raise _BrokenError(f"answered request {message.get('id')}, not {self._number}")
+
+    def _note(self, message: dict[str, Any]) -> None:
+        """Take a sign of life, or show the user what the other side wants of them."""
+        if "notice" in message:
+            sys.stderr.write(f"{escaped(message['notice'])}\n")
+        elif message["beat"] is not None:
+            self._tick = message["beat"]
 
     def _send(self, message: bytes) -> None:
         rest = memoryview(message)

@@ -1,6 +1,7 @@
 """The embedded Minecraft world: one Node process with the server and all bots."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, Self
 
 import msgspec
@@ -269,7 +270,11 @@ class EmbeddedWorld:
 
 
 def started(
-    seed: int, limits: ProcessLimits, program: str = EMBEDDED, **more: Any
+    seed: int,
+    limits: ProcessLimits,
+    program: str = EMBEDDED,
+    writable: Path | None = None,
+    **more: Any,
 ) -> tuple[Channel, Mapping[str, str]]:
     """A channel to a new Node with an empty world, and the versions of what runs there.
 
@@ -277,12 +282,13 @@ def started(
         seed: Drives the random numbers of the world itself.
         limits: What Node may take.
         program: Name of what it runs.
+        writable: The only folder in which it may write.
         more: What that is told besides.
 
     Raises:
         BodyError: Node or the bundle is missing, or the start failed.
     """
-    channel = Channel.start(node_command(limits, program), limits)
+    channel = Channel.start(node_command(limits, program, writable), limits)
     try:
         told = channel.request("hello", protocol=PROTOCOL, seed=seed, minecraft=MINECRAFT, **more)
     except BodyLostError as error:

@@ -1,5 +1,7 @@
 """Reality on a Minecraft server elsewhere, in real time; beliefs in the embedded world."""
 
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Self
 
 from beliefnest.bodies.address import ServerAddress
@@ -9,9 +11,27 @@ from beliefnest.bodies.exhibits import Exhibit, Plot, Shown
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.node_files import REALTIME
 from beliefnest.bodies.realtime import RealtimeWorld
-from beliefnest.errors import InputError
+from beliefnest.errors import BodyError, InputError
 
-__all__ = ["MinecraftWorld"]
+__all__ = ["MinecraftWorld", "joined"]
+
+
+def joined(
+    address: ServerAddress, seed: int, limits: ProcessLimits
+) -> tuple[Channel, Mapping[str, str]]:
+    """A channel to a new Node whose operator is on a server, and the versions of what runs there.
+
+    Raises:
+        BodyError: The server cannot be played on, or the folder for accounts cannot be had.
+    """
+    folder = None if address.accounts is None else Path(address.accounts)
+    if folder is not None:
+        try:
+            # Tokens are the user's alone.
+            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        except OSError as error:
+            raise BodyError(f"accounts cannot be kept in {folder}: {error.strerror}") from error
+    return started(seed, limits, REALTIME, folder, server=address.told)
 
 
 class MinecraftWorld(RealtimeWorld):
@@ -97,7 +117,7 @@ class MinecraftWorld(RealtimeWorld):
             channel.close()
 
     def _started(self) -> Channel:
-        channel, versions = started(self._seed, self._limits, REALTIME, server=self._address.told)
+        channel, versions = joined(self._address, self._seed, self._limits)
         channel.request("people", invited=sorted(self._invited))
         self._versions = {**versions, "server": str(self._address)}
         return channel

@@ -1,5 +1,6 @@
 """Where Node and the bundled JavaScript are, and whether they can be used."""
 
+import importlib.util
 import os
 import shutil
 import stat
@@ -17,6 +18,7 @@ __all__ = [
     "bundle_path",
     "node_command",
     "node_path",
+    "versions_folder",
 ]
 
 OLDEST_NODE = 24
@@ -84,22 +86,43 @@ def bundle_path(program: str = EMBEDDED) -> Path:
     return path
 
 
-def node_command(limits: ProcessLimits | None = None, program: str = EMBEDDED) -> list[str]:
+def versions_folder() -> Path | None:
+    """Where the package `beliefnest-versions` has data of further Minecraft versions, if any."""
+    found = importlib.util.find_spec("beliefnest_versions")
+    return None if found is None or found.origin is None else Path(found.origin).parent
+
+
+def node_command(
+    limits: ProcessLimits | None = None, program: str = EMBEDDED, writable: Path | None = None
+) -> list[str]:
     """The command that starts the Minecraft side, with as few permissions as it needs.
+
+    Args:
+        limits: What it may take.
+        program: Which one.
+        writable: The only folder in which it may write.
 
     Raises:
         BodyError: Node or the bundle is missing.
     """
     node, bundle = node_path(), bundle_path(program)
     heap = (limits or ProcessLimits()).heap
+    further = versions_folder() if program == REALTIME else None
     return [
         str(node),
         "--permission",
         f"--allow-fs-read={bundle.parent}",
+        *([] if further is None else [f"--allow-fs-read={further}"]),
+        *(
+            []
+            if writable is None
+            else [f"--allow-fs-{may}={writable}" for may in ("read", "write")]
+        ),
         "--allow-worker",
         "--no-warnings",
         f"--max-old-space-size={heap}",
         # Programs are short: the interpreter's parts are worth optimising after a few of them.
         "--wasm-tiering-budget=10000",
         str(bundle),
+        *([] if further is None else [str(further)]),
     ]

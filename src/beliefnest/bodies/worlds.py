@@ -19,6 +19,7 @@ __all__ = [
     "LazyWorld",
     "Worlds",
     "check_world",
+    "is_real_time",
     "joined_of",
     "open_world",
     "realtime_of",
@@ -132,6 +133,19 @@ def realtime_of(world: World) -> RealtimeWorld | None:
             return realtime_of(world.inner)
         case _:
             return None
+
+
+def is_real_time(world: World) -> bool:
+    """Whether the real world goes on between calls, in real time; also if it has not begun."""
+    match world:
+        case RealtimeWorld():
+            return True
+        case LazyWorld():
+            return world.is_realtime
+        case _SharedWorld():
+            return is_real_time(world.inner)
+        case _:
+            return False
 
 
 class LazyWorld:

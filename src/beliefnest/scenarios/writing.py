@@ -102,7 +102,7 @@ def _sign_places(place: Snapshot, registry: Registry) -> list[Position]:
     return [_at(place.box, index) for index in found]
 
 
-def _agent(state: AgentState) -> CommentedMap:
+def _agent(state: AgentState) -> Any:
     worn = {slot: state.equipment[slot] for slot in EQUIPMENT_SLOTS if slot in state.equipment}
     said: dict[str, Any] = {"position": state.position, "yaw": state.yaw, "pitch": state.pitch}
     said |= {"inventory": dict(state.inventory)} if state.inventory else {}

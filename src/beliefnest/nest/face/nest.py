@@ -10,7 +10,7 @@ from beliefnest.belief.entries import InitialBelief
 from beliefnest.belief.view import State
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.scripted import ScriptedBodies
-from beliefnest.bodies.worlds import Worlds, open_world, world_name
+from beliefnest.bodies.worlds import Worlds, is_real_time, open_world, world_name
 from beliefnest.errors import InputError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.script import Progress, play_script
@@ -297,12 +297,19 @@ class Nest(Looking, Viewing, Telling, Comparing, Waiting, Joining, Visiting):
             PathError: The path or the agent is not there.
             BranchError: There is such a branch already; nothing was run.
             WorldError: The agent's pose is not known there, or the world runs no programs.
-            InputError: `processes` is below 1, or `senses` is neither.
+            InputError: `processes` is below 1, `senses` is neither, or the path is `/` and reality
+                is in real time.
         """
         self[path].child(agent)
+        parsed = parse_path(path, self.agents)
+        if not parsed and is_real_time(self._engine.bodies.world):
+            raise InputError(
+                "this real world goes on in real time, so that nothing can be tried out in it; "
+                "explore a belief, which is played in the embedded world"
+            )
         return Exploration(
             engine=self._engine,
-            path=parse_path(path, self.agents),
+            path=parsed,
             agent=agent,
             programs=tuple(programs),
             score=score,

@@ -30,10 +30,16 @@ const IN_MEMORY = [
   }`]
 ]
 
-/** Over TCP, nobody logs in with an account. */
+/** Of Mineflayer's login with accounts, what is used: codes that the user enters on a page; no passwords, no realms. */
+const WITH_ACCOUNTS = [
+  [/minecraft-protocol\/src\/client\/mojangAuth\.js$/, empty],
+  [/(@azure\/msal-node|@xboxreplay\/xboxlive-auth|prismarine-realms)\/.*\.c?js$/, empty]
+]
+
+/** Nobody logs in with an account. */
 const WITHOUT_ACCOUNTS = [
   [/minecraft-protocol\/src\/client\/(mojangAuth|microsoftAuth)\.js$/, `module.exports = () => {
-    throw new Error('this build plays on servers in offline mode only')
+    throw new Error('this build has no accounts')
   }`],
   [/yggdrasil\/src\/index\.js$/, 'module.exports = { server: () => ({}) }']
 ]
@@ -41,7 +47,7 @@ const WITHOUT_ACCOUNTS = [
 /** What a program may do with connections, by the name of its sort: none, open them, take them. */
 const CONNECTIONS = {
   memory: IN_MEMORY,
-  client: [...WITHOUT_ACCOUNTS, [/minecraft-protocol\/src\/index\.js$/, `module.exports = {
+  client: [...WITH_ACCOUNTS, [/minecraft-protocol\/src\/index\.js$/, `module.exports = {
     createClient: require('./createClient'), ping: require('./ping')
   }`]],
   host: [...WITHOUT_ACCOUNTS, [/minecraft-protocol\/src\/index\.js$/, `module.exports = {
@@ -87,7 +93,7 @@ function versionIndex (version, unused, further = '') {
 
 /** Of further versions, one file each: those beside the program, and in folders that it is told of (versions.js). */
 function furtherVersions (version) {
-  return `require(${JSON.stringify(path.join(ROOT, 'bundling', 'further'))}).add(pc, pc[${JSON.stringify(version)}], [__dirname, ...process.argv.slice(4)])`
+  return `require(${JSON.stringify(path.join(ROOT, 'bundling', 'further'))}).add(pc, pc[${JSON.stringify(version)}], [__dirname, ...process.argv.slice(2, -2)])`
 }
 
 /** An esbuild plugin. `version` is Minecraft's, `outdir` where data files go, `connections` a name of CONNECTIONS. */

@@ -6,6 +6,7 @@
 const { serve } = require('./channel/serving')
 const { RemoteHandler } = require('./remote/remoteHandler')
 
-const [descriptor, lifeline] = process.argv.slice(2).map(Number)
+// Before them, folders with data of further Minecraft versions (bundling/further.js).
+const [descriptor, lifeline] = process.argv.slice(-2).map(Number)
 require('./prepare').prepare()
 serve((post, beat, ask) => new RemoteHandler(null, post, beat, ask), descriptor, lifeline, { atOnce: true })

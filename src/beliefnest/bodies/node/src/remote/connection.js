@@ -4,6 +4,7 @@
  * and agents' names: packets are translated on this side of the wire.
  */
 const minecraft = require('minecraft-protocol')
+const { OFFLINE, requireName } = require('./accounts')
 const { Translator } = require('../net/translate')
 
 // Milliseconds without a sign of the server after which a connection counts as lost.
@@ -18,16 +19,18 @@ const SILENCE_MS = 30_000
  * @param {string} [options.agent] as the bot is to know itself
  * @param {{x: number, z: number}} options.origin where scenario (0, y, 0) lies on the server
  * @param {Map<string, string>} [options.agentOf] agent by the server's name of a player
+ * @param {object} [options.login] how to, of accounts.js
  * @param {string[]} [options.hidden] names of players that the bot is not to know of
  * @returns {import('minecraft-protocol').Client} which emits `sent` (name, params) for every packet that its bot
  *   sends, as the bot means it
  */
-function connect ({ host = '127.0.0.1', port, version, username, agent = username, origin, agentOf = new Map(), hidden = [] }) {
+function connect ({ host = '127.0.0.1', port, version, username, agent = username, origin, agentOf = new Map(), hidden = [], login = OFFLINE }) {
   const translator = new Translator(origin, agentOf)
   const client = minecraft.createClient({
-    host, port, username, version, auth: 'offline', hideErrors: true, checkTimeoutInterval: SILENCE_MS
+    host, port, username, version, ...login, hideErrors: true, checkTimeoutInterval: SILENCE_MS
   })
   client.setMaxListeners(0)
+  requireName(client, username)
   client.once('success', () => { client.username = agent })
   translateOutgoing(client, translator)
   translateIncoming(client, translator, new Set(hidden))

@@ -10,6 +10,8 @@ const FIRST_PAUSE_MS = 250
 const POLL_MS = 20
 const LONGEST_PAUSE_MS = 8000
 const LOGIN_MS = 15_000
+// As long as a code for logging in holds.
+const ACCOUNT_MS = 900_000
 const GOODBYE_MS = 1000
 // Milliseconds a bot may search for a way: on a busy machine most of them pass without it.
 const THINKING_MS = 60_000
@@ -74,14 +76,15 @@ class Link extends EventEmitter {
     const ending = new AbortController()
     const { signal } = ending
     const failed = (event, make) => once(client, event, { signal }).then(args => { throw make(...args) })
-    const late = sleep(LOGIN_MS, null, { signal }).then(() => { throw reasons.unreachable(this.server, `${LOGIN_MS / 1000} s passed before it let ${this.name} in`) })
+    const wait = this.server.accounts === null ? LOGIN_MS : ACCOUNT_MS
+    const late = sleep(wait, null, { signal }).then(() => { throw reasons.unreachable(this.server, `${wait / 1000} s passed before it let ${this.name} in`) })
     const refused = packet => reasons.refusal(this.server, this.name, reasonOf(bot, packet.reason))
     const waiting = [
       once(bot, 'spawn', { signal }), late,
-      failed('encryption_begin', () => reasons.onlineMode(this.server)),
+      ...this.server.accounts === null ? [failed('encryption_begin', () => reasons.onlineMode(this.server))] : [],
       failed('disconnect', refused),
       failed('kick_disconnect', refused),
-      failed('error', error => reasons.unreachable(this.server, error.code ?? error.message)),
+      failed('error', error => this.server.accounts === null || error.code !== undefined ? reasons.unreachable(this.server, error.code ?? error.message) : reasons.noLogin(this.server, this.name, error.message)),
       failed('end', reason => reasons.unreachable(this.server, `it ended the connection: ${reason}`))
     ]
     try {

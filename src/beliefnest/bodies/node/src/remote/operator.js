@@ -11,6 +11,12 @@ const ANSWER_MS = 5000
 const MOST_LINES = 20
 const EYE_HEIGHT = 1.62
 const TOP = 1
+// How many commands are typed before the server's answer is awaited: the more, the sooner it answers.
+const FEWEST_AT_ONCE = 8
+const MOST_AT_ONCE = 256
+const FIRST_AT_ONCE = 32
+const SOON_MS = 150
+const LATE_MS = 1000
 // How a server answers `/data get`, in every version of the game that has it.
 const DATA = /^.{1,200}? has the following (?:block|entity) data: (.+)$/s
 
@@ -26,6 +32,7 @@ class Operator {
     // The question that is asked last: answers do not say to which one they are.
     this.asked = Promise.resolve()
     this.commandNames = null
+    this.atOnce = FIRST_AT_ONCE
     link.on('begun', (bot, client) => {
       this.commandNames = null
       client.on('declare_commands', packet => { this.commandNames = namesOf(packet) })
@@ -40,6 +47,22 @@ class Operator {
   /** Types a command; what comes of it is looked at elsewhere. */
   type (command) {
     this.bot._client.chat(`/${command}`)
+  }
+
+  /**
+   * Types commands, as fast as the server does what they say; it may send away who is faster.
+   * @throws {Unplayable} if the server does not answer within its patience
+   */
+  async typeAll (commands) {
+    for (let next = 0; next < commands.length;) {
+      for (const command of commands.slice(next, next + this.atOnce)) this.type(command)
+      next += this.atOnce
+      const asked = performance.now()
+      await this.settled()
+      const took = performance.now() - asked
+      if (took < SOON_MS) this.atOnce = Math.min(2 * this.atOnce, MOST_AT_ONCE)
+      else if (took > LATE_MS) this.atOnce = Math.max(Math.floor(this.atOnce / 2), FEWEST_AT_ONCE)
+    }
   }
 
   can (name) {

@@ -1,6 +1,8 @@
 'use strict'
 /** Why a server cannot be played on, in words for the person who runs it: what was found, and what to type. */
 
+const { withoutSecrets } = require('./accounts')
+
 class Unplayable extends Error {
   /** Of the channel: the world failed, and the message is all there is to say. */
   get kind () { return 'world' }
@@ -15,7 +17,8 @@ const REFUSALS = {
   'multiplayer.disconnect.not_whitelisted': ({ agents, operator }) =>
     `lets in players of its list only; on its console: ${[operator, ...agents].map(name => `whitelist add ${name}`).join(', ')}`,
   'multiplayer.disconnect.unverified_username': () =>
-    'asks Microsoft who players are (online mode); set online-mode=false in server.properties and restart it',
+    'asks Microsoft who players are (online mode); set online-mode=false in server.properties and restart it, or log in with ' +
+    'accounts: ?accounts=FOLDER',
   'multiplayer.disconnect.duplicate_login': () =>
     'has sent a player away because another one of the same name came; end the other run, or give agents other names',
   'multiplayer.disconnect.name_taken': () => 'has a player of that name already; end the other run, or give agents other names'
@@ -35,11 +38,14 @@ function refusal (server, player, { key, text }) {
 const unreachable = (server, why) => new Unplayable(
   `${where(server)} does not answer (${why}); start it, or mend the address: minecraft://HOST:PORT`)
 
+const noLogin = (server, player, why) => new Unplayable(
+  `${player} cannot log in to ${where(server)}: ${withoutSecrets(why)}`)
+
 const onlineMode = server => refusal(server, '', { key: 'multiplayer.disconnect.unverified_username', text: '' })
 
 const wrongVersion = (server, found, held) => new Unplayable(
   `${where(server)} speaks Minecraft ${found}; this installation has what is needed for ${held.join(', ')}. Run a server of one ` +
-  'of these, or install further versions: pip install beliefnest-versions; one that speaks several, or lies about it, is ' +
+  'of these, or install further versions (docs/servers.md: pip install ./packages/versions); one that speaks several, or lies about it, is ' +
   `played on with ?version=${held[0]}`)
 
 const noOperator = (server, lacking) => new Unplayable(
@@ -59,4 +65,4 @@ const gone = (server, player, why, seconds) => new Unplayable(
   `the connection of ${player} to ${where(server)} was lost (${why}) and did not come back within ${seconds} s; ` +
   'what was recorded until the last call is kept: when the server runs again, go on with Nest.resume')
 
-module.exports = { gone, noOperator, onlineMode, refusal, spawnProtected, stalled, tooFar, unreachable, Unplayable, wrongVersion }
+module.exports = { gone, noLogin, noOperator, onlineMode, refusal, spawnProtected, stalled, tooFar, unreachable, Unplayable, wrongVersion }

@@ -7,7 +7,7 @@ const { beginSession } = require('./session')
 
 class RemoteHandler extends RealtimeHandler {
   async open (registry, { server }) {
-    const session = await beginSession(server)
+    const session = await beginSession(server, notice => this.send({ notice }))
     this.capture = corners => capture({ ...session, registry }, { x: server.at[0], z: server.at[1] }, corners)
     return new RemoteRegions(server, session, registry, frame => this.send({ frame }))
   }

@@ -77,7 +77,7 @@ class RemoteRegions {
     scene.fail = error => { this.failure ??= error }
     const setup = new Setup(scene, operator, commands, registry)
     const agents = new Agents(scene, operator, commands, registry, agent =>
-      connect({ host, port, version, username: agent, origin: { x: at[0], z: at[1] }, hidden: [hidden] }), this.invited)
+      connect({ host, port, version, username: agent, origin: { x: at[0], z: at[1] }, hidden: [hidden], login: this.server.loginOf(agent) }), this.invited)
     const { contents, items } = scene
     region.recorder = new Recorder(region, {
       agents: () => agents.states(), items: () => items.states(), changedContainers: () => contents.drain(), blockText: state => states.text(state), signText: ([x, y, z]) => scene.signText({ x, y, z })

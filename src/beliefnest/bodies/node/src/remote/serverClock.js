@@ -1,7 +1,7 @@
 'use strict'
 /**
- * The age of a server's world, in ticks. The server tells it now and then; in between it is counted on, at most as far
- * as the next telling: a slow server is waited for. It never falls.
+ * The age of a server's world, in ticks. The server tells it now and then; in between it is counted on, as fast as the
+ * server went before, and at most as far as the next telling: a slow server is waited for. It never falls.
  */
 const TICK_MS = 50
 // Vanilla tells its age every 20 ticks.
@@ -13,6 +13,8 @@ class ServerClock {
     this.now = now
     this.told = null
     this.toldAt = now()
+    // Milliseconds that a tick takes there, as the two latest tellings say: never less than the game's own.
+    this.tickMs = TICK_MS
     this.offset = 0
     this.latest = 0
   }
@@ -20,6 +22,7 @@ class ServerClock {
   /** Takes what the server says; one whose age has fallen was set up anew, and is counted on from here. */
   tell (age) {
     if (this.told !== null && age < this.told) this.offset = this.latest - age
+    if (this.told !== null && age > this.told) this.tickMs = Math.max(TICK_MS, this.silence / (age - this.told))
     this.told = age
     this.toldAt = this.now()
   }
@@ -36,7 +39,7 @@ class ServerClock {
 
   get age () {
     if (this.told === null) return this.latest
-    const passed = Math.min(Math.floor(this.silence / TICK_MS), TELLS_EVERY - 1)
+    const passed = Math.min(Math.floor(this.silence / this.tickMs), TELLS_EVERY - 1)
     this.latest = Math.max(this.latest, this.told + this.offset + passed)
     return this.latest
   }

@@ -1,6 +1,7 @@
 'use strict'
 /** Begins a session on a server elsewhere: looks whether it can be played on, and lets the operator in. */
 const minecraft = require('minecraft-protocol')
+const { OFFLINE, withAccount } = require('./accounts')
 const { connect } = require('./connection')
 const { Link } = require('./link')
 const { Operator } = require('./operator')
@@ -13,16 +14,18 @@ const PING_MS = 5000
 
 /**
  * @param {object} server as RemoteRegions has it; `version` if the server is not to be asked for it
+ * @param {(text: string) => void} [tell] shows something to the user
  * @returns {Promise<{operator: Operator, clock: ServerClock, version: string, theirs: object}>} the server's version and registry
  *   besides
  * @throws {Unplayable} with what is missing and what to do
  */
-async function beginSession (server) {
+async function beginSession (server, tell = () => {}) {
   server.agents = []
+  server.loginOf = player => server.accounts === null ? OFFLINE : withAccount(server.accounts, player, tell)
   const version = await versionOf(server)
   const theirs = registryOf(version)
   const { host, port, operator: username, at: [x, z] } = server
-  const link = new Link(username, () => connect({ host, port, version, username, origin: { x, z } }), server, server.patience * 1000)
+  const link = new Link(username, () => connect({ host, port, version, username, origin: { x, z }, login: server.loginOf(username) }), server, server.patience * 1000)
   const clock = new ServerClock()
   link.on('begun', bot => bot.on('time', () => clock.tell(bot.time.age)))
   const operator = new Operator(link, server)

@@ -77,8 +77,7 @@ class Setup {
     const { operator, region: { box } } = this
     let present = this.present()
     for (let attempt = 0; attempt < ATTEMPTS && this.flaws(present, wanted).length > 0; attempt++) {
-      for (const cuboid of planFills(box, present, wanted, state => this.rank(state))) operator.type(this.commands.blocks(cuboid))
-      await operator.settled()
+      await operator.typeAll(planFills(box, present, wanted, state => this.rank(state)).map(cuboid => this.commands.blocks(cuboid)))
       await operator.until(() => this.flaws(this.present(), wanted).length === 0, 500)
       present = this.present()
     }
@@ -118,8 +117,7 @@ class Setup {
    * @param {Array} containers [x, y, z, ITEMS]
    */
   async stock (containers) {
-    for (const [x, y, z, items] of containers) this.putIn([x, y, z], items)
-    await this.operator.settled()
+    await this.operator.typeAll(containers.flatMap(([x, y, z, items]) => this.putIn([x, y, z], items)))
     for (const [x, y, z, items] of containers) {
       const found = await this.read([x, y, z])
       if (found !== null && !isDeepStrictEqual(sorted(found), sorted(items))) {
@@ -130,12 +128,11 @@ class Setup {
     if (containers.length > 0) await this.goAbove()
   }
 
+  /** @returns {string[]} the commands that make a container hold exactly this */
   putIn (position, items) {
     const { name } = this.scene.at(vec(position))
     try {
-      slotted(this.Item, this.registry, name, items).forEach((stack, slot) => {
-        this.operator.type(this.commands.contents(position, slot, stack))
-      })
+      return slotted(this.Item, this.registry, name, items).map((stack, slot) => this.commands.contents(position, slot, stack))
     } catch (error) {
       if (error instanceof RangeError) throw new BadRequest(`contents at (${position.join(', ')}): ${error.message}`)
       throw error

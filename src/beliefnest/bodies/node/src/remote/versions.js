@@ -5,6 +5,7 @@
  */
 const minecraftData = require('minecraft-data')
 const { pc: data } = require('minecraft-data/data')
+const { BadRequest } = require('../channel/errors')
 const { rememberBlocks } = require('../blocks')
 const { blockStates, encode } = require('../server/plugins/lib/states')
 
@@ -60,12 +61,12 @@ class BlockMapping {
     return this.known.get(state)
   }
 
-  /** @returns {string} a state of ours as the server's commands name it. @throws {RangeError} if the server has no such block */
+  /** @returns {string} a state of ours as the server's commands name it. @throws {BadRequest} if the server has no such block */
   textForServer (state) {
     if (this.isSame) return this.states.text(state)
     const { name, properties } = this.states.describe(state)
     const found = sameBlock(this.theirs, name, properties, OTHER_NAMES[name] ?? [])
-    if (found === null) throw new RangeError(`Minecraft ${this.theirs.version.minecraftVersion} has no block ${name}`)
+    if (found === null) throw new BadRequest(`the server's Minecraft ${this.theirs.version.minecraftVersion} has no block ${name}; let the scenario have another one`)
     return this.theirStates.text(found)
   }
 

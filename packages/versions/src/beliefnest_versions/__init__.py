@@ -1,0 +1,1 @@
+"""Data of further Minecraft versions, one file each; BeliefNest finds them beside this module."""
