@@ -68,6 +68,14 @@ def test_what_the_operator_lacks_is_said(server, lines, query, said):
         open_world(server.address(**query), 0)
 
 
+def test_what_a_server_lacks_and_can_do_without_is_named_at_the_start(server, capsys):
+    with on_console(server, ("lack data", "lack")):
+        open_world(server.address(), 0).close()
+    said = capsys.readouterr().err
+    assert "BeliefNest not use /data (signs cannot be written on" in said
+    assert said.count("\n") == 1
+
+
 def test_nobody_answers():
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))

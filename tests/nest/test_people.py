@@ -36,7 +36,7 @@ containers:
   - {at: [6, 1, 9], block: "chest[facing=south]", items: {apple: 3}}
   - {at: [8, 1, 11], block: barrel}
 agents:
-  sally: {position: [7.5, 1, 7.5]}
+  sally: {position: [1.5, 1, 1.5]}
   anne: {position: [4.5, 1, 5.5], type: human, inventory: {diamond: 2, cobblestone: 2}}
 """
 WORK = """

@@ -75,7 +75,7 @@ class ServerAddress:
         if parts.username is not None or parts.password is not None:
             raise InputError(
                 "the address of a server has no name or password in it, which would be kept with "
-                "every run; without them servers in offline mode are joined, others by ?accounts=FOLDER"
+                "every run; servers with accounts are joined by ?accounts=FOLDER, others without"
             )
         try:
             host, port = parts.hostname, parts.port

@@ -16,6 +16,7 @@ const FULL = 20
 // Of a person of whom nothing is known yet.
 const NOBODY = { position: [0, 0, 0], yaw: 0, pitch: 0, on_ground: true, equipment: {}, inventory: {}, health: FULL, food: FULL }
 const SLOTS = 46
+const AT_ONCE = 8
 const FIRST_HOTBAR = 36
 const PLACING_MS = 10_000
 const ASKED_EVERY_MS = 500
@@ -45,29 +46,37 @@ class Agents {
     this.latest = new Map()
   }
 
-  /** Lets agents in, all at the same time. */
+  /** Lets agents in, a few at the same time. */
   async add (agents, patienceMs) {
-    const { operator, region } = this
+    const { operator } = this
     const players = Object.keys(operator.bot.players)
     for (const agent of Object.keys(agents)) {
       if (players.includes(agent) && !this.invited.has(agent)) throw new BadRequest(`a player called ${agent} is on the server already; end the other run, or give the agent another name`)
     }
-    await Promise.all(Object.keys(agents).sort().map(async agent => {
-      const witness = new Witness(agent, region, this.scene, this.Item)
-      this.scene.witnesses.set(agent, witness)
-      witness.on('event', fact => { if (witness.person === null) this.scene.lids.account(fact) })
-      const link = new Link(agent, () => this.connect(agent), operator.server, patienceMs, () => this.stand(agent))
-      link.on('begun', (bot, client) => witness.attach(bot, client))
-      link.on('lost', reason => region.faults.push({ agent, error: new Error(`it lost its connection to the server (${reason})`) }))
-      link.on('yielded', () => this.yield(agent))
-      link.isForPerson = this.invited.has(agent)
-      this.links.set(agent, link)
-      this.latest.delete(agent)
-      if (players.includes(agent)) link.yield()
-      else await link.open()
-      region.bodies.set(agent, { get bot () { return link.bot }, player: witness })
-    }))
+    const names = Object.keys(agents).sort()
+    // A server may turn away who comes with many others.
+    for (let first = 0; first < names.length; first += AT_ONCE) {
+      await Promise.all(names.slice(first, first + AT_ONCE).map(agent => this.enter(agent, players.includes(agent), patienceMs)))
+    }
     await this.place(agents)
+  }
+
+  /** Lets one agent in, by its bot or by a person who is there already. */
+  async enter (agent, isThere, patienceMs) {
+    const { operator, region } = this
+    const witness = new Witness(agent, region, this.scene, this.Item)
+    this.scene.witnesses.set(agent, witness)
+    witness.on('event', fact => { if (witness.person === null) this.scene.lids.account(fact) })
+    const link = new Link(agent, () => this.connect(agent), operator.server, patienceMs, () => this.stand(agent))
+    link.on('begun', (bot, client) => witness.attach(bot, client))
+    link.on('lost', reason => region.faults.push({ agent, error: new Error(`it lost its connection to the server (${reason})`) }))
+    link.on('yielded', () => this.yield(agent))
+    link.isForPerson = this.invited.has(agent)
+    this.links.set(agent, link)
+    this.latest.delete(agent)
+    if (isThere) link.yield()
+    else await link.open()
+    region.bodies.set(agent, { get bot () { return link.bot }, player: witness })
   }
 
   /** A person has come in by an agent's name. */

@@ -4,8 +4,13 @@ const { toDegrees } = require('../server/angles')
 
 /** What an operator needs, without which nothing can be set up. */
 const NEEDED = ['fill', 'setblock', 'tp', 'item', 'clear', 'forceload', 'gamemode', 'kill']
-/** What is used where it is there. */
-const USEFUL = ['effect', 'summon', 'data', 'kick']
+/** What is used where it is there, and what cannot be done where it is not. */
+const USEFUL = {
+  effect: 'health and hunger are not restored',
+  summon: 'no items can lie in the box at the start',
+  data: 'signs cannot be written on at the start, and what people have stays as it was known',
+  kick: 'nobody can be taken over while they are there'
+}
 
 const SLOTS = { 5: 'armor.head', 6: 'armor.chest', 7: 'armor.legs', 8: 'armor.feet', 45: 'weapon.offhand' }
 const FIRST_OWN = 9

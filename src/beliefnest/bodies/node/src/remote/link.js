@@ -9,7 +9,6 @@ const REAL_TIME = { charge () {} }
 const FIRST_PAUSE_MS = 250
 const POLL_MS = 20
 const LONGEST_PAUSE_MS = 8000
-const LOGIN_MS = 15_000
 // As long as a code for logging in holds.
 const ACCOUNT_MS = 900_000
 const GOODBYE_MS = 1000
@@ -76,7 +75,7 @@ class Link extends EventEmitter {
     const ending = new AbortController()
     const { signal } = ending
     const failed = (event, make) => once(client, event, { signal }).then(args => { throw make(...args) })
-    const wait = this.server.accounts === null ? LOGIN_MS : ACCOUNT_MS
+    const wait = this.server.accounts === null ? this.server.patience * 1000 : ACCOUNT_MS
     const late = sleep(wait, null, { signal }).then(() => { throw reasons.unreachable(this.server, `${wait / 1000} s passed before it let ${this.name} in`) })
     const refused = packet => reasons.refusal(this.server, this.name, reasonOf(bot, packet.reason))
     const waiting = [

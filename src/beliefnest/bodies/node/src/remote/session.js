@@ -2,6 +2,7 @@
 /** Begins a session on a server elsewhere: looks whether it can be played on, and lets the operator in. */
 const minecraft = require('minecraft-protocol')
 const { OFFLINE, withAccount } = require('./accounts')
+const { USEFUL } = require('./commands')
 const { connect } = require('./connection')
 const { Link } = require('./link')
 const { Operator } = require('./operator')
@@ -32,6 +33,8 @@ async function beginSession (server, tell = () => {}) {
   await link.open()
   try {
     await operator.requireRights()
+    const lacking = Object.entries(USEFUL).filter(([name]) => !operator.can(name))
+    if (lacking.length > 0) tell(reasons.lesser(server, lacking))
     if (!await operator.until(() => clock.isSet)) throw reasons.stalled(server, PING_MS / 1000)
   } catch (error) {
     await link.close()
