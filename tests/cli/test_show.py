@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
@@ -113,6 +114,37 @@ def test_the_prompt_of_the_probe_is_rendered_again(
     assert capsys.readouterr().out.strip() == asked.strip()
 
 
+def test_built_in_templates_go_by_their_names(
+    run: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    given = ["prompt", str(run), "--path", "/observer/sally", "--var", "task=Get a diamond."]
+    assert run_command_line(given) == 0
+    paper = capsys.readouterr().out
+    assert run_command_line([*given, "--template", "paper"]) == 0
+    assert capsys.readouterr().out == paper
+    assert run_command_line([*given, "--template", "default"]) == 0
+    assert "You are sally." in capsys.readouterr().out != paper
+
+
+def test_claims_on_a_branch_of_a_belief_are_shown_with_the_branch(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "c.bn"
+    agents = {"ann": (5.5, 0, 5.5), "bob": (6.5, 0, 5.5)}
+    world = bn.ScriptedWorld(((0, 0, 0), (9, 3, 9)), agents=agents, containers={(3, 0, 3): {}})
+    with bn.Nest(world, bn.Perception(testimony="accept"), store=file) as nest:
+        claims = [bn.Claim.located("diamond", (3, 0, 3))]
+        for path in ("/", "/bob"):
+            if path != "/":
+                nest[path].switch("what if")
+            nest[path].scripted.say("ann", f"said in {path}", claims=claims)
+    for path, heading in (("/ann", "in /ann"), ("/bob", "heard by"), ("/bob/ann", "in /bob/ann")):
+        assert run_command_line(["show", str(file), "--path", path]) == 0
+        claims_told = capsys.readouterr().out.partition("Claims")[2]
+        assert "located" in claims_told or "diamond" in claims_told
+        assert heading in claims_told and "in /bob " not in claims_told
+
+
 @pytest.mark.parametrize(
     ("arguments", "hint"),
     [
@@ -126,7 +158,7 @@ def test_the_prompt_of_the_probe_is_rendered_again(
         (["show", "RUN", "--png", "then.png", "--height", "900"], "outside the box"),
         (["prompt", "RUN", "--path", "/sally"], "task"),
         (["prompt", "RUN", "--path", "/sally", "--var", "task"], "key=value"),
-        (["prompt", "RUN", "--path", "/sally", "--template", "nowhere.txt"], "nowhere.txt"),
+        (["prompt", "RUN", "--path", "/sally", "--template", "defaul"], "instructions, paper"),
     ],
 )
 def test_wrong_questions_are_one_line_and_2(

@@ -237,7 +237,8 @@ def prompt(
     run: Annotated[Path, typer.Argument(help="A run folder, or one condition's in it.")],
     path: Annotated[str, typer.Option(help="The belief to render.")],
     template: Annotated[
-        Path | None, typer.Option(help="Template, a file or one the run keeps; else the paper's.")
+        Path | None,
+        typer.Option(help="A file, one the run keeps, default, or paper (the one without this)."),
     ] = None,
     var: Annotated[list[str] | None, typer.Option(help="A variable, as key=value.")] = None,
 ) -> None:

@@ -26,7 +26,12 @@ from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.pictures.animation import check_animated, save_animation
 from beliefnest.pictures.figure import figure_of
 from beliefnest.pictures.scene import Scene
-from beliefnest.prompts.templates import Template, built_in_template, load_template
+from beliefnest.prompts.templates import (
+    BUILT_IN_TEMPLATES,
+    Template,
+    built_in_template,
+    load_template,
+)
 from beliefnest.scenarios.records import placed_json
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import FOLLOW
@@ -140,7 +145,8 @@ def _print_claims(claims: Sequence[ToldClaim], path: str) -> None:
     if not claims:
         return
     table = Table("tick", "speaker", "claim", "", "heard by", box=box.SIMPLE, title_justify="left")
-    is_belief = path != "/"
+    # What is claimed in a simulator in control mode is told there, and not believed by it.
+    is_belief = claims[0].made_in != path
     if is_belief:
         table.add_column(f"in {path}")
     for told in claims:
@@ -203,7 +209,8 @@ def print_prompt(run: Path, path: str, template: Path | None, variables: list[st
     Args:
         run: Run folder, or its store.
         path: Belief path.
-        template: Template file, or the name of one that the run keeps; None: the paper's.
+        template: Template file, or the name of one that the run keeps or of a built-in one; None:
+            the paper's.
         variables: `key=value`, each a variable of the template.
 
     Raises:
@@ -223,8 +230,11 @@ def print_prompt(run: Path, path: str, template: Path | None, variables: list[st
 def _template(wanted: Path | None, kept: Mapping[str, str]) -> Template:
     if wanted is None:
         return built_in_template("paper")
-    if str(wanted) in kept and not wanted.exists():
-        return Template(str(wanted), kept[str(wanted)])
+    if not wanted.exists():
+        if str(wanted) in kept:
+            return Template(str(wanted), kept[str(wanted)])
+        if str(wanted) in BUILT_IN_TEMPLATES:
+            return built_in_template(str(wanted))
     return load_template(wanted)
 
 

@@ -51,5 +51,10 @@ def load_template(path: Path) -> Template:
     """
     try:
         return Template(str(path), read_regular_text(path))
+    except FileNotFoundError:
+        raise TemplateError(
+            f"there is no template file {path}; give a file, or the name of a built-in template: "
+            f"{', '.join(BUILT_IN_TEMPLATES)}"
+        ) from None
     except (OSError, UnicodeDecodeError) as error:
         raise TemplateError(f"template {path} cannot be read: {error}") from None

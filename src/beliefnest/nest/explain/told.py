@@ -32,6 +32,7 @@ class ToldClaim:
         text: The words it was made with.
         claim: What was claimed.
         claims_from: Who read it out of the text; None: the speaker said so beside it.
+        made_in: Path of the simulator in whose world it was made.
     """
 
     def __init__(
@@ -49,6 +50,7 @@ class ToldClaim:
         self.text: str = event.detail["text"]
         self.claims_from: str | None = event.detail.get("claims_from")
         self.claim = claim
+        self.made_in = path_text(key.path)
         self._recording, self._key = recording, key
         self._entry, self._row, self._index = place
 
