@@ -145,6 +145,39 @@ def test_claims_on_a_branch_of_a_belief_are_shown_with_the_branch(
         assert heading in claims_told and "in /bob " not in claims_told
 
 
+@pytest.fixture(scope="module")
+def talk(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Ann has looked into the chest; Bob, who is far away, is told of a diamond by her."""
+    file = tmp_path_factory.mktemp("talk") / "talk.bn"
+    agents = {"ann": (2.5, 0, 3.5), "bob": (28.5, 0, 3.5)}
+    world = bn.ScriptedWorld(((0, 0, 0), (30, 3, 9)), agents=agents, containers={(1, 0, 1): {}})
+    perception = bn.Perception(max_visible_distance=12, testimony="informed", grace=5)
+    with bn.Nest(world, perception, store=file):
+        world.open("ann", (1, 0, 1))
+        world.step(20)
+        world.say("ann", "Look!", claims=[bn.Claim.located("diamond", (1, 0, 1))])
+    return file
+
+
+def test_claims_are_shown_for_every_belief(talk: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_command_line(["show", str(talk), "--claims", "--depth", "1"]) == 0
+    heading, _, row = capsys.readouterr().out.strip().splitlines()[-3:]
+    assert heading.split()[-2:] == ["/ann", "/bob"]
+    assert " ".join(row.split()) == "22 ann diamond is in (1, 0, 1) a lie no (4) yes"
+    assert run_command_line(["show", str(talk), "--claims", "--json"]) == 0
+    (told,) = json.loads(capsys.readouterr().out)
+    assert list(told["beliefs"]) == ["/ann", "/bob", "/ann/bob", "/bob/ann"]
+    assert told["beliefs"]["/bob/ann"]["taken_up"]
+    assert shown(talk, capsys, "--path", "/bob")["claims"] == [
+        told | {"beliefs": {"/bob": told["beliefs"]["/bob"]}}
+    ]
+
+
+def test_a_table_says_how_things_are_known(talk: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_command_line(["show", str(talk), "--path", "/bob", "--tick", "22"]) == 0
+    assert "heard from ann 0 s ago" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("arguments", "hint"),
     [

@@ -48,7 +48,21 @@ class Verdict(StrEnum):
         """Whether the node came to hold what was claimed."""
         return self in (Verdict.TAKEN_UP, Verdict.WORD)
 
+    @property
+    def condition(self) -> str | None:
+        """The condition that decided, as section 8 numbers it; None: none of them did."""
+        return _CONDITIONS.get(self)
 
+
+_CONDITIONS = {
+    Verdict.SEES_KNOWN: "1a",
+    Verdict.SEES_CLAIMED: "1a",
+    Verdict.NO_CHANCE: "1b",
+    Verdict.WORD: "3",
+    Verdict.LEARNT_NOTHING: "3",
+    Verdict.NOT_SINCERE: "3",
+    Verdict.SPEAKER: "4",
+}
 _VERDICTS = tuple(Verdict)
 _CODES = {verdict: code for code, verdict in enumerate(_VERDICTS)}
 

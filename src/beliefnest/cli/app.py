@@ -184,7 +184,12 @@ def show(
     html: Annotated[
         Path | None, typer.Option(help="Write all of the run as one page that needs no network.")
     ] = None,
-    depth: Annotated[int, typer.Option(help="How deep all beliefs in that page go.")] = 2,
+    claims: Annotated[
+        bool, typer.Option("--claims", help="Show what was claimed, and who took it up, alone.")
+    ] = False,
+    depth: Annotated[
+        int, typer.Option(help="How deep all beliefs in that page, or of claims, go.")
+    ] = 2,
     json: Json = False,
 ) -> None:
     """Show what a simulator of a recorded run held."""
@@ -197,7 +202,8 @@ def show(
     if page is not None:
         write_page(page)
     if page is None or figures or gif or json:
-        show_run(ShowOptions(run, path, tick, branch, json, figures, gif, against, height))
+        deep = depth if claims else None
+        show_run(ShowOptions(run, path, tick, branch, json, figures, gif, against, height, deep))
 
 
 @app.command()

@@ -12,20 +12,22 @@ from rich import box
 from rich.table import Table
 from rich.text import Text
 
+from beliefnest.belief.entries import Basis
 from beliefnest.belief.plain import state_json
 from beliefnest.belief.view import State
+from beliefnest.cli.claims import claims_json, claims_matrix, claims_table, paths_below
 from beliefnest.cli.console import folded, stdout
 from beliefnest.cli.folder import store_in, stores_in
 from beliefnest.cli.pictures import container_name, place_text, titled
 from beliefnest.cli.report import placed_lines
 from beliefnest.cli.text import printable
 from beliefnest.errors import BranchError, InputError, TickError
-from beliefnest.nest.explain.told import ToldClaim
 from beliefnest.nest.face.past_simulator import PastSimulator
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.pictures.animation import check_animated, save_animation
 from beliefnest.pictures.figure import figure_of
 from beliefnest.pictures.scene import Scene
+from beliefnest.prompts.memory import memory
 from beliefnest.prompts.templates import (
     BUILT_IN_TEMPLATES,
     Template,
@@ -59,6 +61,8 @@ class ShowOptions:
         animation: File for an animation; None: none.
         against: Path that the simulator is compared with in figures.
         height: The storey of figures; None: that of most things.
+        claims: Show claims alone, and what became of them in all beliefs of so many names; None:
+            show the state.
     """
 
     run: Path
@@ -70,6 +74,7 @@ class ShowOptions:
     animation: Path | None = None
     against: str = "/"
     height: int | None = None
+    claims: int | None = None
 
 
 def show_run(options: ShowOptions) -> None:
@@ -98,7 +103,7 @@ def show_run(options: ShowOptions) -> None:
         for store in stores:
             if len(stores) > 1:
                 stdout().print(f"[bold]{_name_in(store, options.run)}[/bold]", highlight=False)
-            _show(options, store)
+            (_show if options.claims is None else _show_claims)(options, store)
 
 
 def _check(options: ShowOptions, stores: Sequence[Path]) -> None:
@@ -121,7 +126,9 @@ def _show(options: ShowOptions, store: Path) -> None:
         state = simulator.state
         asked = [each for each in nest.prompts(options.path) if each.tick <= state.tick]
         programs = [each for each in nest.programs(options.path) if each.tick <= state.tick]
+        claims = nest.at(state.tick).claims(options.path)
         if options.as_json:
+            held_by = [simulator.path] if claims and claims[0].made_in != simulator.path else []
             place = {"path": simulator.path, "branch": options.branch or FOLLOW, "tick": state.tick}
             content = {
                 **place,
@@ -129,32 +136,33 @@ def _show(options: ShowOptions, store: Path) -> None:
                 "placed": placed_json(simulator.placed),
                 "programs": [_program_json(each) for each in programs],
                 "prompts": [prompt_row(each)[1] for each in asked],
+                "claims": claims_json(claims, held_by),
             }
             sys.stdout.write(json.dumps(content, indent=2) + "\n")
         else:
             _print_state(state, simulator.path, scenario)
-            _print_claims(nest.at(state.tick).claims(options.path), simulator.path)
+            if claims:
+                stdout().print("Claims")
+                stdout().print(claims_table(claims, simulator.path, scenario))
             for line in placed_lines(simulator.placed):
                 stdout().print(_foreign(line), highlight=False)
             _print_programs(programs)
             _print_prompts(asked)
 
 
-def _print_claims(claims: Sequence[ToldClaim], path: str) -> None:
-    """Every claim of the run, and what the simulator made of it."""
-    if not claims:
-        return
-    table = Table("tick", "speaker", "claim", "", "heard by", box=box.SIMPLE, title_justify="left")
-    # What is claimed in a simulator in control mode is told there, and not believed by it.
-    is_belief = claims[0].made_in != path
-    if is_belief:
-        table.add_column(f"in {path}")
-    for told in claims:
-        kind = "a lie" if told.lie else "false" if told.false else ""
-        row = [str(told.tick), told.speaker, str(told.claim), kind, ", ".join(told.hearers)]
-        table.add_row(*map(printable, row), *([told.why(path)] if is_belief else []))
-    stdout().print("Claims")
-    stdout().print(table)
+def _show_claims(options: ShowOptions, store: Path) -> None:
+    """Every claim made in the world of a simulator, and what became of it in all beliefs."""
+    assert options.claims is not None
+    with _opened(store) as (scenario, nest, _):
+        simulator = _simulator(options, nest)
+        claims = nest.at(simulator.tick).claims(options.path)
+        paths = paths_below(claims, nest.agents, options.claims) if claims else []
+        if options.as_json:
+            sys.stdout.write(json.dumps(claims_json(claims, paths), indent=2) + "\n")
+        elif claims:
+            stdout().print(folded(claims_matrix(claims, paths, scenario)))
+        else:
+            stdout().print(f"nothing was claimed in {simulator.path}", highlight=False)
 
 
 def _simulator(options: ShowOptions, nest: RecordedNest) -> PastSimulator:
@@ -258,19 +266,33 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
     console = stdout()
     console.print(f"{path} at tick {state.tick}", highlight=False)
     containers = Table("container", "known items", "all of them", box=box.SIMPLE_HEAVY)
+    agents = Table("agent", "position", "seen now", "holds", box=box.SIMPLE_HEAVY)
+    if path != "/":
+        containers.add_column("how that is known")
+        agents.add_column("how that is known")
     for place, held in sorted(state.containers.items()):
         items = ", ".join(f"{count} {name}" for name, count in sorted(held.items.items()))
         name = container_name(place, scenario)
-        containers.add_row(_foreign(name), items or "-", "yes" if held.complete else "not known")
-    agents = Table("agent", "position", "seen now", "holds", box=box.SIMPLE_HEAVY)
+        is_all = "yes" if held.complete else "not known"
+        known = _how_known(state, held.basis, current=held.current)
+        containers.add_row(_foreign(name), items or "-", is_all, *known)
     for name, agent in state.agents.items():
         where = "unknown" if agent.position is None else place_text(agent.position, scenario)
         holds = (agent.equipment or {}).get("main_hand", "-")
-        agents.add_row(titled(name), _foreign(where), "yes" if agent.current else "no", holds)
+        seen = "yes" if agent.current else "no"
+        known = _how_known(state, agent.basis, current=agent.current)
+        agents.add_row(titled(name), _foreign(where), seen, holds, *known)
     console.print(folded(containers), folded(agents))
     for (tick, speaker, text), to in zip(state.chat, state.addressees, strict=True):
         said = speaker if to is None else f"{speaker} whispers to {to}"
         console.print(_foreign(f"{tick} {said}: {text}"), highlight=False)
+
+
+def _how_known(state: State, basis: Basis | None, *, current: bool) -> list[str]:
+    """The cell on where a belief comes from and how old it is; none in the real world."""
+    if state.owner is None:
+        return []
+    return ["" if basis is None else memory(state, basis, current=current)]
 
 
 def _print_programs(programs: Sequence[ProgramRecord]) -> None:

@@ -133,7 +133,10 @@ class Claim:
             )
 
     def __str__(self) -> str:
-        where = f"({', '.join(f'{value:g}' for value in self.place)})"
+        return self.about(f"({', '.join(f'{value:g}' for value in self.place)})")
+
+    def about(self, where: str) -> str:
+        """It in words, with a name for its place."""
         match self.kind:
             case ClaimKind.LOCATED:
                 return f"{self.item} is in {where}"

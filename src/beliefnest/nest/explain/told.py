@@ -88,6 +88,18 @@ class ToldClaim:
         verdict = self._verdict(path)
         return _words(verdict, parse_path(path, self._recording.agents), self)
 
+    def condition(self, path: str) -> str | None:
+        """The condition of section 8 that decided (`1a`, `1b`, `3`, `4`); errors as above.
+
+        None where none had to: it was taken up, was not heard, is about its hearer's own place,
+        or testimony is off.
+        """
+        return self._verdict(path).condition
+
+    def is_heard(self, path: str) -> bool:
+        """Whether it was perceived in a simulator, as far as that weighs it; errors as above."""
+        return self._verdict(path) is not Verdict.NOT_HEARD
+
     def grace(self) -> int:
         """Ticks out of sight that a speaker needs to know better."""
         return self._recording.setting.perception.grace

@@ -1,0 +1,108 @@
+"""Claims of a recorded run, as a table and as plain data."""
+
+from collections.abc import Collection, Sequence
+
+from rich import box
+from rich.table import Table
+
+from beliefnest.cli.pictures import container_name, place_text
+from beliefnest.cli.text import printable
+from beliefnest.nest.explain.told import ToldClaim
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.world.claims import Claim, ClaimKind
+from beliefnest.world.paths import parse_path, path_text
+
+__all__ = ["claims_json", "claims_matrix", "claims_table", "paths_below"]
+
+
+def claims_json(claims: Sequence[ToldClaim], paths: Collection[str]) -> list[dict[str, object]]:
+    """Claims as plain data.
+
+    Args:
+        claims: What was claimed.
+        paths: Beliefs of which it is told whether they took it up, and why.
+    """
+    return [
+        {
+            "tick": told.tick,
+            "speaker": told.speaker,
+            "addressee": told.addressee,
+            "text": told.text,
+            "claim": told.claim.plain(),
+            "claims_from": told.claims_from,
+            "hearers": list(told.hearers),
+            "false": told.false,
+            "lie": told.lie,
+            "beliefs": {
+                path: {"taken_up": told.taken_up(path), "why": told.why(path)} for path in paths
+            },
+        }
+        for told in claims
+    ]
+
+
+def claims_table(claims: Sequence[ToldClaim], path: str, scenario: Scenario) -> Table:
+    """Every claim, who heard it, and what a simulator made of it; not empty."""
+    table = _begun()
+    table.add_column("heard by")
+    # What is claimed in a simulator in control mode is told there, and not believed by it.
+    is_belief = claims[0].made_in != path
+    if is_belief:
+        table.add_column(f"in {path}")
+    for told in claims:
+        hearers = printable(", ".join(told.hearers))
+        table.add_row(*_cells(told, scenario), hearers, *([told.why(path)] if is_belief else []))
+    return table
+
+
+def claims_matrix(claims: Sequence[ToldClaim], paths: Sequence[str], scenario: Scenario) -> Table:
+    """Every claim, and for each of some beliefs whether it took it up, and by which condition."""
+    table = _begun()
+    for path in paths:
+        table.add_column(path)
+    for told in claims:
+        table.add_row(*_cells(told, scenario), *(_verdict(told, path) for path in paths))
+    return table
+
+
+def paths_below(claims: Sequence[ToldClaim], agents: Sequence[str], depth: int) -> list[str]:
+    """Every belief of the world in which claims were made, shallow ones first.
+
+    Args:
+        claims: The claims; not empty.
+        agents: Whose beliefs there are.
+        depth: How many names its path has below that world, at most.
+    """
+    last = [parse_path(claims[0].made_in, agents)]
+    found: list[str] = []
+    for _ in range(depth):
+        last = [(*path, name) for path in last for name in agents if path[-1:] != (name,)]
+        found += map(path_text, last)
+    return found
+
+
+def _begun() -> Table:
+    return Table("tick", "speaker", "claim", "", box=box.SIMPLE, title_justify="left")
+
+
+def _cells(told: ToldClaim, scenario: Scenario) -> list[str]:
+    to = "" if told.addressee is None else f" to {told.addressee}"
+    kind = "a lie" if told.lie else "false" if told.false else ""
+    row = (str(told.tick), f"{told.speaker}{to}", _words(told.claim, scenario), kind)
+    return [printable(cell) for cell in row]
+
+
+def _words(claim: Claim, scenario: Scenario) -> str:
+    """A claim with the names that containers and places have."""
+    if claim.kind is ClaimKind.POSITION:
+        x, y, z = claim.place
+        return claim.about(place_text((x, y, z), scenario).removeprefix("at "))
+    return claim.about(container_name(claim.cell, scenario))
+
+
+def _verdict(told: ToldClaim, path: str) -> str:
+    condition = told.condition(path)
+    given = "" if condition is None else f" ({condition})"
+    if told.taken_up(path):
+        return f"yes{given}"
+    return f"no{given}" if given or told.is_heard(path) else "not heard"
