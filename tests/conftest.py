@@ -7,7 +7,10 @@ import pytest
 from hypothesis import HealthCheck, settings
 from tests.profiles import NIGHTLY
 from tests.sharing import ByFile, rank
+from tests.worlds import kept_worlds, lent
 from xdist.remote import Producer
+
+__all__ = ["kept_worlds", "lent"]
 
 _SLOW_TO_MAKE = [HealthCheck.too_slow, HealthCheck.data_too_large]
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import pytest
 from tests.pictures.measuring import faults, texts
+from tests.worlds import Lent
 
-from beliefnest.bodies.worlds import Worlds
 from beliefnest.cli.pictures import read_condition
 from beliefnest.llm.offline.model import OfflineModel
 from beliefnest.nest.face.nest import Nest
@@ -25,11 +25,11 @@ SIZES = (None, "one column", "two columns")
 
 @pytest.fixture(scope="module", params=BUILT_IN)
 def drawn(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, lent: Lent
 ) -> Iterator[tuple[list[Condition], list[Scene]]]:
     """The conditions of a scenario, and all beliefs that it names."""
     conditions, scenes = [], []
-    with Worlds(0) as worlds:
+    with lent(0) as worlds:
         for number, scenario in enumerate(Scenario.load_all(request.param)):
             store = tmp_path_factory.mktemp("run") / f"{number}.bn"
             with Nest.open(scenario, store=store, worlds=worlds) as nest:

@@ -9,6 +9,8 @@ from beliefnest.llm.offline import OfflineModel
 from beliefnest.scenarios.outcome import Outcome
 from beliefnest.scenarios.running import run_scenario
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 CONDITIONS = [
     (name, condition)
     for name, count in {

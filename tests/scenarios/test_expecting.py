@@ -17,6 +17,8 @@ from beliefnest.scenarios.trial import Trial
 
 BLUE, RED, NOWHERE = [1, 1, 5], [7, 1, 5], [4, 1, 1]
 WALLED = [4, 1, 8]
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 ROOM: dict[str, Any] = {
     "name": "room",
     "box": [[0, 0, 0], [8, 3, 9]],

@@ -14,6 +14,8 @@ from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.outcome import Outcome
 from beliefnest.scenarios.running import run_scenario
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 A, B = (4.5, 1.0, 4.5), (20.5, 1.0, 16.5)
 STAYS, GOES, HELLO = (
     "I will stay at location A today.",

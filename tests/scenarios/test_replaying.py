@@ -1,16 +1,34 @@
 """Every run of a built-in scenario, under each condition, is found the same when run again."""
 
 import json
+from contextlib import contextmanager
 
 import pytest
 
+from beliefnest.bodies.worlds import Worlds
 from beliefnest.cli.app import run_command_line
 from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.scenario import Scenario
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
+
+@pytest.fixture(scope="module")
+def others():
+    """Worlds of another process than the runs were played in."""
+    with Worlds(2) as opened:
+
+        @contextmanager
+        def lend(seed):
+            assert seed == 2
+            yield opened
+
+        yield lend
+
 
 @pytest.mark.parametrize("name", builtin_names())
-def test_a_replay_finds_no_difference(name, tmp_path, capsys):
+def test_a_replay_finds_no_difference(name, others, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("beliefnest.cli.replay.Worlds", others)
     out = tmp_path / "run"
     run_command_line(["run", name, "--out", str(out), "--seed", "2"])
     capsys.readouterr()

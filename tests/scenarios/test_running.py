@@ -15,6 +15,8 @@ from beliefnest.scenarios.running import run_scenario
 from beliefnest.world.values import Event, EventKind
 
 BLUE, RED = (1, 1, 5), (7, 1, 5)
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 ROOM: dict[str, Any] = {
     "name": "room",
     "box": [[0, 0, 0], [8, 3, 8]],

@@ -12,11 +12,14 @@ import pytest
 from ruamel.yaml import YAML
 
 import beliefnest as bn
+from beliefnest.bodies.worlds import Worlds
 from beliefnest.llm.offline import OfflineModel
 from beliefnest.scenarios.outcome import Outcome
 from beliefnest.scenarios.running import run_scenario
 from beliefnest.timeline import codec
 from beliefnest.timeline.store import SqliteJournal
+
+pytestmark = pytest.mark.usefixtures("kept_worlds")
 
 FILE = Path(bn.__file__).parent / "scenarios" / "builtin" / "sally-anne.yaml"
 LEFT, RIGHT = (-2, -51, -4), (2, -51, -4)
@@ -27,8 +30,13 @@ BELIEFS = {
 }
 
 
-def run(scenario: bn.Scenario, store: Path | None = None, seed: int = 0) -> Outcome:
-    with bn.Nest.open(scenario, store=store, seed=seed) as nest:
+def run(
+    scenario: bn.Scenario,
+    store: Path | None = None,
+    seed: int = 0,
+    worlds: Worlds | None = None,
+) -> Outcome:
+    with bn.Nest.open(scenario, store=store, seed=seed, worlds=worlds) as nest:
         return run_scenario(
             nest,
             scenario,
@@ -126,10 +134,11 @@ def fingerprint(store: Path) -> str:
 def test_the_same_seed_gives_the_same_frames_under_load_as_well(tmp_path: Path) -> None:
     def record(name: str) -> list[str]:
         prints = []
-        for scenario in bn.Scenario.load_all("sally-anne"):
-            store = tmp_path / f"{name}-{scenario.condition}.bn"
-            run(scenario, store, seed=7)
-            prints.append(fingerprint(store))
+        with Worlds(7) as worlds:
+            for scenario in bn.Scenario.load_all("sally-anne"):
+                store = tmp_path / f"{name}-{scenario.condition}.bn"
+                run(scenario, store, 7, worlds)
+                prints.append(fingerprint(store))
         return prints
 
     first = record("first")
