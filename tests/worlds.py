@@ -45,5 +45,6 @@ def kept_worlds(lent: Lent) -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr("beliefnest.cli.run.Worlds", lent)
+        patched.setattr("beliefnest.studies.worker.Worlds", lent)
         patched.setattr("beliefnest.nest.face.nest.open_world", lent_world)
         yield

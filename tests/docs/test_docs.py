@@ -8,6 +8,8 @@ import pytest
 from beliefnest.cli.app import run_command_line
 from beliefnest.scenarios import Scenario
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 ROOT = Path(__file__).parents[2]
 PAPERS = ("README.md", "docs/scenarios.md")
 EXAMPLES = [

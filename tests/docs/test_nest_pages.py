@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = ("coming-from-mineflayer.md", "programs.md", "python.md", "timelines.md")
 

@@ -8,6 +8,8 @@ import pytest
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 PAGE = (Path(__file__).parents[2] / "docs" / "studies.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
 SCENARIO, STUDY, EPISODES = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)

@@ -9,6 +9,8 @@ import pytest
 
 from beliefnest.cli.app import run_command_line
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 ROOT = Path(__file__).parents[2]
 TUTORIAL = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
 

@@ -12,6 +12,8 @@ from tests.studies.small import small_in, study_in
 import beliefnest as bn
 from beliefnest.studies.spending import spent_in
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 LEFT = "```javascript\nawait getItemFromChest(bot, new Vec3(1, 1, 1), {diamond: 1});\n```"
 ANSWER_TOKENS = 150
 PLACES = {"spot": [[1, 1, 1], [5, 1, 1]]}

@@ -17,6 +17,8 @@ import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.studies.store import StudyFolder
 
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
 STUDY = """\
 scenarios: [small.yaml]
 variations:
