@@ -10,7 +10,7 @@ from beliefnest.pictures.marks import Mark as Drawn
 from beliefnest.pictures.palette import INK, MARKS, PAPER, AgentLook, Mark, mix
 from beliefnest.pictures.scene import Device, Store
 
-__all__ = ["agent", "container", "device", "false_sign", "item", "letters", "verdict"]
+__all__ = ["agent", "container", "device", "false_sign", "hearsay", "item", "letters", "verdict"]
 
 _WOOD, _WOOD_DARK, _WOOD_LIGHT = "#b07a42", "#704822", "#ce9c62"
 _STONE, _STONE_DARK = "#8d8a88", "#4c4a4a"
@@ -81,6 +81,27 @@ def false_sign(at: XY, radius: float) -> list[Drawn]:
     ]
 
 
+def hearsay(at: XY, radius: float) -> list[Drawn]:
+    """A balloon with two strokes, as somebody's words have: this was only told."""
+    x, y = at
+    wide, high = radius * 2.3, radius * 1.5
+    tail = (
+        (x - radius * 0.1, y + high * 0.42),
+        (x + radius * 0.55, y + high * 0.42),
+        (x + radius * 0.5, y + radius * 1.35),
+    )
+    lines = tuple(
+        ((x - radius * 0.65, y + step * radius), (x + share * radius, y + step * radius))
+        for step, share in ((-0.25, 0.65), (0.25, 0.3))
+    )
+    left, top = x - wide / 2, y - high / 2
+    return [
+        Rectangle(left, top, wide, high, PAPER, INK, radius * 0.22, radius * 0.5, role="part"),
+        Polygon(tail, INK),
+        Lines(lines, INK, radius * 0.22, "part"),
+    ]
+
+
 def verdict(at: XY, radius: float, *, good: bool) -> list[Drawn]:
     """A tick, or a cross, on a disc; what is false has its cross on a diamond."""
     x, y = at
@@ -147,6 +168,8 @@ def container(at: XY, size: float, store: Store) -> list[Drawn]:
         sign = MARKS[Mark.INCOMPLETE if store.items else Mark.UNKNOWN].sign
         place = (x + half * 0.55, y + half * 0.55) if store.items else at
         drawn.append(letters(place, sign, size * (0.5 if store.items else 0.9), INK, halo=PAPER))
+    if store.teller:
+        drawn += hearsay((x - half * 0.8, y - half * 0.8), size * 0.2)
     if store.mark is Mark.FALSE:
         drawn += false_sign((x + half, y - half), size * 0.21)
     return drawn

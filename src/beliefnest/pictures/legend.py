@@ -47,7 +47,7 @@ def draw_legend(
 
 
 _Sign = Callable[[XY, float, float], list[Drawn]]
-_KINDS = ("sight", "remembered", "false", "unknown blocks", "container", "trail")
+_KINDS = ("sight", "remembered", "told", "false", "unknown blocks", "container", "trail")
 
 
 def _order(kind: str) -> tuple[int, str]:
@@ -96,6 +96,10 @@ def _false(at: XY, wide: float, high: float) -> list[Drawn]:
     return icons.false_sign((at[0] + wide / 2, at[1] + high / 2), high * 0.36)
 
 
+def _told(at: XY, wide: float, high: float) -> list[Drawn]:
+    return icons.hearsay((at[0] + wide / 2, at[1] + high * 0.42), high * 0.42)
+
+
 def _unknown(at: XY, wide: float, high: float) -> list[Drawn]:
     x, y = at
     dots = [
@@ -135,6 +139,7 @@ def _unexpected(at: XY, wide: float, high: float) -> list[Drawn]:
 
 _SIGNS: Mapping[str, tuple[_Sign, str]] = {
     "remembered": (_remembered, MARKS[Mark.STALE].words),
+    "told": (_told, MARKS[Mark.HEARD].words),
     "false": (_false, MARKS[Mark.FALSE].words),
     "unknown blocks": (_unknown, "not known what stands there"),
     "container": (_container, "not known what is in it; open: known to be empty"),

@@ -13,7 +13,17 @@ from PIL import ImageFont
 
 from beliefnest.world.texts import on_one_line
 
-__all__ = ["ASCENT", "DESCENT", "FAMILIES", "ellipsis", "font", "font_bytes", "text_width", "wrap"]
+__all__ = [
+    "ASCENT",
+    "DESCENT",
+    "FAMILIES",
+    "ellipsis",
+    "font",
+    "font_bytes",
+    "lettered",
+    "text_width",
+    "wrap",
+]
 
 ASCENT, DESCENT = 0.74, 0.22
 """How far letters reach above and below the base line, in sizes of the text."""
@@ -38,9 +48,23 @@ def font(size: float, *, bold: bool) -> ImageFont.FreeTypeFont:
     return ImageFont.truetype(stream, size, layout_engine=ImageFont.Layout.BASIC)
 
 
+_LIKE = str.maketrans(
+    {
+        **dict.fromkeys("\u2713\u2714\u2705", "\u221a"),
+        **dict.fromkeys("\u2715\u2716\u2717\u2718\u274c", "\u00d7"),
+    }
+)
+"""Signs that the font lacks, and those most like them that it has."""
+
+
+def lettered(text: str) -> str:
+    """A text as it is drawn where no other font can help out."""
+    return text.translate(_LIKE)
+
+
 @cache
 def _unit_width(text: str, *, bold: bool) -> float:
-    return font(_UNIT, bold=bold).getlength(text) / _UNIT
+    return font(_UNIT, bold=bold).getlength(lettered(text)) / _UNIT
 
 
 def text_width(text: str, size: float, *, bold: bool = False) -> float:

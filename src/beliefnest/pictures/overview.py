@@ -256,8 +256,9 @@ def _store(block: Block, store: Store, left: float, width: float) -> None:
     # The sign stands before the words, as for all that is false in a card.
     shown = replace(store, mark=Mark.STALE) if false else store
     block.marks += icons.container((left + icon / 2, block.bottom + icon / 2), icon, shown)
-    block.kinds.add("container")
+    block.kinds |= {"container", "told"} if store.teller else {"container"}
     top, inset = block.bottom, icon * 1.5
     block.bottom += (icon - TEXT_SIZE) / 2
-    _note(block, Note(f"{store.label}: {store.words}", false), left + inset, width - inset)
+    told = f" (told by {store.teller})" if store.teller and store.items else ""
+    _note(block, Note(f"{store.label}: {store.words}{told}", false), left + inset, width - inset)
     block.bottom = max(block.bottom, top + icon + 1.6)

@@ -21,6 +21,7 @@ __all__ = [
     "age_text",
     "agent_looks",
     "mix",
+    "told_text",
 ]
 
 INK = "#2b2a33"
@@ -59,6 +60,7 @@ class Mark(StrEnum):
     STALE = "stale"
     UNKNOWN = "unknown"
     INCOMPLETE = "incomplete"
+    HEARD = "heard"
     FALSE = "false"
 
 
@@ -84,6 +86,7 @@ MARKS: Mapping[Mark, MarkLook] = {
     Mark.STALE: MarkLook(QUIET, "~", "dashed", "remembered, not perceived at this tick"),
     Mark.UNKNOWN: MarkLook(QUIET, "?", "dotted", "not known"),
     Mark.INCOMPLETE: MarkLook(QUIET, "+?", "dotted", "perhaps more in it"),
+    Mark.HEARD: MarkLook(QUIET, "\u201c\u201d", "dashed", "only told, not perceived"),
     Mark.FALSE: MarkLook("#D55E00", "\u00d7", "double", "false"),
 }
 
@@ -107,6 +110,18 @@ def agent_looks(agents: Iterable[str]) -> dict[str, AgentLook]:
 def age_text(ticks: int) -> str:
     """How old a memory is, for people."""
     return "1 tick ago" if ticks == 1 else f"{ticks} ticks ago"
+
+
+def told_text(teller: str, ticks: int) -> str:
+    """Who told of it and how long ago, for people; a memory's age where nobody did.
+
+    Args:
+        teller: Who said so; empty: it was perceived.
+        ticks: Its age.
+    """
+    if not teller:
+        return age_text(ticks)
+    return f"told by {teller}{f' {age_text(ticks)}' if ticks else ''}"
 
 
 def mix(first: str, second: str, share: float) -> str:

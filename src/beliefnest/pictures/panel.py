@@ -7,9 +7,9 @@ from beliefnest.pictures import icons
 from beliefnest.pictures.lettering import ASCENT, text_width, wrap
 from beliefnest.pictures.marks import XY, Text
 from beliefnest.pictures.marks import Mark as Drawn
-from beliefnest.pictures.palette import INK, MARKS, QUIET, AgentLook, Mark, age_text, mix
+from beliefnest.pictures.palette import INK, MARKS, QUIET, AgentLook, Mark, age_text, mix, told_text
 from beliefnest.pictures.plan import draw_plan
-from beliefnest.pictures.scene import Person, Scene, Store
+from beliefnest.pictures.scene import Device, Person, Scene, Store
 
 __all__ = ["Block", "belief_words", "draw_panel", "draw_title", "paragraph"]
 
@@ -111,9 +111,13 @@ def _margin(
         _store_line(block, store, scene.against, left, width, size)
     if len(scene.stores) > _MOST:
         paragraph(block, f"and {len(scene.stores) - _MOST} more containers", left, width, size)
+    for shown in scene.devices:
+        if shown.false is not None:
+            _device_line(block, shown, scene.against, (left, width, size))
     for person in scene.people:
         if person.mark is Mark.FALSE:
             seen = f"seen {age_text(person.age) if person.age else 'now'}"
+            seen = told_text(person.teller, person.age) if person.teller else seen
             wrong = (seen, person.instead)
             _person_line(block, looks[person.name], wrong, scene.against, (left, width, size))
         if person.owned is not None:
@@ -130,15 +134,32 @@ def _store_line(
     """An icon, the container's name, what is known of it, and how it is elsewhere."""
     icon = size * 1.15
     block.marks += icons.container((left + icon / 2, block.bottom + icon / 2), icon, store)
-    block.kinds.add("container")
+    block.kinds |= {"container", "told"} if store.teller else {"container"}
     inner = left + icon * 1.55
     text = f"{store.label}: {store.words}"
-    if store.age and (store.items or store.complete):
-        text += f" ({age_text(store.age)})"
+    if (store.age or store.teller) and (store.items or store.complete):
+        text += f" ({told_text(store.teller, store.age)})"
     top = block.bottom
     paragraph(block, text, inner, width - icon * 1.55, size)
     if store.mark is Mark.FALSE:
         _false_line(block, f"{_place_words(against)}: {store.instead}", inner, left + width, size)
+    block.bottom = max(block.bottom, top + icon + 2.2) + 0.8
+
+
+def _device_line(
+    block: Block, shown: Device, against: str, line: tuple[float, float, float]
+) -> None:
+    """A device that is false: what is held of it, who said so, and how it is elsewhere."""
+    assert shown.false is not None
+    left, width, size = line
+    icon = size * 1.15
+    block.marks += icons.device((left, block.bottom), icon, shown)
+    inner, top = left + icon * 1.55, block.bottom
+    held, instead = shown.false
+    told = f" ({told_text(shown.teller, shown.age)})" if shown.teller or shown.age else ""
+    where = f"({', '.join(map(str, shown.position))})"
+    paragraph(block, f"{where}: {held}{told}", inner, width - icon * 1.55, size)
+    _false_line(block, f"{_place_words(against)}: {instead}", inner, left + width, size)
     block.bottom = max(block.bottom, top + icon + 2.2) + 0.8
 
 

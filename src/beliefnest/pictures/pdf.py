@@ -3,7 +3,7 @@
 import io
 from typing import Any
 
-from beliefnest.pictures.lettering import font_bytes
+from beliefnest.pictures.lettering import font_bytes, lettered
 from beliefnest.pictures.marks import Circle, Drawing, Lines, Mark, Polygon, Rectangle, Text
 from beliefnest.world.texts import on_one_line
 
@@ -93,6 +93,6 @@ def _text(canvas: Any, height: float, mark: Text) -> None:
         canvas.setLineWidth(mark.size * 0.28)
         canvas.setLineJoin(1)
         canvas.setDash([])
-        text.textOut(mark.text)
+        text.textOut(lettered(mark.text))
         canvas.drawText(text)
         canvas.restoreState()

@@ -13,7 +13,7 @@ from beliefnest.pictures.marks import XY, Bounds, Lines, Polygon, Rectangle, Tex
 from beliefnest.pictures.marks import Mark as Drawn
 from beliefnest.pictures.palette import INK, MARKS, PAPER, QUIET, AgentLook, Mark, age_text, mix
 from beliefnest.pictures.room import Room
-from beliefnest.pictures.scene import DEVICES, Cell, Person, Scene, Store
+from beliefnest.pictures.scene import DEVICES, Cell, Device, Person, Scene, Store
 from beliefnest.world.registry import Registry
 
 __all__ = ["Plan", "draw_plan", "hatching"]
@@ -154,6 +154,7 @@ class _Sheet:
             )
         )
         self._labels: list[Label] = []
+        self._boards: list[Bounds] = []
         self.marks: list[Drawn] = []
         self.unnamed: list[str] = []
         self.kinds: set[str] = set()
@@ -248,8 +249,15 @@ class _Sheet:
 
     def _false_blocks(self) -> None:
         look = MARKS[Mark.FALSE]
+        low_x, low_z = self._scene.low
+        # A false device has its sign at its corner.
+        signed = {
+            (shown.position[0] - low_x, shown.position[2] - low_z)
+            for shown in self._scene.devices
+            if shown.false is not None
+        }
         for i, k, cell in self._cells():
-            if not cell.wrong:
+            if not cell.wrong or (i, k) in signed:
                 continue
             x0, y0, x1, y1 = self._square(i, k)
             inset = self._cell * 0.12
@@ -282,6 +290,9 @@ class _Sheet:
                     self._quote(shown.says, self._place(x, z))
                 (x0, y0), (x1, y1) = self._place(x, z), self._place(x + 1, z + 1)
                 self._room.avoid((x0, y0, x1, y1))
+                if shown.name.endswith("_sign"):
+                    self._boards.append((x0, y0, x1, y1))
+                self._marks_of((x0, y0, x1, y1), shown)
         for store in self._scene.stores:
             if self._holds((store.position[0] + 0.5, store.position[2] + 0.5)):
                 self._store(store)
@@ -301,6 +312,21 @@ class _Sheet:
         for label, (x, _, z) in self._scene.places:
             if self._holds((x + 0.5, z + 0.5)):
                 self._mark_place(label, (x, z))
+
+    def _marks_of(self, column: Bounds, shown: Device) -> None:
+        """At the corners of a device, that it is false, or only told."""
+        x0, y0, x1, _ = column
+        radius = max(self._cell * 0.21, 1.6)
+        corners = (x0 + radius * 0.4, y0 + radius * 0.4), (x1, y0)
+        if shown.teller:
+            self.marks += icons.hearsay(corners[0], radius)
+            self.kinds.add("told")
+        if shown.false is not None:
+            self.marks += icons.false_sign(corners[1], radius)
+            self.kinds.add("false")
+        for (x, y), is_there in zip(corners, (shown.teller, shown.false), strict=True):
+            if is_there:
+                self._room.take((x - radius, y - radius, x + radius, y + radius))
 
     def _holds(self, point: XY) -> bool:
         (low_x, low_z), (across, down) = self._scene.low, self._scene.size
@@ -322,7 +348,7 @@ class _Sheet:
             self.unnamed.append(store.label)
             return
         self.marks += icons.container(spot, size, store)
-        self.kinds.add("container")
+        self.kinds |= {"container", "told"} if store.teller else {"container"}
         around = size * (1.3 if store.mark is Mark.FALSE else 1)
         self._label(spot, around, ((_with_height(store.label, store.above), False),))
 
@@ -346,10 +372,16 @@ class _Sheet:
             self.kinds.add("remembered")
         if person.mark is Mark.FALSE:
             self.kinds.add("false")
+        if person.teller:
+            corner = (spot[0] - radius * 0.86, spot[1] - radius * 0.86)
+            self.marks += icons.hearsay(corner, radius * 0.42)
+            self.kinds.add("told")
         lines = [(_with_height(person.name, person.above), True)]
         if person.believer:
             lines.append((f"as {person.believer} has it", False))
-        elif person.age:
+        elif person.teller:
+            lines.append((f"told by {person.teller}", False))
+        if person.age and not person.believer:
             lines.append((age_text(person.age), False))
         self._label(spot, size, tuple(lines))
 
@@ -378,6 +410,8 @@ class _Sheet:
 
     def names(self) -> None:
         """The names, when all icons have their places."""
+        for board in self._boards:
+            self._room.take(board)
         for each in put_labels(self._labels, self._room):
             self._write(each)
 

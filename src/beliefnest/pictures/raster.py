@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from PIL import Image, ImageDraw
 
-from beliefnest.pictures.lettering import font
+from beliefnest.pictures.lettering import font, lettered
 from beliefnest.pictures.marks import XY, Circle, Drawing, Lines, Mark, Polygon, Rectangle, Text
 from beliefnest.pictures.palette import PAPER
 
@@ -114,13 +114,13 @@ class _Pen:
 
     def _text(self, mark: Text) -> None:
         place = self._at((mark.left, mark.y))
-        letters = font(mark.size * self._scale, bold=mark.bold)
+        letters, words = font(mark.size * self._scale, bold=mark.bold), lettered(mark.text)
         if mark.halo is not None:
             edge = round(mark.size * 0.14 * self._scale)
             self._draw.text(
-                place, mark.text, mark.halo, letters, "ls", stroke_width=edge, stroke_fill=mark.halo
+                place, words, mark.halo, letters, "ls", stroke_width=edge, stroke_fill=mark.halo
             )
-        self._draw.text(place, mark.text, mark.colour, letters, "ls")
+        self._draw.text(place, words, mark.colour, letters, "ls")
 
     def _line(self, points: Sequence[XY], colour: str, thick: float) -> None:
         places = [self._at(point) for point in points]

@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.entries import AgentBelief, ContainerBelief
+from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, Source
 from beliefnest.belief.view import State
 from beliefnest.pictures.palette import Mark
 from beliefnest.world.registry import Registry
@@ -106,6 +106,9 @@ class Device:
         on: Whether it is open, switched on or pressed.
         parts: Where it stands in its column, from 0 to 1: left, top, right, bottom of each box.
         says: What is written on it.
+        false: What is held of it, and how it is elsewhere, if these differ; None: nothing is false.
+        teller: Who said that it is so; empty: it was perceived, or nothing is held of it.
+        age: Ticks since then.
     """
 
     position: Position
@@ -113,6 +116,9 @@ class Device:
     on: bool
     parts: tuple[tuple[float, float, float, float], ...]
     says: str = ""
+    false: tuple[str, str] | None = None
+    teller: str = ""
+    age: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,6 +135,7 @@ class Store:
         age: Ticks since what is known of it was perceived.
         instead: What is in it elsewhere, if it is false.
         above: Blocks above the storey; below: negative.
+        teller: Who said what is known of it; empty: it was perceived.
     """
 
     position: Position
@@ -140,6 +147,7 @@ class Store:
     age: int
     instead: str
     above: int
+    teller: str = ""
 
     @property
     def words(self) -> str:
@@ -168,6 +176,7 @@ class Person:
         above: Blocks above the storey; below: negative.
         believer: Whose belief has it there, if it is not the simulator's own; empty: nobody's.
         owned: What is wrong of what it has with it; None: nothing.
+        teller: Who said that it is there; empty: it was perceived.
     """
 
     name: str
@@ -180,6 +189,7 @@ class Person:
     above: int
     believer: str = ""
     owned: Wrong | None = None
+    teller: str = ""
 
 
 @dataclass(frozen=True)
@@ -301,7 +311,7 @@ def read_scene(
         height=level,
         cells=cells,
         stores=read_stores(state, level, labels or {}, by_place),
-        devices=_devices(cells, (x0, level, z0), state.signs),
+        devices=_devices(cells, (x0, level, z0), state, by_place),
         items=tuple((item.name, item.position) for _, item in sorted(state.items.items())),
         places=tuple((on_one_line(name), at) for name, at in sorted((places or {}).items())),
         people=tuple(
@@ -374,9 +384,17 @@ def read_stores(
                 age=0 if held.current else state.tick - held.basis.observed_at,
                 instead="" if false is None else false.instead,
                 above=place[1] - level,
+                teller=_teller(held.basis),
             )
         )
     return tuple(found)
+
+
+def _teller(basis: Basis | None) -> str:
+    """Who said what an entry holds; empty: it does not rest on hearsay."""
+    if basis is None or basis.source is not Source.HEARD:
+        return ""
+    return basis.speaker or "somebody"
 
 
 def _store_mark(held: ContainerBelief, *, false: bool) -> Mark:
@@ -409,6 +427,7 @@ def _person(
         holds=(agent.equipment or {}).get("main_hand", "").replace("_", " "),
         instead="" if false is None else false.instead,
         above=above if abs(above) >= _NEAR else 0,
+        teller="" if agent.current or agent.position is None else _teller(agent.basis),
     )
 
 
@@ -416,7 +435,10 @@ _ON = ("open", "powered", "lit")
 
 
 def _devices(
-    cells: Sequence[Sequence[Cell]], low: Position, signs: Mapping[Position, str]
+    cells: Sequence[Sequence[Cell]],
+    low: Position,
+    known: State,
+    wrong: Mapping[Position | str, Wrong],
 ) -> tuple[Device, ...]:
     registry = Registry.load()
     found = []
@@ -431,6 +453,40 @@ def _devices(
             states = [properties[key] == "true" for key in _ON if key in properties]
             parts = tuple((b[0], b[2], b[3], b[5]) for b in registry.boxes(state))
             place = (low[0] + i, low[1], low[2] + k)
-            says = sign_words(signs.get(place, ""))
-            found.append(Device(place, name, bool(states and states[0]), parts, says))
+            says = sign_words(known.signs.get(place, ""))
+            false = wrong.get(place)
+            told = None if known.blocks.current(place) else known.blocks.basis(place)
+            found.append(
+                Device(
+                    place,
+                    name,
+                    bool(states and states[0]),
+                    parts,
+                    says,
+                    None if false is None else _told_apart(false.held, false.instead),
+                    _teller(told),
+                    0 if told is None else known.tick - told.observed_at,
+                )
+            )
     return tuple(found)
+
+
+def _told_apart(held: str, instead: str) -> tuple[str, str]:
+    """Two blocks in words, with no more of their properties than it takes to tell them apart."""
+    words = tuple(map(_device_words, (held, instead)))
+    return (words[0], words[1]) if words[0] != words[1] else (held, instead)
+
+
+def _device_words(text: str) -> str:
+    block, _, says = text.partition(" that says ")
+    name, _, properties = block.partition("[")
+    kind = name.replace("_", " ")
+    if name.endswith("_sign"):
+        return f"{kind} that says {says}" if says else f"{kind} with nothing on it"
+    for key, (on, off) in _STATES.items():
+        if f"{key}=" in properties:
+            return f"{kind}, {on if f'{key}=true' in properties else off}"
+    return kind
+
+
+_STATES = {"open": ("open", "shut"), "powered": ("on", "off"), "lit": ("lit", "out")}
