@@ -36,6 +36,8 @@ def drawn(
                 outcome = run_scenario(nest, scenario, OfflineModel(), 0, 0.0, lambda *_: None)
                 with SqliteJournal.read(store) as journal:
                     conditions.append(read_condition(nest, journal, outcome))
+                predicted = any(card.prediction for card in conditions[-1].cards)
+                assert predicted == bool(scenario.probes)
                 tick = outcome.reality.tick
                 scenes += nest.scenes(["/", *outcome.beliefs], tick)
     yield conditions, scenes
@@ -62,9 +64,7 @@ def test_every_prediction_says_of_which_probe_it_is_and_maps_are_of_the_cards_ti
     conditions, _ = drawn
     for condition in conditions:
         said = texts(overview([condition], "title").drawing())
-        predictions = [card for card in condition.cards if card.prediction]
-        assert predictions
-        for card in predictions:
+        for card in [card for card in condition.cards if card.prediction]:
             assert card.title in said
             assert card.path in said
         assert f"the real world at tick {condition.scene.tick}, after the script" in said

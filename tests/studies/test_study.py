@@ -176,7 +176,10 @@ def test_a_world_that_fails_is_a_row_that_says_why(tmp_path):
         ("scenarios: []\n", "study.yaml:1: scenarios: a study without scenarios has no cells"),
         ("scenarios: [small.yaml]\nrepeats: 0\n", "study.yaml:2: repeats: repeats is 0"),
         ("scenarios: [small.yaml]\nrepeat: 2\n", "study.yaml:2: repeat: unknown key"),
-        ("scenarios: [small.yaml]\nmodels: offline\n", "study.yaml:2: models: expected 'array'"),
+        (
+            "scenarios: [small.yaml]\nmodels: offline\n",
+            "study.yaml:2: models: expected 'array | null'",
+        ),
         ("scenarios: [small.yaml]\nvariations: {spot: 3}\n", "study.yaml:2: variations: expected"),
         ("scenarios: [small.yaml]\nvariations: {spot: []}\n", "variations of 'spot' are []"),
         ("scenarios: [small.yaml]\nvariations: {spto: [1]}\n", "there is no parameter 'spto'"),
