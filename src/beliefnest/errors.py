@@ -83,6 +83,10 @@ class StoreError(BeliefNestError):
     """A run file is damaged, foreign, newer than this program, or locked by a writer."""
 
 
+class NotBegunError(StoreError):
+    """A run was stopped while it began: there is nothing in its file that could go on."""
+
+
 class ProgramError(BeliefNestError):
     """An agent program failed where its success was required."""
 

@@ -400,6 +400,9 @@ def play(
     patience: Annotated[
         float | None, typer.Option(help="Seconds after which a policy has lost its round.")
     ] = None,
+    measure_help: Annotated[
+        bool, typer.Option("--measure-help", help="Tell what help was needed, given, superfluous.")
+    ] = False,
     baselines: Annotated[
         bool, typer.Option("--baselines", help="Play the task, or all, by all baselines instead.")
     ] = False,
@@ -434,6 +437,7 @@ def play(
         out=out,
         budget=Budget(max_ticks, max_tokens, max_cost),
         patience_s=patience,
+        measures_help=measure_help,
         as_json=json,
     )
     return play_task(options)

@@ -15,7 +15,7 @@ from beliefnest.bodies.worlds import check_world
 from beliefnest.cli.console import folded, progress_on, stdout
 from beliefnest.episodes.episode import Budget, Episode
 from beliefnest.episodes.task import Task
-from beliefnest.errors import InputError
+from beliefnest.errors import InputError, NotBegunError
 
 __all__ = ["PlayOptions", "play_task"]
 
@@ -35,6 +35,7 @@ class PlayOptions:
         out: Folder for what is recorded; an interrupted episode goes on in it.
         budget: What it may take.
         patience_s: Seconds after which a policy has lost its round.
+        measures_help: Whether help is measured, for which branches are played.
         as_json: Whether to print one JSON object instead of a table.
     """
 
@@ -48,6 +49,7 @@ class PlayOptions:
     out: Path | None
     budget: Budget
     patience_s: float | None
+    measures_help: bool
     as_json: bool
 
 
@@ -70,6 +72,9 @@ def play_task(options: PlayOptions) -> int:
         while episode.rounds < limit and not episode.is_over:
             on_progress(f"round {episode.rounds + 1}", episode.rounds, limit)
             episode.play(1)
+        if options.measures_help:
+            on_progress("what would have been", limit, limit)
+            episode.help()
         on_progress("over", limit, limit)
         report = _report(episode)
     if options.as_json:
@@ -88,7 +93,12 @@ def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> E
             raise InputError(f"{options.out} cannot be made: {error.strerror}") from None
         store = options.out / "run.bn"
         if store.exists():
-            return Episode.resume(store, policies, patience_s=options.patience_s)
+            try:
+                return Episode.resume(store, policies, patience_s=options.patience_s)
+            except NotBegunError:
+                # Stopped while it began: there is nothing in it yet.
+                for left in options.out.glob(f"{store.name}*"):
+                    left.unlink()
     return Episode(
         task,
         policies,
@@ -148,6 +158,12 @@ def _print(report: Mapping[str, Any]) -> None:
         when = "never" if condition["tick"] is None else f"at tick {condition['tick']}"
         console.print(f"{condition['condition']}: {when}", markup=False, highlight=False)
     measures = report["measures"]
+    if measures["help_needed"] is not None:
+        console.print(
+            f"help: needed by {measures['help_needed']}, given to {measures['help_given']} of "
+            f"them; superfluous: {measures['help_superfluous']}",
+            highlight=False,
+        )
     verdict = "reached" if report["success"] else "not reached"
     console.print(
         f"goal {verdict} after {measures['ticks']} ticks, {measures['rounds']} rounds, "

@@ -7,7 +7,9 @@ from beliefnest.episodes.task import Task
 from beliefnest.episodes.view import Policy
 from beliefnest.errors import InputError
 
-__all__ = ["chosen", "name_of"]
+__all__ = ["check_resumable", "chosen", "name_of"]
+
+_OBJECT = "object:"
 
 
 def chosen(
@@ -38,4 +40,19 @@ def chosen(
 
 def name_of(policy: "str | Policy") -> str:
     """What a run calls a policy."""
-    return policy if isinstance(policy, str) else f"object:{type(policy).__name__}"
+    return policy if isinstance(policy, str) else f"{_OBJECT}{type(policy).__name__}"
+
+
+def check_resumable(policies: Mapping[str, "str | Policy"]) -> None:
+    """See that all policies that a run names can be made anew.
+
+    Raises:
+        InputError: One was an object, which no file holds.
+    """
+    for agent, policy in policies.items():
+        if isinstance(policy, str) and policy.startswith(_OBJECT):
+            kind = policy.removeprefix(_OBJECT)
+            raise InputError(
+                f"{agent} was played by an object of the class {kind}, which no file holds; "
+                f"give it again: Episode.resume(store, {{{agent!r}: {kind}(...)}})"
+            )

@@ -4,30 +4,33 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
-from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import Past, ProgramResult
 from beliefnest.bodies.worlds import Worlds
-from beliefnest.episodes.choosing import chosen, name_of
+from beliefnest.episodes.choosing import check_resumable, chosen, name_of
 from beliefnest.episodes.helping import Help, help_in
 from beliefnest.episodes.measures import Measures, false_beliefs, measured
+from beliefnest.episodes.moment import Moment
 from beliefnest.episodes.record import (
     Branch,
     Budget,
     Start,
+    branch_of,
     ended_as,
+    keep_begins,
     keep_branch,
     keep_start,
     kept_in,
 )
-from beliefnest.episodes.rounds import Asker, Part, Replayed, Spent, slots_of
+from beliefnest.episodes.rounds import Asker, Part, Spent, replayed, slots_of
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.view import AgentView, Brief, Ended, Policy
+from beliefnest.episodes.watching import Watch
 from beliefnest.errors import InputError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.setting import MAIN
-from beliefnest.scenarios.goals import Look, Progress, looking_at
+from beliefnest.scenarios.goals import Progress
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.paths import path_text
 
@@ -91,8 +94,7 @@ class Episode:
         self._owns_nest = True
         self._start = 0
         self._parts: list[Part] = []
-        self._watched = 0
-        self._progress: dict[str, Progress] = {}
+        self._watching = Watch(task, 0)
         self._help: Help | None = None
 
     @classmethod
@@ -101,25 +103,30 @@ class Episode:
         store: str | Path,
         policies: Mapping[str, "str | Policy"] | None = None,
         *,
+        branch: str | None = None,
         patience_s: float | None = None,
     ) -> Self:
-        """Go on with a recorded episode where it was, on the branch it was on.
+        """Go on with a recorded episode where it was.
 
         Args:
             store: The run file.
             policies: By agent; those who are left out are played as before.
+            branch: Which one is gone on with; None: the one that was played last.
             patience_s: As for the class.
 
         Raises:
             StoreError: There is no such run, or no episode in it.
             InputError: A policy of before was an object, which no file holds.
+            BranchError: The episode has no such branch.
         """
         nest = Nest.resume(store)
         try:
             kept, branches = kept_in(nest)
-            branch = nest["/"].branch
-            known = branches[branch]
+            branch = branch or nest["/"].branch
+            known = branch_of(branches, branch)
+            nest["/"].switch(branch)
             given = {**known.policies, **(policies or {})}
+            check_resumable(given)
             task = Task.from_mapping(kept.task, kept.task_seed)
             episode = cls(
                 task,
@@ -137,30 +144,35 @@ class Episode:
         return episode
 
     @classmethod
-    def replay(cls, recorded: str | Path, store: str | Path | None = None) -> Self:
+    def replay(
+        cls,
+        recorded: str | Path,
+        store: str | Path | None = None,
+        *,
+        branch: str | None = None,
+    ) -> Self:
         """Play what was decided in a recorded episode once more, without asking anybody.
 
         Args:
             recorded: Its run file.
             store: File to record the replay in; None: memory.
+            branch: Which one; None: the one that was played last.
 
         Raises:
             StoreError: There is no such run, or no episode in it.
+            BranchError: The episode has no such branch.
         """
         nest = Nest.read(recorded)
         with nest:
             kept, branches = kept_in(nest)
-            branch = branches[nest.branch("/")]
-        policies = {
-            agent: Replayed([p.decisions[agent] for p in branch.parts if agent in p.decisions])
-            for agent in branch.policies
-        }
+            decided = branch_of(branches, branch or nest.branch("/"))
+        policies = replayed(decided.parts, decided.policies)
         task = Task.from_mapping(kept.task, kept.task_seed)
         episode = cls(
             task, policies, world=kept.world, store=store, seed=kept.seed, budget=kept.budget
         )
         # It is the same episode, and is recorded as it was.
-        episode._names = dict(branch.policies)
+        episode._names = dict(decided.policies)
         return episode
 
     def __enter__(self) -> Self:
@@ -216,8 +228,8 @@ class Episode:
     @property
     def ticks(self) -> int:
         """Ticks since the first round began; until success, if there was one."""
-        goal = self._progress.get("")
-        if goal is not None and goal.reached is not None:
+        goal = self._watching.progress[""]
+        if goal.reached is not None:
             return goal.reached - self._start
         return 0 if self._nest is None else self.nest.tick - self._start
 
@@ -274,11 +286,7 @@ class Episode:
         it from then on.
         """
         if self._help is None:
-            known = self._parts
-            told = {
-                agent: Replayed([p.decisions[agent] for p in known if agent in p.decisions])
-                for agent in self.task.agents
-            }
+            told = replayed(self._parts, self.task.agents)
             with Episode(self.task, told, world=self._world, seed=self.seed) as copy:
                 copy.play(self.rounds)
                 self._help = help_in(copy, self._policies)
@@ -288,7 +296,7 @@ class Episode:
         """Ticks after which an agent reached its goal; infinite: it did not, or not yet."""
         self._opened()
         self._watch()
-        progress = self._progress[agent]
+        progress = self._watching.progress[agent]
         if not progress.succeeded(over=self.is_over):
             return float("inf")
         return self.ticks if progress.reached is None else progress.reached - self._start
@@ -351,7 +359,7 @@ class Episode:
             own.noting,
         )
 
-    def at(self, round: int) -> "Moment":
+    def at(self, round: int) -> Moment:
         """The beginning of a round that was played.
 
         Raises:
@@ -392,23 +400,13 @@ class Episode:
 
     @property
     def _brief(self) -> Brief:
-        task = self.task
-        return Brief(
-            task=task.name,
-            goals={agent: task.goal_of(agent) for agent in task.agents},
-            talk=tuple(task.form.talk),
-            rounds=task.form.rounds,
-            round_ticks=task.form.round_ticks,
-            turns=task.form.play == "turns",
-            pace=task.form.pace,
-            places=task.scenario.setting.places,
-            seed=self.seed,
-        )
+        return Brief.of(self.task, self.seed)
 
     def _opened(self) -> Nest:
         if self._nest is None:
             nest = Nest.open(self.task.scenario, self._world, self._store, self.seed, self._worlds)
             try:
+                keep_begins(nest)
                 nest.play()
                 _look_around(nest)
                 start = Start(
@@ -431,12 +429,10 @@ class Episode:
     def _take(self, nest: Nest, branch: str, start: int, parts: list[Part]) -> None:
         self._nest, self._branch, self._start = nest, branch, start
         self._parts = parts
-        self._watched = start - 1
-        goals = {"": self.task.goal, **{a: self.task.goal_of(a) for a in self.task.agents}}
-        self._progress = {name: Progress.begun(goal) for name, goal in goals.items()}
+        self._watching = Watch(self.task, start)
 
     def _keep(self) -> None:
-        goal = self._progress[""]
+        goal = self._watching.progress[""]
         branch = Branch(
             self._names, self._parts, list(goal.came_true()), goal.reached, goal.violated
         )
@@ -480,42 +476,11 @@ class Episode:
             self._keep()
 
     def _is_spent(self) -> bool:
-        budget, spent = self._budget, self.spent
-        ticks = budget.ticks is not None and self.nest.tick - self._start >= budget.ticks
-        tokens = budget.tokens is not None and spent.tokens >= budget.tokens
-        cost = budget.cost is not None and spent.cost is not None and spent.cost >= budget.cost
-        return ticks or tokens or cost
+        return self._budget.is_spent(self.nest.tick - self._start, self.spent)
 
     def _watch(self) -> Progress:
         """How far the task's goal has come by now."""
-        nest = self.nest
-        if self._watched < nest.tick:
-            if self._watched < self._start:
-                self._feed(self._start, nest.at(self._start))
-                self._watched = self._start
-            paths = self._goal_paths()
-            for tick, states in nest.each_tick(paths, self._watched, nest.tick):
-                self._feed(tick, states)
-            self._watched = nest.tick
-        return self._progress[""]
-
-    def _goal_paths(self) -> list[str]:
-        named = {path for each in self._progress.values() for path in each.goal.paths}
-        return sorted({"/", *map(path_text, named)})
-
-    def _feed(self, tick: int, states: Any) -> None:
-        found: dict[tuple[str, ...], State] = {}
-        for path in self._goal_paths():
-            held = states[path]
-            found[tuple(name for name in path.split("/") if name)] = getattr(held, "state", held)
-        look: Look = looking_at(found)
-        said = 0 if tick == self._start else self._said_at(tick, found[()])
-        for each in self._progress.values():
-            each.feed(tick, look, said)
-
-    def _said_at(self, tick: int, reality: State) -> int:
-        players = self.task.players
-        return sum(1 for when, who, _ in reality.chat if when == tick and who in players)
+        return self._watching.up_to_now(self.nest)[""]
 
     def _cut(self, agent: str) -> Past:
         """What the agent's latest program had done when it was cut."""
@@ -532,28 +497,3 @@ def _look_around(nest: Nest) -> None:
     where nobody sees it: from that an agent could tell that something did.
     """
     nest["/"].edit()
-
-
-class Moment:
-    """The beginning of a round of an episode.
-
-    Attributes:
-        episode: The episode.
-        round: The round, from 0.
-    """
-
-    def __init__(self, episode: Episode, round: int) -> None:
-        self.episode = episode
-        self.round = round
-
-    def fork(self, **policies: "str | Policy") -> Episode:
-        """The same episode from here on, on a branch of its own, with other policies.
-
-        Args:
-            policies: By agent; the others are played as before.
-
-        Raises:
-            InputError: There is a policy for nobody.
-            UnknownNameError: There is no such policy.
-        """
-        return self.episode.forked(self.round, policies)

@@ -1,27 +1,30 @@
 """What a run keeps of its episode, and how programs ended as their agents could tell."""
 
+from collections.abc import Mapping
 from typing import Any, Protocol
 
 import msgspec
 
 from beliefnest.bodies.protocol import NO_WAY, Fault, ProgramResult
-from beliefnest.episodes.rounds import Decision, Part
+from beliefnest.episodes.rounds import Decision, Part, Spent
 from beliefnest.episodes.view import Ended
-from beliefnest.errors import StoreError
+from beliefnest.errors import BranchError, NotBegunError, StoreError
 
 __all__ = [
     "Branch",
     "Budget",
     "Keeps",
     "Start",
+    "branch_of",
     "ended_as",
     "holds_episode",
+    "keep_begins",
     "keep_branch",
     "keep_start",
     "kept_in",
 ]
 
-_START, _BRANCHES = "episode", "episode branches"
+_BEGINS, _START, _BRANCHES = "episode begins", "episode", "episode branches"
 
 
 class Keeps(Protocol):
@@ -51,6 +54,14 @@ class Budget(msgspec.Struct, frozen=True, omit_defaults=True):
     tokens: int | None = None
     cost: float | None = None
 
+    def is_spent(self, ticks: int, spent: Spent) -> bool:
+        """Whether nothing is left after so many ticks, and what policies have spent."""
+        return (
+            (self.ticks is not None and ticks >= self.ticks)
+            or (self.tokens is not None and spent.tokens >= self.tokens)
+            or (self.cost is not None and spent.cost is not None and spent.cost >= self.cost)
+        )
+
 
 class Start(msgspec.Struct, frozen=True):
     """What a run keeps of its episode at the beginning."""
@@ -79,6 +90,11 @@ class Branch(msgspec.Struct, frozen=True):
     goal: list[tuple[str, int | None]] = []
     reached: int | None = None
     violated: int | None = None
+
+
+def keep_begins(nest: Writes) -> None:
+    """Keep that there is to be an episode, before what comes before its first round."""
+    nest.keep(_BEGINS, b"")
 
 
 def keep_start(nest: Writes, start: Start) -> None:
@@ -124,14 +140,14 @@ def kept_in(nest: Keeps) -> tuple[Start, dict[str, Branch]]:
     """What a run's episode began with, and its branches by name.
 
     Raises:
+        NotBegunError: It was stopped before the first round.
         StoreError: There is no episode in it, or it cannot be read.
     """
     kept, decided = nest.kept(_START), nest.kept(_BRANCHES)
     if kept is None or decided is None:
-        raise StoreError(
-            "there is no episode in this run: it was made by another command, or was stopped "
-            "before the first round began; play it anew"
-        )
+        if nest.kept(_BEGINS) is not None:
+            raise NotBegunError("the episode was stopped before its first round; play it anew")
+        raise StoreError("there is no episode in this run: it was made by another command")
     try:
         return (
             msgspec.json.decode(kept, type=Start),
@@ -139,3 +155,10 @@ def kept_in(nest: Keeps) -> tuple[Start, dict[str, Branch]]:
         )
     except msgspec.MsgspecError as fault:
         raise StoreError(f"the episode in this run cannot be read: {fault}") from None
+
+
+def branch_of(branches: Mapping[str, Branch], name: str) -> Branch:
+    """An episode's branch; BranchError if it has none of that name."""
+    if name not in branches:
+        raise BranchError(f"the episode has no branch {name!r}; it has {', '.join(branches)}")
+    return branches[name]

@@ -1,7 +1,7 @@
 """Asking policies: one that fails or is slow costs its own round and nothing else."""
 
 import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import msgspec
@@ -10,7 +10,7 @@ from beliefnest.bodies.protocol import Past
 from beliefnest.episodes.view import GO_ON, AgentView, Ended, Policy
 from beliefnest.world.texts import is_well_formed
 
-__all__ = ["Asker", "Decision", "Part", "Replayed", "Spent", "slots_of"]
+__all__ = ["Asker", "Decision", "Part", "Replayed", "Spent", "replayed", "slots_of"]
 
 _LONGEST = 100_000
 """Characters of a program."""
@@ -79,6 +79,14 @@ class Replayed:
     def act(self, view: AgentView) -> str:
         """The program of the round."""
         return self.decisions[view.round].program
+
+
+def replayed(parts: Sequence[Part], agents: Iterable[str]) -> dict[str, Policy]:
+    """Policies of agents that decide what was decided before."""
+    return {
+        agent: Replayed([part.decisions[agent] for part in parts if agent in part.decisions])
+        for agent in agents
+    }
 
 
 @dataclass

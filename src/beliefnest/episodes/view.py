@@ -12,6 +12,7 @@ from beliefnest.scenarios.goals import Goal
 from beliefnest.world.values import Position
 
 if TYPE_CHECKING:
+    from beliefnest.episodes.task import Task
     from beliefnest.llm.messages import Model
 
 __all__ = ["GO_ON", "AgentView", "Brief", "Ended", "Policy", "Told"]
@@ -63,6 +64,21 @@ class Brief:
     pace: int
     places: Mapping[str, Position]
     seed: int
+
+    @classmethod
+    def of(cls, task: "Task", seed: int) -> "Brief":
+        """What everybody knows of a task that is played with a seed."""
+        return cls(
+            task=task.name,
+            goals={agent: task.goal_of(agent) for agent in task.agents},
+            talk=tuple(task.form.talk),
+            rounds=task.form.rounds,
+            round_ticks=task.form.round_ticks,
+            turns=task.form.play == "turns",
+            pace=task.form.pace,
+            places=task.scenario.setting.places,
+            seed=seed,
+        )
 
     @property
     def whole_round(self) -> int:

@@ -16,7 +16,7 @@ from typing import Any
 
 import msgspec
 
-from beliefnest.errors import StoreError
+from beliefnest.errors import NotBegunError, StoreError
 from beliefnest.files import open_regular
 from beliefnest.timeline.lock import WriterLock
 from beliefnest.timeline.schema import (
@@ -311,7 +311,10 @@ class Database:
             tables = [str(name) for (name,) in self.rows("SELECT name FROM sqlite_master LIMIT 5")]
             what = f"an SQLite file of another program (with {', '.join(tables)})"
             if not tables:
-                what = "an SQLite file without content, perhaps of a run stopped while it began"
+                raise NotBegunError(
+                    f"{self.path} is no run: it is an SQLite file without content, perhaps of a "
+                    "run stopped while it began; give the file of a run"
+                )
             raise StoreError(f"{self.path} is no run: it is {what}; give the file of a run")
         number = version[0] if version else None
         found = next((each for each in older if each.version == number), None)
@@ -408,7 +411,8 @@ def _recognise_start(path: Path) -> None:
         kinds = [kind for start, kind in _KNOWN_STARTS if header.startswith(start)]
         begin = header[: len(_MAGIC)]
         what = kinds[0] if kinds else f"a file that begins with {begin!r}"
-        what = what if header else "an empty file"
+        if not header:
+            raise NotBegunError(f"{path} is no run: it is an empty file; give the file of a run")
         raise StoreError(f"{path} is no run: it is {what}; give the file of a run")
     # With a write-ahead log beside it, the rest of the file may still lie in there.
     if settled and size < _page_size(header) * int.from_bytes(header[28:32], "big"):

@@ -6,7 +6,7 @@ from typing import Literal, TypeVar
 
 import msgspec
 
-from beliefnest.errors import StoreError
+from beliefnest.errors import NotBegunError, StoreError
 from beliefnest.timeline import codec
 from beliefnest.timeline.database import Database, Row, checked, checksum
 from beliefnest.timeline.journal import FOLLOW, TimelineKey
@@ -174,7 +174,7 @@ class Records:
         """What the run was started with; StoreError if that was never set."""
         body = self.state("run")
         if body is None:
-            raise StoreError(
+            raise NotBegunError(
                 f"{self._database.path} does not say what was run; "
                 "the run was stopped while it began: start it again"
             )

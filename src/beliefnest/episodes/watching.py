@@ -1,0 +1,56 @@
+"""How far the goals of an episode have come, looked at tick by tick."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from beliefnest.belief.view import State
+from beliefnest.episodes.task import Task
+from beliefnest.nest.face.nest import Nest
+from beliefnest.scenarios.goals import Progress, looking_at
+from beliefnest.world.paths import path_text
+
+__all__ = ["Watch"]
+
+
+class Watch:
+    """Follows the goals of a task on one branch.
+
+    Args:
+        task: Whose goals: its own under the name "", those of agents under theirs.
+        start: The tick at which the first round begins.
+    """
+
+    def __init__(self, task: Task, start: int) -> None:
+        self._start = start
+        self._seen = start - 1
+        self._players = task.players
+        goals = {"": task.goal, **{agent: task.goal_of(agent) for agent in task.agents}}
+        self.progress: Mapping[str, Progress] = {
+            name: Progress.begun(goal) for name, goal in goals.items()
+        }
+        named = {path for goal in goals.values() for path in goal.paths}
+        self._paths = sorted({"/", *map(path_text, named)})
+
+    def up_to_now(self, nest: Nest) -> Mapping[str, Progress]:
+        """How far all of them have come by the nest's tick."""
+        if self._seen < nest.tick:
+            if self._seen < self._start:
+                self._feed(self._start, nest.at(self._start))
+                self._seen = self._start
+            for tick, states in nest.each_tick(self._paths, self._seen, nest.tick):
+                self._feed(tick, states)
+            self._seen = nest.tick
+        return self.progress
+
+    def _feed(self, tick: int, states: Any) -> None:
+        found: dict[tuple[str, ...], State] = {}
+        for path in self._paths:
+            held = states[path]
+            found[tuple(name for name in path.split("/") if name)] = getattr(held, "state", held)
+        look = looking_at(found)
+        said = 0 if tick == self._start else self._said_at(tick, found[()])
+        for each in self.progress.values():
+            each.feed(tick, look, said)
+
+    def _said_at(self, tick: int, reality: State) -> int:
+        return sum(1 for when, who, _ in reality.chat if when == tick and who in self._players)
