@@ -208,7 +208,7 @@ function gamerule (serv, [name, value]) {
 }
 
 function kick (serv, [name, ...reason]) {
-  playerOf(serv, name)._client.end(JSON.stringify({ text: reason.join(' ') }))
+  playerOf(serv, name)._client.end(reason.join(' '))
   return `Kicked ${name}`
 }
 

@@ -63,7 +63,7 @@ class OpenWorld {
     const end = new TcpEnd(client, action => action(), error => {
       if (!BROKEN_OFF.includes(error.code)) process.stderr.write(`${client.username}: ${error.stack}\n`)
     })
-    if (!serv.registry.supportFeature('chatPacketsUseNbtComponents')) speakOlder(end)
+    if (!serv.registry.supportFeature('chatPacketsUseNbtComponents')) speakOlder(end, serv.registry)
     const player = join(serv, region, end, state)
     player.gameMode = state.gameMode
     showWorld(player, region.columns)
@@ -145,12 +145,16 @@ class OpenWorld {
   }
 }
 
-/** Windows as versions before 1.20.3 have them: titles as JSON, and no crafter among their kinds. */
-function speakOlder (end) {
+/** Windows as versions before 1.20.3 have them: titles as JSON, and no crafter among their kinds; before 1.20.2, logins with all there is. */
+function speakOlder (end, { loginPacket: { dimensionCodec } }) {
   const { write } = end
-  end.write = (name, params) => write.call(end, name, name === 'open_window'
-    ? { ...params, inventoryType: params.inventoryType - (params.inventoryType > CRAFTER), windowTitle: JSON.stringify({ text: params.windowTitle.value.text.value }) }
-    : params)
+  const older = {
+    login: params => ({ ...params, dimensionCodec }),
+    open_window: ({ inventoryType, windowTitle, ...params }) => ({
+      ...params, inventoryType: inventoryType - (inventoryType > CRAFTER), windowTitle: JSON.stringify({ text: windowTitle.value.text.value })
+    })
+  }
+  end.write = (name, params) => write.call(end, name, older[name]?.(params) ?? params)
 }
 
 /** Stands still, as a server does that is busy with something else. */
