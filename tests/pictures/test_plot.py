@@ -6,7 +6,7 @@ import pytest
 from tests.pictures.measuring import faults, texts
 
 import beliefnest as bn
-from beliefnest.pictures.plot import Act, Band, Row, belief_plot
+from beliefnest.pictures.plot import Act, Band, Row, Told, belief_plot
 
 CHEST = (3, 1, 3)
 PLOT = "beliefnest.nest.face.plotting.belief_plot"
@@ -79,8 +79,12 @@ def test_wrong_questions_are_errors(nest: bn.Nest) -> None:
         nest.plot_beliefs((99, 0, 0))
     with pytest.raises(bn.PathError):
         nest.plot_beliefs(CHEST, paths=["/bob"])
-    for one_too_many in ({}, {"container": CHEST, "agent": "anne"}):
-        with pytest.raises(bn.InputError, match="a container or an agent"):
+    for one_too_many in (
+        {},
+        {"container": CHEST, "agent": "anne"},
+        {"block": CHEST, "item": "diamond"},
+    ):
+        with pytest.raises(bn.InputError, match="a container, an item, an agent or a block"):
             nest.plot_beliefs(**one_too_many)  # type: ignore[arg-type]
     with pytest.raises(bn.PathError):
         nest.plot_beliefs(agent="bob")
@@ -136,3 +140,44 @@ def test_doors_and_signs_are_no_containers() -> None:
         for place in (door, sign):
             with pytest.raises(bn.InputError, match=r"containers are at \(3, 1, 3\)$"):
                 nest.plot_beliefs(place)
+
+
+def test_claims_stand_above_what_became_of_them_and_items_and_blocks_are_followed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    left, right, door = (1, 0, 1), (8, 0, 1), (4, 0, 7)
+    blocks = {door: "oak_door[half=lower]", (4, 1, 7): "oak_door[half=upper]"}
+    agents = {"max": (2.5, 0, 3.5), "nora": (4.5, 0, 4.5), "sal": (5.5, 0, 5.5)}
+    boxes = {left: {"diamond": 1}, right: {}}
+    world = bn.ScriptedWorld(((0, 0, 0), (50, 3, 9)), blocks, agents, containers=boxes)
+    perception = bn.Perception(max_visible_distance=12, testimony="informed", grace=5)
+    drawn: list[tuple[list[Row], list[Act]]] = []
+    with bn.Nest(world, perception) as nest:
+        world.open("max", left)
+        world.place_agent("max", (40.5, 0, 3.5))
+        world.step(20)
+        state = "oak_door[open=true]"
+        claims = [bn.Claim.located("diamond", right), bn.Claim.block(door, state)]
+        world.say("nora", "It is open.", claims=claims)
+        world.withdraw("sal", left, {"diamond": 1})
+        item = {"item": "diamond", "paths": ["/", "/max", "/sal", "/nora"]}
+        for size in (None, 50):
+            assert faults(nest.plot_beliefs(**item).drawing(size)) == []
+            assert faults(nest.plot_beliefs(block=door, paths=["/max"]).drawing(size)) == []
+        monkeypatch.setattr(PLOT, lambda rows, acts, _: drawn.append((rows, acts)))
+        nest.plot_beliefs(**item)
+        nest.plot_beliefs(block=door, paths=["/", "/max"])
+    (rows, acts), (doors, said) = drawn
+    assert [row.told for row in rows] == [(), (Told(23, True),), (Told(23, False),), ()]
+    assert [band.words for band in rows[0].bands] == ["in container (1, 0, 1)", "with sal"]
+    assert [(band.words, band.false) for band in rows[1].bands[-2:]] == [
+        ("in container (1, 0, 1)", False),
+        ("in container (8, 0, 1)", True),
+    ]
+    assert acts == [
+        Act(23, "nora: diamond is in (8, 0, 1) (false)"),
+        Act(24, "sal takes"),
+    ]
+    assert [band.words for band in doors[1].bands] == ["oak door, shut", "oak door, open"]
+    assert doors[1].told == (Told(23, True),)
+    assert said == [Act(23, "nora: (4, 0, 7) is oak_door[open=true] (a lie)")]

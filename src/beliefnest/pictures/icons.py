@@ -81,8 +81,14 @@ def false_sign(at: XY, radius: float) -> list[Drawn]:
     ]
 
 
-def hearsay(at: XY, radius: float) -> list[Drawn]:
-    """A balloon with two strokes, as somebody's words have: this was only told."""
+def hearsay(at: XY, radius: float, *, believed: bool = True) -> list[Drawn]:
+    """A balloon with two strokes, as somebody's words have: this was only told.
+
+    Args:
+        at: Its middle.
+        radius: About half its height.
+        believed: Whether the words were; those that were not are struck out.
+    """
     x, y = at
     wide, high = radius * 2.3, radius * 1.5
     tail = (
@@ -95,11 +101,13 @@ def hearsay(at: XY, radius: float) -> list[Drawn]:
         for step, share in ((-0.25, 0.65), (0.25, 0.3))
     )
     left, top = x - wide / 2, y - high / 2
-    return [
+    struck = ((x - wide * 0.62, y + high * 0.75), (x + wide * 0.62, y - high * 0.75))
+    balloon: list[Drawn] = [
         Rectangle(left, top, wide, high, PAPER, INK, radius * 0.22, radius * 0.5, role="part"),
         Polygon(tail, INK),
         Lines(lines, INK, radius * 0.22, "part"),
     ]
+    return balloon if believed else [*balloon, Lines((struck,), INK, radius * 0.3, "part")]
 
 
 def verdict(at: XY, radius: float, *, good: bool) -> list[Drawn]:

@@ -13,11 +13,14 @@ from beliefnest.pictures.palette import AGENT_COLOURS, INK, MARKS, PAPER, QUIET,
 from beliefnest.pictures.panel import Block, paragraph
 from beliefnest.pictures.plan import hatching
 
-__all__ = ["Act", "Band", "Row", "belief_plot"]
+__all__ = ["Act", "Band", "Row", "Told", "belief_plot"]
 
 _HIGH = 15.0
 _STEP = 21.0
 _ACT = TEXT_SIZE * 0.95
+_BALLOON = 2.1
+_ABOVE = 5.5
+"""Room for balloons above a row."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,10 +47,25 @@ class Row:
     Attributes:
         path: Belief path.
         bands: In order of time, without gaps.
+        told: Claims about it that were heard there.
     """
 
     path: str
     bands: tuple[Band, ...]
+    told: tuple["Told", ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """A claim that was heard.
+
+    Attributes:
+        tick: When.
+        believed: Whether it was taken up.
+    """
+
+    tick: int
+    believed: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +98,10 @@ def _draw(rows: Sequence[Row], acts: Sequence[Act], title: str, width: float) ->
     top = _acts(chart, acts, head.bottom + 3, marks)
     first = top
     bands: list[Drawn] = []
+    tops: list[float] = []
+    above = _ABOVE if chart.told else 0.0
     for row in rows:
+        top += above if beside else 0
         if beside:
             base = top + _HIGH / 2 + TEXT_SIZE * ASCENT * 0.48
             marks.append(Text(MARGIN, base, row.path, TEXT_SIZE, INK, bold=True))
@@ -88,13 +109,15 @@ def _draw(rows: Sequence[Row], acts: Sequence[Act], title: str, width: float) ->
             block = Block(bottom=top)
             paragraph(block, row.path, MARGIN, width - 2 * MARGIN, TEXT_SIZE, bold=True)
             marks += block.marks
-            top = block.bottom
+            top = block.bottom + above
         bands += _bands(chart, row, top)
+        tops.append(top)
         top += _STEP
     lines = tuple(((chart.x(act.tick), first - 1.5), (chart.x(act.tick), top - 4)) for act in acts)
     marks += [mark for mark in bands if not isinstance(mark, Text)]
     if lines:
         marks.append(Lines(lines, INK, 0.4))
+    marks += [mark for row, at in zip(rows, tops, strict=True) for mark in _told(chart, row, at)]
     # Words stay readable where a line goes through them.
     marks += [mark for mark in bands if isinstance(mark, Text)]
     bottom = _axis(chart, top - 3, marks)
@@ -115,6 +138,7 @@ class _Chart:
             for n, value in enumerate(words)
         }
         self.false = any(band.false for row in rows for band in row.bands)
+        self.told = {each.believed for row in rows for each in row.told}
         self.unknown = any(not band.words for row in rows for band in row.bands)
 
     def x(self, tick: int) -> float:
@@ -157,6 +181,15 @@ def _bands(chart: _Chart, row: Row, top: float) -> list[Drawn]:
             base = top + _HIGH / 2 + TEXT_SIZE * ASCENT * 0.48
             halo = chart.fills.get(band.words, PAPER)
             marks.append(Text(inner, base, words, TEXT_SIZE, INK, halo=halo))
+    return marks
+
+
+def _told(chart: _Chart, row: Row, top: float) -> list[Drawn]:
+    """A balloon above the row for each claim that was heard."""
+    marks: list[Drawn] = []
+    for each in row.told:
+        at = (chart.x(each.tick), top - _BALLOON * 1.5)
+        marks += icons.hearsay(at, _BALLOON, believed=each.believed)
     return marks
 
 
@@ -210,6 +243,15 @@ def _legend(chart: _Chart, at: XY, width: float, marks: list[Drawn]) -> float:
             marks += icons.false_sign((x + wide / 2, top + high / 2), 2.6)
         else:
             marks += _swatch(chart, words, (x, top), wide, high)
+        base = top + high / 2 + TEXT_SIZE * ASCENT * 0.48
+        marks.append(Text(x + wide + 3, base, told, TEXT_SIZE, QUIET))
+        x += taken + TEXT_SIZE * 1.5
+    for believed in sorted(chart.told, reverse=True):
+        told = "told, and believed" if believed else "told, and not believed"
+        taken = wide + 3 + text_width(told, TEXT_SIZE)
+        if x > at[0] and x + taken > at[0] + width:
+            x, top = at[0], top + high * 1.5
+        marks += icons.hearsay((x + wide / 2, top + high * 0.42), high * 0.4, believed=believed)
         base = top + high / 2 + TEXT_SIZE * ASCENT * 0.48
         marks.append(Text(x + wide + 3, base, told, TEXT_SIZE, QUIET))
         x += taken + TEXT_SIZE * 1.5

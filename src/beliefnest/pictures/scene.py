@@ -12,6 +12,7 @@ import numpy.typing as npt
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, Source
 from beliefnest.belief.view import State
 from beliefnest.pictures.palette import Mark
+from beliefnest.pictures.words import told_apart
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import sign_words
 from beliefnest.world.texts import on_one_line
@@ -116,7 +117,7 @@ class Device:
     on: bool
     parts: tuple[tuple[float, float, float, float], ...]
     says: str = ""
-    false: tuple[str, str] | None = None
+    false: tuple[str, ...] | None = None
     teller: str = ""
     age: int = 0
 
@@ -463,30 +464,9 @@ def _devices(
                     bool(states and states[0]),
                     parts,
                     says,
-                    None if false is None else _told_apart(false.held, false.instead),
+                    None if false is None else told_apart((false.held, false.instead)),
                     _teller(told),
                     0 if told is None else known.tick - told.observed_at,
                 )
             )
     return tuple(found)
-
-
-def _told_apart(held: str, instead: str) -> tuple[str, str]:
-    """Two blocks in words, with no more of their properties than it takes to tell them apart."""
-    words = tuple(map(_device_words, (held, instead)))
-    return (words[0], words[1]) if words[0] != words[1] else (held, instead)
-
-
-def _device_words(text: str) -> str:
-    block, _, says = text.partition(" that says ")
-    name, _, properties = block.partition("[")
-    kind = name.replace("_", " ")
-    if name.endswith("_sign"):
-        return f"{kind} that says {says}" if says else f"{kind} with nothing on it"
-    for key, (on, off) in _STATES.items():
-        if f"{key}=" in properties:
-            return f"{kind}, {on if f'{key}=true' in properties else off}"
-    return kind
-
-
-_STATES = {"open": ("open", "shut"), "powered": ("on", "off"), "lit": ("lit", "out")}

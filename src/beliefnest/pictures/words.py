@@ -7,7 +7,15 @@ from beliefnest.belief.view import State
 from beliefnest.pictures.palette import age_text
 from beliefnest.world.values import Items, Point, Position
 
-__all__ = ["html_lines", "html_table", "items_words", "place_words", "point_words", "state_words"]
+__all__ = [
+    "html_lines",
+    "html_table",
+    "items_words",
+    "place_words",
+    "point_words",
+    "state_words",
+    "told_apart",
+]
 
 _MOST = 6
 """Containers that are told of; more are counted."""
@@ -29,6 +37,32 @@ def items_words(items: Items, *, complete: bool) -> str:
     if complete:
         return told or "empty"
     return f"{told}, more?" if told else "nothing known"
+
+
+def told_apart(texts: Sequence[str]) -> tuple[str, ...]:
+    """Blocks in words: with no more of their properties than it takes to tell them apart.
+
+    Args:
+        texts: As people read blocks, with what is written on signs.
+    """
+    words = {text: _block_words(text) for text in texts}
+    alike = len(set(words.values())) < len(words)
+    return tuple(text if alike else words[text] for text in texts)
+
+
+def _block_words(text: str) -> str:
+    block, _, says = text.partition(" that says ")
+    name, _, properties = block.partition("[")
+    kind = name.replace("_", " ")
+    if name.endswith("_sign"):
+        return f"{kind} that says {says}" if says else f"{kind} with nothing on it"
+    for key, (on, off) in _STATES.items():
+        if f"{key}=" in properties:
+            return f"{kind}, {on if f'{key}=true' in properties else off}"
+    return kind
+
+
+_STATES = {"open": ("open", "shut"), "powered": ("on", "off"), "lit": ("lit", "out")}
 
 
 def html_lines(lines: Iterable[str]) -> str:

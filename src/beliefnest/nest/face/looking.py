@@ -10,7 +10,7 @@ from beliefnest.belief.view import State
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.nest.explain.comparison import Difference, false_beliefs, value_words
 from beliefnest.nest.face.moment import AtMoment
-from beliefnest.nest.face.plotting import plot_of
+from beliefnest.nest.face.plotting import Followed, plot_of
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.figure import Figure, figure_of
 from beliefnest.pictures.scene import Scene, Wrong, best_height, read_scene
@@ -96,27 +96,32 @@ class Looking(AtMoment):
         paths: Sequence[str] = ("/",),
         *,
         agent: str | None = None,
+        block: Position | None = None,
     ) -> Figure:
         """What simulators held of a thing over time: a row for each, a band for each value.
 
         Bands are marked where they are false; above stand the deeds of the real world that
-        mattered. Followed are a container's contents, an agent's place, or with `agent` and
-        `item`, how much of it the agent has with it.
+        mattered, and what was claimed of it. Claims that were heard have a balloon above each
+        row, struck out where they were not believed. Followed are a container's contents, an
+        item wherever it is, a block, an agent's place, or with `agent` and `item`, how much of
+        it the agent has with it.
 
         Args:
             container: Where the container is.
-            item: The item to follow; None: all that is in the container, or the agent's place.
+            item: The item to follow, alone in all containers and with all agents; None: all that
+                is in the container, or the agent's place.
             paths: Belief paths.
             agent: The agent to follow, in place of a container.
+            block: Where the block is that is followed, in place of a container.
 
         Raises:
             PathError: A path is malformed or names an unknown agent, or there is no such agent.
-            PositionError: The container lies outside the box.
-            InputError: There is no path, not either container or agent, or never was a
-                container there.
+            PositionError: The container or block lies outside the box.
+            InputError: There is no path, not one thing to follow, or never was a container there.
             UnknownNameError: There is no such item.
         """
-        return plot_of(self._recording, container, item, agent, paths, self._moment())
+        followed = Followed(container, item, agent, block)
+        return plot_of(self._recording, followed, paths, self._moment())
 
     def __repr__(self) -> str:
         recording, tick = self._recording, self._moment()

@@ -1,7 +1,7 @@
-"""What a plot of beliefs over time can follow: contents, an agent's place, what an agent has."""
+"""What a plot of beliefs over time can follow: contents, items, blocks, agents."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import groupby, zip_longest
 from typing import Protocol, TypeVar
@@ -12,14 +12,18 @@ from beliefnest.belief.entries import PerceivedEvent
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.comparison import are_elsewhere, are_false
 from beliefnest.nest.explain.parts import Contents
-from beliefnest.pictures.words import items_words, place_words
+from beliefnest.pictures.words import items_words, place_words, told_apart
+from beliefnest.world.claims import Claim, ClaimKind
 from beliefnest.world.values import EventKind, Items, Point, Position
 
-__all__ = ["Contained", "Course", "Matter", "Owned", "Whereabouts"]
+__all__ = ["Carried", "Contained", "Course", "Matter", "Owned", "Standing", "Whereabouts"]
 
 V = TypeVar("V")
 Course = list[tuple[int, V | None]]
 """From which tick on what was held; None: nothing was known."""
+
+Held = tuple[tuple[Position | str, int], ...]
+"""Containers and agents that hold an item, and how many."""
 
 _NEAR = 3.0
 """Blocks from a thing with a name within which somebody is said to be there."""
@@ -37,6 +41,14 @@ _DEALS = {
     EventKind.GET_ITEM_FROM_CHEST: "takes",
     EventKind.GIVE_ITEM_TO_OTHER: "gives",
     EventKind.RECEIVE_ITEM_FROM_OTHER: "gets",
+}
+
+
+_USES = {
+    EventKind.USE_LEVER: "turns it",
+    EventKind.PRESS_BUTTON: "presses it",
+    EventKind.PLACE_BLOCK: "places it",
+    EventKind.MINE_BLOCK: "mines it",
 }
 
 
@@ -58,6 +70,9 @@ class Matter(Protocol[V]):
 
     def act(self, event: PerceivedEvent) -> str:
         """What somebody did that mattered to it, without who; empty: something else."""
+
+    def is_claimed(self, claim: Claim) -> bool:
+        """Whether a claim is about it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +113,112 @@ class Contained:
             return ""
         return _ACTS.get(event.kind, "")
 
+    def is_claimed(self, claim: Claim) -> bool:
+        """What is said of the item, which may move it out of here, or of all that is in here."""
+        if self.item is not None:
+            return claim.item == self.item
+        return claim.item is not None and claim.cell == self.container
+
+
+@dataclass(frozen=True, slots=True)
+class Carried:
+    """Where an item is: in which containers, with whom.
+
+    Attributes:
+        item: The item.
+        names: What people call containers.
+    """
+
+    item: str
+    names: Mapping[Position, str]
+
+    @property
+    def title(self) -> str:
+        """What the plot is about."""
+        return f"Where the {_plain(self.item)} is believed to be"
+
+    def value(self, held: NodeView) -> Held | None:
+        """How many are where; None: it is not known to be anywhere."""
+        places: list[tuple[Position | str, Items]] = [
+            *((place, each.items) for place, each in sorted(held.containers.items())),
+            *((name, each.inventory) for name, each in sorted(held.agents.items())),
+        ]
+        found = tuple((where, items[self.item]) for where, items in places if self.item in items)
+        return found or None
+
+    def words(self, course: Course[Held]) -> list[str]:
+        """The containers by their names, and who has it."""
+        return [", ".join(self._at(*each) for each in held or ()) for _, held in course]
+
+    def _at(self, where: Position | str, count: int) -> str:
+        many = "" if count == 1 else f"{count} "
+        if isinstance(where, str):
+            return f"{many}with {where}"
+        return f"{many}in {self.names.get(where, f'container {place_words(where)}')}"
+
+    def is_false(self, real: Held | None, held: Held) -> bool:
+        """Whether there are less in one of the places."""
+        there = dict(real or ())
+        return any(count > there.get(where, 0) for where, count in held)
+
+    def act(self, event: PerceivedEvent) -> str:
+        """Taking, putting away, giving, getting it."""
+        moved = self.item in event.detail.get("items", {})
+        return _DEALS.get(event.kind, "") if moved else ""
+
+    def is_claimed(self, claim: Claim) -> bool:
+        """What is said of where it is, and where it is not."""
+        return claim.item == self.item
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """Which block is at a place: a door that is open or shut, a sign and what it says.
+
+    Attributes:
+        block: The place.
+        index: Of it in blocks of the box.
+        text: A block of a number as people read it; None: unknown.
+    """
+
+    block: Position
+    index: tuple[int, int, int]
+    text: Callable[[int], str | None]
+
+    @property
+    def title(self) -> str:
+        """What the plot is about."""
+        return f"What is believed of the block at {place_words(self.block)}"
+
+    def value(self, held: NodeView) -> str | None:
+        """The block."""
+        return self.text(int(held.numbers[self.index]))
+
+    def words(self, course: Course[str]) -> list[str]:
+        """The block, with what tells it from those that were there as well."""
+        known = list(dict.fromkeys(text for _, text in course if text is not None))
+        words = dict(zip(known, told_apart(known), strict=True))
+        return ["" if text is None else words[text] for _, text in course]
+
+    def is_false(self, real: str | None, held: str) -> bool:
+        """As for `false_beliefs`."""
+        return real != held
+
+    def act(self, event: PerceivedEvent) -> str:
+        """Opening, shutting, switching, placing, mining it, writing on it."""
+        detail = event.detail
+        if tuple(detail.get("position", ())) != self.block:
+            return ""
+        if event.kind is EventKind.USE_DOOR:
+            return "opens it" if detail.get("open") else "shuts it"
+        if event.kind is EventKind.BLOCK_UPDATE and event.actor and "text" in detail:
+            return "writes on it"
+        return _USES.get(event.kind, "")
+
+    def is_claimed(self, claim: Claim) -> bool:
+        """What is said of the block."""
+        return claim.kind is ClaimKind.BLOCK and claim.cell == self.block
+
 
 @dataclass(frozen=True, slots=True)
 class Owned:
@@ -133,6 +254,10 @@ class Owned:
         """Taking, putting away, giving, getting the item."""
         mine = event.actor == self.agent and self.item in event.detail.get("items", {})
         return _DEALS.get(event.kind, "") if mine else ""
+
+    def is_claimed(self, claim: Claim) -> bool:
+        """No claim is about what somebody has."""
+        return False
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,6 +323,10 @@ class Whereabouts:
     def act(self, event: PerceivedEvent) -> str:
         """Coming to where it was bound for; a walk is told of when it has ended."""
         return "arrives" if event.kind is EventKind.MOVE_TO and event.actor == self.agent else ""
+
+    def is_claimed(self, claim: Claim) -> bool:
+        """What is said of where it is."""
+        return claim.kind is ClaimKind.POSITION and claim.agent == self.agent
 
 
 def _stays(course: Course[Point]) -> Course[Point]:

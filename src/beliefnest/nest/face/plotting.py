@@ -3,30 +3,53 @@
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError, PositionError
-from beliefnest.nest.face.matters import Contained, Course, Matter, Owned, Whereabouts
+from beliefnest.nest.explain.told import claims_told
+from beliefnest.nest.face.matters import (
+    Carried,
+    Contained,
+    Course,
+    Matter,
+    Owned,
+    Standing,
+    Whereabouts,
+)
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.figure import Figure
-from beliefnest.pictures.plot import Act, Band, Row, belief_plot
+from beliefnest.pictures.plot import Act, Band, Row, Told, belief_plot
 from beliefnest.pictures.words import place_words
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.values import EventKind, Position
 
-__all__ = ["plot_of"]
+__all__ = ["Followed", "plot_of"]
 
 Path = tuple[str, ...]
 V = TypeVar("V")
 
 
+class Followed(NamedTuple):
+    """What a plot follows.
+
+    Attributes:
+        container: A container's contents; None: it is something else.
+        item: An item, in the container or with the agent; alone: wherever it is.
+        agent: An agent's place.
+        block: The block at a place.
+    """
+
+    container: Position | None = None
+    item: str | None = None
+    agent: str | None = None
+    block: Position | None = None
+
+
 def plot_of(
     recording: Recording,
-    container: Position | None,
-    item: str | None,
-    agent: str | None,
+    followed: Followed,
     paths: Sequence[str],
     until: int | None,
 ) -> Figure:
@@ -35,13 +58,18 @@ def plot_of(
     Raises:
         InputError: There is no path, not one matter, or never was a container there.
         PathError: A path is malformed or names an unknown agent, or there is no such agent.
-        PositionError: The container lies outside the box.
+        PositionError: The container or block lies outside the box.
         UnknownNameError: There is no such item.
     """
     if not paths:
         raise InputError("a plot of no simulator is empty; give belief paths")
-    if (container is None) is (agent is None):
-        raise InputError("a plot follows a container or an agent; give one of the two")
+    container, item, agent, block = followed
+    given = [each for each in (container, agent, block) if each is not None]
+    if len(given) > 1 or not (given or item) or (block and item):
+        raise InputError(
+            "a plot follows a container, an item, an agent or a block; give one of them, or with "
+            "an item a container that it is in or an agent that has it"
+        )
     if item is not None:
         recording.history.context.registry.item_stack(item)
     with recording.turn:
@@ -49,17 +77,31 @@ def plot_of(
             return _figure(
                 recording, _contained(recording, container, item), paths, until, container
             )
-        assert agent is not None
+        if block is not None:
+            return _figure(recording, _standing(recording, block), paths, until)
+        if agent is None:
+            assert item is not None
+            return _figure(recording, Carried(item, _stores(recording)), paths, until)
         parse_path(path_text((agent,)), recording.agents)
         if item is not None:
             return _figure(recording, Owned(agent, item), paths, until)
         return _figure(recording, Whereabouts(agent, _names(recording)), paths, until)
 
 
-def _contained(recording: Recording, container: Position, item: str | None) -> Contained:
+def _check_inside(recording: Recording, place: Position) -> None:
     box = recording.setting.snapshot.box
-    if container not in box:
-        raise PositionError(f"position {container} is outside the box {box.low}..{box.high}")
+    if place not in box:
+        raise PositionError(f"position {place} is outside the box {box.low}..{box.high}")
+
+
+def _standing(recording: Recording, block: Position) -> Standing:
+    _check_inside(recording, block)
+    context = recording.history.context
+    return Standing(block, context.box.index(block), context.block_text)
+
+
+def _contained(recording: Recording, container: Position, item: str | None) -> Contained:
+    _check_inside(recording, container)
     label = recording.setting.labels.get(container, f"container {place_words(container)}")
     return Contained(container, item, label)
 
@@ -78,9 +120,13 @@ def _check_held(recording: Recording, container: Position, courses: Sequence[Cou
 
 def _names(recording: Recording) -> Mapping[Position, str]:
     """What people call places, and containers where they have no other name."""
-    setting = recording.setting
-    stores = {place: f"the {label}" for place, label in setting.labels.items()}
-    return {**stores, **{place: name for name, place in setting.places.items()}}
+    places = recording.setting.places
+    return {**_stores(recording), **{place: name for name, place in places.items()}}
+
+
+def _stores(recording: Recording) -> Mapping[Position, str]:
+    """What people call containers."""
+    return {place: f"the {label}" for place, label in recording.setting.labels.items()}
 
 
 def _figure(
@@ -96,11 +142,42 @@ def _figure(
     if container is not None:
         _check_held(recording, container, [real, *courses.values()])
     ends = {path: recording.info(path).head if until is None else until for path in names}
-    acts = _acts(recording, matter, max(ends.values()))
+    end = max(ends.values())
+    acts = [*_acts(recording, matter, end), *_said(recording, matter, end)]
     rows = [
-        Row(path_text(path), _bands(matter, courses[path], real, ends[path] + 1)) for path in names
+        Row(
+            path_text(path),
+            _bands(matter, courses[path], real, ends[path] + 1),
+            _told(recording, matter, path, ends[path]),
+        )
+        for path in names
     ]
-    return belief_plot(rows, acts, matter.title)
+    return belief_plot(rows, sorted(acts, key=lambda act: act.tick), matter.title)
+
+
+def _said(recording: Recording, matter: Matter[V], end: int) -> list[Act]:
+    """Who claimed what of it in the real world, and whether that was false, or a lie."""
+    names = _names(recording)
+    found = []
+    for told in claims_told(recording, (), end):
+        if matter.is_claimed(told.claim):
+            where = names.get(told.claim.cell)
+            said = str(told.claim) if where is None else told.claim.about(where)
+            kind = " (a lie)" if told.lie else " (false)" if told.false else ""
+            found.append(Act(told.tick, f"{told.speaker}: {said}{kind}"))
+    return found
+
+
+def _told(recording: Recording, matter: Matter[V], path: Path, end: int) -> tuple[Told, ...]:
+    """The claims about it that were heard by somebody else than their speaker in a simulator."""
+    own, text = recording.controller(path).path, path_text(path)
+    if not path or own == path or recording.setting.perception.testimony == "none":
+        return ()
+    return tuple(
+        Told(told.tick, told.taken_up(text))
+        for told in claims_told(recording, own, end)
+        if matter.is_claimed(told.claim) and told.is_heard(text) and told.condition(text) != "4"
+    )
 
 
 def _course(recording: Recording, path: Path, matter: Matter[V]) -> Course[V]:
