@@ -8,9 +8,10 @@ from typing import Any
 import pytest
 import yaml
 from tests.people import Person
+from tests.servers import GameServer
 
 from beliefnest import Nest, Scenario
-from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.errors import InputError, UnknownNameError, WorldError
 
 LEFT, RIGHT = (-2, -51, -4), (2, -51, -4)
 LONG_S = 120
@@ -55,18 +56,22 @@ while (!(sally() > 0)) await waitTicks(bot, 1)
 """
 
 
-@pytest.fixture
-def play_of_a_person():
-    """Sally-Anne with a person as Anne, in which agents see what is before them alone."""
+def sally_anne(of_anne):
+    """Sally-Anne with another Anne, in which agents see what is before them alone."""
     written: dict[str, Any] = yaml.safe_load(Scenario.load("sally-anne", 1).text)
     agents = written["agents"]
-    agents["anne"] |= {"type": "human", "position": [-1.5, -51, -2.5]}
+    agents["anne"] |= {"position": [-1.5, -51, -2.5], **of_anne}
     agents["sally"]["position"] = [-2.5, -51, -1.5]
     written |= {"script": SCRIPT, "static_blocks": ["stone_bricks"]}
     written["perception"]["field_of_view"] = 120
     for part in ("probes", "conditions", "expectations"):
         written.pop(part)
     return Scenario.from_mapping(written)
+
+
+@pytest.fixture
+def play_of_a_person():
+    return sally_anne({"type": "human"})
 
 
 def test_the_example_of_the_page_runs(capsys):
@@ -131,6 +136,64 @@ def test_who_moved_the_diamond_finds_it_where_sally_believes_it(play_of_a_person
         nest["/observer"].embody(False)
         assert nest.wait(lambda: nest.people == {"anne"}, LONG_S)
         assert [each.path for each in nest.layout()] == ["/", "/observer/sally"]
+
+
+# How somebody on a server waits to find this and no more, where a line of the layout leads.
+FIND = """
+const seen = async () => {
+  const chest = bot.blockAt(new Vec3(X - 2, -51, -4))
+  const found = {chest: chest?.name, unseen: bot.blockAt(new Vec3(X, -52, 11))?.name}
+  if (chest?.name === 'chest') {
+    const window = await bot.openContainer(chest)
+    found.items = window.containerItems().map(({name}) => name)
+    await bot.closeWindow(window)
+  }
+  found.sally = bot.players.sally_1?.entity?.position.x < X
+  return JSON.stringify(found)
+}
+for (let left = 2000; await seen() !== JSON.stringify(EXPECTED); left--) {
+  if (left === 0) throw new Error(await seen())
+  await waitTicks(bot, 1)
+}
+"""
+TAKE = "await getItemFromChest(bot, new Vec3(-2, -51, -4), {diamond: 1})"
+
+
+def test_on_a_server_a_belief_is_built_kept_up_and_what_was_there_put_back():
+    scenario = sally_anne({})
+    with (
+        GameServer() as server,
+        Person(f"127.0.0.1:{server.port}", "guest") as guest,
+        Nest.open(scenario, world=server.address()) as nest,
+    ):
+        nest["/"].run("sally", SCRIPT[0]["program"])
+        nest["/observer/sally"].embody(unknown="glass")
+        there = where(nest, "/observer/sally")
+        server.type("op guest")
+        stand = dict(zip("xyz", there.command.split()[1:], strict=True))
+        above = f"/tp {stand['x']} {there.high[1] + 2} {stand['z']}"
+        guest.does(
+            f"bot.physicsEnabled = false; bot.chat('/gamemode spectator'); bot.chat('{above}')"
+        )
+        found = {"chest": "chest", "unseen": "glass", "items": ["diamond"], "sally": True}
+        guest.does(script(FIND, there, EXPECTED=found))
+        assert nest.wait(lambda: guest.is_done, LONG_S)
+
+        # Anne takes it under Sally's eyes, and the agents know of nobody else.
+        look = "await bot.lookAt(new Vec3(-2, -50, -3), true); await waitTicks(bot, 2)"
+        assert nest["/"].run("sally", look).ok
+        assert nest["/"].run("anne", TAKE + ";bot.chat(Object.keys(bot.players).join())").ok
+        assert "_1" not in nest["/"].state.chat[-1][2]
+        guest.does(script(FIND, there, EXPECTED={**found, "items": []}))
+        assert nest.wait(lambda: guest.is_done, LONG_S)
+
+        nest["/observer/sally"].embody(False)
+        guest.does(script(FIND, there, EXPECTED={"chest": "air", "unseen": "air", "sally": False}))
+        assert nest.wait(lambda: guest.is_done, LONG_S)
+        server.type(f"setblock {there.low[0]} {there.low[1]} {there.low[2]} gold_block")
+        with pytest.raises(WorldError, match=r"holds 1 other blocks, as gold_block"):
+            nest["/observer/sally"].embody()
+        assert [each.path for each in nest.layout()] == ["/"]
 
 
 def test_what_nobody_could_visit_is_refused(play_of_a_person):

@@ -7,11 +7,10 @@ from typing import Self
 from beliefnest.bodies.address import ServerAddress
 from beliefnest.bodies.channel import Channel
 from beliefnest.bodies.embedded import MINECRAFT, started
-from beliefnest.bodies.exhibits import Exhibit, Plot, Shown
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.node_files import REALTIME
 from beliefnest.bodies.realtime import RealtimeWorld
-from beliefnest.errors import BodyError, InputError
+from beliefnest.errors import BodyError
 
 __all__ = ["MinecraftWorld", "joined"]
 
@@ -74,13 +73,6 @@ class MinecraftWorld(RealtimeWorld):
     def players(self) -> frozenset[str]:
         """The operator."""
         return frozenset({self._address.operator})
-
-    def open_exhibit(self, name: str, plot: Plot, shown: Shown) -> Exhibit:
-        """Refused: nobody can visit beliefs on a server elsewhere yet."""
-        raise InputError(
-            "beliefs cannot be visited on a server elsewhere; play in the embedded world: "
-            "Nest.open(..., realtime=True, listen=25565)"
-        )
 
     @property
     def address(self) -> str:

@@ -20,11 +20,11 @@ const SILENCE_MS = 30_000
  * @param {{x: number, z: number}} options.origin where scenario (0, y, 0) lies on the server
  * @param {Map<string, string>} [options.agentOf] agent by the server's name of a player
  * @param {object} [options.login] how to, of accounts.js
- * @param {string[]} [options.hidden] names of players that the bot is not to know of
+ * @param {Set<string>} [options.hidden] names of players that the bot is not to know of, as long as they are in it
  * @returns {import('minecraft-protocol').Client} which emits `sent` (name, params) for every packet that its bot
  *   sends, as the bot means it
  */
-function connect ({ host = '127.0.0.1', port, version, username, agent = username, origin, agentOf = new Map(), hidden = [], login = OFFLINE }) {
+function connect ({ host = '127.0.0.1', port, version, username, agent = username, origin, agentOf = new Map(), hidden = new Set(), login = OFFLINE }) {
   const translator = new Translator(origin, agentOf)
   const client = minecraft.createClient({
     host, port, username, version, ...login, hideErrors: true, checkTimeoutInterval: SILENCE_MS
@@ -33,7 +33,7 @@ function connect ({ host = '127.0.0.1', port, version, username, agent = usernam
   requireName(client, username)
   client.once('success', () => { client.username = agent })
   translateOutgoing(client, translator)
-  translateIncoming(client, translator, new Set(hidden))
+  translateIncoming(client, translator, hidden)
   return client
 }
 

@@ -2,6 +2,7 @@
 /** Answers the channel's requests with a server elsewhere, in real time. */
 const { RealtimeHandler, requireBots } = require('../realtimeHandler')
 const { capture } = require('./capture')
+const { RemoteExhibits } = require('./remoteExhibits')
 const { RemoteRegions } = require('./remoteRegions')
 const { beginSession } = require('./session')
 
@@ -9,7 +10,9 @@ class RemoteHandler extends RealtimeHandler {
   async open (registry, { server }) {
     const session = await beginSession(server, notice => this.send({ notice }))
     this.capture = corners => capture({ ...session, registry }, { x: server.at[0], z: server.at[1] }, corners)
-    return new RemoteRegions(server, session, registry, frame => this.send({ frame }))
+    const regions = new RemoteRegions(server, session, registry, frame => this.send({ frame }))
+    this.exhibits = new RemoteExhibits(regions)
+    return regions
   }
 
   async hello (request) {
@@ -20,10 +23,18 @@ class RemoteHandler extends RealtimeHandler {
     return this.regions?.open?.region.tick ?? null
   }
 
+  note (message) {
+    this.exhibits.show(message, this.tick)
+  }
+
   async perform (request) {
     if (request.op === 'capture') return this.capture(request.box)
     if (request.op === 'people') return { here: this.regions.invite(request.invited) }
     if (request.op === 'run') requireBots(this.regions.invited, Object.keys(request.programs))
+    if (request.op === 'exhibit') return this.exhibits.open(request)
+    if (request.op === 'close_exhibit') return this.exhibits.close(request.exhibit)
+    if (request.op === 'lags') return this.exhibits.lags()
+    if (request.op === 'shutdown') await this.exhibits.closeAll()
     const result = await super.perform(request)
     if (request.op === 'shutdown') await this.regions.close()
     return result

@@ -38,6 +38,8 @@ class RemoteRegions {
     this.open = null
     // Agents whose places people may take.
     this.invited = new Set()
+    // Players of ours whom agents are not to know of.
+    this.unseen = new Set([server.operator])
     // Why the place was given up, if it was.
     this.failure = null
     // What a Runner asks of regions.
@@ -69,15 +71,29 @@ class RemoteRegions {
     return this.snapshot(region)
   }
 
+  /** Begins a player's connection. @param {{x: number, z: number}} origin of what it is to take for the world's middle */
+  connection (username, origin) {
+    const { version, server, unseen: hidden } = this
+    return connect({ host: server.host, port: server.port, version, username, origin, hidden, login: server.loginOf(username) })
+  }
+
+  /**
+   * What makes a place of the server as asked, and follows it.
+   * @param {import('./operator').Operator} operator who looks at it
+   * @param {(error: Error) => void} fail hears that contents could not be looked at
+   */
+  tools (place, operator, fail) {
+    const commands = commandsFor(place, state => this.mapping.textForServer(state))
+    const scene = new Scene(place, this.mapping, operator, commands, position => setup.asked(position).then(found => found ?? setup.read(position)))
+    scene.fail = fail
+    const setup = new Setup(scene, operator, commands, this.registry)
+    return { scene, commands, setup }
+  }
+
   equip (region) {
-    const { operator, registry, version, server: { host, port, at, operator: hidden } } = this
-    const { states } = this.mapping
-    const commands = commandsFor(region, state => this.mapping.textForServer(state))
-    const scene = new Scene(region, this.mapping, operator, commands, position => setup.asked(position).then(found => found ?? setup.read(position)))
-    scene.fail = error => { this.failure ??= error }
-    const setup = new Setup(scene, operator, commands, registry)
-    const agents = new Agents(scene, operator, commands, registry, agent =>
-      connect({ host, port, version, username: agent, origin: { x: at[0], z: at[1] }, hidden: [hidden], login: this.server.loginOf(agent) }), this.invited)
+    const { operator, registry, mapping: { states } } = this
+    const { scene, commands, setup } = this.tools(region, operator, error => { this.failure ??= error })
+    const agents = new Agents(scene, operator, commands, registry, agent => this.connection(agent, region.origin), this.invited)
     const { contents, items } = scene
     region.recorder = new Recorder(region, {
       agents: () => agents.states(), items: () => items.states(), changedContainers: () => contents.drain(), blockText: state => states.text(state), signText: ([x, y, z]) => scene.signText({ x, y, z })

@@ -72,7 +72,9 @@ function fill (serv, words) {
   return `Successfully filled ${changed} block(s)`
 }
 
-function tp (serv, [name, x, y, z, yaw, pitch]) {
+/** `NAME X Y Z YAW PITCH`, or `X Y Z` of oneself */
+function tp (serv, words, self) {
+  const [name, x, y, z, yaw, pitch] = words.length === 3 ? [self.username, ...words] : words
   const player = playerOf(serv, name)
   const angles = yaw === undefined ? player.pose : fromDegrees(Number(yaw), Number(pitch))
   player.place(place([x, y, z]), angles.yaw, angles.pitch)
@@ -154,7 +156,8 @@ function summon (serv, [what, x, y, z, tag]) {
   return 'Summoned new Item'
 }
 
-function forceload (serv, [act]) {
+function forceload (serv, [act, ...corners]) {
+  if (act === 'add') serv.loadColumns?.(...corners.map(Number))
   return act === 'add' ? 'Marked the chunks to be force loaded' : 'Unmarked the chunks'
 }
 

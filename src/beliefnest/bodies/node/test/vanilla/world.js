@@ -16,6 +16,8 @@ const FLOOR_Y = -61
 const SPAWN = [0.5, FLOOR_Y + 1, 0.5]
 const AGE_EVERY = 20
 const CRAFTER = 7
+// Chunks that one sees far.
+const VIEW = 8
 const NEWCOMER = { position: SPAWN, yaw: 0, pitch: 0, on_ground: true, health: 20, food: 20, gameMode: 0 }
 // Who leaves does not wait for what is on its way.
 const BROKEN_OFF = ['EPIPE', 'ECONNRESET']
@@ -42,6 +44,8 @@ class OpenWorld {
     this.region = openRegion(age)
     serv.region = this.region
     build(serv, this.region)
+    this.far = []
+    loadFar(serv, this.far)
     serv.command = (player, text) => this.command(player, text)
     const canUse = serv.interact
     serv.interact = use => this.mayUse(use.player) && canUse(use)
@@ -115,6 +119,7 @@ class OpenWorld {
     serv.tickCount = region.tick
     for (const { line } of this.later.filter(({ tick }) => tick === region.tick)) this.console(line)
     serv.tickRegion(() => true)
+    for (const player of serv.players) nearColumns(player, this.far).forEach(column => player.sendColumn(...column))
     serv.emit('tick', TICK_MS / 1000, region.tick, region)
     if (region.tick % AGE_EVERY === 0) this.tellAge(serv.players)
   }
@@ -167,6 +172,26 @@ function openRegion (age) {
   const region = new Region({ name: 'world', seed: 'world', box: new Box(...BOX), origin: { x: 0, z: 0 }, tick: age, known: [] })
   region.recorder = { event () {}, serverEvent () {}, blockChanged () {} }
   return region
+}
+
+/** Lets there be air where something is force-loaded far away, and shows it to those who come near. */
+function loadFar (serv, columns) {
+  const Chunk = require('prismarine-chunk')(serv.registry)
+  serv.loadColumns = (x1, z1, x2, z2) => {
+    for (let x = x1 >> 4; x <= x2 >> 4; x++) {
+      for (let z = z1 >> 4; z <= z2 >> 4; z++) {
+        if (serv.overworld.sync.getColumn(x, z)) continue
+        serv.overworld.sync.setColumn(x, z, new Chunk({ minY: serv.minY, worldHeight: serv.worldHeight }))
+        columns.push([x, z])
+      }
+    }
+  }
+}
+
+/** What of it is near a player who has not been shown it yet. */
+function nearColumns ({ position, loadedChunks }, columns) {
+  const [x, z] = [position.x, position.z].map(value => Math.floor(value) >> 4)
+  return columns.filter(each => !loadedChunks[each.join()] && Math.max(Math.abs(each[0] - x), Math.abs(each[1] - z)) <= VIEW)
 }
 
 function build (serv, region) {

@@ -1,0 +1,156 @@
+'use strict'
+/** An exhibit on a server elsewhere: built and kept by the operator's commands, looked at by a guide, with a player for each agent. */
+const { Exhibit } = require('../exhibits/exhibit')
+const { Place } = require('../regions/place')
+const { keyOf, listOf, vecOf } = require('../server/plugins/lib/positions')
+const { slotsIn, slotted } = require('./kinds')
+const { Guide } = require('./guide')
+const { Link } = require('./link')
+const { Marker } = require('./marker')
+
+// What happens here is no simulator's.
+const DEAF = { blockChanged () {}, signChanged () {}, event () {} }
+
+/** Reality goes on whatever becomes of what is only looked at. */
+const note = (who, error) => process.stderr.write(`${who}: ${error.stack}\n`)
+
+class RemoteExhibit {
+  /**
+   * @param {object} told EXHIBIT of the channel
+   * @param {string} guideName of a player
+   * @param {import('./remoteRegions').RemoteRegions} regions
+   */
+  constructor (told, guideName, regions) {
+    this.regions = regions
+    this.exhibit = new Exhibit(told)
+    const { name, box, origin } = this.exhibit
+    const place = new Place({ name, box, origin, tick: 0, known: [] })
+    place.recorder = DEAF
+    const { operator } = regions
+    this.connect = player => regions.connection(player, origin)
+    const link = new Link(guideName, () => this.connect(guideName), operator.server, operator.server.patience * 1000)
+    this.guide = new Guide(link, operator)
+    Object.assign(this, regions.tools(place, this.guide, error => note(name, error)))
+    link.on('begun', (bot, client) => this.scene.attach(bot, client))
+    link.on('back', () => this.later(() => this.refresh()))
+    link.on('failed', error => note(guideName, error))
+    this.markers = new Map()
+    // Stacks that containers were given, by place.
+    this.given = new Map()
+    this.saved = null
+    this.turn = Promise.resolve()
+    this.onBack = () => this.later(() => this.refresh())
+  }
+
+  /** @throws {BadRequest} if the place holds other blocks, or does not become so */
+  async build () {
+    const { exhibit, guide, regions, scene, setup } = this
+    await guide.link.open()
+    await setup.arrive()
+    const present = setup.present()
+    if (!regions.server.overwrite) setup.requireFree(present, exhibit.states)
+    this.saved = await regions.save({ scene, setup }, present)
+    await this.fill()
+    await Promise.all([...exhibit.agents].map(([name, pose]) => this.meet(name, pose)))
+    guide.operator.link.on('back', this.onBack)
+  }
+
+  async fill () {
+    const { exhibit, scene, setup } = this
+    scene.settle(await setup.build(exhibit.states))
+    await setup.stock(setup.containers(scene.blocks).map(position => {
+      const items = exhibit.containers.get(position.join())?.items ?? {}
+      this.given.set(position.join(), this.stacks(position, items))
+      return [...position, items]
+    }))
+    await setup.write(this.signs)
+  }
+
+  get signs () {
+    return [...this.exhibit.signs].map(([key, text]) => [...key.split(',').map(Number), text])
+  }
+
+  stacks (position, items) {
+    const { Item, registry } = this.setup
+    return slotted(Item, registry, this.scene.states.describe(this.exhibit.at(vecOf({ x: position[0], y: position[1], z: position[2] }))).name, items)
+  }
+
+  /** Somebody has been away: what changed meanwhile is made up for. */
+  async refresh () {
+    await this.setup.arrive()
+    this.scene.settle(this.setup.present())
+    await this.fill()
+    for (const marker of this.markers.values()) if (marker.link.isReady) await marker.begin()
+  }
+
+  later (action) {
+    this.turn = this.turn.then(action).catch(error => note(this.exhibit.name, error))
+  }
+
+  /** Changes what differs, in turn; nobody waits for it. */
+  show ({ tick, ...changes }, now) {
+    const { exhibit } = this
+    exhibit.lag = Math.max(exhibit.lag, now - tick)
+    const { signs } = exhibit.take(changes)
+    this.later(async () => {
+      this.change(changes)
+      if (signs.length > 0) await this.setup.write(this.signs)
+    })
+    for (const [name, pose] of Object.entries(changes.agents)) {
+      if (pose === null) this.part(name)
+      else if (this.markers.has(name)) this.markers.get(name).move(pose)
+      else this.meet(name, pose).catch(error => note(name, error))
+    }
+  }
+
+  change ({ blocks, containers }) {
+    const { guide, commands, setup, exhibit } = this
+    for (const [x, y, z, state] of blocks.toSorted(([, , , one], [, , , other]) => setup.rank(one) - setup.rank(other))) {
+      guide.type(commands.blocks({ state, low: [x, y, z], high: [x, y, z] }))
+      this.given.delete(keyOf({ x, y, z }))
+    }
+    const places = [...blocks, ...containers].map(([x, y, z]) => vecOf({ x, y, z }))
+    for (const place of places) {
+      if (slotsIn(this.scene.states.describe(exhibit.at(place)).name) === 0) continue
+      const wanted = this.stacks(listOf(place), exhibit.containers.get(keyOf(place))?.items ?? {})
+      const given = this.given.get(keyOf(place)) ?? []
+      wanted.forEach((stack, slot) => {
+        const before = given[slot] ?? null
+        if (before?.name !== stack?.name || before?.count !== stack?.count) guide.type(commands.contents(listOf(place), slot, stack))
+      })
+      this.given.set(keyOf(place), wanted)
+    }
+  }
+
+  async meet (name, pose) {
+    this.regions.unseen.add(name)
+    const marker = new Marker(name, () => this.connect(name), this.guide.operator, this.commands)
+    this.markers.set(name, marker)
+    await marker.open(pose)
+  }
+
+  part (name) {
+    const marker = this.markers.get(name)
+    this.markers.delete(name)
+    this.later(() => marker?.close())
+  }
+
+  /** Lets everybody leave, and puts back what was there before. */
+  async close () {
+    const { guide, setup, scene, saved, regions: { server } } = this
+    guide.operator.link.off('back', this.onBack)
+    await this.turn
+    await Promise.all([...this.markers.values()].map(marker => marker.close()))
+    if (guide.link.isHere && guide.operator.link.isHere) {
+      if (saved !== null && !server.keep) {
+        scene.settle(await setup.build(saved.states))
+        await setup.stock(saved.containers)
+      }
+      guide.type(this.commands.load('remove'))
+      await guide.operator.settled()
+    }
+    await guide.link.close()
+  }
+}
+
+module.exports = { RemoteExhibit }

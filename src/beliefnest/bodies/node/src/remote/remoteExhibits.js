@@ -1,0 +1,61 @@
+'use strict'
+/** The exhibits on a server elsewhere. */
+const { BadRequest } = require('../channel/errors')
+const { RemoteExhibit } = require('./remoteExhibit')
+
+const LONGEST_NAME = 16
+
+class RemoteExhibits {
+  /** @param {import('./remoteRegions').RemoteRegions} regions */
+  constructor (regions) {
+    this.regions = regions
+    this.byName = new Map()
+  }
+
+  async open (told) {
+    if (this.byName.has(told.exhibit)) throw new BadRequest(`${told.exhibit} is shown already`)
+    const exhibit = new RemoteExhibit(told, this.guideName(), this.regions)
+    try {
+      await exhibit.build()
+    } catch (error) {
+      await exhibit.close()
+      throw error
+    }
+    this.byName.set(told.exhibit, exhibit)
+    return null
+  }
+
+  /** A player's name that begins as the operator's and that nobody has. */
+  guideName () {
+    const { unseen, server, operator: { bot } } = this.regions
+    for (let number = 1; ; number++) {
+      const end = `_${number}`
+      const name = `${server.operator.slice(0, LONGEST_NAME - end.length)}${end}`
+      if (unseen.has(name) || bot.players[name] !== undefined) continue
+      unseen.add(name)
+      return name
+    }
+  }
+
+  show (message, now) {
+    this.byName.get(message.exhibit)?.show(message, now)
+  }
+
+  lags () {
+    return Object.fromEntries([...this.byName].map(([name, { exhibit }]) => [name, exhibit.lag]))
+  }
+
+  async close (name) {
+    const exhibit = this.byName.get(name)
+    if (exhibit === undefined) throw new BadRequest(`${name} is not shown`)
+    this.byName.delete(name)
+    await exhibit.close()
+    return null
+  }
+
+  async closeAll () {
+    for (const name of [...this.byName.keys()]) await this.close(name)
+  }
+}
+
+module.exports = { RemoteExhibits }
