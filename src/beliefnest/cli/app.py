@@ -338,12 +338,15 @@ def suite(
     rows: Annotated[str | None, typer.Option(help="Rows to answer, as in 1-20,35.")] = None,
     limit: Annotated[int | None, typer.Option(help="Play no more stories than this.")] = None,
     seed: Annotated[int, typer.Option(help="Drives every random number.")] = 0,
+    claims_from: Annotated[
+        str | None, typer.Option(help="Model that reads claims out of what is told.")
+    ] = None,
     json: Json = False,
 ) -> int:
     """Answer a file of questions about stories from nests; say how many answers are right."""
     from beliefnest.cli.suite import SuiteOptions, run_suite
 
-    return run_suite(SuiteOptions(name, data, world, rows, limit, seed, json))
+    return run_suite(SuiteOptions(name, data, world, rows, limit, seed, json, claims_from))
 
 
 @app.command()
@@ -364,13 +367,18 @@ def study(
         typer.Option(help="Folder of a shard to take over first; can be repeated."),
     ] = None,
     record: Annotated[bool, typer.Option(help="Record the runs, into OUT/runs.")] = False,
+    claims_from: Annotated[
+        str | None, typer.Option(help="Model that reads claims out of what is said.")
+    ] = None,
     json: Json = False,
 ) -> int:
     """Play many variations of scenarios with several models; print accuracies with intervals."""
     from beliefnest.cli.study import StudyOptions, run_study
 
-    options = StudyOptions(study, out, jobs, backend, shard, tuple(merge or ()), record, json)
-    return run_study(options)
+    merged = tuple(merge or ())
+    return run_study(
+        StudyOptions(study, out, jobs, backend, shard, merged, record, json, claims_from)
+    )
 
 
 @app.command()

@@ -23,6 +23,7 @@ from beliefnest.cli.pictures import read_condition
 from beliefnest.cli.plan import Cell, plan_cells
 from beliefnest.cli.report import failure_lines, outcome_json, outcome_table, report_json
 from beliefnest.cli.run_report import report_html
+from beliefnest.cli.text import printable
 from beliefnest.cli.visits import check_visits, visited
 from beliefnest.errors import InputError, ModelError, ScenarioError
 from beliefnest.llm.asking import NoUsableProgramError
@@ -290,8 +291,16 @@ def _run(
         figure = overview([picture], picture.title)
         figure.save(place.picture)
         place.picture_svg.write_text(figure._repr_html_(), encoding="utf-8")
-    place.write_result(outcome_json(outcome, cell.model, place.path, told))
+        readings = {} if claims_from is None else {"readings": _readings(nest)}
+    place.write_result({**outcome_json(outcome, cell.model, place.path, told), **readings})
     return outcome, picture
+
+
+def _readings(nest: Nest) -> dict[str, object]:
+    """How many utterances a model was to read for claims, and how many it could not read."""
+    asked = [each for each in nest.prompts() if "claims_from" in each.detail]
+    failed = [each.error for each in asked if each.answer is None]
+    return {"asked": len(asked), "failed": len(failed), "first": next(iter(failed), None)}
 
 
 def _page(
@@ -336,10 +345,25 @@ def _print(
         if _is_one_round(run, cells):
             for line in (line for outcome in run.outcomes for line in failure_lines(outcome)):
                 console.print(line, highlight=False, markup=False, soft_wrap=True)
+        for line in _unread(run.results):
+            console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
         console.print(f"recorded in {run.folder.path}", highlight=False, soft_wrap=True)
     text = captured.get()
     run.folder.write_summary(text)
     sys.stdout.write(json.dumps(report, indent=2) + "\n" if as_json else text)
+
+
+def _unread(results: Sequence[Mapping[str, Any]]) -> list[str]:
+    """What is to be said of utterances that could not be read for claims."""
+    readings = [result["readings"] for result in results if "readings" in result]
+    failed = [each for each in readings if each["failed"]]
+    if not failed:
+        return []
+    count, asked = (sum(each[key] for each in readings) for key in ("failed", "asked"))
+    return [
+        f"{count} of {asked} utterances could not be read for claims, and claim nothing; "
+        f"the first: {failed[0]['first']}"
+    ]
 
 
 def _table(run: _Run, cells: Sequence[Cell], console: Console) -> Table:

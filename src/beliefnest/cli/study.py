@@ -38,6 +38,7 @@ class StudyOptions:
         merge: Folders of shards whose cells are taken over first.
         record: Whether runs are recorded.
         as_json: Whether to print the report as JSON instead of a table.
+        claims_from: Model that reads claims out of what is said; None: what the file says.
     """
 
     file: Path
@@ -48,6 +49,7 @@ class StudyOptions:
     merge: tuple[Path, ...]
     record: bool
     as_json: bool
+    claims_from: str | None = None
 
 
 def run_study(options: StudyOptions) -> int:
@@ -56,7 +58,7 @@ def run_study(options: StudyOptions) -> int:
     Raises:
         BeliefNestError: The input is wrong, or cells have no result.
     """
-    study = Study.load(options.file)
+    study = Study.load(options.file, options.claims_from)
     shard = _shard(options.shard)
     now = datetime.now()
     folder = options.out or Path("studies", f"{options.file.stem}-{now:%Y%m%d-%H%M%S}")

@@ -1,12 +1,14 @@
 """`beliefnest suite`: all questions of a file answered from nests, and how many are right."""
 
 import json
+import os
 import re
 import sys
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich import box
 from rich.table import Table
@@ -23,6 +25,9 @@ from beliefnest.scenarios.stories.suite import (
     score,
     scores_by_order,
 )
+
+if TYPE_CHECKING:  # Models take long to import, and few suites ask one.
+    from beliefnest.llm.hearsay import ClaimsFromModel
 
 __all__ = ["SUITES", "SuiteOptions", "run_suite"]
 
@@ -47,6 +52,8 @@ class SuiteOptions:
         limit: Play no more stories than this; None: all.
         seed: Drives every random number.
         as_json: Whether to print one JSON object instead of a table.
+        claims_from: Name of a model that reads claims out of what is told; None: they stand
+            beside the words.
     """
 
     name: str
@@ -56,6 +63,7 @@ class SuiteOptions:
     limit: int | None
     seed: int
     as_json: bool
+    claims_from: str | None = None
 
 
 def run_suite(options: SuiteOptions) -> int:
@@ -101,14 +109,28 @@ def parse_rows(text: str) -> frozenset[int]:
 
 def _answer(stories: Sequence[StoryItems], options: SuiteOptions) -> list[Judged]:
     judged: list[Judged] = []
+    reader = _reader(options)
     step = max(1, len(stories) // _REPORTS)
     with progress_on(f"{options.name} ({options.world})") as on_progress:
         for number, asked in enumerate(stories):
             if number % step == 0:
                 on_progress(f"story {number + 1}", number, len(stories))
-            judged += answer_story(asked, options.world, options.seed)
+            knowing = replace(asked.knowing, claims_from=reader)
+            judged += answer_story(replace(asked, knowing=knowing), options.world, options.seed)
         on_progress("all stories played", len(stories), len(stories))
     return judged
+
+
+def _reader(options: SuiteOptions) -> "ClaimsFromModel | None":
+    """Who reads claims out of what is told, if anybody does."""
+    if options.claims_from is None:
+        return None
+    from beliefnest.llm.hearsay import claims_from_model
+    from beliefnest.llm.messages import Sampling
+    from beliefnest.llm.resolve import Connection, open_model
+
+    model = open_model(options.claims_from, os.environ, Connection())
+    return claims_from_model(model, Sampling(seed=options.seed))
 
 
 def _needs_first(judged: Sequence[Judged]) -> dict[int, Score]:
@@ -137,6 +159,8 @@ def _report(
         "without_claims": _scores_json(scores_by_order(_telling(judged, tells=False))),
         "with_claims": _scores_json(scores_by_order(_telling(judged, tells=True))),
         "first_believer_matters": _scores_json(_needs_first(judged)),
+        "claims_from": options.claims_from,
+        "unread": sorted({each.item.row for each in judged if each.unread is not None}),
         "wrong_in_data": [each.item.row for each in judged if each.data_fault is not None],
         "misses": [_miss_json(each) for each in judged if not each.ok],
     }
@@ -180,6 +204,14 @@ def _print(options: SuiteOptions, stories: Sequence[StoryItems], judged: Sequenc
     table.add_row("all", "all", *_cells(score(judged)), *_cells(total))
     console = stdout()
     console.print(folded(table))
+    unread = {each.item.row: each.unread for each in judged if each.unread is not None}
+    for row, error in [*unread.items()][:1]:
+        console.print(
+            f"{len(unread)} stories have utterances that could not be read for claims; "
+            f"the first, row {row}: {error}",
+            markup=False,
+            soft_wrap=True,
+        )
     for each in judged:
         if not each.ok:
             console.print(f"row {each.item.row}: {each.item.question.text}", markup=False)

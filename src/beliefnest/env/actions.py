@@ -23,6 +23,7 @@ _NEEDS: Mapping[str, tuple[str, ...]] = {
     "depositItemIntoChest": ("container", "item", "count"),
     "openDoor": ("door",),
     "closeDoor": ("door",),
+    "writeSign": ("sign", "phrase"),
     "giveItemToOther": ("agent", "item", "count"),
     "say": ("phrase",),
     "whisper": ("agent", "phrase"),
@@ -32,6 +33,7 @@ _NEEDS: Mapping[str, tuple[str, ...]] = {
 _KINDS = {
     "container": "containers",
     "door": "doors",
+    "sign": "signs",
     "item": "items",
     "agent": "agents",
     "phrase": "phrases",
@@ -69,8 +71,8 @@ class Calls:
 
         Args:
             skill: Name of the skill.
-            given: `position`, `container`, `door` as block positions, `item`, `agent`, `phrase`
-                as they are called, `count` (1 if it is not given).
+            given: `position`, `container`, `door`, `sign` as block positions, `item`, `agent`,
+                `phrase` as they are called, `count` (1 if it is not given).
 
         Raises:
             UnknownNameError: There is no such skill, or no such thing.
@@ -131,6 +133,8 @@ class Calls:
                 args = (named("container"), {named("item"): _index(action["count"])})
             case "openDoor" | "closeDoor":
                 args = (named("door"),)
+            case "writeSign":
+                args = (named("sign"), named("phrase"))
             case "giveItemToOther":
                 args = (named("agent"), named("item"), _index(action["count"]))
             case "say" | "whisper":

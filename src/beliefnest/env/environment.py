@@ -179,8 +179,8 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
         Args:
             skill: Name of a skill.
-            parts: What it takes: `position`, `container`, `door` as block positions, `item`,
-                `agent`, `phrase` as they are called, `count`.
+            parts: What it takes: `position`, `container`, `door`, `sign` as block positions,
+                `item`, `agent`, `phrase` as they are called, `count`.
 
         Raises:
             UnknownNameError: There is no such skill, or no such thing.

@@ -13,6 +13,7 @@ from beliefnest.nest.past.setting import Setting
 from beliefnest.world.claims import Claim
 from beliefnest.world.doors import is_door
 from beliefnest.world.registry import Registry
+from beliefnest.world.signs import is_sign
 from beliefnest.world.values import Box, Position
 
 __all__ = ["Arrays", "Layout", "Phrases"]
@@ -34,7 +35,8 @@ class Layout:
         items: Names of items, sorted.
         containers: Positions, in order.
         doors: Positions of what opens and shuts, of doors the lower half, in order.
-        phrases: What can be said.
+        signs: Positions of signs, in order.
+        phrases: What can be said, and written on signs.
     """
 
     box: Box
@@ -42,6 +44,7 @@ class Layout:
     items: tuple[str, ...]
     containers: tuple[Position, ...]
     doors: tuple[Position, ...]
+    signs: tuple[Position, ...]
     phrases: tuple[str, ...]
 
     @classmethod
@@ -74,6 +77,7 @@ class Layout:
             items=tuple(sorted({*items, *worn, *(name for each in held for name in each)})),
             containers=tuple(sorted(snapshot.containers)),
             doors=tuple(_doors(setting, registry)),
+            signs=tuple(_signs(setting, registry)),
             phrases=tuple(phrases),
         )
 
@@ -81,7 +85,7 @@ class Layout:
         """The number of something in its order.
 
         Args:
-            kind: `agents`, `items`, `containers`, `doors` or `phrases`.
+            kind: `agents`, `items`, `containers`, `doors`, `signs` or `phrases`.
             value: What is looked for.
 
         Raises:
@@ -97,7 +101,7 @@ class Layout:
         """By name of an array: shape, type, least and greatest value."""
         agents, items, containers = len(self.agents), len(self.items), len(self.containers)
         most = float(np.iinfo(np.int32).max)
-        return {
+        shapes: dict[str, tuple[tuple[int, ...], type[np.generic], float, float]] = {
             "tick": ((), np.int32, 0, most),
             "me": ((), np.int32, 0, max(agents - 1, 0)),
             "agents": ((agents, 5), np.float32, -np.inf, np.inf),
@@ -111,6 +115,9 @@ class Layout:
             "blocks": (self.box.shape, np.int32, -1, most),
             "heard": ((agents, len(self.phrases) + 1), np.int32, 0, most),
         }
+        if self.signs:
+            shapes["signs"] = ((len(self.signs),), np.int32, -1, len(self.phrases) + 1)
+        return shapes
 
     def arrays(self, state: State, lines: Sequence[tuple[int, str, str]] = ()) -> Arrays:
         """A belief as arrays; docs/pettingzoo.md tells what is in each.
@@ -127,6 +134,8 @@ class Layout:
         self._tell_agents(found, state)
         self._tell_containers(found, state)
         found["blocks"] = state.blocks.grid.astype(np.int32)
+        for row, place in enumerate(self.signs):
+            found["signs"][row] = self._written(state.signs.get(place))
         for _, speaker, text in lines:
             column = self.phrases.index(text) if text in self.phrases else len(self.phrases)
             found["heard"][self.agents.index(speaker), column] += 1
@@ -155,6 +164,13 @@ class Layout:
                 found["containers_seen"][row] = known.basis.observed_at
                 self._count(found["containers"][row], known.items)
 
+    def _written(self, text: str | None) -> int:
+        """-1: unknown, 0: nothing, from 1 on the phrase, after the last one another text."""
+        if not text:
+            return -1 if text is None else 0
+        known = text in self.phrases
+        return 1 + (self.phrases.index(text) if known else len(self.phrases))
+
     def _count(self, row: npt.NDArray[Any], items: Mapping[str, int]) -> None:
         for name, count in items.items():
             if name not in self.items:
@@ -170,6 +186,17 @@ def _doors(setting: Setting, registry: Registry) -> list[Position]:
     states = [s for s in np.unique(snapshot.blocks).tolist() if is_door(registry.name(s))]
     # Of a door the upper half is moved with the lower one.
     lower = [s for s in states if registry.properties(s).get("half") != "upper"]
+    return _places(setting, lower)
+
+
+def _signs(setting: Setting, registry: Registry) -> list[Position]:
+    states = np.unique(setting.snapshot.blocks).tolist()
+    return _places(setting, [s for s in states if s >= 0 and is_sign(registry.name(s))])
+
+
+def _places(setting: Setting, states: Sequence[int]) -> list[Position]:
+    """Where one of some block states is, in order."""
+    snapshot = setting.snapshot
     x, y, z = snapshot.box.low
-    cells = np.argwhere(np.isin(snapshot.blocks, lower)).tolist()
+    cells = np.argwhere(np.isin(snapshot.blocks, states)).tolist()
     return [(x + i, y + j, z + k) for i, j, k in cells]

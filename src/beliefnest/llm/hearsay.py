@@ -133,12 +133,16 @@ def _question(text: str, speaker: str, nameable: Nameable) -> str:
     def listed(lines: Iterable[str]) -> str:
         return "\n".join(lines) or "none"
 
+    def item(name: str) -> str:
+        called = nameable.called.get(name, name)
+        return name if called == name else f"{name} (called {called})"
+
     def at(place: Position) -> str:
         return f"[{', '.join(map(str, place))}]"
 
     parts = {
         "Agents": ", ".join(nameable.agents),
-        "Items": ", ".join(nameable.items) or "none",
+        "Items": ", ".join(item(name) for name in nameable.items) or "none",
         "Containers": listed(f"{at(p)}: {name}" for p, name in nameable.containers.items()),
         "Doors and switches": listed(f"{at(p)}: {block}" for p, block in nameable.doors.items()),
         "Places": listed(f"{at(p)}: {name}" for name, p in nameable.places.items()),

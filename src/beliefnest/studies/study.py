@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Self
 
@@ -136,14 +137,24 @@ class Study:
         )
 
     @classmethod
-    def load(cls, file: str | Path) -> Self:
+    def load(cls, file: str | Path, claims_from: str | None = None) -> Self:
         """The study that a YAML file describes.
+
+        Args:
+            file: The file.
+            claims_from: Name of a model that reads claims out of what is said; None: the file's.
 
         Raises:
             ScenarioError: The file is wrong; the message names file, line and key.
+            InputError: It is a study of tasks, in which nobody reads claims.
         """
         study = cls.__new__(cls)
-        study._hold(read_design(Path(file)))
+        design = read_design(Path(file))
+        if isinstance(design, Design) and claims_from is not None:
+            design = replace(design, claims_from=claims_from)
+        else:
+            check_episodes_alone((), None, (), claims_from)
+        study._hold(design)
         return study
 
     def _hold(self, design: Design | EpisodeDesign) -> None:

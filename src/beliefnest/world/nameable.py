@@ -1,7 +1,7 @@
 """What claims that are read out of free text can speak of, and who reads them."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from beliefnest.world.claims import Claim
 from beliefnest.world.values import Box, Position
@@ -20,6 +20,7 @@ class Nameable:
         containers: Their positions, and what people call them, else the block's name.
         doors: Doors, trapdoors, gates, levers and buttons: their positions and block texts.
         places: What people call other places.
+        called: What people call items, where that is another name than the item's.
     """
 
     box: Box
@@ -28,6 +29,7 @@ class Nameable:
     containers: Mapping[Position, str]
     doors: Mapping[Position, str]
     places: Mapping[str, Position]
+    called: Mapping[str, str] = field(default_factory=dict)
 
 
 ClaimsFrom = Callable[[str, str, Nameable], Iterable[Claim]]

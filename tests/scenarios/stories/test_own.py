@@ -1,13 +1,17 @@
 """One's own stories: JSON lines, as sentences and as objects, in both worlds."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
+from beliefnest.llm.hearsay import claims_from_model
+from beliefnest.llm.resolve import Connection, open_model
 from beliefnest.scenarios.stories.explaining import explain_answer
 from beliefnest.scenarios.stories.own import read_own
+from beliefnest.scenarios.stories.plan import lay_out
 from beliefnest.scenarios.stories.playing import PlayedStory
 from beliefnest.scenarios.stories.suite import answer_story
 
@@ -188,3 +192,35 @@ def test_what_a_sentence_writes_on_a_sign_stays_as_it_is(tmp_path):
     file.write_text(json.dumps({"events": events, "questions": [asked]}))
     (told,) = read_own(file)
     assert all(judged.ok for judged in answer_story(told, "scripted", 0))
+
+
+@pytest.mark.parametrize("world", ["scripted", "embedded"])
+def test_a_model_may_read_what_is_told(file, tmp_path, world, capsys):
+    story = {
+        "events": [
+            "Sally and Anne entered the den.",
+            "The pear is in the box.",
+            "The ball is in the jar.",
+            "Sally exited the den.",
+            "Anne exited the den.",
+            "Anne told Sally that the pear is in the jar.",
+        ],
+        "questions": [{"believers": ["Sally"], "thing": "pear", "answer": "jar"}],
+    }
+    path = file(story)
+    (told,) = read_own(path)
+    plan = lay_out(told.story)
+    place = next(at for where, at in plan.places.items() if where.container == "jar")
+    claim = {"kind": "located", "item": plan.items["pear"], "place": place}
+    answers = tmp_path / "answers.json"
+    suite = ["suite", "stories", "--data", str(path), "--world", world, "--json"]
+    for claims, status, unread in (([claim], 0, []), ([], 1, []), ("none", 1, [1])):
+        answers.write_text(json.dumps([json.dumps({"claims": claims})]))
+        assert run_command_line([*suite, "--claims-from", f"scripted:{answers}"]) == status
+        assert json.loads(capsys.readouterr().out)["unread"] == unread
+    reader = claims_from_model(open_model(f"scripted:{answers}", {}, Connection()))
+    knowing = replace(told.knowing, claims_from=reader)
+    with PlayedStory.play(told.story, knowing=knowing) as played:
+        (asked,) = played.nest.prompts()
+        assert f"{plan.items['pear']} (called pear)" in asked.messages[1][1]
+        assert f"[{', '.join(map(str, place))}]: jar of the den" in asked.messages[1][1]

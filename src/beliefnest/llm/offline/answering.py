@@ -2,13 +2,14 @@
 
 Where an item is: in the chest that is said to hold it, by the name of a place there if it has one.
 Where a player is: where it is seen, else said to be, else was last seen; by the name of the nearest
-place within a few blocks. Anything else, and what the prompt does not tell, is not known.
+place within a few blocks. What a sign says: that of the place that is named, or the only one
+that is known. Anything else, and what the prompt does not tell, is not known.
 """
 
 import math
 import re
 
-from beliefnest.llm.offline.naming import match_item, match_name, singular
+from beliefnest.llm.offline.naming import match_item, match_name, place_named_last, singular
 from beliefnest.llm.offline.planning import believed_place
 from beliefnest.llm.offline.prompt_reading import Point, Reading, words
 
@@ -27,16 +28,28 @@ def answer_question(question: str, text: str, reading: Reading) -> str:
         text: The whole prompt, for its options.
         reading: What the prompt says.
     """
-    found = _found(question, reading)
-    if found is None:
-        return _said(_NOT_KNOWN, "Nothing that I was told says so.")
-    place, reason = found
-    names = _names(place, reading)
+    if "sign" in singular(question):
+        names, reason = _sign(question, reading)
+    else:
+        found = _found(question, reading)
+        names, reason = ([], "") if found is None else (_names(found[0], reading), found[1])
+    if not names:
+        return _said(_NOT_KNOWN, reason or "Nothing that I was told says so.")
     options = [option for _, option in _OPTION.findall(text.rpartition("Options:")[2])]
     chosen = [option for option in options if any(_same(option, name) for name in names)]
     if options and len(chosen) != 1:
         return _said(_NOT_KNOWN, reason)
     return _said(chosen[0] if options else names[0], reason)
+
+
+def _sign(question: str, reading: Reading) -> tuple[list[str], str]:
+    """What a sign says, and where it stands; nothing if it is not told which, or what."""
+    near = place_named_last(question, reading.places)
+    signs = [at for at in reading.signs if near is None or math.dist(at, near) <= _NEAR]
+    if len(signs) != 1:
+        return [], ""
+    says = reading.signs[signs[0]]
+    return [says or "nothing"], f"The sign at {_text(signs[0])} says so."
 
 
 def _found(question: str, reading: Reading) -> tuple[Point, str] | None:

@@ -19,6 +19,7 @@ _CHEST = re.compile(rf"({_POINT.pattern}):\s*(\{{.*\}})")
 _CONTAINER = re.compile(
     rf"({_POINT.pattern}) [^:]*: (?:unknown|known(?: in part)?, (empty|\{{[^}}]*\}}).*)"
 )
+_SIGN = re.compile(rf'({_POINT.pattern}) \w*sign: says (?:"(.*)"|nothing)(?:;.*)?')
 _PLAYER = re.compile(rf"(\w+): (?:unknown|at ({_POINT.pattern}); ([^;]*)).*")
 _CHAT = re.compile(r"\d+;([A-Za-z0-9_]+)(?: whispers to \w+)?;(.*)")
 _SIGHTING = re.compile(
@@ -51,6 +52,7 @@ class Reading:
         places: Name of a place to its position.
         sightings: Name of a player to where the history last has it, or going.
         others_tasks: Name of a player to the task it is said to have.
+        signs: Position of a sign to what is written on it, its lines split by ` / `.
     """
 
     task: str
@@ -61,6 +63,7 @@ class Reading:
     places: Mapping[str, Point]
     sightings: Mapping[str, Point]
     others_tasks: Mapping[str, str]
+    signs: Mapping[Point, str]
 
 
 def words(text: str) -> tuple[str, ...]:
@@ -86,6 +89,7 @@ def read_prompt(text: str) -> Reading:
         places=_places(sections.get("Places", []), text),
         sightings=_sightings(text),
         others_tasks=_others_tasks(text),
+        signs=_signs(sections.get("Signs", [])),
     )
 
 
@@ -139,6 +143,11 @@ def _containers(lines: Sequence[str]) -> dict[Point, dict[str, int]]:
     return {
         points_in(match[1])[0]: _items(match[5] or "") for match in matches if match is not None
     }
+
+
+def _signs(lines: Sequence[str]) -> dict[Point, str]:
+    matches = (_SIGN.fullmatch(line.strip()) for line in lines)
+    return {points_in(match[1])[0]: match[5] or "" for match in matches if match is not None}
 
 
 def _items(text: str) -> dict[str, int]:

@@ -211,7 +211,10 @@ def _how(acts: Iterable[PerceivedEvent], edited: bool) -> str:
 
 
 def _acts_text(acts: Iterable[PerceivedEvent]) -> str:
-    return ", then ".join(_act_text(act) for act in acts)
+    told = list(acts)
+    # A deed and the change of the block that it brings about are recorded both.
+    deeds = [act for act in told if act.actor is not None or act.kind is not EventKind.BLOCK_UPDATE]
+    return ", then ".join(dict.fromkeys(_act_text(act) for act in deeds or told))
 
 
 def _act_text(act: PerceivedEvent) -> str:

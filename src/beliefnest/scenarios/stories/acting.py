@@ -33,9 +33,9 @@ def tell(world: ScriptedWorld, plan: FloorPlan, act: Act) -> None:
             case Look(agent, place):
                 world.open(agent, plan.places[place])
             case Tell(agent, None):
-                world.say(agent, act.text, [_claim(act, plan)])
+                world.say(agent, act.text, _claims(act, plan))
             case Tell(agent, str(hearer)):
-                world.whisper(agent, hearer, act.text, [_claim(act, plan)])
+                world.whisper(agent, hearer, act.text, _claims(act, plan))
             case _:
                 pass
 
@@ -80,15 +80,18 @@ def _program(act: Move | UseDoor | Write | Look | Tell, plan: FloorPlan) -> str:
             return _telling(act, plan)
 
 
-def _claim(told: Tell, plan: FloorPlan) -> Claim:
+def _claims(told: Tell, plan: FloorPlan) -> list[Claim]:
+    if not told.is_claimed:
+        return []
     make = Claim.located if told.is_there else Claim.absent
-    return make(plan.items[told.thing], plan.places[told.place])
+    return [make(plan.items[told.thing], plan.places[told.place])]
 
 
 def _telling(told: Tell, plan: FloorPlan) -> str:
     make = "located" if told.is_there else "absent"
     item, place = json.dumps(plan.items[told.thing]), _vec3(plan.places[told.place])
-    said = f"{json.dumps(told.text)}, [{make}({item}, {place})]"
+    claims = f", [{make}({item}, {place})]" if told.is_claimed else ""
+    said = f"{json.dumps(told.text)}{claims}"
     if told.hearer is None:
         return f"await say(bot, {said})"
     return f"await whisper(bot, {json.dumps(told.hearer)}, {said})"

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 from beliefnest.belief.entries import Basis
 from beliefnest.errors import InputError, ProgramError
@@ -15,12 +15,16 @@ from beliefnest.perception.options import ContainerMode, Perception, Testimony
 from beliefnest.scenarios.stories.acting import programs_of, tell
 from beliefnest.scenarios.stories.plan import WALL, FloorPlan, lay_out
 from beliefnest.scenarios.stories.questions import Question
+from beliefnest.scenarios.stories.reading import StoryReader, in_words_alone
 from beliefnest.scenarios.stories.story import (
     Come,
     Go,
     Place,
     Story,
 )
+
+if TYPE_CHECKING:  # Models take long to import, and few stories are read by one.
+    from beliefnest.llm.hearsay import ClaimsFromModel
 
 __all__ = ["Answer", "Knowing", "PlayedStory"]
 
@@ -73,11 +77,13 @@ class Knowing:
             who opened a container, or saw what was put there, knows what is in it.
         testimony: How hearers take what is said (semantics, section 8).
         sincere: Whether speakers are taken to believe what is not believed of them.
+        claims_from: Who reads claims out of what is told; None: they stand beside the words.
     """
 
     containers: ContainerMode = "transparent"
     testimony: Testimony = "informed"
     sincere: bool = False
+    claims_from: "ClaimsFromModel | None" = None
 
 
 _KNOWING = Knowing()
@@ -129,11 +135,15 @@ class PlayedStory:
         for question in asked:
             check_question(story, question)
         grace = _grace(story, plan, world)
-        nest = Nest.open(story_setting(plan, grace, knowing), world=world, seed=seed)
+        reader = knowing.claims_from
+        setting = story_setting(plan, grace, knowing)
+        claims_from = None if reader is None else StoryReader(reader, plan)
+        nest = Nest.open(setting, world=world, seed=seed, claims_from=claims_from)
         try:
             for path in sorted({question.path for question in asked}, key=_deepest_first):
                 _ = nest[path].state
-            ends = _play(story, plan, nest, world, grace)
+            told = story if reader is None else in_words_alone(story)
+            ends = _play(told, plan, nest, world, grace)
         except BaseException:
             nest.close()
             raise

@@ -128,6 +128,7 @@ class Tell:
         thing: What it is about.
         place: Where that is said to be, or not to be.
         is_there: Which of the two.
+        is_claimed: Whether the claim stands beside the words, and not in them alone.
     """
 
     agent: str
@@ -135,6 +136,7 @@ class Tell:
     thing: str
     place: Place
     is_there: bool = True
+    is_claimed: bool = True
 
     @property
     def text(self) -> str:

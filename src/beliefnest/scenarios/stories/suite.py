@@ -23,6 +23,8 @@ class Judged:
         tells: Whether somebody tells something in its story.
         data_fault: What in its story the expected answer contradicts; None: nothing found.
         explanation: Why the nest says it, for a wrong answer; else empty.
+        unread: Why something that was told in its story could not be read for claims; None: it
+            was read, or nobody was to read it.
     """
 
     item: Item
@@ -31,6 +33,7 @@ class Judged:
     tells: bool = False
     data_fault: str | None = None
     explanation: tuple[str, ...] = ()
+    unread: str | None = None
 
     @property
     def ok(self) -> bool:
@@ -73,6 +76,7 @@ def answer_story(asked: StoryItems, world: str = "scripted", seed: int = 0) -> t
         answers = played.answer_all([*questions, *dropped])
         without = dict(zip(nested, answers[len(questions) :], strict=True))
         judged = []
+        unread = next((p.error for p in played.nest.prompts() if p.answer is None), None)
         for item, answer in zip(asked.items, answers, strict=False):
             other = without.get(item.question)
             needs_first = other is not None and other.text != item.expected
@@ -81,7 +85,7 @@ def answer_story(asked: StoryItems, world: str = "scripted", seed: int = 0) -> t
                 fault = data_fault(asked.story, item.question, item.expected)
                 why = explain_answer(played, item.question, answer, item.expected)
                 each = replace(each, data_fault=fault, explanation=why)
-            judged.append(each)
+            judged.append(replace(each, unread=unread))
     return tuple(judged)
 
 
