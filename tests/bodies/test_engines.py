@@ -44,7 +44,7 @@ def test_all_else_may_leave_something(code: str) -> None:
 
 def test_programs_that_leave_nothing_have_one_engine_after_the_other_and_no_other_has_it() -> None:
     engines = Engines()
-    engine = engines.take()
+    engine = engines.take("bob", SKILLS)
     engines.give_back(engine)
     for code in (PLAIN[2], PLAIN[3]):
         program = JavaScriptProgram("ann", SKILLS, code, "0", engines)
@@ -54,24 +54,24 @@ def test_programs_that_leave_nothing_have_one_engine_after_the_other_and_no_othe
                 program.settle(number, ok=True, value=None)
         assert program.ended and program.fault is None
         program.end()
-        assert engines.take() is engine
+        assert engines.take("bob", SKILLS) is engine
         engines.give_back(engine)
     other = JavaScriptProgram("ann", SKILLS, "Array.prototype.leak = 1", "0", engines)
     other.start()
     other.end()
     assert other.ended and other.fault is None
-    assert engines.take() is engine
-    assert engines.take() is not engine
+    assert engines.take("bob", SKILLS) is engine
+    assert engines.take("bob", SKILLS) is not engine
 
 
 def test_an_engine_whose_program_waits_still_is_not_used_again() -> None:
     engines = Engines()
-    engine = engines.take()
+    engine = engines.take("bob", SKILLS)
     engines.give_back(engine)
     program = JavaScriptProgram("ann", SKILLS, "await say(bot, 'a');", "0", engines)
     program.start()
     program.end()
-    assert engines.take() is not engine
+    assert engines.take("bob", SKILLS) is not engine
 
 
 def test_no_program_finds_what_another_left() -> None:

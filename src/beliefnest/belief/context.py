@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from beliefnest.belief.arrays import HEAR_ALL, HEAR_NEAR, HEAR_SEEN, Senses, Space
 from beliefnest.belief.entries import SOURCES, Basis, Source
+from beliefnest.belief.looks import Looks
 from beliefnest.errors import InputError
 from beliefnest.perception.options import Perception, Radius
 from beliefnest.perception.sight import Sight
@@ -33,6 +34,7 @@ class BeliefContext:
         options: What agents can perceive.
         registry: Names and shapes of blocks.
         sight: How agents see.
+        looks: First looks with that sight, in this nest and others.
     """
 
     box: Box
@@ -40,6 +42,7 @@ class BeliefContext:
     options: Perception
     registry: Registry
     sight: Sight
+    looks: Looks = field(default_factory=Looks)
     _tracked: dict[int, None] = field(default_factory=dict)
     _signs: dict[Sign, int] = field(default_factory=dict)
 

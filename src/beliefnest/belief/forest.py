@@ -341,7 +341,11 @@ class Forest:
             *(at, nothing, nothing, nothing, nothing),
         )
         poses = self.poses.arrays()
-        kernel.fold(context.space, poses, facts, nodes, changes, 0, 1, below, False)
+        if context.signs:
+            # What their numbers stand for is this nest's own.
+            kernel.fold(context.space, poses, facts, nodes, changes, 0, 1, below, False)
+        else:
+            context.looks.look(context.space, poses, facts, nodes, changes, below)
         entry, edited = self.position - 1, self.table.edited_cells
         self.holdings.note_look(np.flatnonzero(below).tolist(), entry)
         edited.difference_update([(node, cell) for node, cell in edited if below[node]])

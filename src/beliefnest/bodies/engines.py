@@ -9,7 +9,7 @@ import hashlib
 import json
 import re
 import struct
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -47,9 +47,21 @@ def leaves_nothing(code: str, skills: Collection[str]) -> bool:
 
 
 class Engine:
-    """An engine of JavaScript with what programs find in scope, read and not yet made."""
+    """An engine of JavaScript, and what a program finds in scope.
 
-    def __init__(self) -> None:
+    Args:
+        username: The agent that runs the program.
+        skills: Names of the skills in scope.
+        seed: Decides about random numbers.
+
+    Attributes:
+        call: Given the name of a part of the prelude and its arguments, calls it.
+        skills: Names of the skills in scope.
+        names: What is in scope, with commas between.
+        failed: What is raised where JavaScript fails.
+    """
+
+    def __init__(self, username: str, skills: Collection[str], seed: str) -> None:
         import quickjs  # takes 10 ms, and most nests run no such program
 
         self.failed: type[Exception] = quickjs.JSException
@@ -57,15 +69,11 @@ class Engine:
         self._context.set_memory_limit(MEMORY_BYTES)
         self._context.set_max_stack_size(_STACK_BYTES)
         self._context.set_time_limit(_SECONDS)
-        self._made = self._context.eval(_text())
-
-    def scope(self, username: str, skills: Collection[str], seed: str) -> Any:
-        """What a program finds in scope, new; given the name of a part and its arguments, calls it.
-
-        The parts are those of the prelude. The seed decides about random numbers.
-        """
         words = struct.unpack("<4i", hashlib.sha256(seed.encode()).digest()[:16])
-        return self._made(json.dumps([sorted(skills), username]), json.dumps(words))
+        given = json.dumps([list(words), sorted(skills), username])
+        self.call: Callable[..., Any] = self._context.eval(_text())(given)
+        self.skills = frozenset(skills)
+        self.names: str = ", ".join(json.loads(self.call("names")))
 
     def read(self, text: str) -> Any:
         """The value of a program's text; raises `failed`."""
@@ -82,21 +90,25 @@ class Engines:
     def __init__(self) -> None:
         self._free: list[Engine] = []
 
-    def take(self) -> Engine:
-        """An engine for a program that leaves nothing behind."""
+    def take(self, username: str, skills: Collection[str]) -> Engine:
+        """An engine for an agent's program that leaves nothing behind, and draws no numbers."""
         try:
-            return self._free.pop()
+            engine = self._free.pop()
         except IndexError:
-            return Engine()
+            engine = None
+        if engine is None or engine.skills != frozenset(skills):
+            return Engine(username, skills, "")
+        engine.call("again", username)
+        return engine
 
     def give_back(self, engine: Engine) -> None:
-        """Take back the engine of such a program, which has ended well."""
+        """Take back the engine of such a program, which has ended."""
         self._free.append(engine)
 
 
 @cache
 def _text() -> str:
-    """A function of skills and username, as JSON, that gives what calls a part of the prelude.
+    """A function of what `Engine` gives it, as JSON, that gives what calls a part of the prelude.
 
     No function is in brackets: those that open with one are read twice, to see whether an arrow
     comes after them.
@@ -104,18 +116,17 @@ def _text() -> str:
     prelude = (files("beliefnest.bodies") / "scripted_prelude.js").read_text(encoding="utf-8")
     return f"""{{
 const time = {{ ms: 0 }}
-let random = null
 const vec3 = {_shared("vec3", "(module.exports(env), env.Vec3)")}
 const hints = {_shared("hints", "module.exports")}
 const sfc32 = {_shared("sfc32", "module.exports")}
 const date = {_shared("date", "module.exports")}
 const prelude = {prelude}
-const draw = sfc32()
 date()({{ now: () => time.ms }})
-Math.random = () => random.fraction();
-(given, words) => {{
-  random = draw(JSON.parse(words))
-  const parts = prelude(vec3(), hints(), time, ...JSON.parse(given))
+given => {{
+  const [words, ...others] = JSON.parse(given)
+  const random = sfc32()(words)
+  Math.random = () => random.fraction()
+  const parts = prelude(vec3(), hints(), time, ...others)
   return (part, one, two, three) => parts[part](one, two, three)
 }} }}"""
 

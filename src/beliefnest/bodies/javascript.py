@@ -39,8 +39,11 @@ class JavaScriptProgram:
         self._code = code
         self._engines = engines
         self._leaves_nothing = leaves_nothing(code, skills)
-        self._engine = engines.take() if self._leaves_nothing else Engine()
-        self._call = self._engine.scope(username, skills, seed)
+        if self._leaves_nothing:
+            self._engine = engines.take(username, skills)
+        else:
+            self._engine = Engine(username, skills, seed)
+        self._call = self._engine.call
         self._fault: Fault | None = None
         self._blocks: str | None = None
         self._taken: dict[str, Any] = {
@@ -59,10 +62,9 @@ class JavaScriptProgram:
     def start(self) -> None:
         """Begin it, and run it until it waits."""
         code = self._code
-        names = ", ".join(json.loads(self._call("names")))
         whole = _WHOLE.match(code) is not None
         lines = "\n" * _FIRST_LINE
-        head = f"({'' if whole else 'async '}function ({names}) {{ 'use strict'; "
+        head = f"({'' if whole else 'async '}function ({self._engine.names}) {{ 'use strict'; "
         body = f"return ({lines}{code}\n)" if whole else f"{lines}{code}\n"
         try:
             main = self._engine.read(f"{head}{body}}})")

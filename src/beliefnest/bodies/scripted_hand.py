@@ -81,7 +81,7 @@ class Hand:
     @property
     def feet(self) -> Point:
         """Where it stands."""
-        return self.world.agents[self.name].position
+        return self.world.agent(self.name).position
 
     @property
     def cell(self) -> Position:

@@ -1,5 +1,6 @@
 // What programs of the scripted world find in scope. Evaluates to a function of (Vec3, hints, time, skills, username)
-// that gives what Python calls: start, take, settle, see, hear. Nothing here calls Python: it takes what is asked for after each turn.
+// that gives what Python calls: again, names, start, take, settle, see, hear. Nothing here calls Python: it takes what is asked for
+// after each turn.
 (Vec3, hints, time, skills, username) => {
   'use strict'
   const { parse, stringify } = JSON
@@ -103,7 +104,7 @@
   }
 
   const bot = offering({
-    username,
+    get username () { return username },
     on: (event, listener) => listen(event, listener, false),
     addListener: (event, listener) => listen(event, listener, false),
     once: (event, listener) => listen(event, listener, true),
@@ -156,6 +157,15 @@
   }
 
   return {
+    // As for a new program, after one that has changed nothing in scope.
+    again (name) {
+      username = name
+      waiting.clear()
+      calls = []
+      log = []
+      done = null
+      next = 1
+    },
     names: () => stringify(Object.keys(scope)),
     start (main, isWhole) {
       const program = isWhole ? () => main(...Object.values(scope))(bot) : () => main(...Object.values(scope))

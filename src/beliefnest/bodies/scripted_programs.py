@@ -5,11 +5,12 @@ tick acts in the next ones. Agents act in the order in which their programs are 
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from beliefnest.bodies.engines import Engines
+from beliefnest.bodies.footpaths import Ground
 from beliefnest.bodies.grounds import Grounds
 from beliefnest.bodies.javascript import JavaScriptProgram
 from beliefnest.bodies.protocol import (
@@ -27,7 +28,7 @@ from beliefnest.bodies.scripted_skills import CALLS, SKILLS
 from beliefnest.errors import BeliefNestError
 from beliefnest.world.frames import Frame
 from beliefnest.world.scripted import ScriptedWorld
-from beliefnest.world.values import AgentState, Event, EventKind, Point
+from beliefnest.world.values import AgentState, Box, Event, EventKind, Point
 
 __all__ = ["run_programs"]
 
@@ -152,14 +153,18 @@ def _begun(
         others, heard = _others(world.agents, agent), _heard_by(agent, latest)
         return Sensed(world.blocks, others, heard=heard, signs=world.signs)
 
+    def ground() -> Ground:
+        return grounds.of(world.box, world.blocks).ground
+
     sense = senses.get(agent, all_of_it)
     hand = Hand(
         agent,
         world,
-        known=lambda: grounds.of(world.box, sense().blocks).ground,
+        # All of it is the ground as it is, without a map of all agents at each step.
+        known=_known(world.box, sense, grounds) if agent in senses else ground,
         others=lambda: sense().agents,
         signs=lambda: sense().signs,
-        ground=lambda: grounds.of(world.box, world.blocks).ground,
+        ground=ground,
         speech_ticks=rules.speech_ticks,
     )
     past = rules.past.get(agent)
@@ -168,6 +173,10 @@ def _begun(
     program.start()
     _take_calls(run)
     return run
+
+
+def _known(box: Box, sense: Sense, grounds: Grounds) -> Callable[[], Ground]:
+    return lambda: grounds.of(box, sense().blocks).ground
 
 
 def _heard_by(agent: str, events: Sequence[Event]) -> tuple[tuple[str, str, str | None], ...]:

@@ -2,7 +2,7 @@
 
 from beliefnest.prompts.builtin import BUILT_IN
 from beliefnest.prompts.filterset import FilterSet, PromptFilter, filter
-from beliefnest.prompts.rendering import Renderer, render
+from beliefnest.prompts.rendering import Renderer, instructions, render
 from beliefnest.prompts.templates import Template, built_in_template, load_template
 from beliefnest.prompts.view import BranchView
 
@@ -15,6 +15,7 @@ __all__ = [
     "Template",
     "built_in_template",
     "filter",
+    "instructions",
     "load_template",
     "render",
 ]

@@ -26,7 +26,7 @@ from beliefnest.prompts.text import nearest
 from beliefnest.prompts.view import BranchView
 from beliefnest.world.texts import escaped
 
-__all__ = ["LAST_CODE", "LAST_ERROR", "NO_CODE", "NO_ERROR", "Renderer", "render"]
+__all__ = ["LAST_CODE", "LAST_ERROR", "NO_CODE", "NO_ERROR", "Renderer", "instructions", "render"]
 
 NO_CODE = "No code was executed"
 NO_ERROR = "No error"
@@ -66,6 +66,17 @@ def render(
         InputError: An installed filter cannot be used.
     """
     return Renderer(filters).render(template, branch, variables)
+
+
+@functools.cache
+def instructions(skills: tuple[object, ...]) -> str:
+    """The text of the built-in template `instructions`, which is about no simulator.
+
+    Args:
+        skills: What a program can call, each with its `signature` and `description`.
+    """
+    compiled = _compiled(_environment(BUILT_IN), built_in_template("instructions"))
+    return compiled.template.render(skills=skills)
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.face.simulator import Simulator
 from beliefnest.programs import skills
-from beliefnest.prompts import Template, built_in_template
+from beliefnest.prompts import Template, built_in_template, instructions
 from beliefnest.prompts.rendering import LAST_ERROR
 from beliefnest.scenarios.content import Probe
 from beliefnest.scenarios.expected import Answers
@@ -143,7 +143,7 @@ class _Prompts:
             self._template = built_in_template("paper")
         else:
             self._template = Template("template of the probe", probe.template)
-        self.system = believer.render(built_in_template("instructions"), skills=skills())
+        self.system = instructions(skills())
 
     @property
     def prompt(self) -> Prompt:

@@ -128,7 +128,8 @@ def rest_of(items: Items, change: Items, who: str) -> dict[str, int]:
 
 def whole_position(position: Position) -> Position:
     """A block position; WorldError if it is none."""
-    if len(position) != 3 or any(p != math.floor(p) for p in position):
+    # The longer test for numbers that are no ints.
+    if len(position) != 3 or any(type(p) is not int and p != math.floor(p) for p in position):
         raise WorldError(f"{position!r} is no block position; give three whole numbers")
     x, y, z = (int(p) for p in position)
     return (x, y, z)

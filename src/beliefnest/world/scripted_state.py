@@ -53,6 +53,10 @@ class ScriptedState:
         """What is the case about all agents."""
         return dict(self._facts.agents)
 
+    def agent(self, name: str) -> AgentState:
+        """What is the case about an agent; WorldError: it is not there."""
+        return self._agent(name)
+
     @property
     def containers(self) -> Mapping[Position, Items]:
         """What all containers hold; not to be written to."""

@@ -98,7 +98,7 @@ def _sections(text: str) -> dict[str, list[str]]:
     sections: dict[str, list[str]] = {}
     lines: list[str] = []
     for line in text.splitlines():
-        heading = _HEADING.fullmatch(line.strip())
+        heading = _HEADING.fullmatch(line.strip()) if ":" in line else None
         if heading is not None:
             lines = sections[heading[1]] = []
         elif _ends_section(line):
@@ -111,8 +111,9 @@ def _sections(text: str) -> dict[str, list[str]]:
 def _ends_section(line: str) -> bool:
     """Whether a line is `<...>`, `[...]` (not a position) or the task."""
     stripped = line.strip()
-    divides = _DIVIDER.fullmatch(stripped) is not None and _POINT.fullmatch(stripped) is None
-    return divides or _TASK.match(line) is not None
+    if stripped.startswith(("<", "[")):
+        return _DIVIDER.fullmatch(stripped) is not None and _POINT.fullmatch(stripped) is None
+    return _TASK.match(line) is not None
 
 
 def _task(text: str) -> str:
@@ -193,8 +194,9 @@ def _chat(lines: Sequence[str]) -> list[Utterance]:
 def _places(lines: Sequence[str], text: str) -> dict[str, Point]:
     """Places of the section of that name, then of sentences such as `Home is at (1, 2, 3)`."""
     places: dict[str, Point] = {}
-    for name, where, *_ in _PLACE_IN_SENTENCE.findall(text):
-        places[name] = points_in(where)[0]
+    if " is at " in text:
+        for name, where, *_ in _PLACE_IN_SENTENCE.findall(text):
+            places[name] = points_in(where)[0]
     for line in lines:
         match = _PLACE.fullmatch(line.strip())
         if match is not None:
@@ -208,5 +210,6 @@ def _sightings(text: str) -> dict[str, Point]:
 
 
 def _others_tasks(text: str) -> dict[str, str]:
-    matches = (_OTHERS_TASK.fullmatch(line.strip()) for line in text.splitlines())
+    lines = text.splitlines() if "'s task:" in text else ()
+    matches = (_OTHERS_TASK.fullmatch(line.strip()) for line in lines)
     return {match[1]: match[2] for match in matches if match is not None}

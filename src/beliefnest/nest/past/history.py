@@ -15,6 +15,7 @@ from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.initial import forked_forest, initial_forest
+from beliefnest.belief.looks import Looks
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.checkpoints import Checkpoints, Pace
 from beliefnest.nest.past.claimed_blocks import ClaimedBlocks
@@ -36,17 +37,17 @@ _STRETCHES = 8
 def context_of(setting: Setting) -> BeliefContext:
     """What the nodes of a nest with this setting stand on."""
     options = setting.perception
-    sight = _sight(
+    sight, looks = _seeing(
         options.max_visible_distance, options.field_of_view, tuple(options.transparent_blocks)
     )
     agents = tuple(sorted({*setting.snapshot.agents, *setting.absent}))
-    return BeliefContext(setting.snapshot.box, agents, options, sight.registry, sight)
+    return BeliefContext(setting.snapshot.box, agents, options, sight.registry, sight, looks)
 
 
 @functools.lru_cache(maxsize=8)
-def _sight(far: float | None, field: float, transparent: tuple[str, ...]) -> Sight:
-    """How agents see; its tables of shapes are worked out once for nests that are alike."""
-    return Sight(Registry.load(), far, field, transparent)
+def _seeing(far: float | None, field: float, transparent: tuple[str, ...]) -> tuple[Sight, Looks]:
+    """How agents see: tables of shapes, and looks, are worked out once for nests that are alike."""
+    return Sight(Registry.load(), far, field, transparent), Looks()
 
 
 @dataclass

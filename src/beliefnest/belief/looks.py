@@ -1,0 +1,88 @@
+"""First looks that were worked out already: scenes that begin alike are seen alike."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from threading import Lock
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.arrays import Changes, Facts, Nodes, Poses, Space
+
+__all__ = ["Looks"]
+
+_MOST_BYTES = 16 << 20
+"""That are kept in all."""
+_LARGEST = 1 << 20
+"""What is larger is not kept: it costs more to tell from others than it gains."""
+
+Array = npt.NDArray[Any]
+
+
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    """What a look leaves: the nodes' arrays, and rows of changes."""
+
+    nodes: Sequence[Array]
+    rows: Array
+
+    @property
+    def bytes(self) -> int:
+        return sum(each.nbytes for each in (*self.nodes, self.rows))
+
+
+class Looks:
+    """Looks at what there is, with nothing happening, of nests with the same shapes of blocks."""
+
+    def __init__(self) -> None:
+        self._seen: dict[bytes, _Seen] = {}
+        self._bytes = 0
+        self._turn = Lock()
+
+    def look(
+        self,
+        space: Space,
+        poses: Poses,
+        facts: Facts,
+        nodes: Nodes,
+        changes: Changes,
+        below: npt.NDArray[np.bool_],
+    ) -> None:
+        """Let the nodes that `below` marks look; as `kernel.fold` of one entry without events."""
+        from beliefnest.belief import kernel  # who only lists scenarios need not wait for it
+
+        if sum(each.nbytes for each in nodes) > _LARGEST:
+            kernel.fold(space, poses, facts, nodes, changes, 0, 1, below, False)
+            return
+        key = _digest(space, (*poses, facts.tick, *nodes, below))
+        seen = self._seen.get(key)
+        if seen is None:
+            kernel.fold(space, poses, facts, nodes, changes, 0, 1, below, False)
+            rows = changes.rows[: changes.used[0]].copy()
+            self._keep(key, _Seen([each.copy() for each in nodes], rows))
+            return
+        for row, kept in zip(nodes, seen.nodes, strict=True):
+            row[...] = kept
+        changes.used[0] = len(seen.rows)
+        changes.rows[: len(seen.rows)] = seen.rows
+
+    def _keep(self, key: bytes, seen: _Seen) -> None:
+        with self._turn:
+            if key in self._seen:
+                return
+            self._seen[key] = seen
+            self._bytes += seen.bytes
+            while self._bytes > _MOST_BYTES:
+                self._bytes -= self._seen.pop(next(iter(self._seen))).bytes
+
+
+def _digest(space: Space, arrays: Sequence[Array]) -> bytes:
+    """What tells all that a look depends on from others; shapes of blocks are the same in all."""
+    hashed = hashlib.blake2b(digest_size=16)
+    plain = (space.sizes, tuple(space.senses), [(each.shape, each.dtype.str) for each in arrays])
+    hashed.update(repr(plain).encode())
+    for each in (space.origin, *arrays):
+        hashed.update(np.ascontiguousarray(each).data)
+    return hashed.digest()
