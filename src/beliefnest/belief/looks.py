@@ -64,7 +64,7 @@ class Looks:
             self._keep(key, _Seen([each.copy() for each in nodes], rows))
             return
         for row, kept in zip(nodes, seen.nodes, strict=True):
-            row[...] = kept
+            np.copyto(row, kept)
         changes.used[0] = len(seen.rows)
         changes.rows[: len(seen.rows)] = seen.rows
 
