@@ -4,7 +4,7 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from threading import Lock
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -63,7 +63,7 @@ class Looks:
             rows = changes.rows[: changes.used[0]].copy()
             self._keep(key, _Seen([each.copy() for each in nodes], rows))
             return
-        for row, kept in zip(nodes, seen.nodes, strict=True):
+        for row, kept in zip(cast("Sequence[Array]", nodes), seen.nodes, strict=True):
             np.copyto(row, kept)
         changes.used[0] = len(seen.rows)
         changes.rows[: len(seen.rows)] = seen.rows
