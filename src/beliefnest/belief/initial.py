@@ -141,7 +141,7 @@ def _add_prior(
     context = table.context
     basis = Basis(tick, Source.PRIOR)
     node = table.add(path, table.index[path[:-1]])
-    blocks = prior.copy()
+    blocks = prior.copy() if mine.blocks else prior
     for place, block in mine.blocks.items():
         blocks[context.box.index(place)] = context.number(block)
     table.set_blocks(node, blocks)

@@ -98,6 +98,8 @@ class NodeTable:
         }
         self._child_at = np.zeros(1, dtype=np.int32)
         self._child = np.zeros(0, dtype=np.int32)
+        self._nodes: Nodes | None = None
+        self._coded: tuple[npt.NDArray[Any], Row] | None = None
 
     @staticmethod
     def _weighing_rows(agents: int, spots: int) -> dict[str, Row]:
@@ -113,8 +115,11 @@ class NodeTable:
 
     def nodes(self) -> Nodes:
         """The arrays for the kernel."""
-        rows = {name: row[: self.count] for name, row in self._rows.items()}
-        return Nodes(child_at=self._child_at, child=self._child, tracked=self._tracked, **rows)
+        if self._nodes is None:
+            rows = {name: row[: self.count] for name, row in self._rows.items()}
+            ends = {"child_at": self._child_at, "child": self._child, "tracked": self._tracked}
+            self._nodes = Nodes(**ends, **rows)
+        return self._nodes
 
     def add(self, path: Path, parent: int) -> int:
         """A new node that knows nothing; `link` has to follow once its blocks are set."""
@@ -190,19 +195,23 @@ class NodeTable:
         self._child_at = np.searchsorted(parent[self._child], np.arange(self.count + 1)).astype(
             np.int32
         )
+        self._nodes = None
         nodes = self.nodes()
         for node in range(self._linked, self.count):
             kernel.refresh_pending(nodes, node)
         self._linked = max(self.count, 1)
 
     def set_blocks(self, node: int, blocks: npt.NDArray[np.signedinteger[Any]]) -> None:
-        """Set all blocks of a node, and its geometry."""
-        space = self.context.space
+        """Set all blocks of a node, and its geometry; the array does not change any more."""
         self._rows["blocks"][node] = blocks.ravel()
-        codes = np.zeros(space.sizes, dtype=np.uint16)
-        codes[1:-1, 1:-1, 1:-1] = space.codes[blocks]
-        mark_intruded(codes, space.reaches)
-        self._rows["codes"][node] = codes.ravel()
+        if self._coded is None or self._coded[0] is not blocks:
+            space = self.context.space
+            codes = np.zeros(space.sizes, dtype=np.uint16)
+            codes[1:-1, 1:-1, 1:-1] = space.codes[blocks]
+            mark_intruded(codes, space.reaches)
+            # Most nodes know the same at first.
+            self._coded = (blocks, codes.ravel())
+        self._rows["codes"][node] = self._coded[1]
 
     def set_pose(self, node: int, agent: int, pose: int, seen_at: int, *, current: bool) -> None:
         """Set the believed pose of an agent."""
@@ -274,6 +283,7 @@ class NodeTable:
             row = self._rows[name]
             wide = np.full((size, len(new), *row.shape[2:]), filler, dtype=row.dtype)
             self._rows[name] = np.concatenate([row, wide], axis=1)
+        self._nodes = None
         # Whoever looks next looks at the new cells too.
         self._rows["eye"][: self.count] = UNKNOWN
 
@@ -417,13 +427,11 @@ class NodeTable:
                 self._rows[name][:size] = row
         self._reset(node)
         self.count += 1
+        self._nodes = None
         return node
 
     def _reset(self, node: int) -> None:
         for row in self._rows.values():
-            if np.issubdtype(row.dtype, np.signedinteger):
-                row[node] = UNKNOWN
-            else:
-                row[node] = 0
+            row[node] = UNKNOWN if row.dtype.kind == "i" else 0
         self._rows["geometry"][node] = 0
         self._rows["missed"][node] = 0

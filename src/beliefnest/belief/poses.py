@@ -32,8 +32,8 @@ class Growing:
 
     def view(self) -> npt.NDArray[Any]:
         """The rows so far."""
-        count = len(self)
-        if count > self._filled:
+        if self._waiting:
+            count = len(self)
             if count > len(self._rows):
                 size = (max(count, 2 * len(self._rows)), *self._rows.shape[1:])
                 grown = np.zeros(size, dtype=self._rows.dtype)
@@ -42,7 +42,7 @@ class Growing:
             self._rows[self._filled : count] = self._waiting
             self._waiting.clear()
             self._filled = count
-        return self._rows[:count]
+        return self._rows[: self._filled]
 
 
 @dataclass(frozen=True, slots=True)

@@ -209,9 +209,9 @@ class _Found:
     def extend(self, entries: Sequence[Entry], first: int) -> None:
         """Take in entries, from number `first` on."""
         for number, entry in enumerate(entries, start=first):
-            for what in EntryFilter:
+            for what, numbers in self.numbers.items():
                 if is_found(entry, what):
-                    self.numbers[what].append(number)
+                    numbers.append(number)
             count = count_of_events(entry)
             if count:
                 self.events.append(count + (self.events[-1] if self.events else 0))

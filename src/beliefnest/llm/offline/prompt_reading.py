@@ -98,19 +98,19 @@ def _sections(text: str) -> dict[str, list[str]]:
     sections: dict[str, list[str]] = {}
     lines: list[str] = []
     for line in text.splitlines():
-        heading = _HEADING.fullmatch(line.strip()) if ":" in line else None
+        stripped = line.strip()
+        heading = _HEADING.fullmatch(stripped) if stripped.endswith(":") else None
         if heading is not None:
             lines = sections[heading[1]] = []
-        elif _ends_section(line):
+        elif _ends_section(line, stripped):
             lines = []
         else:
             lines.append(line)
     return sections
 
 
-def _ends_section(line: str) -> bool:
+def _ends_section(line: str, stripped: str) -> bool:
     """Whether a line is `<...>`, `[...]` (not a position) or the task."""
-    stripped = line.strip()
     if stripped.startswith(("<", "[")):
         return _DIVIDER.fullmatch(stripped) is not None and _POINT.fullmatch(stripped) is None
     return _TASK.match(line) is not None
@@ -205,7 +205,8 @@ def _places(lines: Sequence[str], text: str) -> dict[str, Point]:
 
 
 def _sightings(text: str) -> dict[str, Point]:
-    matches = (_SIGHTING.fullmatch(line.strip()) for line in text.splitlines())
+    lines = (line.strip() for line in text.splitlines() if ";" in line)
+    matches = (_SIGHTING.fullmatch(line) for line in lines)
     return {match[1]: points_in(match[2])[0] for match in matches if match is not None}
 
 

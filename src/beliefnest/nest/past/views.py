@@ -79,12 +79,16 @@ class Blocks:
 
     def named(self, names: frozenset[str]) -> dict[Position, str]:
         """Known blocks of some names."""
-        registry = self._history.context.registry
-        states = [s for name in sorted(names) for s in registry.state_ids(name)]
+        registry, grid = self._history.context.registry, self.grid
+        # One more, at the end, for what is unknown.
+        wanted = np.zeros(registry.states + 1, dtype=np.bool_)
+        for name in names:
+            ids = registry.state_ids(name)
+            wanted[ids.start : ids.stop] = True
         x, y, z = self._history.context.box.low
         return {
-            (x + i, y + j, z + k): registry.text(int(self.grid[i, j, k]))
-            for i, j, k in np.argwhere(np.isin(self.grid, states)).tolist()
+            (x + i, y + j, z + k): registry.text(int(grid[i, j, k]))
+            for i, j, k in np.argwhere(wanted[grid]).tolist()
         }
 
     def signs(self) -> dict[Position, str]:
