@@ -134,7 +134,7 @@ def _parallel(cells: Sequence[Keyed], terms: Terms, jobs: int, backend: str) -> 
     # Cells take long enough to be given out one by one.
     form = "list" if backend == "ray" else "generator_unordered"
     with _engine(backend, jobs), parallel_config(backend=backend, n_jobs=jobs):
-        pool = Parallel(return_as=form, batch_size=1, pre_dispatch="2*n_jobs")
+        pool = Parallel(return_as=form, batch_size="auto", pre_dispatch="2*n_jobs")
         # Ray's backend gives back nothing before it has done all that it was given.
         some = _ROUND * jobs if backend == "ray" else len(cells)
         for first in range(0, len(cells), some):
