@@ -117,8 +117,9 @@ class NodeTable:
         """The arrays for the kernel."""
         if self._nodes is None:
             rows = {name: row[: self.count] for name, row in self._rows.items()}
-            ends = {"child_at": self._child_at, "child": self._child, "tracked": self._tracked}
-            self._nodes = Nodes(**ends, **rows)
+            self._nodes = Nodes(
+                child_at=self._child_at, child=self._child, tracked=self._tracked, **rows
+            )
         return self._nodes
 
     def add(self, path: Path, parent: int) -> int:
