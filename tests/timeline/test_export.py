@@ -111,7 +111,15 @@ def written(request, journal, registry, first, tmp_path):
         registry=registry,
         first=first,
         beliefs=iter([BELIEF]),
-        notes=iter([run_row(RUN, [RUN.versions]), program_row(PROGRAM), prompt_row(PROMPT)]),
+        notes=iter(
+            [
+                run_row(RUN, [RUN.versions]),
+                program_row(PROGRAM),
+                prompt_row(PROMPT),
+                # Of episodes, of which timelines know nothing.
+                *((name, dict.fromkeys(TABLES[name])) for name in ("rounds", "goals")),
+            ]
+        ),
     )
     tables = {
         name: {"jsonl": jsonl, "parquet": parquet}[request.param](out, name) for name in TABLES

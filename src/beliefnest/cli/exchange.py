@@ -3,11 +3,13 @@
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import cast, get_args
 
 from beliefnest.belief.plain import belief_json, place_key
 from beliefnest.cli.folder import store_in
+from beliefnest.episodes.telling import goal_rows, round_rows, told_episode
 from beliefnest.errors import InputError
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.past.trace_import import import_trace
@@ -62,7 +64,7 @@ def export_run(options: ExportOptions) -> None:
             registry=Registry.load(),
             first=nest.setting.snapshot,
             beliefs=_beliefs(nest, options.paths),
-            notes=_notes(journal.records),
+            notes=chain(_notes(journal.records), _rounds(nest)),
         )
     for table, count in counts.items():
         sys.stdout.write(f"{table}: {count}\n")
@@ -72,6 +74,14 @@ def _notes(records: Records) -> Iterator[Row]:
     yield run_row(records.run(), records.versions())
     yield from map(program_row, records.programs())
     yield from map(prompt_row, records.prompts())
+
+
+def _rounds(nest: RecordedNest) -> Iterator[Row]:
+    """Of an episode, what was decided in its rounds, and when its goal was reached."""
+    told = told_episode(nest)
+    if told is not None:
+        yield from (("rounds", row) for row in round_rows(told))
+        yield from (("goals", row) for row in goal_rows(told))
 
 
 def _beliefs(nest: RecordedNest, paths: Sequence[str]) -> Iterator[BeliefRow]:

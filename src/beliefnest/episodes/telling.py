@@ -1,12 +1,13 @@
-"""What a run's page tells of its episode: rounds, who did what, when goals were reached."""
+"""What is told of a run's episode: rounds, who did what, when goals were reached."""
 
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from beliefnest.episodes.record import Branch, Keeps, Start, holds_episode, kept_in
 from beliefnest.episodes.rounds import Part, slots_of
 from beliefnest.episodes.task import Task
 
-__all__ = ["told_episode"]
+__all__ = ["goal_rows", "round_rows", "told_episode"]
 
 
 def told_episode(run: Keeps) -> dict[str, Any] | None:
@@ -26,6 +27,37 @@ def told_episode(run: Keeps) -> dict[str, Any] | None:
         "rounds": task.form.rounds,
         "branches": {name: _branch(task, start, branch) for name, branch in branches.items()},
     }
+
+
+def round_rows(told: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """One row for each agent in each round on each branch.
+
+    Args:
+        told: As `told_episode` gives it.
+    """
+    for name, branch in told["branches"].items():
+        for part in branch["parts"]:
+            for done in part["agents"]:
+                yield {
+                    "branch": name,
+                    "round": part["round"],
+                    "tick": part["t"],
+                    "end": part["end"],
+                    "agent": done["agent"],
+                    "policy": branch["policies"][done["agent"]],
+                    "program": done["program"],
+                    "goes_on": done["goes_on"],
+                    "fault": done["fault"],
+                    "ended": done["ended"],
+                    "message": done["message"],
+                }
+
+
+def goal_rows(told: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """One row for each condition of the goal on each branch; arguments as for `round_rows`."""
+    for name, branch in told["branches"].items():
+        for condition, tick in branch["goal"]:
+            yield {"branch": name, "condition": condition, "tick": tick}
 
 
 def _branch(task: Task, start: Start, branch: Branch) -> dict[str, Any]:

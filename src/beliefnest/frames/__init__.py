@@ -8,6 +8,7 @@ from beliefnest.frames.tables import (
     events_df,
     probes_df,
     requests_df,
+    rounds_df,
 )
 
 __all__ = [
@@ -18,4 +19,5 @@ __all__ = [
     "events_df",
     "probes_df",
     "requests_df",
+    "rounds_df",
 ]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from beliefnest.belief.plain import belief_json
 from beliefnest.episodes.measures import Measures
+from beliefnest.episodes.telling import round_rows, told_episode
 from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.frames.sources import Recorded, Source, cells_of, study_of
 from beliefnest.nest.face.recorded import RecordedNest
@@ -29,6 +30,7 @@ __all__ = [
     "events_df",
     "probes_df",
     "requests_df",
+    "rounds_df",
 ]
 
 Row = dict[str, Any]
@@ -65,6 +67,15 @@ def episodes_df(source: Source | Iterable[Measures]) -> "pandas.DataFrame":
     if study is None or study.table is not EPISODES:
         raise InputError(f"there is no study of episodes at {source}")
     return _frame(iter(study.rows), ["cell"])
+
+
+def rounds_df(source: Source) -> "pandas.DataFrame":
+    """One row for each agent in each round of episodes: `cell`, `branch`, `round`, `agent`.
+
+    These four tell it from all others; then come its policy, program, and how that ended.
+    Arguments and errors as for `requests_df`.
+    """
+    return _frame(_recorded(source, _rounds), ["cell", "branch", "round", "agent"])
 
 
 def probes_df(source: Source) -> "pandas.DataFrame":
@@ -193,6 +204,11 @@ def _events(journal: SqliteJournal) -> Iterator[Row]:
                 for table, row in entry_rows(info.key, number, entry, registry):
                     if table == "events":
                         yield {key: _plain(value) for key, value in row.items()}
+
+
+def _rounds(journal: SqliteJournal) -> Iterator[Row]:
+    told = told_episode(RecordedNest.of(journal))
+    return iter(()) if told is None else round_rows(told)
 
 
 def _claims(journal: SqliteJournal, paths: Sequence[str] | None) -> Iterator[Row]:

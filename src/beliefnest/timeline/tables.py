@@ -156,12 +156,26 @@ TABLES: Mapping[str, Mapping[str, Column]] = MappingProxyType(
             "cached": "boolean",
             "detail": "object",
         },
+        "rounds": {
+            "branch": "text",
+            "round": "integer",
+            "tick": "integer",
+            "end": "integer",
+            "agent": "text",
+            "policy": "text",
+            "program": "text",
+            "goes_on": "boolean",
+            "fault": "text",
+            "ended": "text",
+            "message": "text",
+        },
+        "goals": {"branch": "text", "condition": "text", "tick": "integer"},
         "beliefs": {**_ON_TIMELINE, "state": "object", "blocks": "object"},
     }
 )
 """Table to column to type, in the order in which they are written."""
 
-IF_ANY = frozenset({"signs"})
+IF_ANY = frozenset({"signs", "rounds", "goals"})
 """Tables that are written only if they have a row."""
 
 FIRST_ENTRY = -1

@@ -1,0 +1,31 @@
+"""What runs tell of their episodes, as tables."""
+
+import json
+from pathlib import Path
+
+import beliefnest as bn
+from beliefnest import frames
+from beliefnest.cli.app import run_command_line
+
+
+def test_rounds_and_goals_are_exported_and_tables(tmp_path: Path) -> None:
+    store = tmp_path / "e.bn"
+    with bn.Episode(bn.Task.load("help-find", seed=1), store=store) as episode:
+        episode.play()
+        episode.at(1).fork(anne="random").play(1)
+        count = episode.rounds
+    assert run_command_line(["export", str(store), "--out", str(tmp_path / "out")]) == 0
+    lines = (tmp_path / "out" / "rounds.jsonl").read_text("utf-8").splitlines()
+    rows = [json.loads(line) for line in lines]
+    # Two agents in each round; the branch has the rounds before it as well.
+    assert len(rows) == 2 * count + 2 * 2
+    assert {(row["branch"], row["policy"]) for row in rows if row["agent"] == "anne"} == {
+        ("main", "search:1"),
+        ("fork 1", "random"),
+    }
+    assert (rows[0]["round"], rows[0]["tick"], rows[0]["ended"]) == (0, 0, "ok")
+    goals = (tmp_path / "out" / "goals.jsonl").read_text("utf-8").splitlines()
+    assert [json.loads(line)["tick"] for line in goals] == [25, None]
+    table = frames.rounds_df(store)
+    assert list(table["program"]) == [row["program"] for row in rows]
+    assert not table.duplicated(["cell", "branch", "round", "agent"]).any()
