@@ -201,6 +201,47 @@ def test_what_is_written_on_a_sign_is_an_event_and_false_where_it_was_missed(bro
     assert "1 block is false" in browser.script(told, "main, body")
 
 
+def test_claims_hearsay_and_signs_are_told_and_long_paths_keep_their_ends(browser, tmp_path):
+    import beliefnest as bn
+
+    left, right, sign = (1, 0, 1), (8, 0, 1), (6, 0, 7)
+    world = bn.ScriptedWorld(
+        box=((0, 0, 0), (30, 3, 9)),
+        blocks={sign: "oak_sign"},
+        agents={"max": (2.5, 0, 3.5), "nora": (4.5, 0, 4.5), "abcdefghijklmnop": (5.5, 0, 5.5)},
+        containers={left: {"diamond": 1}, right: {}},
+        signs={sign: "keep out"},
+    )
+    perception = bn.Perception(max_visible_distance=12, testimony="informed", grace=5)
+    with bn.Nest(world, perception, store=tmp_path / "talk.bn"):
+        world.open("max", left)
+        world.open("nora", left)
+        world.place_agent("max", (28.5, 0, 3.5))
+        world.step(20)
+        world.say("nora", "It moved.", claims=[bn.Claim.located("diamond", right)])
+        world.step(4)
+    page = tmp_path / "talk.html"
+    write_page(PageOptions(tmp_path / "talk.bn", page, "/max", None, None, 2))
+    browser.open(page.as_uri())
+    texts = "return [...document.querySelectorAll(arguments[0])].map(each => each.textContent)"
+    assert browser.script(texts, ".claim") == [
+        "claims: diamond is in (8, 0, 1) a lie \u00b7 believed"
+    ]
+    assert "\u201c\u201d told by nora 4 ticks ago" in browser.script(texts, "[data-mark=heard]")
+    assert "\u201ckeep out\u201d" in browser.script(texts, ".tag")
+    names = "return [...document.querySelectorAll('.lane-name')].map(each => [each.title,"
+    names += "(each.querySelector('.tail') ?? each).textContent])"
+    tails = dict(browser.script(names))
+    assert tails["/abcdefghijklmnop/max"].endswith("/max")
+    assert tails["/abcdefghijklmnop/nora"].endswith("/nora")
+    go_to_event(browser, "It moved.")
+    told = browser.until(lambda: browser.script(texts, ".chosen-thing dd"))
+    assert told[0] == "diamond is in (8, 0, 1): a lie"
+    assert set(told[1:]) == {"believed", "not believed (1a)", "believed (3)"}
+    assert_clean(browser, "file:")
+    assert_accessible(browser)
+
+
 @pytest.fixture
 def server(tmp_path: Path) -> Iterator[str]:
     """`beliefnest serve` of a scenario that begins to run now."""

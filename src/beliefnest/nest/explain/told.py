@@ -1,10 +1,12 @@
 """Claims that were made: who heard them, whether they were false or lies, who took them up."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
+from beliefnest.belief.entries import AgentBelief, ContainerBelief
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.testimony import Verdict
 from beliefnest.belief.view import State
@@ -15,7 +17,7 @@ from beliefnest.timeline.journal import EntryFilter, TimelineKey
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import parse_path, path_text
-from beliefnest.world.values import Event
+from beliefnest.world.values import Event, Position
 
 __all__ = ["ToldClaim", "claims_told", "says_otherwise"]
 
@@ -166,7 +168,30 @@ def _told(recording: Recording, key: TimelineKey, count: int) -> Iterator[ToldCl
                     yield ToldClaim(recording, key, (number, row, index), entry, claim)
 
 
-def says_otherwise(state: State, claim: Claim) -> bool:
+class Texts(Protocol):
+    """Blocks as people read them."""
+
+    def __getitem__(self, position: Position) -> str | None:
+        """The block at a position; None: unknown."""
+
+
+class Held(Protocol):
+    """What of a state a claim can contradict."""
+
+    @property
+    def agents(self) -> Mapping[str, AgentBelief]:
+        """Every agent by name."""
+
+    @property
+    def containers(self) -> Mapping[Position, ContainerBelief]:
+        """Known containers by position."""
+
+    @property
+    def blocks(self) -> Texts:
+        """Believed blocks."""
+
+
+def says_otherwise(state: Held, claim: Claim) -> bool:
     """Whether a state contradicts a claim; what it does not know it does not contradict."""
     match claim.kind:
         case ClaimKind.POSITION:
@@ -193,7 +218,7 @@ def _is_other_block(block: str | None, stated: str) -> bool:
     return not same or any(held.get(name) != value for name, value in told.items())
 
 
-def _is_elsewhere(state: State, claim: Claim) -> bool:
+def _is_elsewhere(state: Held, claim: Claim) -> bool:
     """Whether an item is known to be missing in the container, or believed to be elsewhere."""
     content = state.containers.get(claim.cell)
     if content is not None and claim.item in content.items:

@@ -56,6 +56,7 @@ class TrackRows:
             "items": track.items,
             "wrong": track.wrong,
             "heard": track.heard,
+            "claims": track.claims,
         }
         for part in ("agents", "holds", "owns"):
             rows_by_agent: list[list[Row]] = getattr(track, part)

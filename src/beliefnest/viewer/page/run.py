@@ -74,6 +74,7 @@ class _Line:
     tracks: dict[Path, TrackRows]
     stands: list[StandRows]
     entries: int = 0
+    claims: int = 0
     events: list[dict[str, Any]] = field(default_factory=list)
     sent: dict[str, int] = field(default_factory=dict)
     told: Any = None
@@ -224,6 +225,12 @@ class RunData:
                     told["written"] = True
                 line.events.append(told)
         line.entries = line.info.entries
+        recorder = line.recorders[0]
+        for number, claim, kind in recorder.claims[line.claims :]:
+            where = labels.get(claim.cell)
+            said = str(claim) if where is None else claim.about(f"the {where}")
+            line.events[number].setdefault("claims", []).append([said, kind])
+        line.claims = len(recorder.claims)
 
     def _records(self) -> Iterable[tuple[str, list[Any]]]:
         yield "programs", [_program(each) for each in self.reader.programs()]

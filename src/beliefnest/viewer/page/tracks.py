@@ -16,10 +16,13 @@ import numpy.typing as npt
 from beliefnest.belief.entries import Basis
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.node_view import NodeView
+from beliefnest.belief.testimony import Verdict
 from beliefnest.nest.face.reader import Reader
 from beliefnest.timeline.journal import TimelineKey
+from beliefnest.viewer.page.claims import claims_at, kind_of
 from beliefnest.viewer.page.poses import Pose, PoseBook
 from beliefnest.viewer.page.wrong import WrongThings
+from beliefnest.world.claims import Claim
 
 __all__ = ["CURRENT", "PLACED", "STALE", "UNKNOWN", "Onlooker", "Track", "TrackRecorder"]
 
@@ -42,14 +45,17 @@ class Track:
         grid: Block states at first, flat, -1 unknown.
         blocks: [tick, cell, state, cell, state, ...].
         agents: By agent number: [tick, UNKNOWN | CURRENT], [tick, STALE, observed at] or
-            [tick, PLACED, observed at, pose, source, current, item in the main hand].
+            [tick, PLACED, observed at, pose, source, current, item in the main hand, speaker].
         holds: By agent number: [tick, item in the main hand or None]; of the timeline's own
             node alone, since what is believed to be held goes with where it is believed to be.
         owns: By agent number: [tick, items, complete].
-        contents: By cell: [tick, items or None, complete, current, observed at, source, event].
+        contents: By cell:
+            [tick, items or None, complete, current, observed at, source, event, speaker].
         items: [tick, number, None | [name, count, x, y, z]]: dropped items.
         wrong: [tick, things that are false from then on].
         heard: Numbers of the events that were perceived.
+        claims: [number of the event, of the claim in it, whether it was believed, condition that
+            decided]; of those that were heard, where claims change beliefs.
     """
 
     path: Path
@@ -62,6 +68,7 @@ class Track:
     items: list[Row] = field(default_factory=list)
     wrong: list[Row] = field(default_factory=list)
     heard: list[int] = field(default_factory=list)
+    claims: list[Row] = field(default_factory=list)
 
 
 @dataclass
@@ -86,8 +93,11 @@ class TrackRecorder:
         key: The timeline.
         paths: Nodes of it; its own comes first.
         book: Where agents stood in the world of the timeline; filled here if `fills`.
-        fills: Whether this recorder is the one that fills the book.
+        fills: Whether this recorder is the one that fills the book and tells of claims.
         onlooker: Is shown the nodes at the beginning and after each entry.
+
+    Attributes:
+        claims: What was claimed: number of the event, the claim, whether it is false or a lie.
     """
 
     def __init__(
@@ -101,6 +111,7 @@ class TrackRecorder:
         onlooker: Onlooker | None = None,
     ) -> None:
         self.key = key
+        self.claims: list[tuple[int, Claim, str]] = []
         self._onlooker = onlooker
         self._reader, self._book, self._fills = reader, book, fills
         self._forest = reader.walk(key, paths)
@@ -167,9 +178,23 @@ class TrackRecorder:
             for at, number in enumerate(self._numbers):
                 heard = np.flatnonzero(forest.hearing.of(number, count)[self._events :])
                 self.tracks[at].heard += (heard + self._events).tolist()
+            self._note_claims()
             self._events = count
         if self._onlooker is not None:
             self._onlooker(forest)
+
+    def _note_claims(self) -> None:
+        forest, rows = self._forest, {}
+        for number, index, speaker, claim in claims_at(forest, self._events):
+            if self._fills:
+                kind = kind_of(forest, self.key.path, speaker, claim)
+                self.claims.append((number, claim, kind))
+            rows[number, index] = forest.verdicts.get((number - self._events, index))
+        for (number, index), verdicts in rows.items():
+            for track, node in zip(self.tracks, self._numbers, strict=True):
+                verdict = None if verdicts is None or not node else verdicts[node]
+                if verdict is not None and verdict not in (Verdict.NOT_HEARD, Verdict.SPEAKER):
+                    track.claims.append([number, index, verdict.believed, verdict.condition])
 
     def _note_own_poses(self, tick: int) -> None:
         if not self._fills:
@@ -226,20 +251,22 @@ class TrackRecorder:
         number = self._numbers[at]
         pose_id, seen = table.pose(number, agent), table.seen_at(number, agent)
         pose: Pose = (*poses.position(pose_id), *poses.angles(pose_id))
-        if not current and self._book.at(agent, seen) == pose and poses.condition(pose_id):
+        as_seen = poses.condition(pose_id) is not None and poses.speaker(pose_id) < 0
+        if not current and as_seen and self._book.at(agent, seen) == pose:
             return [tick, STALE, seen]
         name = self._reader.agents[agent]
         believed = NodeView(self._forest, self.tracks[at].path).agents[name]
         source = "" if believed.basis is None else believed.basis.source.value
         held = (believed.equipment or {}).get("main_hand")
-        return [tick, PLACED, seen, list(pose), source, current, held]
+        speaker = None if believed.basis is None else believed.basis.speaker
+        return [tick, PLACED, seen, list(pose), source, current, held, speaker]
 
     def _note_contents(self, at: int, track: Track, number: int, tick: int) -> None:
         forest, held = self._forest, self._forest.holdings.of(number).containers
         last, look = self._last.contents[at], forest.holdings.last_look(number)
         for cell in last.keys() - held.keys():
             del last[cell]
-            _put(track.contents[cell], [tick, None, False, False, -1, "", ""])
+            _put(track.contents[cell], [tick, None, False, False, -1, "", "", None])
         for cell, raw in held.items():
             current = number == 0 or raw.entry == look
             told = (raw.items, raw.complete, current, None if current else raw.basis)
@@ -249,7 +276,7 @@ class TrackRecorder:
             basis: Basis = forest.holdings.content(number, cell).basis
             event = "" if basis.event is None else basis.event.value
             row = [tick, dict(raw.items), raw.complete, current]
-            row += [basis.observed_at, basis.source.value, event]
+            row += [basis.observed_at, basis.source.value, event, basis.speaker]
             _put(track.contents.setdefault(cell, []), row)
 
     def _note_items(self, at: int, track: Track, number: int, tick: int) -> None:

@@ -1,11 +1,12 @@
 /** Time below the pictures: scrubbing, playing, what happened, who perceived it, branches to jump into. */
 
 import { badge, button, element, refill, seconds, svg } from './elements.js'
-import { notesOf } from './notes.js'
+import { claimNoteOf, notesOf, verdictWords } from './notes.js'
 
 const QUIET = new Set(['move_to', 'block_update'])
 const NEAR = 40
 const LANES = 12
+const TAIL = 12
 const MOST_DOTS = 1500
 const SPEEDS = [1, 2, 5, 20]
 
@@ -83,7 +84,7 @@ export class Clock {
         class: `line${choice.on === line.number ? ' chosen' : ''}`,
         'aria-current': choice.on === line.number ? 'true' : null,
         onclick: () => this.choose({ on: line.number, at: path, beside: line.base ? '0 /' : '/', tick: Math.max(start, Math.min(head, this.tick)) })
-      }, element('span', { class: 'branch-name' }, `${'· '.repeat(depth(line))}${path} ${branch}`), element('span', { class: 'rail' }, bar))
+      }, pathName('branch-name', `${path} ${branch}`, '· '.repeat(depth(line))), element('span', { class: 'rail' }, bar))
     }))
   }
 
@@ -114,7 +115,7 @@ export class Clock {
       return svg('circle', { cx: x, cy: 8, r: 4, class: heard ? 'heard' : 'missed', style: heard ? { fill: look?.colour ?? 'var(--quiet)' } : {}, onclick: () => this.choose({ tick: each.t, at: path }) },
         svg('title', {}, `tick ${each.t}: ${each.text} (${heard ? '' : 'not '}perceived in ${path})`))
     })
-    return element('div', { class: `lane${choice.at === path ? ' chosen' : ''}` }, element('span', { class: 'lane-name', title: path }, path),
+    return element('div', { class: `lane${choice.at === path ? ' chosen' : ''}` }, pathName('lane-name', path),
       svg('svg', { width, height: 16, role: 'img', 'aria-label': `${path}: perceived ${shown.filter(each => track.heard.has(each.number)).length} of ${shown.length} events` }, ...dots))
   }
 
@@ -136,19 +137,31 @@ export class Clock {
     const past = each.t <= this.tick
     const thing = each.at === undefined ? null : run.cell(each.at)
     const isContainer = thing !== null && track.timeline.tracks.get(track.timeline.facts.path)?.cells().includes(thing)
+    const claims = (each.claims ?? []).map(([said, kind], index) => claimLine(said, kind, track.verdict(each.number, index)))
     const jump = { tick: each.t, note: each.note ?? null, ...(thing === null || thing < 0 ? {} : { thing: `${isContainer ? 'c' : 'b'}${thing}` }) }
     return element('li', { 'data-past': String(past), class: `${heard ? '' : 'missed'}${each.t === this.tick ? ' now' : ''}` },
       element('button', { type: 'button', class: choice.note !== null && choice.note === each.note ? 'chosen' : '', onclick: () => this.choose(jump) },
         element('span', { class: 'when' }, each.t), look ? badge(look, { small: true }) : element('span', { class: 'nobody' }),
-        element('span', { class: 'what' }, each.text), heard ? null : element('span', { class: 'not' }, 'not perceived')))
+        element('span', { class: 'what' }, each.text, ...claims), heard ? null : element('span', { class: 'not' }, 'not perceived')))
   }
+}
+
+/** A path, cut in its middle where there is no room for it: its end tells whose belief it is. */
+function pathName (kind, path, before = '') {
+  const tail = path.slice(-Math.min(TAIL, Math.floor(path.length / 2)))
+  return element('span', { class: `${kind} cut`, title: path }, element('span', { class: 'head' }, `${before}${path.slice(0, path.length - tail.length)}`), element('span', { class: 'tail' }, tail))
+}
+
+function claimLine (said, kind, verdict) {
+  const told = verdictWords(verdict)
+  return element('span', { class: 'claim' }, `claims: ${said}`, kind ? element('strong', { class: 'mark false' }, ` ${kind}`) : null, told ? ` · ${told}` : null)
 }
 
 /** @returns {object[]} events and notes of a timeline in order; walking is not listed, nor block updates but for what is written on signs */
 function listed (run, timeline) {
   const mark = `${timeline.events.length} ${run.programs.length} ${run.prompts.length}`
   if (timeline.listed?.mark !== mark) {
-    const events = timeline.events.map((event, number) => ({ ...event, number })).filter(event => event.written || !QUIET.has(event.kind))
+    const events = timeline.events.map((event, number) => ({ ...event, number, ...(event.claims ? { note: claimNoteOf(timeline, number) } : {}) })).filter(event => event.written || !QUIET.has(event.kind))
     timeline.listed = { mark, rows: [...events, ...notesOf(run, timeline)].sort((a, b) => a.t - b.t) }
   }
   return timeline.listed.rows

@@ -1,8 +1,8 @@
 /** Words beside the pictures: what a simulator holds, and why it holds what was clicked. */
 
-import { ago, badge, button, element, itemsText, pointText, refill } from './elements.js'
+import { badge, button, element, itemsText, pointText, refill } from './elements.js'
 import { lookWords } from './ray.js'
-import { contentsText, markWords } from './things.js'
+import { contentsText, markWords, memoryWords, tellerOf } from './things.js'
 
 export class Detail {
   constructor (choose, source) {
@@ -35,7 +35,7 @@ export class Detail {
 
   row (run, each, value, choice) {
     const name = each.look?.name ?? each.name
-    const marks = each.marks.map(mark => element('span', { class: `mark ${mark}`, 'data-mark': mark }, `${run.head.marks[mark].sign} ${markWords(run, mark, each.age)}`))
+    const marks = each.marks.map(mark => element('span', { class: `mark ${mark}`, 'data-mark': mark }, `${run.head.marks[mark].sign} ${markWords(run, mark, each.age, each.teller)}`))
     return element('button', {
       type: 'button',
       class: `thing${choice.thing === each.thing ? ' chosen' : ''}`,
@@ -128,7 +128,7 @@ function valueText (run, track, tick, thing) {
   const has = itemsText(items) ? `has ${itemsText(items)}${complete ? '' : ', perhaps more'}` : complete ? 'has nothing' : 'what it has is not known'
   if (thing[0] === 'i') return has
   const pose = track.agent(number, tick)
-  const age = pose && !pose.current ? `, seen ${ago(tick - pose.seenAt)}` : ''
+  const age = pose && !pose.current ? `, ${memoryWords(tellerOf(pose), tick - pose.seenAt)}` : ''
   return `${placeText(pose)}${age}; ${has}`
 }
 
@@ -143,7 +143,8 @@ function groundParts (run, track, tick, thing) {
   const parts = []
   if (held !== null) {
     const event = held.event ? ` (${held.event.replaceAll('_', ' ')})` : ''
-    const source = held.source === 'prior' ? 'a prior belief' : `${held.source}${event}`
+    const teller = tellerOf(held)
+    const source = teller !== null ? `${teller} said so` : held.source === 'prior' ? 'a prior belief' : `${held.source}${event}`
     parts.push(element('p', {}, held.current ? 'It is perceived at this tick.' : `It rests on tick ${held.seenAt}: ${source}.`))
   }
   parts.push(element('p', { class: 'hint' }, 'The whole chain of perceptions is told by “beliefnest serve RUN”.'))

@@ -17,7 +17,32 @@ export function noteNamed (run, name) {
   const [kind, number] = (name ?? '').split('-')
   if (kind === 'program' && run.programs[number]) return programNote(run.programs[number])
   if (kind === 'prompt' && run.prompts[number]) return promptNote(run.prompts[number])
+  if (kind === 'claim') return claimNote(run, number)
   return null
+}
+
+/** @returns {string} the name of the note of an event with claims */
+export function claimNoteOf (timeline, number) {
+  return `claim-${timeline.number}.${number}`
+}
+
+/** @returns {string} what became of a claim in a simulator, shortly; empty: nothing that is known */
+export function verdictWords (verdict) {
+  if (verdict === null) return ''
+  const condition = verdict.condition === null ? '' : ` (${verdict.condition})`
+  return `${verdict.believed ? 'believed' : 'not believed'}${condition}`
+}
+
+function claimNote (run, name) {
+  const [line, number] = name.split('.').map(Number)
+  const timeline = run.timelines[line]
+  const event = timeline?.events[number]
+  if (event?.claims === undefined) return null
+  const facts = event.claims.flatMap(([said, kind], index) => [
+    ['claims', `${said}${kind ? `: ${kind}` : ''}`],
+    ...[...timeline.tracks.values()].map(track => [track.path, verdictWords(track.verdict(number, index))]).filter(([, words]) => words)
+  ])
+  return { title: `${event.text}, tick ${event.t}`, facts, texts: [] }
 }
 
 function programNote (program) {

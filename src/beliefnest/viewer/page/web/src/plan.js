@@ -1,13 +1,12 @@
 /** A simulator from above: blocks on a canvas, and over it what can be pointed at. */
 
-import { ago, element, refill, svg } from './elements.js'
+import { element, refill, svg } from './elements.js'
 import { apart } from './labels.js'
-import { contentsLabel, contentsText, signsText } from './things.js'
+import { contentsLabel, contentsText, memoryWords, shortened, signsText } from './things.js'
 
 const LIGHT = { wall: '#7d7a78', nowhere: '#d9d5cc', unknown: '#eeeae2', hatch: '#b9b4aa', unseen: 'rgba(43,42,51,.30)', blend: '#fcfbf8' }
 const DARK = { wall: '#9a979c', nowhere: '#17161b', unknown: '#2b2930', hatch: '#56525e', unseen: 'rgba(0,0,0,.55)', blend: '#24232a' }
 const LEAST = 6
-const MOST_SHOWN = 24
 const LETTER = 7
 const BOLD = 7.6
 const RING = 1.4
@@ -127,11 +126,10 @@ export class Plan {
       const [x, y] = this.at(each.place[0], each.place[2])
       const s = this.size
       const wrong = each.marks.includes('false')
-      const text = each.says.length > MOST_SHOWN ? `${each.says.slice(0, MOST_SHOWN - 1)}…` : each.says
       return this.target(each.thing, `${each.name} says “${each.says}”${wrong ? ' (false)' : ''}`, chosen,
         svg('rect', { class: 'board', x: x + 0.1 * s, y: y + 0.3 * s, width: 0.8 * s, height: 0.4 * s, rx: 0.06 * s }),
         svg('line', { class: 'lid', x1: x + 0.22 * s, x2: x + 0.78 * s, y1: y + 0.5 * s, y2: y + 0.5 * s }),
-        this.label(x + s / 2, y - 2, `“${text}”`, wrong))
+        this.label(x + s / 2, y - 2, `“${shortened(each.says)}”`, wrong))
     })
   }
 
@@ -144,7 +142,7 @@ export class Plan {
       const far = Math.abs(pose.y - storey) > 1.5
       const wrong = each.marks.includes('false')
       const sign = signsText(run, each.marks, each.age)
-      const when = pose.current ? '' : `, seen ${ago(each.age)}`
+      const when = pose.current ? '' : `, ${memoryWords(each.teller, each.age)}`
       const side = [-dy * 0.55 * r, dx * 0.55 * r]
       const nose = [[x + dx * 1.55 * r, y + dy * 1.55 * r], [x + dx * 0.7 * r + side[0], y + dy * 0.7 * r + side[1]],
         [x + dx * 0.7 * r - side[0], y + dy * 0.7 * r - side[1]]]

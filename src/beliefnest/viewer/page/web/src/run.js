@@ -114,8 +114,8 @@ class Track {
       const pose = this.timeline.stand(number, row[2])
       return pose && { ...pose, current: false, seenAt: row[2], source: 'seen', holds: this.timeline.holds(number, row[2]) }
     }
-    const [, , seenAt, pose, source, current, holds] = row
-    return { ...poseOf(pose), current, seenAt, source, holds }
+    const [, , seenAt, pose, source, current, holds, speaker] = row
+    return { ...poseOf(pose), current, seenAt, source, holds, speaker }
   }
 
   /** @returns {Array} [items, complete] an agent is believed to have */
@@ -133,8 +133,14 @@ class Track {
   contents (cell, tick) {
     const row = rowAt(this.list(`contents ${cell}`), tick)
     if (row === undefined || row[1] === null) return null
-    const [, items, complete, current, seenAt, source, event] = row
-    return { items, complete, current, seenAt: current ? tick : seenAt, source, event }
+    const [, items, complete, current, seenAt, source, event, speaker] = row
+    return { items, complete, current, seenAt: current ? tick : seenAt, source, event, speaker }
+  }
+
+  /** @returns {object|null} whether a claim was believed and by which condition of the semantics; null: it was not heard, or nobody asks */
+  verdict (event, claim) {
+    const row = this.list('claims').find(each => each[0] === event && each[1] === claim)
+    return row === undefined ? null : { believed: row[2], condition: row[3] }
   }
 
   /** @returns {string[]} what is false: see `wrong.py` */

@@ -8,7 +8,7 @@ import {
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { element } from './elements.js'
 import { apart } from './labels.js'
-import { contentsLabel, signsText } from './things.js'
+import { contentsLabel, shortened, signsText } from './things.js'
 
 const WRONG = 0xd55e00
 const EYE = 1.62
@@ -119,6 +119,7 @@ export class Space {
     this.marks = []
     for (const each of scene.things.containers) this.addContainer(scene, each)
     for (const each of scene.things.agents) if (each.pose !== null) this.addAgent(scene, each)
+    for (const each of scene.things.signs) this.addSign(scene, each)
     for (const cell of scene.things.wrongBlocks.slice(0, 100)) this.outline(scene.run.place(cell), WRONG)
     for (const [, , x, y, z] of scene.things.items) this.add(CUBE, '#3fa7a7', [x, y + 0.15, z], { size: 0.22 })
     if (scene.ray !== null) this.addRay(scene.ray)
@@ -183,6 +184,12 @@ export class Space {
     if (each.contents === null && scene.track.grid(scene.tick)[each.cell] < 0) this.outline(each.place, 0x8a8890)
     const sign = signsText(scene.run, each.marks, each.age)
     this.label(each.thing, [x + 0.5, y + 1.35, z + 0.5], [contentsLabel(each.contents), sign].filter(Boolean).join(' '), wrong)
+  }
+
+  addSign (scene, each) {
+    const [x, y, z] = each.place
+    if (y > scene.storey + 1) return
+    this.label(each.thing, [x + 0.5, y + 1.1, z + 0.5], `“${shortened(each.says)}”`, each.marks.includes('false'))
   }
 
   outline ([x, y, z], colour) {

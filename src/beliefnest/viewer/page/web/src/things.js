@@ -2,6 +2,8 @@
 
 import { ago, itemsText } from './elements.js'
 
+const MOST_SHOWN = 24
+
 /** @returns {object} agents, containers, dropped items, written signs and false blocks of a track at a tick */
 export function thingsOf (run, track, tick) {
   const wrong = new Set(track.wrong(tick))
@@ -29,14 +31,19 @@ function writtenSigns (run, track, tick, wrong) {
   return found
 }
 
+/** @returns {string} as much of a sign's text as is shown beside it */
+export function shortened (says) {
+  return says.length > MOST_SHOWN ? `${says.slice(0, MOST_SHOWN - 1)}…` : says
+}
+
 function agentThing (run, track, tick, look, number, wrong) {
   const pose = track.agent(number, tick)
   const thing = `a${number}`
   const marks = []
   if (wrong.has(thing)) marks.push('false')
   if (pose === null) marks.push('unknown')
-  else if (!pose.current) marks.push('stale')
-  return { thing, number, look, pose, marks, age: pose === null ? null : tick - pose.seenAt, wrongItems: wrong.has(`i${number}`) }
+  else if (!pose.current) marks.push(memoryMark(pose))
+  return { thing, number, teller: tellerOf(pose), look, pose, marks, age: pose === null ? null : tick - pose.seenAt, wrongItems: wrong.has(`i${number}`) }
 }
 
 function containerThing (run, track, tick, cell, wrong) {
@@ -46,9 +53,23 @@ function containerThing (run, track, tick, cell, wrong) {
   if (wrong.has(thing)) marks.push('false')
   if (contents === null || (!contents.complete && Object.keys(contents.items).length === 0)) marks.push('unknown')
   else if (!contents.complete) marks.push('incomplete')
-  if (contents !== null && !contents.current && !marks.includes('unknown')) marks.push('stale')
+  if (contents !== null && !contents.current && !marks.includes('unknown')) marks.push(memoryMark(contents))
   const age = contents === null ? null : tick - contents.seenAt
-  return { thing, cell, place: run.place(cell), name: run.thingName(thing), contents, marks, age }
+  return { thing, cell, place: run.place(cell), name: run.thingName(thing), contents, marks, age, teller: tellerOf(contents) }
+}
+
+/** @returns {string|null} who said what is held, where nothing but that backs it */
+export function tellerOf (held) {
+  return held !== null && !held.current && held.source === 'heard' ? held.speaker ?? 'somebody' : null
+}
+
+function memoryMark (held) {
+  return tellerOf(held) === null ? 'stale' : 'heard'
+}
+
+/** @returns {string} where knowledge of something that is not perceived now comes from, and how old it is */
+export function memoryWords (teller, age) {
+  return teller === null ? `seen ${ago(age)}` : `told by ${teller}${age > 0 ? ` ${ago(age)}` : ''}`
 }
 
 /** @returns {string} what a container is believed to hold, shortly */
@@ -71,15 +92,16 @@ export function signsText (run, marks, age) {
 }
 
 /** @returns {string} a mark in words, with its age */
-export function markWords (run, mark, age) {
-  if (mark === 'stale' && age !== null) return `remembered, seen ${ago(age)}`
+export function markWords (run, mark, age, teller = null) {
+  if (mark === 'heard') return memoryWords(teller, age)
+  if (mark === 'stale' && age !== null) return `remembered, ${memoryWords(null, age)}`
   return run.head.marks[mark].words
 }
 
 /** @returns {string} a mark as short as fits beside a thing */
 function markSign (run, mark, age) {
   const { sign } = run.head.marks[mark]
-  return mark === 'stale' && age !== null ? `${sign}${age}` : sign
+  return ['stale', 'heard'].includes(mark) && age !== null ? `${sign}${age}` : sign
 }
 
 /** @returns {number} the storey where most containers are, or else agents' feet, or else the lowest but one */
