@@ -138,6 +138,34 @@ def test_who_moved_the_diamond_finds_it_where_sally_believes_it(play_of_a_person
         assert [each.path for each in nest.layout()] == ["/", "/observer/sally"]
 
 
+def test_a_visitor_sees_what_is_tried_out_and_can_come_again_after_a_crash():
+    scenario = Scenario.load("red-green-blue", condition=1)
+    with Nest.open(scenario, realtime=True, listen=0) as nest:
+        belief = nest["/agent_1"]
+        belief.embody()
+        belief.embody(unknown="glass")
+        there = where(nest, "/agent_1")
+        blue = (
+            "while (bot.blockAt(new Vec3(X + 8, 1, 2))?.name !== 'glass') await waitTicks(bot, 1)"
+        )
+        with Person(nest.address, "guest") as guest:
+            guest.does(script(blue, there))
+            assert nest.wait(lambda: guest.is_done, LONG_S)
+            belief.switch("aside")
+            assert belief.run("agent_1", "await goToPosition(bot, new Vec3(2, 1, 2), 0)").ok
+            at = "while (!(bot.players.agent_1_1.entity.position.z < 3)) await waitTicks(bot, 1)"
+            guest.does(at)
+            assert nest.wait(lambda: guest.is_done, LONG_S)
+            # Reality's process ends, and with it whatever stood there.
+            nest._engine.bodies.world.interrupt()
+            guest.left()
+        nest.wait(timeout_s=0)
+        with Person(nest.address, "guest") as guest:
+            guest.does(script(blue, there))
+            guest.does(at)
+            assert nest.wait(lambda: guest.is_done, LONG_S)
+
+
 # How somebody on a server waits to find this and no more, where a line of the layout leads.
 FIND = """
 const seen = async () => {

@@ -54,8 +54,10 @@ def visited(nest: Nest, paths: Sequence[str]) -> Iterator[None]:
     entered = threading.Event()
 
     def listen() -> None:
-        sys.stdin.readline()
-        entered.set()
+        try:
+            sys.stdin.readline()
+        finally:
+            entered.set()
 
     threading.Thread(target=listen, daemon=True).start()
     nest.wait(entered.is_set, _DAY_S)

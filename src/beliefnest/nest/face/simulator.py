@@ -273,13 +273,16 @@ class Simulator(ShownSimulator):
             unknown: The block that unknown ones are shown as.
 
         Raises:
-            InputError: It is the real world, or people cannot come into this world.
+            InputError: It is the real world, people cannot come into this world, or the arguments
+                are of other kinds.
             UnknownNameError: There is no such block.
             WorldError: The place on a server holds other blocks.
             BodyError: It could not be built.
         """
         if stands is not True and stands is not False:
             raise InputError(f"embody({stands!r}): give True, or False to end it")
+        if not isinstance(unknown, str):
+            raise InputError(f"unknown is {unknown!r}; give the name of a block")
         embodying = self._engine.bodies.embodying
         if stands:
             embodying.begin(self._path, unknown)

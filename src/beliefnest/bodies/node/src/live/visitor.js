@@ -10,6 +10,7 @@ const { ease } = require('./ease')
 const SPECTATOR = 3
 const OWN_NUMBER = 1
 const LAST_WINDOW = 100
+const FULL = 20
 const NOTHING = { present: false }
 
 class Visitor {
@@ -53,6 +54,7 @@ class Visitor {
     end.write('player_info', listing(this.name, { uuid: end.uuid, gamemode: SPECTATOR }))
     for (const [label, pose] of exhibit.agents) this.meet(label, pose)
     end.write('position', { x, y, z, yaw: 0, pitch: 0, flags: 0, teleportId: 1 })
+    end.write('update_health', { health: FULL, food: FULL, foodSaturation: FULL })
     ease(end, OWN_NUMBER)
   }
 
