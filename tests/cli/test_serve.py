@@ -20,7 +20,7 @@ def test_the_address_can_be_connected_to_as_soon_as_it_is_known() -> None:
         what="run", port=0, address="127.0.0.1", conditions=(), out=None, depth=2
     )
     with listening(options) as listener:
-        socket.create_connection(listener.getsockname(), timeout=10).close()
+        socket.create_connection(listener.getsockname(), timeout=120).close()
 
 
 def test_ctrl_c_ends_it_without_complaint_while_a_page_listens(tmp_path: Path) -> None:
@@ -34,11 +34,11 @@ def test_ctrl_c_ends_it_without_complaint_while_a_page_listens(tmp_path: Path) -
         assert server.stdout is not None
         address = re.search(r"http://\S+", server.stdout.readline())
         assert address is not None
-        with urllib.request.urlopen(f"{address[0]}api/live?from=0", timeout=60) as live:
+        with urllib.request.urlopen(f"{address[0]}api/live?from=0", timeout=120) as live:
             assert live.readline().startswith(b"id: 1")
             server.send_signal(signal.SIGINT)
             live.read()
-        said, complaints = server.communicate(timeout=60)
+        said, complaints = server.communicate(timeout=120)
     assert (server.returncode, said, complaints) == (0, "", "")
 
 
@@ -60,5 +60,5 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
         assert it.stdout is not None
         assert it.stdout.readline().startswith("The page is at")
         it.send_signal(signal.SIGINT)
-        _, complaints = it.communicate(timeout=60)
+        _, complaints = it.communicate(timeout=120)
     assert f"{tmp_path / 'run.bn'} is no run" in complaints

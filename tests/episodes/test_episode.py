@@ -75,13 +75,13 @@ def test_a_policy_that_is_slow_costs_its_own_round() -> None:
             released.wait()
             return ""
 
-    with bn.Episode(bn.Task.load(TASK), {"anne": Slow()}, patience_s=0.5) as episode:
+    with bn.Episode(bn.Task.load(TASK), {"anne": Slow()}, patience_s=3.0) as episode:
         try:
             episode.play(2)
         finally:
             released.set()
         faults = [part.decisions["anne"].fault for part in episode.parts]
-        assert faults == ["it took more than 0.5 s", "it is still at an earlier round"]
+        assert faults == ["it took more than 3 s", "it is still at an earlier round"]
         assert [part.ended["sally"].how for part in episode.parts] == ["cut", "cut"]
 
 
