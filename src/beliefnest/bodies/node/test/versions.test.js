@@ -7,6 +7,7 @@ const path = require('node:path')
 const { test } = require('node:test')
 const { add } = require('../bundling/further')
 const { writeVersions } = require('../bundling/versions')
+const { commandsFor } = require('../src/remote/commands')
 const { BlockMapping, heldFor } = require('../src/remote/versions')
 const { minecraft } = require('../src/versions')
 
@@ -47,6 +48,16 @@ test('a block that ours has not is stone, or air where one walks through it', ()
   const name = block => mapping.states.describe(mapping.fromServer(theirs.blocksByName[block].defaultState)).name
   assert.deepEqual(['resin_block', 'firefly_bush'].map(name), ['stone', 'air'])
   assert.deepEqual([...mapping.strange], ['resin_block', 'firefly_bush'])
+})
+
+test('items and signs are written as the version has them', () => {
+  const place = { toServer: ([x, y, z]) => ({ x, y, z }) }
+  const of = version => commandsFor(place, () => '', registry(version).version)
+  const item = { name: 'bread', count: 2, position: [0.5, 1, 0.5] }
+  assert.match(of('1.20.4').layItem(item), /Item:\{id:"minecraft:bread",Count:2b\}/)
+  assert.match(of('1.20.6').layItem(item), /Item:\{id:"minecraft:bread",count:2\}/)
+  assert.match(of('1.21.4').write([0, 1, 0], 0, "it's"), /set value '"it\\'s"'$/)
+  assert.match(of('1.21.5').write([0, 1, 0], 0, "it's"), /set value 'it\\'s'$/)
 })
 
 test('a version is spoken by any held one of the same protocol', () => {

@@ -26,7 +26,7 @@ const SPECTATOR = 3
 async function capture ({ operator, clock, theirs, registry }, origin, corners) {
   const region = new RemotePlace({ name: 'captured', box: new Box(...corners), origin, tick: 0, known: [] }, clock)
   const mapping = new BlockMapping(registry, theirs)
-  const commands = commandsFor(region, state => mapping.textForServer(state))
+  const commands = commandsFor(region, state => mapping.textForServer(state), theirs.version)
   const scene = new Scene(region, mapping, operator, commands, position => setup.read(position))
   const setup = new Setup(scene, operator, commands, theirs)
   await setup.arrive()

@@ -28,8 +28,11 @@ const quoted = text => `'${text.replace(/[\\']/g, found => `\\${found}`)}'`
 /**
  * @param {import('../regions/place').Place} place
  * @param {(state: number) => string} textOf a block state
+ * @param {object} version of the server, of its registry: the notation of items and texts depends on it
  */
-function commandsFor (place, textOf) {
+function commandsFor (place, textOf, version) {
+  const countOf = count => version['>=']('1.20.5') ? `count:${count}` : `Count:${count}b`
+  const component = text => quoted(version['>=']('1.21.5') ? text : JSON.stringify(text))
   const at = position => {
     const { x, y, z } = place.toServer(position)
     return `${x} ${y} ${z}`
@@ -58,8 +61,8 @@ function commandsFor (place, textOf) {
       return `kill @e[type=item,x=${x},y=${y},z=${z},dx=${shape[0] - 1},dy=${shape[1] - 1},dz=${shape[2] - 1}]`
     },
     layItem: ({ name, count, position }) =>
-      `summon minecraft:item ${at(position)} {Item:{id:"minecraft:${name}",Count:${count}b},PickupDelay:0}`,
-    write: (position, line, text) => `data modify block ${at(position)} front_text.messages[${line}] set value ${quoted(JSON.stringify(text))}`,
+      `summon minecraft:item ${at(position)} {Item:{id:"minecraft:${name}",${countOf(count)}},PickupDelay:0}`,
+    write: (position, line, text) => `data modify block ${at(position)} front_text.messages[${line}] set value ${component(text)}`,
     load (act) {
       const { low, high } = place.box
       const corner = ([x, , z]) => `${x + place.origin.x} ${z + place.origin.z}`

@@ -83,7 +83,7 @@ class RemoteRegions {
    * @param {(error: Error) => void} fail hears that contents could not be looked at
    */
   tools (place, operator, fail) {
-    const commands = commandsFor(place, state => this.mapping.textForServer(state))
+    const commands = commandsFor(place, state => this.mapping.textForServer(state), this.registry.version)
     const scene = new Scene(place, this.mapping, operator, commands, position => setup.asked(position).then(found => found ?? setup.read(position)))
     scene.fail = fail
     const setup = new Setup(scene, operator, commands, this.registry)
