@@ -73,6 +73,25 @@ def test_goals_of_a_scenario_are_checked_at_every_tick(fetch: str) -> None:
         assert not hurried.success
 
 
+def test_a_goal_is_to_be_reached_within_its_ticks(fetch: str) -> None:
+    def goal(ticks: int) -> dict[str, object]:
+        return {"reach": [{"container": [11, 1, 5], "items": {"apple": 1}}], "ticks": ticks}
+
+    scenario = bn.Scenario.load(fetch, condition=1)
+    with bn.Episode(bn.Task.of(scenario, goal=goal(60)), {"ann": Scripted([BRING])}) as episode:
+        taken = episode.play().ticks
+        assert episode.success
+    for ticks, success in ((taken, True), (taken - 1, False)):
+        task = bn.Task.of(scenario, goal=goal(ticks))
+        with bn.Episode(task, {"ann": Scripted([BRING])}) as episode:
+            assert episode.view("ann").ticks_left == ticks
+            assert episode.play().success is success
+            assert str(task.goal).endswith(f"within {ticks} ticks")
+    assert task.at_pace(5).goal.ticks == 5 * (taken - 1)
+    with pytest.raises(bn.ScenarioError, match="nothing to `reach`"):
+        bn.Task.of(scenario, goal={"ticks": 3})
+
+
 def test_goals_go_where_the_scene_goes(fetch: str) -> None:
     mirrored = Variation({"symmetry": "mirrored", "agents": {"ann": "zoe"}})
     scenario = bn.Scenario.varied(read_document(fetch), 1, None, mirrored.scene)

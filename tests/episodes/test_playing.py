@@ -105,6 +105,9 @@ def test_the_command_plays_and_goes_on(tmp_path: Path, capsys: pytest.CaptureFix
     assert "[located(" in printed
     assert run_command_line(["play", "help-find", "--agent", "anne=search:0", "--seed", "1"]) == 1
     assert run_command_line(["show", str(tmp_path / "run" / "run.bn"), "--path", "/anne"]) == 0
+    assert run_command_line([*arguments, "--measure-help"]) == 0
+    told = "help: needed by 1, given to 1 of them; superfluous: 0"
+    assert told in capsys.readouterr().out
     for wrong in (["play"], ["play", "x"], ["play", "help-find", "--agent", "anne"]):
         assert run_command_line(wrong) == 2
 

@@ -15,7 +15,7 @@ from beliefnest.scenarios.document import plain
 from beliefnest.scenarios.goals import Goal
 from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.reading import read_yaml
-from beliefnest.scenarios.rules import EpisodeEntry, check_rules, goal_of
+from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, goal_of
 from beliefnest.scenarios.scenario import Scenario
 
 __all__ = ["Task"]
@@ -170,7 +170,7 @@ class Task:
         return goal_of(entry, self.form.scenario["agents"])
 
     def at_pace(self, pace: int) -> "Task":
-        """The same with rounds and speech as much longer as it takes longer to walk a block.
+        """The same with rounds, speech and time for goals as much longer as walking takes longer.
 
         Args:
             pace: Ticks that one block on foot takes: 1 in the scripted world, about 5 in Minecraft.
@@ -180,8 +180,20 @@ class Task:
         if speech := (scenario.get("perception") or {}).get("speech_ticks"):
             slower = speech * pace // self.form.pace
             scenario["perception"] = {**scenario["perception"], "speech_ticks": slower}
-        form = msgspec.structs.replace(self.form, pace=pace, round_ticks=ticks, scenario=scenario)
+        form = msgspec.structs.replace(
+            self.form,
+            pace=pace,
+            round_ticks=ticks,
+            scenario=scenario,
+            goal=self._slower(self.form.goal, pace),
+            goals={name: self._slower(goal, pace) for name, goal in self.form.goals.items()},
+        )
         return replace(self, form=form)
+
+    def _slower(self, goal: GoalEntry, pace: int) -> GoalEntry:
+        if goal.ticks is None:
+            return goal
+        return msgspec.structs.replace(goal, ticks=goal.ticks * pace // self.form.pace)
 
     def plain(self) -> dict[str, Any]:
         """As plain values; `from_mapping` is the inverse."""

@@ -130,8 +130,10 @@ class AgentView:
 
     @property
     def ticks_left(self) -> int:
-        """Ticks until the end of the last round."""
-        return (self.brief.rounds - self.round) * self.brief.whole_round
+        """Ticks until the end of the last round, or until the goal is to be reached."""
+        rounds, length = self.brief.rounds, self.brief.whole_round
+        last = min(rounds * length, self.goal.ticks or rounds * length)
+        return max(0, last - self.round * length)
 
     @property
     def goal(self) -> Goal:

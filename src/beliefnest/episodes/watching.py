@@ -26,7 +26,7 @@ class Watch:
         self._players = task.players
         goals = {"": task.goal, **{agent: task.goal_of(agent) for agent in task.agents}}
         self.progress: Mapping[str, Progress] = {
-            name: Progress.begun(goal) for name, goal in goals.items()
+            name: Progress.begun(goal, start) for name, goal in goals.items()
         }
         named = {path for goal in goals.values() for path in goal.paths}
         self._paths = sorted({"/", *map(path_text, named)})

@@ -261,11 +261,13 @@ class Goal:
             end of the episode is reached.
         never: What must not be the case at any tick until then.
         messages: Most utterances of all players until then; None: any number.
+        ticks: Most ticks until then, from where the first round begins; None: any number.
     """
 
     reach: tuple[Condition, ...] = ()
     never: tuple[Condition, ...] = ()
     messages: int | None = None
+    ticks: int | None = None
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
@@ -292,6 +294,8 @@ class Goal:
         parts += [f"never: {each}" for each in self.never]
         if self.messages is not None:
             parts.append(f"at most {self.messages} messages")
+        if self.ticks is not None:
+            parts.append(f"within {self.ticks} ticks")
         return "; ".join(parts) or "nothing"
 
 
@@ -301,6 +305,7 @@ class Progress:
 
     Attributes:
         goal: The goal.
+        start: The tick at which the first round begins.
         first: By number of a condition, the tick at which it came true first.
         reached: The tick at which all was reached; None: not yet.
         violated: The tick at which something happened that must not; None: nothing has.
@@ -308,15 +313,16 @@ class Progress:
     """
 
     goal: Goal
+    start: int
     first: dict[int, int]
     reached: int | None = None
     violated: int | None = None
     messages: int = 0
 
     @classmethod
-    def begun(cls, goal: Goal) -> "Progress":
+    def begun(cls, goal: Goal, start: int) -> "Progress":
         """Nothing yet."""
-        return cls(goal, {})
+        return cls(goal, start, {})
 
     def feed(self, tick: int, look: Look, messages: int) -> None:
         """Take what is the case at a tick.
@@ -334,8 +340,10 @@ class Progress:
             if holds:
                 self.first.setdefault(number, tick)
         count = len(self.goal.reach)
-        if any(held[count:]) or (
-            self.goal.messages is not None and self.messages > self.goal.messages
+        if (
+            any(held[count:])
+            or (self.goal.messages is not None and self.messages > self.goal.messages)
+            or (self.goal.ticks is not None and tick - self.start > self.goal.ticks)
         ):
             self.violated = tick
         elif count and all(held[:count]):

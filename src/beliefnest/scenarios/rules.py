@@ -56,6 +56,10 @@ class GoalEntry(_Entry, frozen=True):
     reach: Annotated[list[ConditionEntry], _note("True at one and the same tick.")] = []
     never: Annotated[list[ConditionEntry], _note("True at no tick until then.")] = []
     messages: Annotated[int | None, _note("Most utterances of all players.")] = None
+    ticks: Annotated[
+        Annotated[int, msgspec.Meta(ge=1)] | None,
+        _note("Most ticks from the first round until all of `reach` is the case."),
+    ] = None
 
 
 class EpisodeEntry(_Entry, frozen=True, kw_only=True):
@@ -87,10 +91,13 @@ def goal_of(entry: GoalEntry, agents: Collection[str]) -> Goal:
     Raises:
         InputError: A condition makes no sense.
     """
+    if entry.ticks is not None and not entry.reach:
+        raise InputError("a goal has `ticks` and nothing to `reach` within them")
     return Goal(
         tuple(each for one in entry.reach for each in conditions_of(one, agents)),
         tuple(each for one in entry.never for each in conditions_of(one, agents)),
         entry.messages,
+        entry.ticks,
     )
 
 

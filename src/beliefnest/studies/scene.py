@@ -96,7 +96,12 @@ _CONDITION = {
     "plate": "keep",
     "property": "keep",
 }
-_GOAL = {"reach": _Each(_CONDITION), "never": _Each(_CONDITION), "messages": "keep"}
+_GOAL = {
+    "reach": _Each(_CONDITION),
+    "never": _Each(_CONDITION),
+    "messages": "keep",
+    "ticks": "keep",
+}
 _EPISODE = {
     "goal": _GOAL,
     "goals": _Map("agent", _GOAL),
