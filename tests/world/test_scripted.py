@@ -1,12 +1,13 @@
 """The scripted world: exactly the moves it is told, and nothing when they are impossible."""
 
 import math
+from dataclasses import fields, replace
 
 import pytest
 
 import beliefnest as bn
 from beliefnest.world.frames import Snapshot
-from beliefnest.world.values import DroppedItem, EventKind
+from beliefnest.world.values import AgentState, DroppedItem, EventKind
 
 CHEST = (3, 0, 3)
 
@@ -285,3 +286,12 @@ def test_dropped_items_of_a_snapshot_lie_in_the_world():
     nest = bn.Nest(bn.ScriptedWorld.from_snapshot(there))
     assert nest["/"].state.items == {7: item}
     assert nest["/sally/anne"].state.items == {7: item}
+
+
+def test_who_moves_keeps_all_else() -> None:
+    agent = AgentState(
+        (1.0, 2.0, 3.0), 0.5, 0.25, False, {"head": "iron_helmet"}, {"iron_helmet": 1}, 7.0, 8.0
+    )
+    assert all(getattr(agent, each.name) != each.default for each in fields(agent))
+    moved = agent.moved((4.0, 5.0, 6.0), 1.0, 0.75)
+    assert moved == replace(agent, position=(4.0, 5.0, 6.0), yaw=1.0, pitch=0.75)

@@ -9,7 +9,6 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from copy import copy
-from dataclasses import replace
 from typing import Any
 
 from beliefnest.errors import InputError, WorldError
@@ -196,12 +195,8 @@ class ScriptedWorld(ScriptedState):
             angles = [agent.yaw if yaw is None else yaw, agent.pitch if pitch is None else pitch]
             if not all(math.isfinite(angle) for angle in angles):
                 raise WorldError(f"{name} cannot look along yaw {yaw}, pitch {pitch}")
-            self._facts.agents[name] = replace(
-                agent,
-                position=self._feet(position),
-                yaw=float(angles[0]),
-                pitch=float(angles[1]),
-            )
+            feet = self._feet(position)
+            self._facts.agents[name] = agent.moved(feet, float(angles[0]), float(angles[1]))
             pending.agents.add(name)
 
     def set_block(self, position: Position, block: str, actor: str | None = None) -> None:

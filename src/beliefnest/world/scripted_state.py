@@ -152,7 +152,9 @@ class ScriptedState:
         return place
 
     def _inside(self, position: Position) -> Position:
-        place = whole_position(position)
+        return self._in_box(whole_position(position))
+
+    def _in_box(self, place: Position) -> Position:
         if place not in self._box:
             raise WorldError(
                 f"position {place} lies outside the box {self._box.low}..{self._box.high}"
@@ -160,10 +162,10 @@ class ScriptedState:
         return place
 
     def _feet(self, position: Point) -> Point:
-        if len(position) != 3 or not all(math.isfinite(p) for p in position):
+        if len(position) != 3 or not all(map(math.isfinite, position)):
             raise WorldError(f"{position!r} is no point; give three finite numbers")
-        x, y, z = (float(p) for p in position)
-        self._inside((math.floor(x), math.floor(y), math.floor(z)))
+        x, y, z = map(float, position)
+        self._in_box((math.floor(x), math.floor(y), math.floor(z)))
         return (x, y, z)
 
     def _state(self, block: str) -> int:

@@ -162,6 +162,19 @@ class AgentState:
     health: float = 20.0
     food: float = 20.0
 
+    def moved(self, position: Point, yaw: float, pitch: float) -> "AgentState":
+        """The agent elsewhere, as `dataclasses.replace` makes it in a third of the time."""
+        return AgentState(
+            position,
+            yaw,
+            pitch,
+            self.on_ground,
+            self.equipment,
+            self.inventory,
+            self.health,
+            self.food,
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class DroppedItem:
