@@ -13,6 +13,9 @@ class RemoteExhibits {
   }
 
   async open (told) {
+    if (this.regions.server.accounts !== null) {
+      throw new BadRequest('beliefs cannot be visited on a server in online mode: everybody shown there would need an account; play on one in offline mode, or in the embedded world with realtime=True')
+    }
     if (this.byName.has(told.exhibit)) throw new BadRequest(`${told.exhibit} is shown already`)
     const exhibit = new RemoteExhibit(told, this.guideName(), this.regions)
     try {
