@@ -505,3 +505,18 @@ def test_an_act_of_which_the_kind_alone_is_known_is_told_in_words():
         told = str(nest["/observer/fiona"].explain(container=(7, 1, 2)))
     assert "something was put in; fiona took it over" in told
     assert "deposit_item" not in told
+
+
+def test_a_deed_and_what_it_does_to_the_block_are_told_as_one() -> None:
+    door = (5, 0, 2)
+    world = bn.ScriptedWorld(
+        ((0, 0, 0), (9, 3, 9)),
+        blocks={door: "oak_trapdoor[open=false]"},
+        agents={"anne": (4.5, 0, 4.5)},
+    )
+    nest = bn.Nest(world)
+    world.use_door("anne", door, open=True)
+    assert str(nest["/"].explain(block=door)).endswith("since tick 1: anne opened it.")
+    world.set_block(door, "oak_trapdoor[open=false]")
+    told = str(nest["/"].explain(block=door))
+    assert "since tick 2: something made it oak_trapdoor[" in told

@@ -218,21 +218,29 @@ def _acts_text(acts: Iterable[PerceivedEvent]) -> str:
 
 
 def _act_text(act: PerceivedEvent) -> str:
-    actor = act.actor or "something"
+    return f"{act.actor or 'something'} {_deed_text(act)}"
+
+
+def _deed_text(act: PerceivedEvent) -> str:
     items = _items_text(act.detail.get("items", {}))
     match act.kind:
         case EventKind.DEPOSIT_ITEM_INTO_CHEST:
-            return f"{actor} put {items} in"
+            text = f"put {items} in"
         case EventKind.GET_ITEM_FROM_CHEST:
-            return f"{actor} took {items} out"
+            text = f"took {items} out"
         case EventKind.OPEN_CONTAINER:
-            return f"{actor} looked in"
+            text = "looked in"
+        case EventKind.USE_LEVER if "powered" in act.detail:
+            text = f"switched it {'on' if act.detail['powered'] else 'off'}"
+        case EventKind.PRESS_BUTTON:
+            text = "pressed it"
         case EventKind.USE_DOOR:
-            return f"{actor} {'opened' if act.detail.get('open') else 'shut'} it"
+            text = f"{'opened' if act.detail.get('open') else 'shut'} it"
         case EventKind.BLOCK_UPDATE | EventKind.PLACE_BLOCK if "block" in act.detail:
-            return f"{actor} {_made_text(act.detail)}"
+            text = _made_text(act.detail)
         case _:
-            return f"{actor} did {act.kind.value.replace('_', ' ')}"
+            text = f"did {act.kind.value.replace('_', ' ')}"
+    return text
 
 
 def _made_text(detail: Mapping[str, Any]) -> str:
