@@ -29,3 +29,18 @@ def test_rounds_and_goals_are_exported_and_tables(tmp_path: Path) -> None:
     table = frames.rounds_df(store)
     assert list(table["program"]) == [row["program"] for row in rows]
     assert not table.duplicated(["cell", "branch", "round", "agent"]).any()
+
+
+def test_a_replay_is_the_same_bytes_in_every_table(tmp_path: Path) -> None:
+    with bn.Episode(bn.Task.load("help-find", seed=1), store=tmp_path / "played.bn") as episode:
+        episode.play()
+    with bn.Episode.replay(tmp_path / "played.bn", store=tmp_path / "replayed.bn") as episode:
+        episode.play()
+    written = []
+    for name in ("played", "replayed"):
+        command = ["export", str(tmp_path / f"{name}.bn"), "--out", str(tmp_path / name)]
+        assert run_command_line(command) == 0
+        files = sorted((tmp_path / name).iterdir())
+        written.append({file.name: file.read_bytes() for file in files})
+    assert written[0] == written[1]
+    assert written[0]["rounds.jsonl"]
