@@ -10,7 +10,7 @@ from beliefnest.scenarios.expected import Arrives, Holds, Opens, Stands
 from beliefnest.scenarios.judging import Verdict
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.viewer.page.words import event_text
+from beliefnest.viewer.page.words import event_text, is_lid
 from beliefnest.world.values import Position
 
 __all__ = ["accounts"]
@@ -45,7 +45,11 @@ def _happened(probe: ProbeOutcome, labels: Mapping[Position, str]) -> list[str]:
     ]
     if probe.trial is None:
         return [*answered, *([probe.fault] if probe.fault else [])]
-    told = [f"tick {tick}: {event_text(event, labels)}" for tick, event in probe.result.happened]
+    told = [
+        f"tick {tick}: {event_text(event, labels)}"
+        for tick, event in probe.result.happened
+        if not is_lid(event)
+    ]
     lines = told[-_MOST:]
     if len(told) > _MOST:
         lines.insert(0, f"{len(told) - _MOST} earlier events are left out")

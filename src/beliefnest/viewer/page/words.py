@@ -3,10 +3,11 @@
 from collections.abc import Mapping
 from typing import Any
 
+from beliefnest.world.registry import Registry
 from beliefnest.world.signs import sign_words
 from beliefnest.world.values import Event, EventKind, Position
 
-__all__ = ["event_text", "place_name"]
+__all__ = ["event_text", "is_lid", "place_name"]
 
 _DEEDS = {
     EventKind.THINK: "thinks: {text}",
@@ -60,6 +61,14 @@ def event_text(event: Event, labels: Mapping[Position, str]) -> str:
         name=detail.get("name", ""),
     )
     return f"{actor} {words}".strip()
+
+
+def is_lid(event: Event) -> bool:
+    """Whether an event is a barrel's lid that moves: that it is opened is told already."""
+    if event.kind is not EventKind.BLOCK_UPDATE or event.actor is not None:
+        return False
+    name = str(event.detail.get("block", "")).partition("[")[0]
+    return Registry.load().is_container(name)
 
 
 def place_name(place: Any, labels: Mapping[Position, str]) -> str:
