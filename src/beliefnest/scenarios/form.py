@@ -18,6 +18,9 @@ _FAULT_STEP = re.compile(r"\.(?P<name>\w+)|\[(?P<index>\d+)\]|(?P<any>\[\.\.\.\]
 _UNKNOWN_FIELD = re.compile(r"Object contains unknown field `(?P<name>.*)`", re.DOTALL)
 _MISSING_FIELD = re.compile(r"Object missing required field `(?P<name>.*)`")
 
+_MOST_BITS = 64
+"""Of a whole number that a message repeats; Python refuses to write out very long ones."""
+
 
 def check_form(document: Document) -> ScenarioFile:
     """The content of a document as typed values.
@@ -75,9 +78,11 @@ def _fault(document: Document, error: str) -> ScenarioError:
 def _found(root: Node, path: KeyPath, what: str) -> str:
     """What stands there, where the fault does not say so."""
     value = _node_at(root, list(path)).value
-    if not what.startswith("expected") or isinstance(value, dict | list):
-        return ""
-    return "" if ", got" in what else f", got {value!r}"
+    is_short = isinstance(value, float | None) or (
+        isinstance(value, int) and value.bit_length() <= _MOST_BITS
+    )
+    told = not what.startswith("expected") or ", got" in what
+    return f", got {value!r}" if is_short and not told else ""
 
 
 def _allowed(path: KeyPath, what: str) -> str:
