@@ -156,6 +156,7 @@ def percepts_message(sensed: Sensed) -> dict[str, Any]:
         "agents": {name: pose_message(agent) for name, agent in sensed.agents.items()},
         "items": items_message(sensed.items),
         **signs_message(sensed.signs),
+        **({"heard": sensed.heard} if sensed.heard else {}),
     }
 
 

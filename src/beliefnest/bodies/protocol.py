@@ -134,10 +134,13 @@ class Past:
     Attributes:
         tick: The tick at which it began at first, which its random numbers hang on.
         calls: In the order in which it made them.
+        until: The tick at which it was cut; what its agent heard since then, it hears in the end of
+            its first tick.
     """
 
     tick: int
     calls: tuple[Called, ...] = ()
+    until: int = 0
 
 
 @dataclass(frozen=True, slots=True)

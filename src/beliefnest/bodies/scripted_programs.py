@@ -60,6 +60,7 @@ class _Run:
     doing: dict[int, tuple[str, Doing]] = field(default_factory=dict)
     memory: Memory = field(default_factory=Memory)
     read: Sensed | None = None
+    missed: tuple[tuple[str, str, str | None], ...] = ()
     aims: list[Aim] = field(default_factory=list)
     end_tick: int | None = None
     end: Fault | None = None
@@ -168,7 +169,10 @@ def _begun(
         speech_ticks=rules.speech_ticks,
     )
     past = rules.past.get(agent)
-    run = _Run(hand, program, sense, memory=Memory(() if past is None else past.calls))
+    missed = () if past is None else sense().heard
+    run = _Run(
+        hand, program, sense, missed=missed, memory=Memory(() if past is None else past.calls)
+    )
     _show(run, grounds)
     program.start()
     _take_calls(run)
@@ -197,13 +201,14 @@ def _hear(run: _Run, grounds: Grounds) -> None:
     if not _listens(run) or run.end_tick is not None:
         return
     sensed = run.sense()
-    if sensed is run.read or not sensed.heard:
+    heard = run.missed if sensed is run.read else (*run.missed, *sensed.heard)
+    run.read, run.missed = sensed, ()
+    if not heard:
         return
-    run.read = sensed
-    run.hand.heard.extend(sensed.heard)
+    run.hand.heard.extend(heard)
     if run.program.listens and not run.program.ended:
         _show(run, grounds)
-        run.program.hear(sensed.heard)
+        run.program.hear(heard)
         _take_calls(run)
 
 

@@ -146,8 +146,7 @@ def run(
     from beliefnest.llm.budget import RunLimits
 
     limits = RunLimits(max_tokens, max_cost)
-    where = f"127.0.0.1:{listen}" if listen is not None and listen.isdecimal() else listen
-    named = world_name(world, realtime=realtime, listen=where)
+    named = world_name(world, realtime=realtime, listen=_listening(listen))
     return run_scenarios(
         RunOptions(
             scenario=scenario,
@@ -411,6 +410,9 @@ def play(
     measure_help: Annotated[
         bool, typer.Option("--measure-help", help="Tell what help was needed, given, superfluous.")
     ] = False,
+    listen: Annotated[
+        str | None, typer.Option(help="Where people join: PORT of this machine, or HOST:PORT.")
+    ] = None,
     baselines: Annotated[
         bool, typer.Option("--baselines", help="Play the task, or all, by all baselines instead.")
     ] = False,
@@ -446,9 +448,15 @@ def play(
         budget=Budget(max_ticks, max_tokens, max_cost),
         patience_s=patience,
         measures_help=measure_help,
+        listen=_listening(listen),
         as_json=json,
     )
     return play_task(options)
+
+
+def _listening(listen: str | None) -> str | None:
+    """Where people join; a port alone is one of this machine."""
+    return f"127.0.0.1:{listen}" if listen is not None and listen.isdecimal() else listen
 
 
 @app.command()

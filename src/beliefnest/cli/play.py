@@ -36,6 +36,7 @@ class PlayOptions:
         budget: What it may take.
         patience_s: Seconds after which a policy has lost its round.
         measures_help: Whether help is measured, for which branches are played.
+        listen: Where people join who play agents, HOST:PORT.
         as_json: Whether to print one JSON object instead of a table.
     """
 
@@ -50,6 +51,7 @@ class PlayOptions:
     budget: Budget
     patience_s: float | None
     measures_help: bool
+    listen: str | None
     as_json: bool
 
 
@@ -107,6 +109,7 @@ def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> E
         seed=options.seed,
         budget=options.budget,
         patience_s=options.patience_s,
+        listen=options.listen,
     )
 
 

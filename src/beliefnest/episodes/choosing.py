@@ -31,7 +31,10 @@ def chosen(
     names: dict[str, str] = {}
     chosen: dict[str, Policy] = {}
     for agent in task.agents:
-        own = task.form.policies.get(agent, f"search:{task.order}")
+        by_itself = f"search:{task.order}"
+        if task.form.scenario["agents"][agent].get("type") == "human":
+            by_itself = "person"
+        own = task.form.policies.get(agent, by_itself)
         given = policies.get(agent, own)
         names[agent] = name_of(given)
         chosen[agent] = resolve_policy(given) if isinstance(given, str) else given

@@ -12,11 +12,19 @@ from beliefnest.episodes.choosing import check_resumable, chosen, name_of
 from beliefnest.episodes.helping import Help, help_in
 from beliefnest.episodes.measures import Measures, false_beliefs, measured
 from beliefnest.episodes.moment import Moment
+from beliefnest.episodes.people import (
+    RealRound,
+    check_repeats,
+    people_in,
+    played_by_people,
+    world_of_people,
+)
 from beliefnest.episodes.record import (
     Branch,
     Budget,
     Start,
     branch_of,
+    cut_in,
     ended_as,
     keep_begins,
     keep_branch,
@@ -57,6 +65,7 @@ class Episode:
         budget: What it may take.
         patience_s: Seconds after which a policy has lost its round; None: it is waited for.
         worlds: Lends the world, to one episode after the other; None: one is started.
+        listen: Where people join who play agents, as for `Nest.open`.
         names: What runs call policies that are objects, by agent.
 
     Raises:
@@ -76,14 +85,17 @@ class Episode:
         patience_s: float | None = None,
         worlds: Worlds | None = None,
         names: Mapping[str, str] | None = None,
+        listen: int | str | None = None,
     ) -> None:
         if isinstance(task, Scenario):
             task = Task.of(task)
         if world != "scripted" and task.form.pace == 1:
             task = task.at_pace(_ON_FOOT)
-        self.task = task
         self.seed = seed
         self._names, self._policies = chosen(task, policies or {})
+        self._people = people_in(self._policies)
+        self.task = played_by_people(task, self._people)
+        world = world_of_people(world, listen, self._people)
         self._names |= names or {}
         self._world, self._store, self._worlds = world, store, worlds
         self._budget = budget or Budget()
@@ -91,6 +103,7 @@ class Episode:
         self._asker = Asker(self._policies, patience_s)
         self._branch = MAIN
         self._nest: Nest | None = None
+        self._lobby: Nest | None = None
         self._owns_nest = True
         self._start = 0
         self._parts: list[Part] = []
@@ -166,6 +179,7 @@ class Episode:
         with nest:
             kept, branches = kept_in(nest)
             decided = branch_of(branches, branch or nest.branch("/"))
+        check_repeats(kept.world, "replayed")
         policies = replayed(decided.parts, decided.policies)
         task = Task.from_mapping(kept.task, kept.task_seed)
         episode = cls(
@@ -188,9 +202,10 @@ class Episode:
 
     def close(self) -> None:
         """End the world and close the store; forks end with what they were forked from."""
-        if self._nest is not None and self._owns_nest:
-            self._nest.close()
-        self._nest = None
+        nest = self._nest or self._lobby
+        if nest is not None and self._owns_nest:
+            nest.close()
+        self._nest = self._lobby = None
 
     @property
     def nest(self) -> Nest:
@@ -199,6 +214,11 @@ class Episode:
         if nest["/"].branch != self._branch:
             nest["/"].switch(self._branch)
         return nest
+
+    @property
+    def address(self) -> str | None:
+        """Where people join with a Minecraft client, HOST:PORT; None if nobody can."""
+        return (self._nest or self._entered()).address
 
     @property
     def world(self) -> str:
@@ -223,6 +243,8 @@ class Episode:
     @property
     def beginnings(self) -> Sequence[int]:
         """The ticks at which the rounds began that were played."""
+        if self._people:
+            return [part.began for part in self._parts if part.began is not None]
         return range(self._start, self.nest.tick, self._brief.whole_round)
 
     @property
@@ -238,9 +260,16 @@ class Episode:
         """Whether there is nothing more to play."""
         if self._nest is None:
             return False
+        return self._is_decided or self._is_at_end
+
+    @property
+    def _is_decided(self) -> bool:
+        """Whether the goal was reached, or cannot be any more."""
         progress = self._watch()
-        if progress.reached is not None or progress.violated is not None:
-            return True
+        return progress.reached is not None or progress.violated is not None
+
+    @property
+    def _is_at_end(self) -> bool:
         return len(self._parts) >= self.task.form.rounds * len(self._slots) or self._is_spent()
 
     @property
@@ -285,6 +314,7 @@ class Episode:
         which with models takes time and tokens that are not counted here. `measures` tells of
         it from then on.
         """
+        check_repeats(self._world, "played again without somebody's help")
         if self._help is None:
             told = replayed(self._parts, self.task.agents)
             with Episode(self.task, told, world=self._world, seed=self.seed) as copy:
@@ -372,7 +402,8 @@ class Episode:
     def forked(self, round: int, policies: Mapping[str, "str | Policy"]) -> "Episode":
         """See `Moment.fork`."""
         nest = self.nest
-        tick = self._start + round * self._brief.whole_round
+        beginnings = [*self.beginnings, nest.tick]
+        tick = beginnings[round] if self._people else self._start + round * self._brief.whole_round
         taken = {info.key.branch for info in nest["/"].branches()}
         number = next(n for n in range(1, len(taken) + 2) if f"fork {n}" not in taken)
         given: dict[str, str | Policy] = dict(self._policies)
@@ -404,11 +435,12 @@ class Episode:
 
     def _opened(self) -> Nest:
         if self._nest is None:
-            nest = Nest.open(self.task.scenario, self._world, self._store, self.seed, self._worlds)
+            nest = self._entered()
             try:
                 keep_begins(nest)
                 nest.play()
-                _look_around(nest)
+                if not self._people:
+                    _look_around(nest)
                 start = Start(
                     task=self.task.plain(),
                     seed=self.seed,
@@ -421,10 +453,18 @@ class Episode:
                 self._take(nest, nest["/"].branch, nest.tick, [])
                 self._keep()
             except BaseException:
-                self._nest = None
+                self._nest = self._lobby = None
                 nest.close()
                 raise
         return self._nest or self._opened()
+
+    def _entered(self) -> Nest:
+        """The nest before anything has happened in it, which people may join."""
+        if self._lobby is None:
+            self._lobby = Nest.open(
+                self.task.scenario, self._world, self._store, self.seed, self._worlds
+            )
+        return self._lobby
 
     def _take(self, nest: Nest, branch: str, start: int, parts: list[Part]) -> None:
         self._nest, self._branch, self._start = nest, branch, start
@@ -448,6 +488,9 @@ class Episode:
         """Do what was decided last, if it is not done yet, up to the end of its ticks."""
         nest = self.nest
         ticks = self.task.form.round_ticks
+        if self._people:
+            self._play_in_real_time()
+            return
         end = self._start + len(self._parts) * ticks
         if not self._parts or nest.tick >= end:
             return
@@ -465,15 +508,31 @@ class Episode:
             ended = {
                 agent: ended_as(each, results.get(agent)) for agent, each in part.decisions.items()
             }
-            begun = end - ticks
-            cut = {
-                agent: Past(past[agent].tick if agent in past else begun, result.calls)
-                for agent, result in results.items()
-                if ended[agent].how == "cut"
-            }
+            cut = cut_in(results, ended, past, end - ticks, end)
             self._parts[-1] = Part(part.decisions, ended, cut)
             self._watch()
             self._keep()
+
+    def _play_in_real_time(self) -> None:
+        """Do what was decided last, if it is not done yet, while people do what they do."""
+        if not self._parts or self._parts[-1].ended:
+            return
+        part = self._parts[-1]
+        programs = {a: d.program for a, d in part.decisions.items() if d.program}
+        past = {a: self._cut(a) for a, d in part.decisions.items() if d.goes_on}
+        here = RealRound(
+            self.nest, self._policies, self.task.form.round_ticks, lambda: self._is_decided
+        )
+        results = here.run(programs, past)
+        acted = here.acted
+        ended = {
+            agent: Ended("", "ok") if agent in acted else ended_as(each, results.get(agent))
+            for agent, each in part.decisions.items()
+        }
+        cut = cut_in(results, ended, past, here.began, here.cut)
+        self._parts[-1] = Part(part.decisions, ended, cut, here.began)
+        self._watch()
+        self._keep()
 
     def _is_spent(self) -> bool:
         return self._budget.is_spent(self.nest.tick - self._start, self.spent)

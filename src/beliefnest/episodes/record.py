@@ -5,7 +5,7 @@ from typing import Any, Protocol
 
 import msgspec
 
-from beliefnest.bodies.protocol import NO_WAY, Fault, ProgramResult
+from beliefnest.bodies.protocol import NO_WAY, Fault, Past, ProgramResult
 from beliefnest.episodes.rounds import Decision, Part, Spent
 from beliefnest.episodes.view import Ended
 from beliefnest.errors import BranchError, NotBegunError, StoreError
@@ -16,6 +16,7 @@ __all__ = [
     "Keeps",
     "Start",
     "branch_of",
+    "cut_in",
     "ended_as",
     "holds_episode",
     "keep_begins",
@@ -134,6 +135,29 @@ def ended_as(decision: Decision, result: ProgramResult | None) -> Ended:
 def holds_episode(nest: Keeps) -> bool:
     """Whether there is an episode in a run."""
     return nest.kept(_BRANCHES) is not None
+
+
+def cut_in(
+    results: Mapping[str, ProgramResult],
+    ended: Mapping[str, Ended],
+    past: Mapping[str, Past],
+    began: int,
+    until: int,
+) -> dict[str, Past]:
+    """What programs had done that were cut, by agent.
+
+    Args:
+        results: What became of the programs of a part.
+        ended: How they ended.
+        past: What those had done that went on.
+        began: The tick at which the part began.
+        until: The tick at which it was over.
+    """
+    return {
+        agent: Past(past[agent].tick if agent in past else began, result.calls, until)
+        for agent, result in results.items()
+        if ended[agent].how == "cut"
+    }
 
 
 def kept_in(nest: Keeps) -> tuple[Start, dict[str, Branch]]:

@@ -63,11 +63,13 @@ class Part(msgspec.Struct, frozen=True):
         decisions: By agent.
         ended: By agent; empty until it is done.
         cut: Of agents whose programs were cut, what these had done.
+        began: The tick at which it began in real time; None: where time stands still meanwhile.
     """
 
     decisions: dict[str, Decision]
     ended: dict[str, Ended] = {}
     cut: dict[str, Past] = {}
+    began: int | None = None
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from beliefnest.episodes.policies.simple import Program, Random, Scripted
+from beliefnest.episodes.policies.simple import Person, Program, Random, Scripted
 from beliefnest.episodes.view import Policy
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.files import read_regular_text
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "POLICIES",
+    "Person",
     "Program",
     "Random",
     "Scripted",
@@ -31,6 +32,8 @@ POLICIES = (
     "random",
     "program:FILE",
     "scripted:FILE",
+    "person",
+    "person:wait",
 )
 """The forms of names that `resolve_policy` takes."""
 
@@ -60,6 +63,8 @@ def resolve_policy(
     match kind:
         case "random" if not rest:
             return Random()
+        case "person" if rest in ("", "wait"):
+            return Person(is_awaited=rest == "wait")
         case "program" | "scripted" if rest:
             text = _text(rest)
             return Program(text) if kind == "program" else Scripted(_programs(text))

@@ -7,7 +7,22 @@ from dataclasses import dataclass
 from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, said
 from beliefnest.episodes.view import GO_ON, AgentView
 
-__all__ = ["Program", "Random", "Scripted"]
+__all__ = ["Person", "Program", "Random", "Scripted"]
+
+
+@dataclass(frozen=True)
+class Person:
+    """Somebody at a Minecraft client; what they do in a round is their agent's action.
+
+    Attributes:
+        is_awaited: Whether a round lasts until they have done or said something.
+    """
+
+    is_awaited: bool = False
+
+    def act(self, view: AgentView) -> str:
+        """No program: they act themselves."""
+        return ""
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from beliefnest.bodies.protocol import Body, Sense, World
+from beliefnest.bodies.protocol import Body, Past, Sense, World
 from beliefnest.errors import BodyError, BranchError, WorldError
 from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.nest.acting.frame_recorder import ChatListener, FrameRecorder
@@ -184,12 +184,13 @@ class Bodies:
             with self.acting(path) as body:
                 body.step(0)
 
-    def sense_of(self, path: Path, agent: str) -> Sense:
+    def sense_of(self, path: Path, agent: str, past: Past | None = None) -> Sense:
         """What an agent of a simulator perceives or remembers, while programs run in its body.
 
         Beliefs are worked out from what has been recorded so far, as they always are, and follow
         this simulator, whatever branch the agent's own one is on. Where the agent is, and what
-        it has on it, it knows from its own body.
+        it has on it, it knows from its own body. A program that goes on from a `past` hears what
+        was said since then.
         """
         embodied, recording = self._embodied[path], self._recording
         key = recording.controller(path)
@@ -199,8 +200,12 @@ class Bodies:
             return recording.journal.info(key).entries
 
         believer = believer_of(path, agent)
+        since = None
+        if past is not None:
+            # What is said in the tick in which it is cut, it does not hear in that.
+            since = recording.journal.entries_until(key, past.until - 1)
         return Sensing(
-            agent, entries, lambda count: recording.history.reading(key, believer, count)
+            agent, entries, lambda count: recording.history.reading(key, believer, count), since
         )
 
     @contextmanager

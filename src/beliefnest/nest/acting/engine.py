@@ -207,7 +207,8 @@ class Engine:
         self.bodies.catch_up(path)
         limited = {}
         if senses == "percepts":
-            limited = {agent: self.bodies.sense_of(path, agent) for agent in programs}
+            past = rules.past
+            limited = {a: self.bodies.sense_of(path, a, past.get(a)) for a in programs}
         before = self.recording.info(path)
         try:
             with self.bodies.acting(path) as body:

@@ -26,16 +26,22 @@ class Sensing:
         agent: Who it is.
         entries: How many entries of the timeline that it acts in are over by now.
         reading: The agent's belief after that many entries.
+        since: After how many entries what was heard is told at first; None: that of the past is
+            not.
     """
 
     def __init__(
-        self, agent: str, entries: Callable[[], int], reading: Callable[[int], NodeView]
+        self,
+        agent: str,
+        entries: Callable[[], int],
+        reading: Callable[[int], NodeView],
+        since: int | None = None,
     ) -> None:
         self._agent = agent
         self._entries = entries
         self._reading = reading
         self._read = -1
-        self._events: int | None = None
+        self._events = None if since is None else reading(since).count_of_events
         self._last: Sensed | None = None
 
     def __call__(self) -> Sensed:

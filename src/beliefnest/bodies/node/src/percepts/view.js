@@ -16,6 +16,8 @@ const OF_THE_BODY = new Set([
   'experience', 'diggingCompleted', 'diggingAborted', 'windowOpen', 'windowClose', 'heldItemChanged', 'usedFirework'
 ])
 
+const HEARING = new Set(['chat', 'whisper', 'messagestr'])
+
 class View {
   /**
    * @param {object} options
@@ -39,7 +41,8 @@ class View {
     bot.on('playerCollect', this.onCollect)
     this.onSignOpen = ({ position }) => this.emitter.emit('signOpen', this.known.getBlock(position))
     bot.on('signOpen', this.onSignOpen)
-    this.learn(changes)
+    // What was heard before the program could listen: since it was cut, if it goes on.
+    this.backlog = this.learn(changes).filter(([event]) => HEARING.has(event))
   }
 
   /** The bot that a program gets. */
@@ -99,7 +102,11 @@ class View {
 
   /** Takes PERCEPTS, what has changed since the last; null: nothing has. */
   update (changes) {
-    if (changes !== null) for (const [event, ...values] of this.learn(changes)) this.emitter.emit(event, ...values)
+    // A program listens only once it has come as far as that.
+    const listens = [...HEARING].some(event => this.emitter.listenerCount(event) > 0)
+    const before = listens ? this.backlog.splice(0) : []
+    const told = [...before, ...(changes === null ? [] : this.learn(changes))]
+    for (const [event, ...values] of told) this.emitter.emit(event, ...values)
     this.collected = []
     for (const resolve of this.waiting.splice(0)) resolve()
   }
