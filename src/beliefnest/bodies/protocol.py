@@ -115,12 +115,14 @@ class Called:
         given: With which arguments, as JSON.
         answer: What came of it, as JSON: `{"ok", "value"}`; None: it was under way in the end.
         ticks: For how long it was under way; 0 if it is over.
+        since: The tick at which it was called first.
     """
 
     name: str
     given: str
     answer: str | None = None
     ticks: int = 0
+    since: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,13 +136,21 @@ class Past:
     Attributes:
         tick: The tick at which it began at first, which its random numbers hang on.
         calls: In the order in which it made them.
-        until: The tick at which it was cut; what its agent heard since then, it hears in the end of
-            its first tick.
+        until: The tick at which it was cut.
     """
 
     tick: int
     calls: tuple[Called, ...] = ()
     until: int = 0
+
+    @property
+    def heard_until(self) -> int:
+        """The tick up to which it knows what was said: later words are told when it goes on.
+
+        Whoever waited for words had got none yet. In the tick in which it is cut it hears nothing.
+        """
+        waits = [c.since for c in self.calls if c.name == "waitForChat" and c.answer is None]
+        return min([*waits, self.until - 1])
 
 
 @dataclass(frozen=True, slots=True)

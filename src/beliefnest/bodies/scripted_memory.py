@@ -19,7 +19,7 @@ class _Entry:
     """A call, and since when it is under way."""
 
     call: Called
-    since: int
+    begun: int
     before: int = 0
 
 
@@ -44,7 +44,9 @@ class Memory:
             known = None
         before = 0 if known is None else known.ticks
         answer = None if known is None else known.answer
-        self._entries[number] = _Entry(Called(name, given, answer), tick, before)
+        since = tick if known is None else known.since
+        call = Called(name, given, answer, since=since)
+        self._entries[number] = _Entry(call, tick, before)
         if answer is None:
             return None
         told = json.loads(answer)
@@ -70,6 +72,6 @@ class Memory:
         return tuple(
             entry.call
             if entry.call.answer is not None
-            else replace(entry.call, ticks=entry.before + tick - entry.since)
+            else replace(entry.call, ticks=entry.before + tick - entry.begun)
             for entry in self._entries.values()
         )

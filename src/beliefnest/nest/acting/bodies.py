@@ -202,8 +202,7 @@ class Bodies:
         believer = believer_of(path, agent)
         since = None
         if past is not None:
-            # What is said in the tick in which it is cut, it does not hear in that.
-            since = recording.journal.entries_until(key, past.until - 1)
+            since = recording.journal.entries_until(key, past.heard_until)
         return Sensing(
             agent, entries, lambda count: recording.history.reading(key, believer, count), since
         )

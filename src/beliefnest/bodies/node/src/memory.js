@@ -30,7 +30,7 @@ class Memory {
       this.past = []
       known = null
     }
-    const entry = { name, given, answer: known?.answer ?? null, before: known?.ticks ?? 0, since: this.now() }
+    const entry = { name, given, answer: known?.answer ?? null, before: known?.ticks ?? 0, begun: this.now(), since: known?.since ?? this.now() }
     this.entries.push(entry)
     return entry
   }
@@ -73,8 +73,8 @@ class Memory {
   /** @returns {object[]} CALLED, in order; none if they are too many to go on from */
   get calls () {
     if (this.entries.length > MOST) return []
-    return this.entries.map(({ name, given, answer, before, since }) =>
-      ({ name, given, answer, ticks: answer === null ? before + this.now() - since : 0 }))
+    return this.entries.map(({ name, given, answer, before, begun, since }) =>
+      ({ name, given, answer, ticks: answer === null ? before + this.now() - begun : 0, since }))
   }
 }
 
