@@ -5,15 +5,19 @@ import time
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.cli.bench.figures import Figure
 from beliefnest.episodes.episode import Episode
+from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, said
 from beliefnest.episodes.policies.search import Bounds, Planner
 from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest
+from beliefnest.scenarios.goals import StateFacts
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.values import TICKS_PER_SECOND
 
 __all__ = ["measure"]
 
 _TICKS = 100
+_TRIED = 40
+_PROCESSES = 2
 _WALK = """
 for (let n = 0; n < 4; n++) {
   await goToPosition(bot, new Vec3(%d, 1, 1), 0)
@@ -25,7 +29,12 @@ await waitTicks(bot, 200)
 
 def measure() -> list[Figure]:
     """A round of four agents, branches of an order-1 search, each task at its order."""
-    return [_round(), _branches(), *(_solved(name) for name in Task.names())]
+    return [
+        _round(),
+        _branches(),
+        _branches_in_minecraft(),
+        *(_solved(name) for name in Task.names()),
+    ]
 
 
 def _round() -> Figure:
@@ -64,6 +73,40 @@ def _branches() -> Figure:
         seconds = time.perf_counter() - started
     rate = planner.tried / seconds
     return Figure("branches, order 1, 3 agents", rate, "1/s", 200.0, at_least=True)
+
+
+def _branches_in_minecraft() -> Figure:
+    """What a planner of order 1 would try next, each on a branch of its agent's belief, in bodies.
+
+    The agent's own programs alone run there; the planner itself imagines a scripted world.
+    """
+    task = Task.load("tell-what-is-needed", agents=3)
+    with Episode(task, world="embedded") as episode:
+        view = episode.view("nora")
+        mind, goals = view.imagine(1), list(view.brief.goals.values())
+        told = claims_of_mind(mind, goals, lies=False)
+        calls = [*calls_of(mind, "nora", [view.goal]), *map(said, told)]
+        wanted = view.goal.reach[0].fact
+        programs = [calls[number % len(calls)].program for number in range(_TRIED)]
+
+        def tried(name: str) -> float:
+            started = time.perf_counter()
+            attempts = episode.nest.explore(
+                "/nora",
+                "nora",
+                programs,
+                lambda simulator, _: float(
+                    view.goal.reach[0].fact.holds(StateFacts(simulator.state))
+                ),
+                timeout_ticks=view.brief.round_ticks,
+                name=name,
+                processes=_PROCESSES,
+            )
+            return len(attempts) / (time.perf_counter() - started)
+
+        tried("first")
+        rate = tried("again")
+    return Figure("branches in Minecraft, order 1, 3 agents", rate, "1/s", 20.0, at_least=True)
 
 
 def _solved(name: str) -> Figure:
