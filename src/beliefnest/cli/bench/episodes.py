@@ -95,9 +95,7 @@ def _branches_in_minecraft() -> Figure:
                 "/nora",
                 "nora",
                 programs,
-                lambda simulator, _: float(
-                    view.goal.reach[0].fact.holds(StateFacts(simulator.state))
-                ),
+                lambda simulator, _: float(wanted.holds(StateFacts(simulator.state))),
                 timeout_ticks=view.brief.round_ticks,
                 name=name,
                 processes=_PROCESSES,
