@@ -24,7 +24,8 @@ class Standing:
         high: The highest one.
         origin: Where scenario (0, y, 0) lies: x and z, in blocks of Minecraft.
         command: What to type in the game to go there.
-        lag: Ticks by which what changed was shown there later than it happened, at most so far.
+        lag: Ticks by which what changed was shown there later than it happened, at most so far;
+            those between two calls of the nest count.
     """
 
     path: str
