@@ -29,6 +29,10 @@ PROGRAMS = (
     DEADLY,
     "await getItemFromChest(bot, new Vec3(4, 1, 4), {diamond: 2})",
     "const oops = ",
+    # Leaves much under way, in the bot and in the world.
+    "setInterval(() => bot.chat('still here'), 50); bot.setControlState('jump', true); "
+    "globalThis.left = bot.left = 1; await bot.waitForTicks(3)",
+    "bot.chat(`${globalThis.left} ${bot.left} ${bot.entity.position} ${bot.entity.onGround}`)",
 )
 
 

@@ -6,6 +6,7 @@ else. So it can run in any body filled with them, and be recorded when its turn 
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from dataclasses import dataclass, field
 from queue import Empty, SimpleQueue
 from threading import Event
@@ -119,7 +120,7 @@ def speculate(
     jobs: Mapping[int, Mapping[str, str]],
     timeout_ticks: int,
 ) -> Mapping[int, Speculation]:
-    """Run programs, each job in a body of its own, in several worlds at the same time.
+    """Run programs, each job in a body as it is at the start, in several worlds at the same time.
 
     Args:
         worlds: Where; each does one job after the other.
@@ -137,15 +138,16 @@ def speculate(
     stopped = Event()
 
     def work(world: World) -> None:
-        while not stopped.is_set():
-            try:
-                number = waiting.get_nowait()
-            except Empty:
-                return
-            speculation = _run(world, start, jobs[number], timeout_ticks, stopped)
-            if speculation is None:
-                return
-            speculations[number] = speculation
+        with closing(_Place(world, start, stopped)) as place:
+            while not stopped.is_set():
+                try:
+                    number = waiting.get_nowait()
+                except Empty:
+                    return
+                speculation = place.run(jobs[number], timeout_ticks)
+                if speculation is None:
+                    return
+                speculations[number] = speculation
 
     with ThreadPoolExecutor(len(worlds)) as pool:
         try:
@@ -159,24 +161,49 @@ def speculate(
     return speculations
 
 
-def _run(
-    world: World,
-    start: SpeculationStart,
-    programs: Mapping[str, str],
-    timeout_ticks: int,
-    stopped: Event,
-) -> Speculation | None:
-    speculation = Speculation(start.snapshot.tick)
-    body = _opened(world, start, speculation.frames.append, stopped)
-    if body is None:
-        return None
-    try:
-        speculation.results = body.run(programs, timeout_ticks, None, start.rules)
-    except BeliefNestError as error:
-        speculation.error = error
-    speculation.tick, speculation.internal_state = body.tick, body.internal_state
-    body.close()
-    return speculation
+class _Place:
+    """Where one job after the other is run in a world, in a body that begins each as the first."""
+
+    def __init__(self, world: World, start: SpeculationStart, stopped: Event) -> None:
+        self._world, self._start, self._stopped = world, start, stopped
+        self._body: Body | None = None
+        self._frames: list[Frame] = []
+
+    def run(self, programs: Mapping[str, str], timeout_ticks: int) -> Speculation | None:
+        """What becomes of programs; None: no body can be made for them."""
+        speculation = Speculation(self._start.snapshot.tick)
+        self._frames = speculation.frames
+        body = self._begun()
+        if body is None:
+            return None
+        try:
+            speculation.results = body.run(programs, timeout_ticks, None, self._start.rules)
+        except BeliefNestError as error:
+            speculation.error = error
+            self.close()
+        speculation.tick, speculation.internal_state = body.tick, body.internal_state
+        return speculation
+
+    def close(self) -> None:
+        """Give the body up."""
+        if self._body is not None:
+            self._body.close()
+            self._body = None
+
+    def _begun(self) -> Body | None:
+        """The body, as it is at the start; None: none can be made."""
+        if self._body is not None:
+            try:
+                self._body.set_state(self._start.snapshot)
+            except BodyError:
+                # Another one is made in its place.
+                self.close()
+        if self._body is None:
+            self._body = _opened(self._world, self._start, self._take, self._stopped)
+        return self._body
+
+    def _take(self, frame: Frame) -> None:
+        self._frames.append(frame)
 
 
 def _opened(world: World, start: SpeculationStart, sink: Sink, stopped: Event) -> Body | None:
