@@ -8,7 +8,6 @@ where the believer's belief differs from what there is.
 """
 
 import math
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -29,68 +28,13 @@ from beliefnest.belief.arrays import (
     Senses,
     Space,
 )
-from beliefnest.perception.eyes import (
-    Eye,
-    eye_at,
-    eye_sees_agent,
-    eye_sees_block,
-    eye_sees_point,
-    set_code,
-)
-from beliefnest.perception.rays import Cell, Scene, allocating, compiled, inlined, inner, merged
-from beliefnest.world.values import EYE_HEIGHT
+from beliefnest.belief.seeing import eye_of, grid_cell, sees_agent, sees_cell, whole
+from beliefnest.perception.eyes import Eye, set_code
+from beliefnest.perception.rays import compiled, inlined, inner, merged
 
-__all__ = ["fold", "put", "put_all", "refresh_pending", "sees_cells", "sees_place", "sees_point"]
+__all__ = ["fold", "put", "put_all", "refresh_pending"]
 
 _WORD = 64
-
-_Number = int | np.signedinteger[Any]
-
-
-@inlined
-def _whole(number: _Number) -> int:
-    """The number as int64, so that kernels are compiled for one kind of integer only."""
-    return np.int64(number)  # type: ignore[return-value]  # Python's int, once compiled
-
-
-@inlined
-def _grid_cell(space: Space, cell: int) -> Cell:
-    """Grid coordinates (with margin) of a flat cell."""
-    ny, nz = space.sizes[1] - 2, space.sizes[2] - 2
-    return cell // (ny * nz) + 1, cell // nz % ny + 1, cell % nz + 1
-
-
-@inlined
-def _eye(space: Space, poses: Poses, pose: int) -> Eye:
-    x, y, z = poses.feet[pose]
-    yaw, pitch = poses.angles[pose]
-    place = (
-        x + space.origin[0],
-        y + EYE_HEIGHT + space.origin[1],
-        z + space.origin[2],
-    )
-    return eye_at(place, yaw, pitch, space.senses.cos_half, space.senses.far)
-
-
-@inlined
-def _scene(space: Space, nodes: Nodes, node: int) -> Scene:
-    """What an eye in a node looks through."""
-    return Scene(nodes.codes[node], space.sizes, space.starts, space.boxes)
-
-
-@inner
-def _sees_agent(space: Space, poses: Poses, nodes: Nodes, node: int, eye: Eye, pose: int) -> bool:
-    """Whether an eye in a node sees an agent at a pose."""
-    x, y, z = poses.feet[pose]
-    feet = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
-    return eye_sees_agent(_scene(space, nodes, node), eye, feet)
-
-
-@inner
-def _sees_cell(space: Space, nodes: Nodes, node: int, eye: Eye, cell: int) -> bool:
-    """Whether an eye in a node sees a cell."""
-    place = _grid_cell(space, cell)
-    return eye_sees_block(_scene(space, nodes, node), eye, place, space.beam, space.shadows)
 
 
 @inner
@@ -113,13 +57,13 @@ def put(space: Space, nodes: Nodes, node: int, cell: int, state: int) -> None:
         return
     nodes.blocks[node, cell] = state
     if space.codes[old] != space.codes[state]:
-        place = _grid_cell(space, cell)
+        place = grid_cell(space, cell)
         set_code(nodes.codes[node], space.sizes, space.reaches, place, space.codes[state])
         nodes.geometry[node] += 1
     if node > 0:
         _mark(nodes, node, cell)
     for n in range(nodes.child_at[node], nodes.child_at[node + 1]):
-        _mark(nodes, _whole(nodes.child[n]), cell)
+        _mark(nodes, whole(nodes.child[n]), cell)
 
 
 @inner
@@ -156,7 +100,7 @@ def put_all(
 ) -> None:
     """`put` for several nodes, each with a state of its own."""
     for number in range(len(which)):
-        put(space, nodes, _whole(which[number]), _whole(cell), _whole(states[number]))
+        put(space, nodes, whole(which[number]), whole(cell), whole(states[number]))
 
 
 @compiled
@@ -180,8 +124,8 @@ def _apply_entry(space: Space, facts: Facts, nodes: Nodes, changes: Changes, ent
         if known:
             nodes.seen_at[0, who] = facts.tick[entry]
     for row in range(facts.block_at[entry], facts.block_at[entry + 1]):
-        cell, state = _whole(facts.block_cell[row]), _whole(facts.block_state[row])
-        _put(space, nodes, changes, entry, _whole(0), cell, state)
+        cell, state = whole(facts.block_cell[row]), whole(facts.block_state[row])
+        _put(space, nodes, changes, entry, whole(0), cell, state)
     for spot in range(len(nodes.tracked)):
         if nodes.blocks[0, nodes.tracked[spot]] != UNKNOWN:
             nodes.basis_at[0, spot] = facts.tick[entry]
@@ -191,11 +135,11 @@ def _apply_entry(space: Space, facts: Facts, nodes: Nodes, changes: Changes, ent
 @merged
 def _propagate_bases(space: Space, nodes: Nodes, node: int, eye: Eye, moved: bool) -> None:
     """Hand on what tracked cells rest on, where the owner of a node sees them."""
-    parent = _whole(nodes.parent[node])
+    parent = whole(nodes.parent[node])
     for spot in range(len(nodes.tracked)):
         if moved:
-            cell = _whole(nodes.tracked[spot])
-            nodes.watched[node, spot] = _sees_cell(space, nodes, parent, eye, cell)
+            cell = whole(nodes.tracked[spot])
+            nodes.watched[node, spot] = sees_cell(space, nodes, parent, eye, cell)
         if nodes.watched[node, spot] and nodes.blocks[parent, nodes.tracked[spot]] != UNKNOWN:
             nodes.basis_at[node, spot] = nodes.basis_at[parent, spot]
             nodes.basis_source[node, spot] = nodes.basis_source[parent, spot]
@@ -206,13 +150,13 @@ def _observe_agents(
     space: Space, poses: Poses, nodes: Nodes, node: int, eye: Eye, moved: bool
 ) -> None:
     """What the owner of a node learns of the other agents in its parent node."""
-    parent, me = _whole(nodes.parent[node]), _whole(nodes.agent[node])
+    parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
     for who in range(nodes.pose.shape[1]):
-        pose = _whole(nodes.pose[parent, who])
+        pose = whole(nodes.pose[parent, who])
         seen = who == me
         if not seen and pose != UNKNOWN:
             if moved or nodes.tried[node, who] != pose:
-                nodes.sees[node, who] = _sees_agent(space, poses, nodes, parent, eye, pose)
+                nodes.sees[node, who] = sees_agent(space, poses, nodes, parent, eye, pose)
                 nodes.tried[node, who] = pose
             seen = nodes.sees[node, who]
         if seen:
@@ -223,11 +167,11 @@ def _observe_agents(
             nodes.current[node, who] = nodes.current[parent, who]
             continue
         nodes.current[node, who] = False
-        believed = _whole(nodes.pose[node, who])
+        believed = whole(nodes.pose[node, who])
         if (
             space.senses.negative
             and believed != UNKNOWN
-            and _sees_agent(space, poses, nodes, parent, eye, believed)
+            and sees_agent(space, poses, nodes, parent, eye, believed)
         ):
             nodes.pose[node, who] = UNKNOWN
 
@@ -237,7 +181,7 @@ def _observe_blocks(
     space: Space, nodes: Nodes, changes: Changes, entry: int, node: int, eye: Eye
 ) -> None:
     """Take over what the owner of a node sees of the blocks it knew otherwise."""
-    parent = _whole(nodes.parent[node])
+    parent = whole(nodes.parent[node])
     for word in range(nodes.pending.shape[1]):
         bits = nodes.pending[node, word]
         if bits == 0:
@@ -245,8 +189,8 @@ def _observe_blocks(
         for place in range(_WORD):
             if (bits >> np.uint64(place)) & np.uint64(1):
                 cell = word * _WORD + place
-                if _sees_cell(space, nodes, parent, eye, cell):
-                    state = _whole(nodes.blocks[parent, cell])
+                if sees_cell(space, nodes, parent, eye, cell):
+                    state = whole(nodes.blocks[parent, cell])
                     _put(space, nodes, changes, entry, node, cell, state)
     nodes.fresh[node] = False
 
@@ -266,11 +210,11 @@ def _hears(senses: Senses, poses: Poses, nodes: Nodes, node: int, speaker: int) 
     if senses.hearing == HEAR_SEEN:
         known = nodes.pose[nodes.parent[node], speaker] != UNKNOWN
         return bool(nodes.sees[node, speaker] and known)
-    parent = _whole(nodes.parent[node])
-    other = _whole(nodes.pose[parent, speaker])
+    parent = whole(nodes.parent[node])
+    other = whole(nodes.pose[parent, speaker])
     if other == UNKNOWN:
         return False
-    own = _whole(nodes.pose[parent, nodes.agent[node]])
+    own = whole(nodes.pose[parent, nodes.agent[node]])
     x = poses.feet[own, 0] - poses.feet[other, 0]
     y = poses.feet[own, 1] - poses.feet[other, 1]
     z = poses.feet[own, 2] - poses.feet[other, 2]
@@ -289,11 +233,11 @@ def _perceive_events(
     node: int,
 ) -> None:
     """Which events of an entry the present owner of a node perceives."""
-    parent, me = _whole(nodes.parent[node]), _whole(nodes.agent[node])
+    parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
         if not changes.perceived[event - first_event, parent]:
             continue
-        kind, actor = facts.event_kind[event], _whole(facts.event_actor[event])
+        kind, actor = facts.event_kind[event], whole(facts.event_actor[event])
         if actor == me:
             got = True
         elif kind == KIND_THINK:
@@ -303,8 +247,8 @@ def _perceive_events(
                 facts.event_to[event] == NOBODY and _hears(space.senses, poses, nodes, node, actor)
             )
         elif kind == KIND_UPDATE:
-            cell, eye = _whole(facts.event_cell[event]), _eye(space, poses, _whole(nodes.eye[node]))
-            got = _sees_cell(space, nodes, parent, eye, cell)
+            cell, eye = whole(facts.event_cell[event]), eye_of(space, poses, whole(nodes.eye[node]))
+            got = sees_cell(space, nodes, parent, eye, cell)
         else:
             got = actor >= 0 and nodes.pose[parent, actor] != UNKNOWN and nodes.sees[node, actor]
         changes.perceived[event - first_event, node] = got
@@ -325,7 +269,7 @@ def _update_absent(
     nodes.eye[node] = UNKNOWN
     nodes.watched[node, :] = False
     nodes.meets[node, :] = False
-    me = _whole(nodes.agent[node])
+    me = whole(nodes.agent[node])
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
         is_chat = facts.event_kind[event] == KIND_CHAT
         if is_chat and _is_common_ground(senses, facts, event, me):
@@ -361,19 +305,19 @@ def _count_to(nodes: Nodes, node: int, tick: int) -> None:
 @inner
 def _meet(space: Space, poses: Poses, nodes: Nodes, node: int, moved: bool) -> None:
     """Where the present owner of a node perceives others, and where it sees that they are gone."""
-    parent, me = _whole(nodes.parent[node]), _whole(nodes.agent[node])
-    eye = _eye(space, poses, _whole(nodes.eye[node]))
+    parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
+    eye = eye_of(space, poses, whole(nodes.eye[node]))
     for who in range(nodes.missed.shape[1]):
-        pose = _whole(nodes.pose[parent, who])
+        pose = whole(nodes.pose[parent, who])
         if who == me or (pose != UNKNOWN and nodes.sees[node, who]):
             nodes.met[node, who] = pose
             nodes.meets[node, who] = True
             continue
-        met = _whole(nodes.met[node, who])
+        met = whole(nodes.met[node, who])
         if (
             met != UNKNOWN
             and (moved or nodes.meets[node, who])
-            and _sees_agent(space, poses, nodes, parent, eye, met)
+            and sees_agent(space, poses, nodes, parent, eye, met)
         ):
             nodes.met[node, who] = UNKNOWN
         nodes.meets[node, who] = False
@@ -412,17 +356,17 @@ def _update_node(
     happens: bool,
 ) -> None:
     """Fold an entry into one node, after its parent."""
-    tick = _whole(facts.tick[entry])
+    tick = whole(facts.tick[entry])
     if space.senses.weighs:
         _count_to(nodes, node, tick - 1 if happens else tick)
-    parent, me = _whole(nodes.parent[node]), _whole(nodes.agent[node])
+    parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
     if not nodes.current[parent, me]:
         _update_absent(space.senses, facts, nodes, changes, entry, first_event, node)
         if space.senses.weighs:
             _count_to(nodes, node, tick)
         return
-    pose = _whole(nodes.pose[parent, me])
-    eye = _eye(space, poses, pose)
+    pose = whole(nodes.pose[parent, me])
+    eye = eye_of(space, poses, pose)
     moved = nodes.eye[node] != pose or nodes.seen_geometry[node] != nodes.geometry[parent]
     nodes.eye[node] = pose
     nodes.seen_geometry[node] = nodes.geometry[parent]
@@ -454,7 +398,7 @@ def fold(
     If nothing `happens`, the nodes look at what there is between two ticks. Returns the entry
     it got to: it stops early when `changes.rows` might not hold what the next entry adds.
     """
-    first_event = _whole(facts.event_at[start])
+    first_event = whole(facts.event_at[start])
     room = changes.rows.shape[0]
     for entry in range(start, stop):
         if changes.used[0] > 0 and changes.used[0] > room // 2:
@@ -467,55 +411,3 @@ def fold(
             if which[node]:
                 _update_node(space, poses, facts, nodes, changes, entry, first_event, node, happens)
     return stop
-
-
-@allocating
-def sees_place(
-    space: Space,
-    poses: Poses,
-    nodes: Nodes,
-    which: npt.NDArray[np.int64],
-    pose: int,
-) -> npt.NDArray[np.bool_]:
-    """Which present owners of some nodes would see an agent that stood at a pose."""
-    seen = np.zeros(len(which), dtype=np.bool_)
-    for number in range(len(which)):
-        node = which[number]
-        parent, eye = _whole(nodes.parent[node]), _whole(nodes.eye[node])
-        if eye != UNKNOWN:
-            look = _eye(space, poses, eye)
-            seen[number] = _sees_agent(space, poses, nodes, parent, look, _whole(pose))
-    return seen
-
-
-@allocating
-def sees_cells(
-    space: Space,
-    poses: Poses,
-    nodes: Nodes,
-    node: int,
-    pose: int,
-    cells: npt.NDArray[np.int64],
-) -> npt.NDArray[np.bool_]:
-    """Which of some cells an eye at a pose's pose sees in a node."""
-    eye = _eye(space, poses, pose)
-    seen = np.zeros(len(cells), dtype=np.bool_)
-    for number in range(len(cells)):
-        seen[number] = _sees_cell(space, nodes, node, eye, cells[number])
-    return seen
-
-
-@compiled
-def sees_point(
-    space: Space,
-    poses: Poses,
-    nodes: Nodes,
-    node: int,
-    pose: int,
-    point: tuple[float, float, float],
-) -> bool:
-    """Whether an eye at a pose's pose sees a point (scenario coordinates) in a node."""
-    eye = _eye(space, poses, pose)
-    x, y, z = point
-    place = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
-    return eye_sees_point(_scene(space, nodes, node), eye, place)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief import kernel
+from beliefnest.belief import kernel, seeing
 from beliefnest.belief.arrays import UNKNOWN, Nodes
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis
@@ -381,7 +381,7 @@ class NodeTable:
         parent = self.parent(node)
         eye = self.pose(parent, self.owner(node))
         wanted = np.array([*cells], dtype=np.int64)
-        seen = kernel.sees_cells(
+        seen = seeing.sees_cells(
             self.context.space, self.poses.arrays(), self.nodes(), parent, eye, wanted
         )
         return set(wanted[seen].tolist())
@@ -390,7 +390,7 @@ class NodeTable:
         """Whether the present owner of a node sees a point (scenario coordinates) in its parent."""
         parent = self.parent(node)
         eye = self.pose(parent, self.owner(node))
-        return kernel.sees_point(
+        return seeing.sees_point(
             self.context.space, self.poses.arrays(), self.nodes(), parent, eye, point
         )
 

@@ -10,7 +10,7 @@ from enum import StrEnum
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief import kernel
+from beliefnest.belief import seeing
 from beliefnest.belief.arrays import UNKNOWN, Nodes
 from beliefnest.belief.columns import Columns, cell_of
 from beliefnest.belief.context import BeliefContext
@@ -197,7 +197,7 @@ class Testimony:
             x, y, z = claim.place
             pose = self._table.poses.add_pose((x, y, z), 0.0, 0.0)
             poses, space = self._table.poses.arrays(), self._context.space
-            return kernel.sees_place(space, poses, nodes, which, pose)
+            return seeing.sees_place(space, poses, nodes, which, pose)
         spot = self._table.spot(cell_of(self._context.box, claim.cell))
         seen: Flags = nodes.watched[which, spot]
         return seen

@@ -428,11 +428,6 @@ def play(
         from beliefnest.cli.baselines import BaselineOptions, run_baselines
 
         return run_baselines(BaselineOptions(task, seeds, jobs, out, page, json))
-    if task is None:
-        from beliefnest.episodes.task import Task
-        from beliefnest.errors import InputError
-
-        raise InputError(f"name a task: {', '.join(Task.names())}, or a file")
     from beliefnest.cli.play import PlayOptions, play_task
     from beliefnest.episodes.episode import Budget
 

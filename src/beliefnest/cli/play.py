@@ -25,7 +25,7 @@ class PlayOptions:
     """What was asked for on the command line.
 
     Attributes:
-        task: Name of a built-in task or scenario, or a file of either.
+        task: Name of a built-in task or scenario, or a file of either; None: nothing was named.
         condition: Number of a scenario's condition; None: as written.
         agents: `NAME=POLICY`, each.
         parameters: `NAME=NUMBER`, each: the size of a task, or a parameter of a scenario.
@@ -40,7 +40,7 @@ class PlayOptions:
         as_json: Whether to print one JSON object instead of a table.
     """
 
-    task: str
+    task: str | None
     condition: int | None
     agents: tuple[str, ...]
     parameters: tuple[str, ...]
@@ -61,6 +61,8 @@ def play_task(options: PlayOptions) -> int:
     Raises:
         BeliefNestError: The input is wrong, or a world failed.
     """
+    if options.task is None:
+        raise InputError(f"name a task: {', '.join(Task.names())}, or a file")
     check_world(options.world, servers=False)
     policies = _pairs(options.agents, "--agent", "NAME=POLICY")
     numbers = _pairs(options.parameters, "--set", "NAME=NUMBER")

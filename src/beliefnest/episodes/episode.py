@@ -6,26 +6,18 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from beliefnest.bodies.protocol import Past, ProgramResult
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.episodes.choosing import check_resumable, chosen, name_of
 from beliefnest.episodes.helping import Help, help_in
 from beliefnest.episodes.measures import Measures, false_beliefs, measured
 from beliefnest.episodes.moment import Moment
-from beliefnest.episodes.people import (
-    RealRound,
-    check_repeats,
-    people_in,
-    played_by_people,
-    world_of_people,
-)
+from beliefnest.episodes.people import check_repeats, people_in, played_by_people, world_of_people
+from beliefnest.episodes.playing import look_around, play_part, play_part_with_people
 from beliefnest.episodes.record import (
     Branch,
     Budget,
     Start,
     branch_of,
-    cut_in,
-    ended_as,
     keep_begins,
     keep_branch,
     keep_start,
@@ -389,7 +381,7 @@ class Episode:
             own.noting,
         )
 
-    def at(self, round: int) -> Moment:
+    def at(self, round: int) -> "Moment[Self]":
         """The beginning of a round that was played.
 
         Raises:
@@ -399,17 +391,15 @@ class Episode:
             raise InputError(f"round {round} was not played; there are {self.rounds}")
         return Moment(self, round)
 
-    def forked(self, round: int, policies: Mapping[str, "str | Policy"]) -> "Episode":
+    def forked(self, round: int, policies: Mapping[str, "str | Policy"]) -> Self:
         """See `Moment.fork`."""
         nest = self.nest
         beginnings = [*self.beginnings, nest.tick]
         tick = beginnings[round] if self._people else self._start + round * self._brief.whole_round
         taken = {info.key.branch for info in nest["/"].branches()}
         number = next(n for n in range(1, len(taken) + 2) if f"fork {n}" not in taken)
-        given: dict[str, str | Policy] = dict(self._policies)
-        for agent, policy in policies.items():
-            given[agent] = policy
-        fork = Episode(
+        given: dict[str, str | Policy] = {**self._policies, **policies}
+        fork = type(self)(
             self.task,
             given,
             world=self._world,
@@ -440,17 +430,13 @@ class Episode:
                 keep_begins(nest)
                 nest.play()
                 if not self._people:
-                    _look_around(nest)
-                start = Start(
-                    task=self.task.plain(),
-                    seed=self.seed,
-                    task_seed=self.task.seed,
-                    world=self._world,
-                    start=nest.tick,
-                    budget=self._budget,
+                    look_around(nest)
+                plain, task_seed = self.task.plain(), self.task.seed
+                begun = nest.tick
+                keep_start(
+                    nest, Start(plain, self.seed, task_seed, self._world, begun, self._budget)
                 )
-                keep_start(nest, start)
-                self._take(nest, nest["/"].branch, nest.tick, [])
+                self._take(nest, nest["/"].branch, begun, [])
                 self._keep()
             except BaseException:
                 self._nest = self._lobby = None
@@ -486,53 +472,22 @@ class Episode:
 
     def _finish_part(self) -> None:
         """Do what was decided last, if it is not done yet, up to the end of its ticks."""
-        nest = self.nest
-        ticks = self.task.form.round_ticks
+        nest, ticks = self.nest, self.task.form.round_ticks
         if self._people:
-            self._play_in_real_time()
+            if self._parts and not self._parts[-1].ended:
+                self._parts[-1] = play_part_with_people(
+                    nest, self._parts, ticks, self._policies, lambda: self._is_decided
+                )
+                self._watch()
+                self._keep()
             return
         end = self._start + len(self._parts) * ticks
         if not self._parts or nest.tick >= end:
             return
-        part = self._parts[-1]
-        programs = {a: d.program for a, d in part.decisions.items() if d.program}
         with nest.together():
-            results: Mapping[str, ProgramResult] = {}
-            past: Mapping[str, Past] = {}
-            if programs:
-                past = {a: self._cut(a) for a, d in part.decisions.items() if d.goes_on}
-                results = nest["/"].run_all(programs, ticks, senses="percepts", past=past)
-            if nest.tick < end:
-                nest["/"].step(end - nest.tick)
-            _look_around(nest)
-            ended = {
-                agent: ended_as(each, results.get(agent)) for agent, each in part.decisions.items()
-            }
-            cut = cut_in(results, ended, past, end - ticks, end)
-            self._parts[-1] = Part(part.decisions, ended, cut)
+            self._parts[-1] = play_part(nest, self._parts, ticks, end)
             self._watch()
             self._keep()
-
-    def _play_in_real_time(self) -> None:
-        """Do what was decided last, if it is not done yet, while people do what they do."""
-        if not self._parts or self._parts[-1].ended:
-            return
-        part = self._parts[-1]
-        programs = {a: d.program for a, d in part.decisions.items() if d.program}
-        past = {a: self._cut(a) for a, d in part.decisions.items() if d.goes_on}
-        here = RealRound(
-            self.nest, self._policies, self.task.form.round_ticks, lambda: self._is_decided
-        )
-        results = here.run(programs, past)
-        acted = here.acted
-        ended = {
-            agent: Ended("", "ok") if agent in acted else ended_as(each, results.get(agent))
-            for agent, each in part.decisions.items()
-        }
-        cut = cut_in(results, ended, past, here.began, here.cut)
-        self._parts[-1] = Part(part.decisions, ended, cut, here.began)
-        self._watch()
-        self._keep()
 
     def _is_spent(self) -> bool:
         return self._budget.is_spent(self.nest.tick - self._start, self.spent)
@@ -541,18 +496,5 @@ class Episode:
         """How far the task's goal has come by now."""
         return self._watching.up_to_now(self.nest)[""]
 
-    def _cut(self, agent: str) -> Past:
-        """What the agent's latest program had done when it was cut."""
-        return next(p.cut[agent] for p in reversed(self._parts[:-1]) if agent in p.cut)
-
     def _ended(self, agent: str) -> Ended:
         return next((p.ended[agent] for p in reversed(self._parts) if agent in p.ended), Ended())
-
-
-def _look_around(nest: Nest) -> None:
-    """Let everybody perceive what there is now.
-
-    When something was last seen is otherwise noted at ticks at which something happened, be it
-    where nobody sees it: from that an agent could tell that something did.
-    """
-    nest["/"].edit()

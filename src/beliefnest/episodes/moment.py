@@ -1,16 +1,25 @@
 """The beginning of a round, from which an episode can be branched."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import Generic, Protocol, Self, TypeVar
 
 from beliefnest.episodes.view import Policy
-
-if TYPE_CHECKING:
-    from beliefnest.episodes.episode import Episode
 
 __all__ = ["Moment"]
 
 
-class Moment:
+class Branchable(Protocol):
+    """What a moment needs of its episode."""
+
+    def forked(self, round: int, policies: Mapping[str, "str | Policy"]) -> Self:
+        """See `Moment.fork`."""
+        ...
+
+
+Played = TypeVar("Played", bound=Branchable)
+
+
+class Moment(Generic[Played]):
     """The beginning of a round of an episode.
 
     Attributes:
@@ -18,11 +27,11 @@ class Moment:
         round: The round, from 0.
     """
 
-    def __init__(self, episode: "Episode", round: int) -> None:
+    def __init__(self, episode: Played, round: int) -> None:
         self.episode = episode
         self.round = round
 
-    def fork(self, **policies: "str | Policy") -> "Episode":
+    def fork(self, **policies: "str | Policy") -> Played:
         """The same episode from here on, on a branch of its own, with other policies.
 
         Args:

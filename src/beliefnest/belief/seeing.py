@@ -1,0 +1,124 @@
+"""What eyes see in nodes of a timeline, compiled."""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.arrays import UNKNOWN, Nodes, Poses, Space
+from beliefnest.perception.eyes import Eye, eye_at, eye_sees_agent, eye_sees_block, eye_sees_point
+from beliefnest.perception.rays import Cell, Scene, allocating, compiled, inlined, inner
+from beliefnest.world.values import EYE_HEIGHT
+
+__all__ = [
+    "eye_of",
+    "grid_cell",
+    "scene_of",
+    "sees_agent",
+    "sees_cell",
+    "sees_cells",
+    "sees_place",
+    "sees_point",
+    "whole",
+]
+
+_Number = int | np.signedinteger[Any]
+
+
+@inlined
+def whole(number: _Number) -> int:
+    """The number as int64, so that kernels are compiled for one kind of integer only."""
+    return np.int64(number)  # type: ignore[return-value]  # Python's int, once compiled
+
+
+@inlined
+def grid_cell(space: Space, cell: int) -> Cell:
+    """Grid coordinates (with margin) of a flat cell."""
+    ny, nz = space.sizes[1] - 2, space.sizes[2] - 2
+    return cell // (ny * nz) + 1, cell // nz % ny + 1, cell % nz + 1
+
+
+@inlined
+def eye_of(space: Space, poses: Poses, pose: int) -> Eye:
+    """The eye of an agent at a pose, in grid coordinates."""
+    x, y, z = poses.feet[pose]
+    yaw, pitch = poses.angles[pose]
+    place = (
+        x + space.origin[0],
+        y + EYE_HEIGHT + space.origin[1],
+        z + space.origin[2],
+    )
+    return eye_at(place, yaw, pitch, space.senses.cos_half, space.senses.far)
+
+
+@inlined
+def scene_of(space: Space, nodes: Nodes, node: int) -> Scene:
+    """What an eye in a node looks through."""
+    return Scene(nodes.codes[node], space.sizes, space.starts, space.boxes)
+
+
+@inner
+def sees_agent(space: Space, poses: Poses, nodes: Nodes, node: int, eye: Eye, pose: int) -> bool:
+    """Whether an eye in a node sees an agent at a pose."""
+    x, y, z = poses.feet[pose]
+    feet = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
+    return eye_sees_agent(scene_of(space, nodes, node), eye, feet)
+
+
+@inner
+def sees_cell(space: Space, nodes: Nodes, node: int, eye: Eye, cell: int) -> bool:
+    """Whether an eye in a node sees a cell."""
+    place = grid_cell(space, cell)
+    return eye_sees_block(scene_of(space, nodes, node), eye, place, space.beam, space.shadows)
+
+
+@allocating
+def sees_place(
+    space: Space,
+    poses: Poses,
+    nodes: Nodes,
+    which: npt.NDArray[np.int64],
+    pose: int,
+) -> npt.NDArray[np.bool_]:
+    """Which present owners of some nodes would see an agent that stood at a pose."""
+    seen = np.zeros(len(which), dtype=np.bool_)
+    for number in range(len(which)):
+        node = which[number]
+        parent, eye = whole(nodes.parent[node]), whole(nodes.eye[node])
+        if eye != UNKNOWN:
+            look = eye_of(space, poses, eye)
+            seen[number] = sees_agent(space, poses, nodes, parent, look, whole(pose))
+    return seen
+
+
+@allocating
+def sees_cells(
+    space: Space,
+    poses: Poses,
+    nodes: Nodes,
+    node: int,
+    pose: int,
+    cells: npt.NDArray[np.int64],
+) -> npt.NDArray[np.bool_]:
+    """Which of some cells an eye at a pose sees in a node."""
+    eye = eye_of(space, poses, pose)
+    seen = np.zeros(len(cells), dtype=np.bool_)
+    for number in range(len(cells)):
+        seen[number] = sees_cell(space, nodes, node, eye, cells[number])
+    return seen
+
+
+@compiled
+def sees_point(
+    space: Space,
+    poses: Poses,
+    nodes: Nodes,
+    node: int,
+    pose: int,
+    point: tuple[float, float, float],
+) -> bool:
+    """Whether an eye at a pose sees a point (scenario coordinates) in a node."""
+    eye = eye_of(space, poses, pose)
+    x, y, z = point
+    place = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
+    return eye_sees_point(scene_of(space, nodes, node), eye, place)
