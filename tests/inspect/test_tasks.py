@@ -79,11 +79,12 @@ EVERY = """
 from beliefnest.scenarios.loading import builtin_names
 
 logs = []
-for name in builtin_names():
+asking = [name for name in builtin_names() if name != "red-green-blue"]
+for name in asking:
     arguments = {"world": "scripted"}
     task = "beliefnest/" + name.replace("-", "_")
     logs += read(eval(task, task_args=arguments, model=mock(answer), display="none", limit=1))
-assert len(logs) == len(builtin_names())
+assert len(logs) == len(asking) > 9
 for log in logs:
     (sample,) = log.samples
     score = sample.scores["in_the_belief"]
@@ -184,7 +185,7 @@ def test_variations_in_minecraft_are_samples_with_explanations_of_their_own(run,
     assert run(MODEL + LIKE_OURS + VARIED, tmp_path) == ["C ok True"] * 3
 
 
-def test_every_built_in_scenario_is_a_task_whose_samples_are_scored(run, tmp_path):
+def test_every_built_in_scenario_that_asks_is_a_task_whose_samples_are_scored(run, tmp_path):
     run(MODEL + LIKE_OURS + EVERY, tmp_path)
 
 

@@ -83,7 +83,7 @@ def test_a_run_that_was_stopped(name, worlds, tmp_path):
     for number, scenario in enumerate(bn.Scenario.load_all(name)[: at_night(99, 1)]):
         acts = acts_of(scenario)
         wanted = played(scenario, acts, set(), tmp_path / f"{number}.bn", worlds)
-        assert len(wanted) > 1
+        assert len(wanted) > 1 or not scenario.probes
         for time in range(at_night(10, 1)):
             cuts = set(draw.sample(range(1, len(acts)), min(3, len(acts) - 1)))
             found = played(scenario, acts, cuts, tmp_path / f"{number} {time}.bn", worlds)

@@ -19,7 +19,7 @@ from beliefnest.inspect.stories import suite_task
 from beliefnest.inspect.tasks import belief_prompt, in_the_belief, scenario_task
 from beliefnest.llm.messages import Message, Sampling
 from beliefnest.llm.offline import OfflineModel
-from beliefnest.scenarios.loading import builtin_names
+from beliefnest.scenarios.loading import builtin_names, read_document
 
 __all__ = ["belief_prompt", "episode", "hi_tom", "in_the_belief", "scenario", "stories"]
 
@@ -111,7 +111,9 @@ def _register(name: str) -> None:
 
 
 for _name in builtin_names():
-    _register(_name)
+    # Where nothing is asked, there is nothing to score.
+    if "probes" in read_document(_name).root.value:
+        _register(_name)
 for _name in builtin_tasks():
     _register_episodes(_name)
 
