@@ -108,23 +108,7 @@ def run_programs(
             _begun(world, agent, program, senses, rules, grounds, latest)
             for agent, program in begun.items()
         ]
-        while True:
-            with world.tick():
-                done = [(run, _act(run)) for run in runs]
-            # What came of the tick can be perceived now that it is over.
-            for run in runs:
-                _hear(run, grounds)
-            for run, answers in done:
-                for number, ok, value in answers:
-                    _settle(run, grounds, number, ok=ok, value=value)
-            for run in runs:
-                if run.end_tick is None and run.program.ended and not _goes_on(run):
-                    run.end_tick = world.now
-            if all(run.end_tick is not None for run in runs):
-                break
-            if world.now - first >= timeout_ticks:
-                _time_out(runs, world.now, timeout_ticks)
-                break
+        _until_over(world, runs, grounds, first + timeout_ticks)
     finally:
         world.unlisten(hear)
     for run in runs:
@@ -133,6 +117,28 @@ def run_programs(
         run.hand.name: _result(run, first, tuple(happened), remembers=rules.remembers)
         for run in runs
     }
+
+
+def _until_over(world: ScriptedWorld, runs: Sequence[_Run], grounds: Grounds, last: int) -> None:
+    """Let ticks pass until all programs have ended, or are ended at the last tick."""
+    first = world.now
+    while True:
+        with world.tick():
+            done = [(run, _act(run)) for run in runs]
+        # What came of the tick can be perceived now that it is over.
+        for run in runs:
+            _hear(run, grounds)
+        for run, answers in done:
+            for number, ok, value in answers:
+                _settle(run, grounds, number, ok=ok, value=value)
+        for run in runs:
+            if run.end_tick is None and run.program.ended and not _goes_on(run):
+                run.end_tick = world.now
+        if all(run.end_tick is not None for run in runs):
+            return
+        if world.now >= last:
+            _time_out(runs, world.now, last - first)
+            return
 
 
 def _begin_of(rules: RunRules, agent: str, now: int) -> int:
@@ -325,7 +331,7 @@ def _point(value: Any) -> Point | None:
     return (float(value[0]), float(value[1]), float(value[2]))
 
 
-def _time_out(runs: list[_Run], tick: int, timeout_ticks: int) -> None:
+def _time_out(runs: Sequence[_Run], tick: int, timeout_ticks: int) -> None:
     for run in runs:
         if run.end_tick is None:
             run.end_tick = tick
