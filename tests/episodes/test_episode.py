@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import beliefnest as bn
-from beliefnest.episodes.rounds import Decision
+from beliefnest.episodes.decided import Decision
 
 TASK = "help-find"
 

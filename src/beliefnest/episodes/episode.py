@@ -8,6 +8,7 @@ from typing import Self
 
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.episodes.choosing import check_resumable, chosen, name_of
+from beliefnest.episodes.decided import Ended, Part, Spent
 from beliefnest.episodes.helping import Help, help_in
 from beliefnest.episodes.measures import Measures, false_beliefs, measured
 from beliefnest.episodes.moment import Moment
@@ -23,9 +24,9 @@ from beliefnest.episodes.record import (
     keep_start,
     kept_in,
 )
-from beliefnest.episodes.rounds import Asker, Part, Spent, replayed, slots_of
+from beliefnest.episodes.rounds import Asker, replayed, slots_of
 from beliefnest.episodes.task import Task
-from beliefnest.episodes.view import AgentView, Brief, Ended, Policy
+from beliefnest.episodes.view import AgentView, Brief, Policy
 from beliefnest.episodes.watching import Watch
 from beliefnest.errors import InputError
 from beliefnest.nest.face.nest import Nest

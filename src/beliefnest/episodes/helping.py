@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol, Self
 
-from beliefnest.episodes.rounds import Decision, Part
+from beliefnest.episodes.decided import Decision, Part
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.view import GO_ON, AgentView, Policy
 from beliefnest.nest.face.nest import Nest

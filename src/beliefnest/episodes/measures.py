@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Protocol
 
-from beliefnest.episodes.rounds import Part, Spent
+from beliefnest.episodes.decided import Part, Spent
 from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest
 from beliefnest.world.values import EventKind

@@ -3,10 +3,10 @@
 from collections.abc import Callable, Mapping, Sequence
 
 from beliefnest.bodies.protocol import Past, ProgramResult
+from beliefnest.episodes.decided import Ended, Part
 from beliefnest.episodes.people import RealRound
 from beliefnest.episodes.record import cut_in, ended_as
-from beliefnest.episodes.rounds import Part
-from beliefnest.episodes.view import Ended, Policy
+from beliefnest.episodes.view import Policy
 from beliefnest.nest.face.nest import Nest
 
 __all__ = ["look_around", "play_part", "play_part_with_people"]

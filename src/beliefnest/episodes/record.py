@@ -6,8 +6,7 @@ from typing import Any, Protocol
 import msgspec
 
 from beliefnest.bodies.protocol import NO_WAY, Fault, Past, ProgramResult
-from beliefnest.episodes.rounds import Decision, Part, Spent
-from beliefnest.episodes.view import Ended
+from beliefnest.episodes.decided import Decision, Ended, Part, Spent
 from beliefnest.errors import BranchError, NotBegunError, StoreError
 
 __all__ = [

@@ -4,72 +4,14 @@ import threading
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-import msgspec
-
-from beliefnest.bodies.protocol import Past
-from beliefnest.episodes.view import GO_ON, AgentView, Ended, Policy
+from beliefnest.episodes.decided import Decision, Part, Spent
+from beliefnest.episodes.view import GO_ON, AgentView, Policy
 from beliefnest.world.texts import is_well_formed
 
-__all__ = ["Asker", "Decision", "Part", "Replayed", "Spent", "replayed", "slots_of"]
+__all__ = ["Asker", "Replayed", "replayed", "slots_of"]
 
 _LONGEST = 100_000
 """Characters of a program."""
-
-
-class Spent(msgspec.Struct, frozen=True):
-    """What a policy has spent on models.
-
-    Attributes:
-        requests: Requests that reached a provider.
-        tokens: Sent and received.
-        cost: US dollars; None where a price is not known.
-    """
-
-    requests: int = 0
-    tokens: int = 0
-    cost: float | None = 0.0
-
-    def __add__(self, other: "Spent") -> "Spent":
-        unknown = self.cost is None or other.cost is None
-        cost = None if unknown else (self.cost or 0.0) + (other.cost or 0.0)
-        return Spent(self.requests + other.requests, self.tokens + other.tokens, cost)
-
-    def __sub__(self, other: "Spent") -> "Spent":
-        unknown = self.cost is None or other.cost is None
-        cost = None if unknown else (self.cost or 0.0) - (other.cost or 0.0)
-        return Spent(self.requests - other.requests, self.tokens - other.tokens, cost)
-
-
-class Decision(msgspec.Struct, frozen=True):
-    """What a policy decided for a round.
-
-    Attributes:
-        program: The program; empty: nothing.
-        fault: Why there is none; empty: it is as the policy wanted.
-        spent: What that took.
-        goes_on: Whether it is the last one, which was cut, and goes on from there.
-    """
-
-    program: str = ""
-    fault: str = ""
-    spent: Spent = Spent()
-    goes_on: bool = False
-
-
-class Part(msgspec.Struct, frozen=True):
-    """What was decided by who acts together, and how that ended.
-
-    Attributes:
-        decisions: By agent.
-        ended: By agent; empty until it is done.
-        cut: Of agents whose programs were cut, what these had done.
-        began: The tick at which it began in real time; None: where time stands still meanwhile.
-    """
-
-    decisions: dict[str, Decision]
-    ended: dict[str, Ended] = {}
-    cut: dict[str, Past] = {}
-    began: int | None = None
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,15 @@
 """What is told of a run's episode: rounds, who did what, when goals were reached."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
+import msgspec
+
+from beliefnest.episodes.decided import Part
+from beliefnest.episodes.form import TaskForm
 from beliefnest.episodes.record import Branch, Keeps, Start, holds_episode, kept_in
-from beliefnest.episodes.rounds import Part, slots_of
-from beliefnest.episodes.task import Task
+from beliefnest.errors import StoreError
 
 __all__ = ["goal_rows", "round_rows", "told_episode"]
 
@@ -19,13 +23,16 @@ def told_episode(run: Keeps) -> dict[str, Any] | None:
     if not holds_episode(run):
         return None
     start, branches = kept_in(run)
-    task = Task.from_mapping(start.task, start.task_seed)
+    try:
+        form = msgspec.convert(start.task, TaskForm)
+    except msgspec.ValidationError as fault:
+        raise StoreError(f"the task of the episode in this run cannot be read: {fault}") from None
     return {
-        "task": task.name,
-        "instance": task.seed,
+        "task": form.name,
+        "instance": start.task_seed,
         "start": start.start,
-        "rounds": task.form.rounds,
-        "branches": {name: _branch(task, start, branch) for name, branch in branches.items()},
+        "rounds": form.rounds,
+        "branches": {name: _branch(form, start, branch) for name, branch in branches.items()},
     }
 
 
@@ -60,9 +67,8 @@ def goal_rows(told: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
             yield {"branch": name, "condition": condition, "tick": tick}
 
 
-def _branch(task: Task, start: Start, branch: Branch) -> dict[str, Any]:
-    slots = len(slots_of(task.agents, turns=task.form.play == "turns"))
-    ticks = task.form.round_ticks
+def _branch(form: TaskForm, start: Start, branch: Branch) -> dict[str, Any]:
+    parts_of_round = len(branch.policies) if form.play == "turns" else 1
     return {
         "policies": branch.policies,
         "goal": [list(each) for each in branch.goal],
@@ -70,14 +76,25 @@ def _branch(task: Task, start: Start, branch: Branch) -> dict[str, Any]:
         "violated": branch.violated,
         "parts": [
             {
-                "round": number // slots,
-                "t": start.start + number * ticks,
-                "end": start.start + (number + 1) * ticks,
+                "round": number // parts_of_round,
+                "t": began,
+                "end": end,
                 "agents": [_done(part, agent) for agent in part.decisions],
             }
-            for number, part in enumerate(branch.parts)
+            for number, (part, (began, end)) in enumerate(
+                zip(branch.parts, _spans(branch.parts, start.start, form.round_ticks), strict=True)
+            )
         ],
     }
+
+
+def _spans(parts: Sequence[Part], start: int, ticks: int) -> list[tuple[int, int]]:
+    """The ticks from which to which parts went; with people, one goes on until the next begins."""
+    began = [
+        start + number * ticks if part.began is None else part.began
+        for number, part in enumerate(parts)
+    ]
+    return [*pairwise(began), *((last, last + ticks) for last in began[-1:])]
 
 
 def _done(part: Part, agent: str) -> dict[str, Any]:

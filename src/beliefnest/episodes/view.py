@@ -2,9 +2,10 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from beliefnest.belief.view import FixedState, State
+from beliefnest.episodes.decided import Ended
 from beliefnest.errors import PathError
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.nest.face.past_simulator import ShownSimulator
@@ -15,28 +16,10 @@ if TYPE_CHECKING:
     from beliefnest.episodes.task import Task
     from beliefnest.llm.messages import Model
 
-__all__ = ["GO_ON", "AgentView", "Brief", "Ended", "Policy", "Told"]
+__all__ = ["GO_ON", "AgentView", "Brief", "Policy", "Told"]
 
 GO_ON = "go on"
 """What a policy returns in place of a program to let its last one, which was cut, go on."""
-
-HowEnded = Literal["none", "ok", "cut", "no_way", "failed", "lost"]
-
-
-@dataclass(frozen=True, slots=True)
-class Ended:
-    """How an agent's latest program ended, as the agent itself could tell.
-
-    Attributes:
-        program: Its text; empty if there was none.
-        how: `ok`; `cut` at the round's end; `no_way` on foot as far as the agent knows; `failed`;
-            `lost`: there was none, since the policy gave none in time; `none`: nothing was to do.
-        message: What went wrong, in words; empty if nothing did.
-    """
-
-    program: str = ""
-    how: HowEnded = "none"
-    message: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from importlib.resources import files
 
-from beliefnest.episodes.rounds import Spent
+from beliefnest.episodes.decided import Spent
 from beliefnest.episodes.view import AgentView
 from beliefnest.llm.asking import NoUsableProgramError, ask_for_program
 from beliefnest.llm.messages import Model, Sampling, Usage

@@ -330,11 +330,6 @@ class Nest(Looking, Viewing, Telling, Comparing, Waiting, Joining, Visiting):
         """Keep bytes in the run under a name, in place of what was there."""
         self._recording.journal.records.put_state(f"kept {name}", value)
 
-    @in_turn
-    def kept(self, name: str) -> bytes | None:
-        """The bytes last kept under a name; None if there are none."""
-        return self._recording.journal.records.state(f"kept {name}")
-
     def each_tick(
         self, paths: Sequence[str], after: int, until: int
     ) -> Iterator[tuple[int, Mapping[str, State]]]:

@@ -111,10 +111,6 @@ class RecordedNest(Looking, Viewing, Telling, Comparing):
         key = self._recording.selected.get(parse_path(path, self._recording.agents))
         return FOLLOW if key is None else key.branch
 
-    def kept(self, name: str) -> bytes | None:
-        """The bytes that `Nest.keep` kept under a name; None if there are none."""
-        return self._recording.journal.records.state(f"kept {name}")
-
     def head(self, path: str) -> int:
         """The latest tick of the timeline that a simulator is on."""
         return self._recording.info(parse_path(path, self._recording.agents)).head

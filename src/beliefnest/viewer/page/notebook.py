@@ -1,8 +1,10 @@
 """The page inside a notebook."""
 
 import html
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 from beliefnest.nest.face.reader import Reader
 from beliefnest.viewer.page.run import About
@@ -22,11 +24,13 @@ class PageView:
         reader: Where to read.
         depth: How deep all beliefs go.
         height: Of the frame, pixels.
+        episode: Gives the rounds of the nest's episode, as for `About`.
     """
 
     reader: Reader
     depth: int
     height: int
+    episode: Callable[[], Mapping[str, Any] | None] = lambda: None
 
     @cached_property
     def page(self) -> str:
@@ -36,7 +40,8 @@ class PageView:
             InputError: The depth is not from 0 to 4, or the page was not built with the package.
         """
         setting = self.reader.setting
-        return still_page([(self.reader, About(self._title, labels=setting.labels))], self.depth)
+        about = About(self._title, labels=setting.labels, episode=self.episode)
+        return still_page([(self.reader, about)], self.depth)
 
     @property
     def _title(self) -> str:
