@@ -259,6 +259,6 @@ def _store(block: Block, store: Store, left: float, width: float) -> None:
     block.kinds |= {"container", "told"} if store.teller else {"container"}
     top, inset = block.bottom, icon * 1.5
     block.bottom += (icon - TEXT_SIZE) / 2
-    told = f" (told by {store.teller})" if store.teller and store.items else ""
+    told = f" (told by {store.teller})" if store.teller else ""
     _note(block, Note(f"{store.label}: {store.words}{told}", false), left + inset, width - inset)
     block.bottom = max(block.bottom, top + icon + 1.6)

@@ -137,7 +137,7 @@ def _store_line(
     block.kinds |= {"container", "told"} if store.teller else {"container"}
     inner = left + icon * 1.55
     text = f"{store.label}: {store.words}"
-    if (store.age or store.teller) and (store.items or store.complete):
+    if store.teller or (store.age and (store.items or store.complete)):
         text += f" ({told_text(store.teller, store.age)})"
     top = block.bottom
     paragraph(block, text, inner, width - icon * 1.55, size)
