@@ -121,7 +121,10 @@ def test_an_expectation_that_does_not_hold_ends_with_1(capsys: pytest.CaptureFix
         (["run"], ["scenario"]),
         (["jump"], ["jump"]),
         (["run", "sally-anne", "--jump"], ["--jump"]),
+        (["run", str(Path(__file__).parent)], ["is a folder", ".yaml"]),
         (["bench", "nothing"], ["nothing", "sally-anne"]),
+        (["study", "study.yaml", "--jobs", "0"], ["--jobs"]),
+        (["study", "study.yaml", "--shard", "9/4"], ["shard 9 of 4"]),
     ],
 )
 def test_wrong_usage_is_one_line_and_2(
@@ -130,7 +133,7 @@ def test_wrong_usage_is_one_line_and_2(
     assert run_command_line(arguments) == 2
     printed = capsys.readouterr()
     assert printed.out == ""
-    (line,) = [each for each in printed.err.splitlines() if not each.startswith("bench:")]
+    (line,) = printed.err.splitlines()
     assert line.startswith("beliefnest: ")
     for hint in hints:
         assert hint in line
@@ -202,6 +205,9 @@ def test_list_names_what_there_is(capsys: pytest.CaptureFixture[str]) -> None:
     assert "sally-anne" in [each["name"] for each in listed["scenarios"]]
     assert "embedded" in listed["worlds"]
     assert "offline" in listed["models"]
+    assert "watchman" in listed["tasks"]
+    assert "hi-tom" in listed["suites"]
+    assert "default" in listed["templates"]
 
 
 def test_doctor_finds_everything_in_order(capsys: pytest.CaptureFixture[str]) -> None:

@@ -28,10 +28,10 @@ def test_the_limits_are_those_of_the_code():
     assert f"{RetryPolicy().attempts} times in all" in PAGE
 
 
-def test_the_example_runs(tmp_path):
-    example, _ = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+def test_the_examples_run(tmp_path):
+    asked, own = re.findall(r"^```python\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
     done = subprocess.run(
-        [sys.executable, "-c", example],
+        [sys.executable, "-c", asked + own],
         cwd=tmp_path,
         env={"PYTHONPATH": str(ROOT / "src")},
         capture_output=True,
@@ -41,3 +41,5 @@ def test_the_example_runs(tmp_path):
     assert done.returncode == 0, done.stderr
     assert 'getItemFromChest(bot, new Vec3(2, 64, 2), {"diamond": 1});' in done.stdout
     assert (tmp_path / "run" / "model.jsonl").exists()
+    printed = re.findall(r"print\(.*\)  # (.*)", own)
+    assert done.stdout.splitlines()[-len(printed) :] == printed

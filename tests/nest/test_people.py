@@ -23,6 +23,12 @@ await getItemFromChest(bot, new Vec3(-2, -51, -4), {diamond: 1})
 await goToPosition(bot, new Vec3(2, -51, -3), 0)
 await depositItemIntoChest(bot, new Vec3(2, -51, -4), {diamond: 1})
 """
+MOVE_THERE = """
+await goToPosition(bot, new Vec3(2, 1, 3), 0)
+await getItemFromChest(bot, new Vec3(2, 1, 2), {diamond: 1})
+await goToPosition(bot, new Vec3(8, 1, 3), 0)
+await depositItemIntoChest(bot, new Vec3(8, 1, 2), {diamond: 1})
+"""
 WORKSHOP = """
 name: workshop
 box: [[0, 0, 0], [12, 5, 12]]
@@ -221,11 +227,13 @@ def test_worlds_that_nobody_can_join_refuse_people(scenario):
 def test_the_example_of_the_page_runs(tmp_path, monkeypatch, capsys):
     """The page's own example: what it prints, and what it writes down."""
     page = (Path(__file__).parents[2] / "docs" / "people.md").read_text(encoding="utf-8")
-    (example,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    ((example,), (written,)) = (
+        re.findall(rf"```{kind}\n(.*?)```", page, re.DOTALL) for kind in ("python", "yaml")
+    )
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    scenario_file(tmp_path / "mine.yaml")
+    (tmp_path / "mine.yaml").write_text(written, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     code = compile(example.replace("25565", str(port)), "people.md", "exec")
     with ThreadPoolExecutor(1) as experimenter:
@@ -236,7 +244,7 @@ def test_the_example_of_the_page_runs(tmp_path, monkeypatch, capsys):
             anne.does(
                 "await new Promise(turn => bot.on('message', m => /your turn/.test(m) && turn()))"
             )
-            anne.does(MOVE)
+            anne.does(MOVE_THERE)
             played.result()
     assert capsys.readouterr().out.splitlines() == [
         "sally Anne, it is your turn.",

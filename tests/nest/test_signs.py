@@ -156,6 +156,7 @@ def test_prompts_say_what_signs_say_and_explanations_who_wrote_it(world, nest):
     assert nest["/sally"].render(template) == (
         '(5, 1, 5) oak_sign: says "tools / no food"; seen now; last written on by anne 0 s ago'
     )
+    assert "text:tools / no food" in nest["/sally"].render("{{ branch | events }}")
     world.place_agent("sally", (9.5, 1, 5.5))
     world.step(40)
     with world.tick():

@@ -245,7 +245,7 @@ def prompt(
         Path | None,
         typer.Option(help="A file, one the run keeps, default, or paper (the one without this)."),
     ] = None,
-    var: Annotated[list[str] | None, typer.Option(help="A variable, as key=value.")] = None,
+    var: Annotated[list[str] | None, typer.Option(help="A variable, as task=TEXT.")] = None,
 ) -> None:
     """Render a prompt template from a belief of a recorded run."""
     from beliefnest.cli.show import print_prompt
@@ -323,7 +323,7 @@ def import_(
 
 @app.command("list")
 def list_installed(json: Json = False) -> None:
-    """List the scenarios, worlds and models that are installed."""
+    """List scenarios, tasks, suites, templates, worlds and models."""
     from beliefnest.cli.listing import print_installed
 
     print_installed(as_json=json)
@@ -354,7 +354,7 @@ def study(
     out: Annotated[
         Path | None, typer.Option(help="Its folder; an interrupted or larger study goes on in it.")
     ] = None,
-    jobs: Annotated[int, typer.Option(help="Cells that are played at the same time.")] = 2,
+    jobs: Annotated[int, typer.Option(help="Cells that are played at the same time.", min=1)] = 2,
     backend: Annotated[
         str, typer.Option(help="loky: processes here; dask or ray: a cluster.")
     ] = "loky",
@@ -417,7 +417,7 @@ def play(
         bool, typer.Option("--baselines", help="Play the task, or all, by all baselines instead.")
     ] = False,
     seeds: Annotated[int, typer.Option(help="Instances of each task, for --baselines.")] = 50,
-    jobs: Annotated[int, typer.Option(help="Episodes at the same time, for --baselines.")] = 1,
+    jobs: Annotated[int, typer.Option(help="Episodes at once, for --baselines.", min=1)] = 1,
     page: Annotated[
         Path | None, typer.Option(help="Markdown file to write, for --baselines.")
     ] = None,
@@ -459,7 +459,7 @@ def reproduce(
     copies: Annotated[
         int, typer.Option(help="Mirrored, turned and renamed copies of each experiment.", min=0)
     ] = 4,
-    jobs: Annotated[int, typer.Option(help="Played at the same time.")] = 1,
+    jobs: Annotated[int, typer.Option(help="Played at the same time.", min=1)] = 1,
     page: Annotated[
         Path | None, typer.Option(help="Write the table to this Markdown file.")
     ] = None,

@@ -9,7 +9,10 @@ from rich.table import Table
 from beliefnest.bodies.address import SCHEME
 from beliefnest.bodies.worlds import WORLDS
 from beliefnest.cli.console import folded, stdout
+from beliefnest.cli.suite import SUITES
+from beliefnest.episodes.tasks import builtin_tasks
 from beliefnest.llm.resolve import model_names
+from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.scenario import Scenario
 
@@ -17,7 +20,7 @@ __all__ = ["print_installed"]
 
 
 def print_installed(*, as_json: bool) -> None:
-    """Print scenarios, worlds and models."""
+    """Print the names of all that commands take by name."""
     scenarios = [Scenario.load(name) for name in builtin_names()]
     if as_json:
         content = {
@@ -29,6 +32,9 @@ def print_installed(*, as_json: bool) -> None:
                 }
                 for scenario in scenarios
             ],
+            "tasks": list(builtin_tasks()),
+            "suites": list(SUITES),
+            "templates": list(BUILT_IN_TEMPLATES),
             "worlds": list(WORLDS),
             "models": list(model_names()),
         }
@@ -44,6 +50,12 @@ def print_installed(*, as_json: bool) -> None:
             table.add_row("", str(number), text)
     console = stdout()
     console.print(folded(table))
-    worlds = (*WORLDS, f"{SCHEME}://HOST:PORT")
-    console.print(f"worlds: {', '.join(worlds)}", highlight=False)
-    console.print(f"models: {', '.join(model_names())}", highlight=False)
+    further = {
+        "tasks": builtin_tasks(),
+        "suites": SUITES,
+        "templates": BUILT_IN_TEMPLATES,
+        "worlds": (*WORLDS, f"{SCHEME}://HOST:PORT"),
+        "models": model_names(),
+    }
+    for what, names in further.items():
+        console.print(f"{what}: {', '.join(names)}", highlight=False)

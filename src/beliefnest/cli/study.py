@@ -18,7 +18,7 @@ from beliefnest.cli.text import printable
 from beliefnest.errors import InputError, ModelError, UnknownNameError
 from beliefnest.studies.result import StudyResult
 from beliefnest.studies.running import StudyProgress
-from beliefnest.studies.study import Study
+from beliefnest.studies.study import Study, checked_shard
 
 __all__ = ["StudyOptions", "run_study"]
 
@@ -58,8 +58,8 @@ def run_study(options: StudyOptions) -> int:
     Raises:
         BeliefNestError: The input is wrong, or cells have no result.
     """
-    study = Study.load(options.file, options.claims_from)
     shard = _shard(options.shard)
+    study = Study.load(options.file, options.claims_from)
     now = datetime.now()
     folder = options.out or Path("studies", f"{options.file.stem}-{now:%Y%m%d-%H%M%S}")
     if options.merge:
@@ -96,7 +96,7 @@ def _shard(text: str | None) -> tuple[int, int] | None:
     found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
     if found is None:
         raise InputError(f"--shard is {text!r}; write it as 1/4")
-    return int(found[1]), int(found[2])
+    return checked_shard((int(found[1]), int(found[2])))
 
 
 def _progress_text(progress: StudyProgress) -> str:

@@ -5,6 +5,7 @@ from typing import Any
 
 from beliefnest.belief.entries import PerceivedEvent
 from beliefnest.prompts import text
+from beliefnest.world.signs import sign_words
 from beliefnest.world.values import EventKind
 
 __all__ = ["ACTION_NAMES", "action_name", "description", "row"]
@@ -49,7 +50,7 @@ _FIELDS: Mapping[str, Callable[[Any], str]] = {
     "to": str,
     "items": text.mapping,
     "name": text.one_line,
-    "text": text.one_line,
+    "text": sign_words,
 }
 """Detail of an event to how it is written, in the order in which details are written."""
 

@@ -62,13 +62,17 @@ the program of the round before and how it failed; without them they print
 ## Your own filters
 
 ```python
+import beliefnest as bn
 from beliefnest.prompts import BUILT_IN, filter, render
 
 @filter("greeting")
 def greeting(branch, word="Hello"):
     return f"{word}, {branch.state.owner}!"
 
-render('{{ branch | greeting("Hi") }}', simulator, {}, BUILT_IN.extended([greeting]))
+world = bn.ScriptedWorld(box=((0, 0, 0), (8, 4, 8)), agents={"sally": (1.5, 1, 1.5)})
+filters = BUILT_IN.extended([greeting])
+with bn.Nest(world) as nest:
+    print(render('{{ branch | greeting("Hi") }}', nest["/sally"], {}, filters))  # Hi, sally!
 ```
 
 To replace a built-in filter, write `@filter("chests", override=True)`. A package offers

@@ -81,6 +81,8 @@ def parse_yaml(text: str, source: str) -> Document:
 
 
 def _text(path: Path) -> str:
+    if path.is_dir():
+        raise ScenarioError(f"{path} is a folder; give a .yaml file")
     try:
         return read_regular_text(path, _LONGEST)
     except OSError as error:

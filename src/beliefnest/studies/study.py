@@ -216,7 +216,7 @@ class Study:
         """
         place = StudyFolder.open(folder)
         plan = self.plan()
-        part = plan if shard is None else plan.shard(*_checked_shard(shard))
+        part = plan if shard is None else plan.shard(*checked_shard(shard))
         if not plan.cells and plan.invalid:
             raise InputError(f"no combination makes a scenario; the first: {plan.invalid[0].why}")
         self._check_models(backend)
@@ -294,7 +294,12 @@ def _constraints(constraints: Sequence[Constraint]) -> tuple[Constraint, ...]:
     return tuple(constraints)
 
 
-def _checked_shard(shard: tuple[int, int]) -> tuple[int, int]:
+def checked_shard(shard: tuple[int, int]) -> tuple[int, int]:
+    """A shard's number and count, as they are.
+
+    Raises:
+        InputError: There is no such shard.
+    """
     number, count = shard
     if not 1 <= number <= count:
         raise InputError(

@@ -8,7 +8,7 @@ from rich import box
 from rich.table import Table
 
 from beliefnest.cli.bench.figures import Figure
-from beliefnest.cli.bench.registry import BENCHES, NEEDING_MORE, measure
+from beliefnest.cli.bench.registry import checked, measure
 from beliefnest.cli.console import folded, progress_on, stdout
 
 __all__ = ["run_benches"]
@@ -25,7 +25,7 @@ def run_benches(names: Sequence[str], *, as_json: bool) -> int:
         UnknownNameError: There is no bench of a name.
     """
     figures: dict[str, Sequence[Figure]] = {}
-    chosen = names or tuple(name for name in BENCHES if name not in NEEDING_MORE)
+    chosen = checked(names)
     with progress_on("bench") as on_progress:
         for number, name in enumerate(chosen):
             on_progress(name, number, len(chosen))

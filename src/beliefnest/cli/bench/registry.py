@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from beliefnest.cli.bench.figures import Figure
 from beliefnest.errors import UnknownNameError
 
-__all__ = ["BENCHES", "NEEDING_MORE", "measure"]
+__all__ = ["BENCHES", "checked", "measure"]
 
 BENCHES: Mapping[str, str] = {
     "sally-anne": "beliefnest.cli.bench.sally_anne",
@@ -32,13 +32,19 @@ NEEDING_MORE = frozenset({"minecraft"})
 """Benches that need what is not installed, as a server; they run where they are named."""
 
 
-def measure(name: str) -> Sequence[Figure]:
-    """Run a bench.
+def checked(names: Sequence[str]) -> Sequence[str]:
+    """Names of benches, as they are; none: all that need nothing more.
 
     Raises:
-        UnknownNameError: There is none of that name.
+        UnknownNameError: There is none of a name.
     """
-    if name not in BENCHES:
-        raise UnknownNameError(f"there is no bench {name!r}; there are {', '.join(BENCHES)}")
+    for name in names:
+        if name not in BENCHES:
+            raise UnknownNameError(f"there is no bench {name!r}; there are {', '.join(BENCHES)}")
+    return names or [name for name in BENCHES if name not in NEEDING_MORE]
+
+
+def measure(name: str) -> Sequence[Figure]:
+    """Run a bench that there is."""
     figures: Sequence[Figure] = importlib.import_module(BENCHES[name]).measure()
     return figures
