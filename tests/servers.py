@@ -1,17 +1,57 @@
-"""Minecraft servers for tests: processes that do what a vanilla one does for an operator bot."""
+"""Minecraft servers for tests: processes that do what a vanilla one does for an operator bot.
+
+`BELIEFNEST_TEST_SERVER=minecraft://HOST:PORT` lets tests that need no console play on a server that
+runs already; nobody's builds may lie near its middle. `design/servers.md` says which tests.
+"""
 
 import json
 import os
 import signal
 import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Any, Self
+from typing import IO, Any, Protocol, Self
 
 from beliefnest.bodies.node_files import node_path
 
-__all__ = ["GameServer"]
+__all__ = ["GameServer", "Served", "serving"]
 
+_GIVEN = "BELIEFNEST_TEST_SERVER"
 _ROOM = Path(__file__).parents[1] / "src" / "beliefnest" / "bodies" / "node"
+
+
+class Served(Protocol):
+    """A server that tests may play on."""
+
+    def address(self, **options: str | int) -> str:
+        """The world's name, with options of the address."""
+
+
+@contextmanager
+def serving(**options: Any) -> Iterator[Served]:
+    """A server of our own with these options, or the one that runs already."""
+    given = os.environ.get(_GIVEN)
+    if given is not None:
+        yield _GivenServer(given)
+        return
+    with GameServer(**options) as running:
+        yield running
+
+
+def _with_options(address: str, options: dict[str, str | int]) -> str:
+    query = "&".join(f"{key}={value}" for key, value in options.items())
+    if query == "":
+        return address
+    return f"{address}{'&' if '?' in address else '?'}{query}"
+
+
+class _GivenServer:
+    def __init__(self, address: str) -> None:
+        self._address = address
+
+    def address(self, **options: str | int) -> str:
+        return _with_options(self._address, options)
 
 
 class GameServer:
@@ -41,8 +81,7 @@ class GameServer:
 
     def address(self, **options: str | int) -> str:
         """The world's name, with options of the address."""
-        query = "&".join(f"{key}={value}" for key, value in options.items())
-        return f"minecraft://127.0.0.1:{self.port}" + (f"?{query}" if query else "")
+        return _with_options(f"minecraft://127.0.0.1:{self.port}", options)
 
     def type(self, line: str) -> None:
         """Type a line on its console."""

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.servers import GameServer
+from tests.servers import serving
 
 from beliefnest.bodies.protocol import Body, World
 from beliefnest.bodies.scripted import ScriptedBody
@@ -53,7 +53,7 @@ def world(request: pytest.FixtureRequest) -> Iterator[World]:
         yield opened
         opened.close()
         return
-    with GameServer(latency=10) as server:
+    with serving(latency=10) as server:
         opened = open_world(server.address(at="0,32"), 0)
         yield opened
         opened.close()

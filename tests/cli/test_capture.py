@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.servers import GameServer
+from tests.servers import serving
 
 from beliefnest import Nest, Scenario
 from beliefnest.cli.app import run_command_line
@@ -72,7 +72,7 @@ def test_a_place_on_a_server_is_captured_as_it_is(tmp_path):
     file.write_text(ROOM)
     room = Scenario.load(str(file))
     with (
-        GameServer(ops=["BeliefNest", "Second"], latency=5) as server,
+        serving(ops=["BeliefNest", "Second"], latency=5) as server,
         Nest.open(room, server.address(at="16,-32")),
     ):
         place = server.address(operator="Second", at="16,-32")

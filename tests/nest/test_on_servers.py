@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from tests.profiles import NIGHTLY
-from tests.servers import GameServer
+from tests.servers import GameServer, Served, serving
 
 from beliefnest import Nest, Scenario
 from beliefnest.cli.app import run_command_line
@@ -70,9 +70,16 @@ WORK = [
 
 
 @pytest.fixture(scope="module")
-def server() -> Iterator[GameServer]:
-    with GameServer(latency=15) as running:
+def server() -> Iterator[Served]:
+    with serving(latency=15) as running:
         yield running
+
+
+@pytest.fixture
+def console(server: Served) -> GameServer:
+    if not isinstance(server, GameServer):
+        pytest.skip("its console is out of reach")
+    return server
 
 
 def ran(arguments: list[str], folder: Path, capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
@@ -133,7 +140,7 @@ def test_skills_do_and_are_told_as_in_the_embedded_world(tmp_path):
     path = tmp_path / "workshop.yaml"
     path.write_text(WORKSHOP, encoding="utf-8")
     scenario = Scenario.load(str(path))
-    with GameServer(latency=15, version="1.20.2") as older:
+    with serving(latency=15, version="1.20.2") as older:
         played = worked(scenario, older.address())
     for here, there in zip(worked(scenario, "embedded"), played, strict=True):
         assert here == there
@@ -150,15 +157,15 @@ def test_the_example_of_the_page_runs(server, tmp_path, monkeypatch, capsys):
     assert believed == "{'diamond': 1}"
 
 
-def test_what_others_do_between_calls_is_recorded_with_the_next(server, tmp_path):
+def test_what_others_do_between_calls_is_recorded_with_the_next(console, tmp_path):
     store = tmp_path / "run.bn"
     heard = []
-    with Nest.open(Scenario.load("sally-anne", 1), server.address(), store) as nest:
+    with Nest.open(Scenario.load("sally-anne", 1), console.address(), store) as nest:
         nest.on_chat(lambda tick, speaker, text: heard.append((speaker, text)))
         nest["/"].run("sally", "bot.chat('hello'); await whisper(bot, 'anne', 'psst')")
         # Two connections hear of them, whichever comes first.
         assert sorted(heard) == [("sally", "hello"), ("sally", "psst")]
-        server.type("setblock 4 -51 4 minecraft:stone")
+        console.type("setblock 4 -51 4 minecraft:stone")
         assert nest.wait(lambda: nest["/"].state.blocks[(4, -51, 4)] == "stone")
         told = [e for e in nest["/"].state.events if e.kind is EventKind.BLOCK_UPDATE]
         assert [(e.actor, e.detail["position"]) for e in told] == [(None, (4, -51, 4))]
@@ -168,7 +175,7 @@ def test_what_others_do_between_calls_is_recorded_with_the_next(server, tmp_path
         assert not nest.wait(lambda: False, timeout_s=0.5)
         assert nest.wait(lambda: before + 10 <= nest.tick, LONG_S)
         # An edit is made in the server's world too, after what happened there before.
-        server.type("setblock 5 -51 4 minecraft:stone")
+        console.type("setblock 5 -51 4 minecraft:stone")
         nest["/"].edit(blocks={(4, -51, 4): "air"}, containers={LEFT: {"emerald": 2}})
         nest["/"].run("anne", "await getItemFromChest(bot, new Vec3(-2, -51, -4), {emerald: 1})")
         state = nest["/"].state
@@ -191,14 +198,14 @@ def test_a_fork_of_the_real_world_goes_back_to_where_it_was(server):
         assert nest["/"].run("anne", taken).ok
 
 
-def test_a_bot_that_is_sent_away_comes_back(server):
-    with Nest.open(Scenario.load("sally-anne", 1), server.address(patience=PATIENCE)) as nest:
+def test_a_bot_that_is_sent_away_comes_back(console):
+    with Nest.open(Scenario.load("sally-anne", 1), console.address(patience=PATIENCE)) as nest:
         nest["/"].run("sally", PUT)
         before = nest["/"].state.agents["sally"]
         for number, line in enumerate(("kick sally", "drop sally", "drop BeliefNest")):
-            server.type(line)
+            console.type(line)
             # The server does one line after the other.
-            server.type(f"setblock {6 + number} -51 4 minecraft:stone")
+            console.type(f"setblock {6 + number} -51 4 minecraft:stone")
             told = (6 + number, -51, 4)
             assert nest.wait(lambda told=told: nest["/"].state.blocks[told] == "stone", LONG_S)
             nest.wait(timeout_s=0.5)
@@ -208,14 +215,14 @@ def test_a_bot_that_is_sent_away_comes_back(server):
             after = nest["/"].state.agents["sally"]
             assert same_place(list(before.position), list(after.position))
         # What changes while the operator is away is found when it is back.
-        server.type("drop BeliefNest")
-        server.type("setblock 4 -51 4 minecraft:stone")
+        console.type("drop BeliefNest")
+        console.type("setblock 4 -51 4 minecraft:stone")
         assert nest.wait(lambda: nest["/"].state.blocks[(4, -51, 4)] == "stone", LONG_S)
 
 
-def test_a_program_whose_bot_is_sent_away_fails_and_the_next_one_runs(server):
-    with Nest.open(Scenario.load("sally-anne", 1), server.address(patience=PATIENCE)) as nest:
-        server.type("after 60 kick sally")
+def test_a_program_whose_bot_is_sent_away_fails_and_the_next_one_runs(console):
+    with Nest.open(Scenario.load("sally-anne", 1), console.address(patience=PATIENCE)) as nest:
+        console.type("after 60 kick sally")
         result = nest["/"].run("sally", FAR)
         assert not result.ok
         assert result.error is not None
@@ -224,9 +231,9 @@ def test_a_program_whose_bot_is_sent_away_fails_and_the_next_one_runs(server):
         assert nest["/"].run("sally", PUT).ok
 
 
-def test_a_server_that_stands_still_for_a_moment_is_waited_for(server):
-    with Nest.open(Scenario.load("sally-anne", 1), server.address(patience=PATIENCE)) as nest:
-        server.type("stall 1500")
+def test_a_server_that_stands_still_for_a_moment_is_waited_for(console):
+    with Nest.open(Scenario.load("sally-anne", 1), console.address(patience=PATIENCE)) as nest:
+        console.type("stall 1500")
         assert nest["/"].run("sally", PUT).ok
         ticks = [event.tick for event in nest["/"].state.events]
         assert ticks == sorted(ticks)

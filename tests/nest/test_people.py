@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 import yaml
 from tests.people import Person
-from tests.servers import GameServer
+from tests.servers import serving
 
 from beliefnest import Nest, Scenario
 from beliefnest.cli.app import run_command_line
@@ -92,7 +92,7 @@ def contents(nest):
 
 @pytest.fixture(scope="module")
 def server():
-    with GameServer(latency=10) as running:
+    with serving(latency=10) as running:
         yield running
 
 

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import at_night
-from tests.servers import GameServer
+from tests.servers import serving
 
 import beliefnest as bn
 from beliefnest.bodies import messages
@@ -306,7 +306,7 @@ def test_on_a_server_elsewhere_programs_read_no_more() -> None:
       await goToPosition(bot, new Vec3(7, {low + 1}, 3), 0)
       console.log(bot.players.bob.entity === null)"""
     with (
-        GameServer() as server,
+        serving() as server,
         bn.Nest.open(bn.Scenario.from_mapping({**ROOM, **room}), world=server.address()) as nest,
     ):
         result = nest["/"].run("ann", code, senses="percepts")

@@ -25,7 +25,7 @@ from beliefnest.cli.report import failure_lines, outcome_json, outcome_table, re
 from beliefnest.cli.run_report import report_html
 from beliefnest.cli.text import printable
 from beliefnest.cli.visits import check_visits, visited
-from beliefnest.errors import InputError, ModelError, ScenarioError
+from beliefnest.errors import InputError, ModelError, NotBegunError, ScenarioError
 from beliefnest.llm.asking import NoUsableProgramError
 from beliefnest.llm.budget import Budget, RunLimits
 from beliefnest.llm.cache import CacheMode
@@ -312,16 +312,21 @@ def _page(
 ) -> str:
     """The page of the run, with the versions that the first of its stores keeps."""
     stores = [store for cell in cells if (store := folder.cell(cell.folder).store).is_file()]
-    versions: Mapping[str, str] = {}
-    if stores:
-        with SqliteJournal.read(stores[0]) as journal:
-            versions = journal.records.run().versions
     return report_html(
         report,
         about={"name": options.scenario, "description": scenario.description},
         conditions=scenario.conditions,
-        versions=versions,
+        versions=_versions(stores[0]) if stores else {},
     )
+
+
+def _versions(store: Path) -> Mapping[str, str]:
+    try:
+        with SqliteJournal.read(store) as journal:
+            return journal.records.run().versions
+    except NotBegunError:
+        # Its world could not be opened, which is what there is to tell.
+        return {}
 
 
 def _failures_text(failures: Sequence[Mapping[str, object]], total: int, folder: RunFolder) -> str:

@@ -5,9 +5,11 @@ const fs = require('node:fs')
 const os = require('node:os')
 const path = require('node:path')
 const { test } = require('node:test')
+const { Vec3 } = require('vec3')
 const { add } = require('../bundling/further')
 const { writeVersions } = require('../bundling/versions')
 const { commandsFor } = require('../src/remote/commands')
+const { Setup } = require('../src/remote/setup')
 const { BlockMapping, heldFor } = require('../src/remote/versions')
 const { minecraft } = require('../src/versions')
 
@@ -48,6 +50,20 @@ test('a block that ours has not is stone, or air where one walks through it', ()
   const name = block => mapping.states.describe(mapping.fromServer(theirs.blocksByName[block].defaultState)).name
   assert.deepEqual(['resin_block', 'firefly_bush'].map(name), ['stone', 'air'])
   assert.deepEqual([...mapping.strange], ['resin_block', 'firefly_bush'])
+})
+
+test('whether agents may use blocks is tried with a gate, whatever number its state has', async () => {
+  const theirs = registry('1.21.8')
+  const mapping = new BlockMapping(ours, theirs)
+  const region = { box: { contains: () => true }, toServer: ([x, y, z]) => ({ x, y, z }) }
+  const scene = { region, mapping, at: () => ({ name: 'air', properties: { open: true } }) }
+  const typed = []
+  const operator = { type: command => typed.push(command), until: async condition => condition(), settled: async () => {} }
+  const bot = { entity: { position: new Vec3(0.5, 1, 0.5) }, tabComplete: async () => [], _client: { write () {} } }
+  const commands = commandsFor(region, state => mapping.textForServer(state), theirs.version)
+  await new Setup(scene, operator, commands, theirs).requireUse(bot)
+  assert.match(typed[0], /^setblock 0 2 -1 minecraft:oak_fence_gate\[/)
+  assert.deepEqual(typed.slice(1), ['setblock 0 2 -1 minecraft:air'])
 })
 
 test('items and signs are written as the version has them', () => {

@@ -195,7 +195,7 @@ class Setup {
     const cell = BESIDE.map(([x, z]) => eye.offset(x, 0, z)).find(({ x, y, z }) => box.contains(x, y, z) && scene.at({ x, y, z }).name === 'air')
     if (cell === undefined) return
     const [low, high] = [cell, cell].map(({ x, y, z }) => [x, y, z])
-    const [shut, air] = ['oak_fence_gate', 'air'].map(name => this.registry.blocksByName[name].defaultState)
+    const [shut, air] = ['oak_fence_gate', 'air'].map(name => scene.mapping.registry.blocksByName[name].defaultState)
     const isGate = () => scene.at(cell).name === 'oak_fence_gate'
     operator.type(this.commands.blocks({ state: shut, low, high }))
     await operator.until(isGate)
