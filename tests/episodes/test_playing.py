@@ -85,6 +85,16 @@ def test_a_budget_of_ticks_ends_an_episode() -> None:
         assert played.play().rounds == 3
 
 
+def test_who_resumes_can_give_more(tmp_path: Path) -> None:
+    policies, store = {"ann": "random", "bob": "random"}, tmp_path / "e.bn"
+    with bn.Episode(task(rounds=9), policies, store=store, budget=Budget(ticks=1)) as played:
+        assert played.play().rounds == 1
+    with bn.Episode.resume(store) as played:
+        assert played.play().rounds == 1
+    with bn.Episode.resume(store, budget=Budget(ticks=21)) as played:
+        assert played.play().rounds == 2
+
+
 def test_what_was_believed_wrongly_and_acted_on_is_counted() -> None:
     helped = bn.Task.load("help-find", seed=1)
     with bn.Episode(helped, {"anne": "search:0"}) as alone, bn.Episode(helped) as together:
@@ -119,3 +129,20 @@ def test_the_command_tells_if_a_task_is_not_what_it_claims(
     assert run_command_line(command) == 0
     told = capsys.readouterr().out
     assert '"policy": "search:2"' in told
+
+
+def test_the_command_goes_on_with_no_other_episode(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = ["--out", str(tmp_path / "run")]
+    assert run_command_line(["play", "help-find", "--seed", "1", "--rounds", "1", *out]) == 1
+    before = (tmp_path / "run" / "run.bn").read_bytes()
+    for other, found in (
+        (["recipe", "--seed", "1"], "the task is help-find"),
+        (["help-find"], "the seed is 1"),
+        (["help-find", "--seed", "1", "--world", "embedded"], "the world is scripted"),
+        (["help-find", "--seed", "1", "--set", "chests=5"], "the instance is another one"),
+    ):
+        assert run_command_line(["play", *other, *out]) == 2
+        assert found in " ".join(capsys.readouterr().err.split())
+    assert (tmp_path / "run" / "run.bn").read_bytes() == before

@@ -19,6 +19,8 @@ from beliefnest.errors import InputError, NotBegunError
 
 __all__ = ["PlayOptions", "play_task"]
 
+_RUN = "run.bn"
+
 
 @dataclass(frozen=True, slots=True)
 class PlayOptions:
@@ -89,30 +91,53 @@ def play_task(options: PlayOptions) -> int:
 
 
 def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> Episode:
-    store = None
-    if options.out is not None:
-        try:
-            options.out.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise InputError(f"{options.out} cannot be made: {error.strerror}") from None
-        store = options.out / "run.bn"
-        if store.exists():
-            try:
-                return Episode.resume(store, policies, patience_s=options.patience_s)
-            except NotBegunError:
-                # Stopped while it began: there is nothing in it yet.
-                for left in options.out.glob(f"{store.name}*"):
-                    left.unlink()
-    return Episode(
+    """What is asked for; if some of it is in the folder already, what goes on with that."""
+    asked = Episode(
         task,
         policies,
         world=options.world,
-        store=store,
+        store=None if options.out is None else _store_in(options.out),
         seed=options.seed,
         budget=options.budget,
         patience_s=options.patience_s,
         listen=options.listen,
     )
+    if options.out is None or not _store_in(options.out).exists():
+        return asked
+    try:
+        held = Episode.resume(
+            _store_in(options.out),
+            policies,
+            budget=options.budget if options.budget != Budget() else None,
+            patience_s=options.patience_s,
+        )
+    except NotBegunError:
+        # Stopped while it began: there is nothing in it yet.
+        for left in options.out.glob(f"{_RUN}*"):
+            left.unlink()
+        return asked
+    for what, of_asked, of_held in (
+        ("task", asked.task.name, held.task.name),
+        ("seed", asked.seed, held.seed),
+        ("world", asked.world, held.world),
+        ("instance", asked.task.plain(), held.task.plain()),
+    ):
+        if of_asked != of_held:
+            held.close()
+            found = "another one" if isinstance(of_held, dict) else of_held
+            raise InputError(
+                f"{options.out} holds an episode of which the {what} is {found}; ask for the "
+                "same to go on with it, or name another folder"
+            )
+    return held
+
+
+def _store_in(folder: Path) -> Path:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder} cannot be made: {error.strerror}") from None
+    return folder / _RUN
 
 
 def _pairs(given: Sequence[str], option: str, form: str) -> dict[str, str]:

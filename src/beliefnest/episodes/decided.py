@@ -1,5 +1,6 @@
 """What was decided in a part of a round, and how that ended, as a run keeps it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -7,7 +8,7 @@ import msgspec
 
 from beliefnest.bodies.protocol import Past
 
-__all__ = ["Decision", "Ended", "HowEnded", "Part", "Spent"]
+__all__ = ["Decision", "Ended", "HowEnded", "Part", "Spent", "latest_end", "spent_in"]
 
 HowEnded = Literal["none", "ok", "cut", "no_way", "failed", "lost"]
 
@@ -82,3 +83,13 @@ class Part(msgspec.Struct, frozen=True):
     ended: dict[str, Ended] = {}
     cut: dict[str, Past] = {}
     began: int | None = None
+
+
+def latest_end(parts: Sequence[Part], agent: str) -> Ended:
+    """How an agent's latest program ended."""
+    return next((p.ended[agent] for p in reversed(parts) if agent in p.ended), Ended())
+
+
+def spent_in(parts: Sequence[Part]) -> Spent:
+    """What policies have spent on models."""
+    return sum((each.spent for part in parts for each in part.decisions.values()), Spent())

@@ -8,7 +8,7 @@ from typing import Self
 
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.episodes.choosing import check_resumable, chosen, name_of
-from beliefnest.episodes.decided import Ended, Part, Spent
+from beliefnest.episodes.decided import Part, Spent, latest_end, spent_in
 from beliefnest.episodes.helping import Help, help_in
 from beliefnest.episodes.measures import Measures, false_beliefs, measured
 from beliefnest.episodes.moment import Moment
@@ -110,6 +110,7 @@ class Episode:
         policies: Mapping[str, "str | Policy"] | None = None,
         *,
         branch: str | None = None,
+        budget: Budget | None = None,
         patience_s: float | None = None,
     ) -> Self:
         """Go on with a recorded episode where it was.
@@ -118,6 +119,7 @@ class Episode:
             store: The run file.
             policies: By agent; those who are left out are played as before.
             branch: Which one is gone on with; None: the one that was played last.
+            budget: What it may take, with what it has taken; None: as much as before.
             patience_s: As for the class.
 
         Raises:
@@ -140,7 +142,7 @@ class Episode:
                 world=kept.world,
                 store=store,
                 seed=kept.seed,
-                budget=kept.budget,
+                budget=budget or kept.budget,
                 patience_s=patience_s,
             )
             episode._take(nest, branch, kept.start, known.parts)
@@ -327,11 +329,7 @@ class Episode:
     @property
     def spent(self) -> Spent:
         """What policies have spent on models."""
-        total = Spent()
-        for part in self._parts:
-            for each in part.decisions.values():
-                total += each.spent
-        return total
+        return spent_in(self._parts)
 
     @property
     def parts(self) -> Sequence[Part]:
@@ -376,7 +374,7 @@ class Episode:
             agent,
             self._brief,
             len(self._parts) // len(self._slots),
-            self._ended(agent),
+            latest_end(self._parts, agent),
             nest.at(nest.tick)[path],
             lambda depth: own.imagine(depth, self.task.form.pace),
             own.noting,
@@ -496,6 +494,3 @@ class Episode:
     def _watch(self) -> Progress:
         """How far the task's goal has come by now."""
         return self._watching.up_to_now(self.nest)[""]
-
-    def _ended(self, agent: str) -> Ended:
-        return next((p.ended[agent] for p in reversed(self._parts) if agent in p.ended), Ended())
