@@ -217,3 +217,11 @@ def test_a_listener_that_fails_ends_its_program(world: World) -> None:
     assert not results["sally"].ok
     assert "oh" in str(results["sally"].error)
     assert results["sally"].ticks < 20
+
+
+@pytest.mark.parametrize("end", ["", "throw new Error('no')"])
+def test_what_is_said_is_said_whether_it_is_waited_for_or_not(world: World, end: str) -> None:
+    words = "say(bot, 'one'); whisper(bot, 'anne', 'two'); think(bot, 'three')"
+    played = Played(world, {"sally": f"{words}\n{end}"})
+    assert {detail["text"] for _, _, detail in played.told} == {"one", "two", "three"}
+    assert played.results["sally"].ticks == 1

@@ -24,7 +24,7 @@ from beliefnest.bodies.protocol import (
 )
 from beliefnest.bodies.scripted_hand import Doing, Hand, SkillError
 from beliefnest.bodies.scripted_memory import Memory
-from beliefnest.bodies.scripted_skills import CALLS, SKILLS
+from beliefnest.bodies.scripted_skills import CALLS, SKILLS, UTTERANCES
 from beliefnest.errors import BeliefNestError
 from beliefnest.world.frames import Frame
 from beliefnest.world.scripted import ScriptedWorld
@@ -48,6 +48,7 @@ _EPOCH_MS = 1_704_067_200_000
 """When Minecraft's worlds begin here, too: 2024-01-01, in UTC."""
 _TICK_MS = 50
 _DOINGS = {**SKILLS, **CALLS}
+_ENDS_WITH_PROGRAM = SKILLS.keys() - UTTERANCES
 
 
 @dataclass
@@ -223,7 +224,7 @@ def _act(run: _Run) -> list[tuple[int, bool, object]]:
     ended: list[tuple[int, bool, object]] = []
     for number, (name, doing) in run.doing.items():
         # What is said without waiting is said, also if the program has ended by then.
-        if run.program.ended and name in SKILLS:
+        if run.program.ended and name in _ENDS_WITH_PROGRAM:
             continue
         try:
             next(doing)
@@ -236,7 +237,7 @@ def _act(run: _Run) -> list[tuple[int, bool, object]]:
 
 def _goes_on(run: _Run) -> bool:
     """Whether something is done still that goes on without its program."""
-    return any(name not in SKILLS for name, _ in run.doing.values())
+    return any(name not in _ENDS_WITH_PROGRAM for name, _ in run.doing.values())
 
 
 def _settle(run: _Run, grounds: Grounds, number: int, *, ok: bool, value: object) -> None:

@@ -32,7 +32,7 @@ from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.signs import sign_fault
 from beliefnest.world.values import EYE_HEIGHT, Position
 
-__all__ = ["CALLS", "SKILLS"]
+__all__ = ["CALLS", "SKILLS", "UTTERANCES"]
 
 _NEAR = 2.0
 
@@ -225,6 +225,9 @@ CALLS: Mapping[str, Callable[..., Doing]] = {
     "bot.whisper": _whisper,
 }
 """What a program asks of its bot itself."""
+
+UTTERANCES = frozenset(("say", "whisper", "think"))
+"""Skills whose deed is done by calling them, as in Minecraft, whether or not the program waits."""
 
 
 def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:

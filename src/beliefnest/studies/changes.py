@@ -41,6 +41,7 @@ class Moved:
             "block": lambda value: placing.block(_triple(value)),
             "point": lambda value: placing.point(_triple(value)),
             "place": lambda value: self._place(_triple(value)),
+            "static": lambda value: value if isinstance(value, str) else placing.block(value),
             "yaw": symmetry.yaw,
             "facing": self._facing,
             "state": lambda value: symmetry.block_state(value, self.registry),

@@ -15,7 +15,7 @@ __all__ = ["Kind", "SceneChange", "changed_scene"]
 
 Kind = str
 """`keep`, `block`, `point`, `place` (a block or a point), `yaw`, `facing`, `state`, `program`,
-`text` (read by models), `label` (read by people alone), `agent`, `item`, `path`, `wanted` (a block
+`text` (read by models), `label` (read by people alone), `static` (a block's name or position), `agent`, `item`, `path`, `wanted` (a block
 state of which only what is written counts)."""
 
 
@@ -59,6 +59,8 @@ _EXPECTATION = {
     "position": "point",
     "sign": "block",
     "text": "text",
+    "block": "block",
+    "state": "state",
     "within": "keep",
     "heard": "text",
     "not_heard": "text",
@@ -119,7 +121,9 @@ _SHAPE: Mapping[str, Any] = {
     "reported_by": "keep",
     "box": _CORNERS,
     "blocks": _BLOCKS,
-    "containers": _Each({"at": "block", "block": "state", "items": _ITEMS, "label": "label"}),
+    "containers": _Each(
+        {"at": "block", "block": "state", "items": _ITEMS, "label": "label", "looks": "text"}
+    ),
     "signs": _SIGNS,
     "places": _Map("keep", "block"),
     "agents": _Map(
@@ -139,7 +143,8 @@ _SHAPE: Mapping[str, Any] = {
     ),
     "perception": "keep",
     "senses": "keep",
-    "static_blocks": "keep",
+    "static_blocks": _Each("static"),
+    "labels": "keep",
     "initial_beliefs": _Each(
         {
             "path": "path",
