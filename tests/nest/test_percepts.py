@@ -79,6 +79,46 @@ def test_what_cannot_be_perceived_changes_no_value_that_is_read(
     assert read(hidden, items, bob, "percepts") == plain
 
 
+BEHIND = "new Vec3(5, 1, 3)"
+USES = [
+    f"await getItemFromChest(bot, {BEHIND}, {{apple: 1}})",
+    f"await depositItemIntoChest(bot, {BEHIND}, {{dirt: 1}})",
+    f"await openDoor(bot, {BEHIND})",
+    f"await turnOnLever(bot, {BEHIND})",
+    f"await pressButton(bot, {BEHIND})",
+    f"await mineBlock(bot, {BEHIND}, 'dirt')",
+    f"await placeItem(bot, 'dirt', {BEHIND})",
+    f"await writeSign(bot, {BEHIND}, 'mine')",
+    f"await bot.openContainer({{position: {BEHIND}}})",
+]
+
+
+@pytest.mark.parametrize("use", USES)
+def test_a_hand_does_not_reach_through_walls_into_what_is_not_perceived(use: str) -> None:
+    def told(hidden: str) -> tuple[object, ...]:
+        ann = {"position": [3.5, 1, 3.5], "inventory": {"dirt": 1}}
+        scenario = bn.Scenario.from_mapping(
+            {
+                **ROOM,
+                "blocks": [FLOOR, WALL, {"block": hidden, "at": [5, 1, 3]}],
+                "agents": {**ROOM["agents"], "ann": ann},
+            }
+        )
+        with bn.Nest.open(scenario, world="scripted") as nest:
+            result = nest["/"].run(
+                "ann", f"console.log(await (async () => {{ {use} }})())", 100, "percepts"
+            )
+            return result.ok, str(result.error), result.ticks, result.log
+
+    kinds = ("air", "dirt", "barrel", "lever[face=floor]", "oak_sign", "glass")
+    assert len({told(kind) for kind in kinds}) == 1
+
+
+def test_a_program_has_no_clock_of_the_machine() -> None:
+    with bn.Nest.open(bn.Scenario.from_mapping(ROOM), world="scripted") as nest:
+        assert nest["/"].run("ann", "console.log(typeof performance)").log == ("undefined",)
+
+
 def test_percepts_are_what_is_perceived() -> None:
     (first, _), ticks = read([], {}, (7.5, 1.0, 5.5), "percepts")
     assert first["told"]["players"]["bob"]["entity"] is None

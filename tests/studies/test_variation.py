@@ -12,9 +12,22 @@ import beliefnest as bn
 from beliefnest.errors import InputError, ScenarioError
 from beliefnest.scenarios.document import plain
 from beliefnest.scenarios.expressions import evaluate
+from beliefnest.scenarios.format import (
+    AgentEntry,
+    BelievedSignEntry,
+    ContainerEntry,
+    ExpectationEntry,
+    ExpectEntry,
+    InitialBeliefEntry,
+    ProbeEntry,
+    ScenarioFile,
+    SignEntry,
+    StepEntry,
+)
 from beliefnest.scenarios.loading import builtin_names, read_document
 from beliefnest.studies.drawing import drawn_variations
 from beliefnest.studies.javascript import Rewriting, rewritten
+from beliefnest.studies.scene import _SHAPE
 from beliefnest.studies.variation import Variation
 
 
@@ -207,3 +220,69 @@ def test_no_more_is_drawn_than_there_is(tmp_path):
     text = SMALL.replace("range: [1, 64]", "values: [1]")
     # Three places, two items, one count, eight symmetries.
     assert len(drawn_variations(read_document(small_in(tmp_path, text)), 1000, "seed")) == 48
+
+
+TOLD = """
+static_blocks: [stone, [4, 0, 2]]
+labels: true
+expectations: [{path: /, block: [5, 1, 1], state: "oak_stairs[facing=west]"}]
+"""
+
+
+def test_blocks_that_are_expected_and_known_move_with_the_scene(tmp_path):
+    stairs = '\n  - {block: "oak_stairs[facing=west]", at: [5, 1, 1]}\nparameters:'
+    file = small_in(tmp_path, SMALL.replace("\nparameters:", stairs) + TOLD)
+    scenario = varied(file, symmetry="mirrored")
+    assert scenario.setting.static_blocks == {"stone", (2, 0, 2)}
+    expected = scenario.expectations[0].content
+    assert expected.block == (1, 1, 1)
+    assert expected.state.startswith("oak_stairs[facing=east")
+    labelled = small_in(tmp_path, SMALL.replace("label: box", "label: left box") + TOLD)
+    with pytest.raises(ScenarioError, match=r"containers\[0\].label: says 'left'"):
+        varied(labelled, symmetry="mirrored")
+
+
+def test_every_key_of_a_scenario_is_known_in_another_scene():
+    shape = _SHAPE["initial_beliefs"].shape
+    for entry, known in {
+        ScenarioFile: {*_SHAPE, "parameters", "constraints", "conditions"},
+        ContainerEntry: _SHAPE["containers"].shape,
+        SignEntry: _SHAPE["signs"].shape,
+        AgentEntry: _SHAPE["agents"].shape,
+        StepEntry: _SHAPE["script"].shape,
+        ProbeEntry: _SHAPE["probes"].shape,
+        # What a function judges nobody can tell.
+        ExpectEntry: {*_SHAPE["probes"].shape["expect"], "function"},
+        ExpectationEntry: _SHAPE["expectations"].shape,
+        InitialBeliefEntry: shape,
+        BelievedSignEntry: shape["signs"].shape,
+    }.items():
+        assert set(entry.__struct_fields__) <= set(known), entry
+
+
+TEMPLATE = (
+    "You are ann. {{ branch | position('ann') }} {{ branch | chests }} Task: {{ task }} {{ ann }}"
+)
+
+
+def test_templates_name_agents_and_items_anew(tmp_path):
+    (tmp_path / "mine.txt").write_text(TEMPLATE, "utf-8")
+    file = small_in(tmp_path, SMALL.replace("agent: ann\n", "agent: ann\n    template: mine.txt\n"))
+    names = {"agents": [{"ann": "mia"}], "items": [{"diamond": "apple"}]}
+    new = TEMPLATE.replace("are ann", "are mia").replace("'ann'", "'mia'")
+    assert varied(file, agents={"ann": "mia"}).probes[0].template == new
+    alone = bn.Study(small_in(tmp_path), templates=[str(tmp_path / "mine.txt")], variations=names)
+    assert alone.plan().cells[0].scenario.probes[0].template == new
+
+
+@pytest.mark.parametrize(
+    ("items", "told"),
+    [
+        ({"diamnod": "apple"}, "there is no item 'diamnod' to rename; items are bone, diamond"),
+        ({"diamond": "bone"}, "two items would be called 'bone'"),
+    ],
+)
+def test_items_that_are_not_there_or_would_be_one_are_refused(tmp_path, items, told):
+    held = "ann: {inventory: {bone: 1}, "
+    with pytest.raises(InputError, match=told):
+        varied(small_in(tmp_path, SMALL.replace("ann: {", held)), items=items)

@@ -110,8 +110,8 @@ class Engines:
 def _text() -> str:
     """A function of what `Engine` gives it, as JSON, that gives what calls a part of the prelude.
 
-    No function is in brackets: those that open with one are read twice, to see whether an arrow
-    comes after them.
+    The engine's own clock goes: it tells how long this machine takes. No function is in brackets:
+    those that open with one are read twice, to see whether an arrow comes after them.
     """
     prelude = (files("beliefnest.bodies") / "scripted_prelude.js").read_text(encoding="utf-8")
     return f"""{{
@@ -122,6 +122,7 @@ const sfc32 = {_shared("sfc32", "module.exports")}
 const date = {_shared("date", "module.exports")}
 const prelude = {prelude}
 date()({{ now: () => time.ms }})
+delete globalThis.performance
 given => {{
   const [words, ...others] = JSON.parse(given)
   const random = sfc32()(words)

@@ -2,7 +2,7 @@
 
 import heapq
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from functools import cached_property
@@ -56,19 +56,24 @@ class InReach:
         block: Its position.
         reach: Distance between eyes and the block's middle.
         beside: Whether one must not stand in it, neither with the feet nor with the head.
+        has_free_line: Given eyes and a block, whether the hand's way there is free; None: always.
     """
 
     block: Position
     reach: float
     beside: bool = False
+    has_free_line: Callable[[Point, Position], bool] | None = None
 
     def is_met(self, cell: Position) -> bool:
         """Whether a block can be reached from a cell."""
         if self.beside and self._is_within(cell):
             return False
         x, y, z = feet_in(cell)
+        eye = (x, y + EYE_HEIGHT, z)
         middle = (self.block[0] + 0.5, self.block[1] + 0.5, self.block[2] + 0.5)
-        return math.dist((x, y + EYE_HEIGHT, z), middle) <= self.reach
+        if math.dist(eye, middle) > self.reach:
+            return False
+        return self.has_free_line is None or self.has_free_line(eye, self.block)
 
     def steps_left(self, cell: Position) -> float:
         """How many steps it is to such a cell at least."""
@@ -183,7 +188,8 @@ class Ground:
         self, start: Position, goal: Goal, avoiding: AbstractSet[Position] = frozenset()
     ) -> tuple[Position, ...] | None:
         """The way that `find_way` finds, looked for once where nothing is to be avoided."""
-        if avoiding:
+        # What somebody knows of free lines is not kept: it changes, and is no matter of the ground.
+        if avoiding or (isinstance(goal, InReach) and goal.has_free_line is not None):
             return find_way(self, start, goal, avoiding)
         wanted = (start, goal)
         if wanted not in self._ways:

@@ -238,6 +238,8 @@ class Sensed:
         items: Dropped items by number, where they were seen last.
         heard: What was heard in the latest tick: speaker, text, and to whom it was whispered.
         signs: What is written on signs, by position; a sign that is not among them is blank.
+        has_free_line: Given eyes and a block, whether nothing that it knows of hides the block
+            from there; None: nothing ever does.
     """
 
     blocks: BlockGrid
@@ -245,7 +247,11 @@ class Sensed:
     items: Mapping[int, DroppedItem] = field(default_factory=dict)
     heard: tuple[tuple[str, str, str | None], ...] = ()
     signs: Mapping[Position, str] = field(default_factory=dict)
+    has_free_line: "FreeLine | None" = None
 
+
+FreeLine = Callable[[Point, Position], bool]
+"""Given eyes and a block: whether the block can be seen from there."""
 
 Sense = Callable[[], Sensed]
 """What a program may read of the world as of the latest tick that is over."""

@@ -3,9 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from beliefnest.bodies.footpaths import InReach
 from beliefnest.bodies.scripted_hand import (
-    REACH,
     Doing,
     Hand,
     SkillError,
@@ -66,7 +64,7 @@ def place_item(hand: Hand, name: Any, position: Any) -> Doing:
     place, item = block_in(position), text_in(name)
     if not hand.world.agents[hand.name].inventory.get(item, 0):
         raise SkillError(f"there is no {item} in the inventory")
-    yield from walk(hand, place, InReach(place, REACH, beside=True), "the position")
+    yield from walk(hand, place, hand.reach(place, beside=True), "the position")
     yield
     hand.world.put(hand.name, item, place)
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from beliefnest.bodies.footpaths import Goal, Ground, InReach, feet_in
-from beliefnest.bodies.protocol import NO_WAY
+from beliefnest.bodies.protocol import NO_WAY, FreeLine
 from beliefnest.errors import BeliefNestError
 from beliefnest.world.doors import is_doorway, is_open, moves_by_hand
 from beliefnest.world.registry import AIR, Registry
@@ -66,6 +66,8 @@ class Hand:
         speech_ticks: Ticks that it takes it to say something; 0: it is said in the next one.
         mouth: What it is about to say, in order.
         heard: What it heard in the latest tick: speaker, text, and to whom it was whispered.
+        has_free_line: Given eyes and a block, whether nothing that the agent knows of lies between;
+            None: it reaches through everything.
     """
 
     name: str
@@ -77,6 +79,11 @@ class Hand:
     speech_ticks: int = 0
     mouth: list[object] = field(default_factory=list)
     heard: list[tuple[str, str, str | None]] = field(default_factory=list)
+    has_free_line: FreeLine | None = None
+
+    def reach(self, place: Position, *, beside: bool = False) -> InReach:
+        """Standing where it reaches a block; `beside` as there."""
+        return InReach(place, REACH, beside, self.has_free_line)
 
     @property
     def feet(self) -> Point:
@@ -91,7 +98,7 @@ class Hand:
 
 def walk_to_use(hand: Hand, place: Position) -> Doing:
     """Walk to where a block can be used."""
-    yield from walk(hand, place, InReach(place, REACH), "the block")
+    yield from walk(hand, place, hand.reach(place), "the block")
 
 
 @dataclass(frozen=True, slots=True)

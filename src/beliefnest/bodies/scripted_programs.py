@@ -16,6 +16,7 @@ from beliefnest.bodies.javascript import JavaScriptProgram
 from beliefnest.bodies.protocol import (
     Aim,
     Fault,
+    FreeLine,
     ProgramResult,
     RunRules,
     Sense,
@@ -28,7 +29,7 @@ from beliefnest.bodies.scripted_skills import CALLS, SKILLS, UTTERANCES
 from beliefnest.errors import BeliefNestError
 from beliefnest.world.frames import Frame
 from beliefnest.world.scripted import ScriptedWorld
-from beliefnest.world.values import AgentState, Box, Event, EventKind, Point
+from beliefnest.world.values import AgentState, Box, Event, EventKind, Point, Position
 
 __all__ = ["run_programs"]
 
@@ -173,6 +174,7 @@ def _begun(
         others=lambda: sense().agents,
         signs=lambda: sense().signs,
         ground=ground,
+        has_free_line=_free_line(sense) if agent in senses else None,
         speech_ticks=rules.speech_ticks,
     )
     past = rules.past.get(agent)
@@ -184,6 +186,14 @@ def _begun(
     program.start()
     _take_calls(run)
     return run
+
+
+def _free_line(sense: Sense) -> FreeLine:
+    def is_free(eye: Point, block: Position) -> bool:
+        told = sense().has_free_line
+        return told is None or told(eye, block)
+
+    return is_free
 
 
 def _known(box: Box, sense: Sense, grounds: Grounds) -> Callable[[], Ground]:

@@ -8,10 +8,9 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from beliefnest.bodies.footpaths import InReach, Near
+from beliefnest.bodies.footpaths import Near
 from beliefnest.bodies.scripted_building import mine_block, place_item, press_button, switch_lever
 from beliefnest.bodies.scripted_hand import (
-    REACH,
     Doing,
     Hand,
     SkillError,
@@ -238,9 +237,9 @@ def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:
             )
         yield from walk_to_use(hand, place)
     yield
+    if not hand.reach(place).is_met(hand.cell):
+        raise SkillError(f"{place} is too far away, or hidden, to open what is there; go nearer")
     _check_container(hand, place)
-    if not InReach(place, REACH).is_met(hand.cell):
-        raise SkillError(f"the container at {place} is too far away to open it; go nearer")
     hand.world.open(hand.name, place)
 
 

@@ -8,7 +8,6 @@ from typing import Any, TypeVar
 import numpy as np
 
 from beliefnest.belief.entries import InitialBelief
-from beliefnest.files import read_regular_text
 from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.perception.options import Perception
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, built_in_template
@@ -45,6 +44,7 @@ from beliefnest.scenarios.format import (
 )
 from beliefnest.scenarios.functions import judge_of
 from beliefnest.scenarios.people import build_agents
+from beliefnest.scenarios.reading import template_text
 from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, conditions_of
 from beliefnest.scenarios.space import (
     UNKNOWN,
@@ -397,15 +397,9 @@ class _Builder:
     def _template(self, path: KeyPath, name: str | None) -> str | None:
         if name is None:
             return None
-        if name in self._document.templates:
-            return self._document.templates[name]
-        if name in BUILT_IN_TEMPLATES:
+        if name in BUILT_IN_TEMPLATES and name not in self._document.templates:
             return built_in_template(name).text
-        file = self._document.folder / name
-        try:
-            return read_regular_text(file)
-        except (OSError, ValueError) as error:
-            raise self._document.fault(path, f"{file} cannot be read: {error}") from None
+        return template_text(self._document, path, name)
 
     def _check_belief_path(self, path: KeyPath, text: str) -> tuple[str, ...]:
         with self._document.naming(path):

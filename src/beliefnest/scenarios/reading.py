@@ -15,9 +15,9 @@ from ruamel.yaml.nodes import MappingNode, ScalarNode
 
 from beliefnest.errors import ScenarioError
 from beliefnest.files import decode_json, read_regular_text
-from beliefnest.scenarios.document import MAX_DEPTH, Document, Node
+from beliefnest.scenarios.document import MAX_DEPTH, Document, KeyPath, Node
 
-__all__ = ["parse_yaml", "read_yaml", "templates_file"]
+__all__ = ["parse_yaml", "read_yaml", "template_text", "templates_file"]
 
 _LONGEST = 4 * 2**20
 """Bytes of a scenario file."""
@@ -48,6 +48,26 @@ def read_yaml(path: Path) -> Document:
 def templates_file(path: Path) -> Path:
     """Where the templates that a scenario file names are kept beside it: name to text, as JSON."""
     return path.with_suffix(".templates.json")
+
+
+def template_text(document: Document, path: KeyPath, name: str) -> str:
+    """The text of a template that a document names, and that is none of the built-in ones.
+
+    Args:
+        document: Keeps it, or says in which folder it is.
+        path: Where it is named.
+        name: Its name there.
+
+    Raises:
+        ScenarioError: It cannot be read.
+    """
+    if name in document.templates:
+        return document.templates[name]
+    file = document.folder / name
+    try:
+        return read_regular_text(file)
+    except (OSError, ValueError) as error:
+        raise document.fault(path, f"{file} cannot be read: {error}") from None
 
 
 def parse_yaml(text: str, source: str) -> Document:

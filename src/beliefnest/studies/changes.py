@@ -5,6 +5,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from jinja2 import Environment, TemplateSyntaxError
+
 from beliefnest.errors import InputError
 from beliefnest.studies.javascript import Rewriting, rewritten
 from beliefnest.studies.scene import Kind
@@ -50,6 +52,7 @@ class Moved:
                 value, Rewriting(self._vector, self._text, lambda key: key)
             ),
             "text": self._told,
+            "template": lambda value: _in_template(value, self._told),
         }
 
     def _facing(self, value: Any) -> Any:
@@ -91,6 +94,22 @@ class Moved:
         return self.placing.symmetry.name
 
 
+def _in_template(source: str, change: Callable[[str], str]) -> str:
+    """A template with all it prints as written, and all texts in its expressions, changed."""
+    try:
+        tokens = [(kind, text) for _, kind, text in Environment().lex(source)]
+    except TemplateSyntaxError:
+        # Rendering tells what is wrong.
+        return source
+    parts = []
+    for kind, text in tokens:
+        if kind == "string":
+            parts.append(text[0] + change(text[1:-1]) + text[-1])
+        else:
+            parts.append(change(text) if kind == "data" else text)
+    return "".join(parts)
+
+
 def _triple(value: Any) -> tuple[Any, Any, Any]:
     x, y, z = value
     return x, y, z
@@ -109,19 +128,20 @@ class Renamed:
     items: Mapping[str, str]
 
     def value(self, kind: Kind, value: Any) -> Any:
-        """The new value."""
-        match kind:
-            case "agent":
-                return self.agents.get(value, value)
-            case "item":
-                return self.items.get(value, value)
-            case "path":
-                return "/".join(self.agents.get(name, name) for name in value.split("/"))
-            case "text" | "label":
-                return self._told(value)
-            case "program":
-                return rewritten(value, Rewriting(None, self._written, self._key))
-        return value
+        """The new value; InputError if a program cannot be read."""
+        change = self._changes().get(kind)
+        return value if change is None else change(value)
+
+    def _changes(self) -> Mapping[Kind, Callable[[Any], Any]]:
+        return {
+            "agent": lambda value: self.agents.get(value, value),
+            "item": lambda value: self.items.get(value, value),
+            "path": lambda value: "/".join(self.agents.get(n, n) for n in value.split("/")),
+            "text": self._told,
+            "label": self._told,
+            "program": lambda value: rewritten(value, Rewriting(None, self._written, self._key)),
+            "template": lambda value: _in_template(value, self._written),
+        }
 
     def _key(self, key: str) -> str:
         return self.agents.get(key, self.items.get(key, key))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Generic, Protocol, TypeVar
 
 from beliefnest.errors import BeliefNestError, MissingExtraError
+from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import condition_numbers
 from beliefnest.scenarios.records import expected_json
@@ -198,12 +199,13 @@ def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan[Cell]:
             for condition in conditions:
                 try:
                     scenario = _scenario(design, document, condition, variation)
+                    asked = _by_template(design, document, scenario, variation)
                 except MissingExtraError:
                     raise
                 except BeliefNestError as error:
                     invalid.append(Invalid(name, condition, variation.values, str(error)))
                     continue
-                cells += _cells(design, document, scenario, variation)
+                cells += _cells(design, document, asked, variation)
     order = {model: number for number, model in enumerate(design.models)}
     # Whole rounds: what is done first is a smaller study of the same form.
     cells.sort(key=lambda cell: (cell.key.repeat, order[cell.key.model]))
@@ -250,11 +252,34 @@ def _scenario(
     )
 
 
-def _cells(
+def _by_template(
     design: Design, document: Document, scenario: Scenario, variation: Variation
+) -> list[tuple[Template | None, Scenario]]:
+    """The scenario with each of the study's templates in place of its own."""
+    if not design.templates:
+        return [(None, scenario)]
+    return [
+        (each, _with_template(scenario, each, variation, document)) for each in design.templates
+    ]
+
+
+def _with_template(
+    scenario: Scenario, template: Template, variation: Variation, document: Document
+) -> Scenario:
+    text = template.text
+    if template.name not in BUILT_IN_TEMPLATES:
+        text = variation.template(text, document)
+    probes = tuple(replace(probe, template=text) for probe in scenario.probes)
+    return replace(scenario, probes=probes)
+
+
+def _cells(
+    design: Design,
+    document: Document,
+    asked: Sequence[tuple[Template | None, Scenario]],
+    variation: Variation,
 ) -> Iterator[Cell]:
-    for template in design.templates or (None,):
-        told = scenario if template is None else _with_template(scenario, template)
+    for template, scenario in asked:
         content = digest([document.text, dict(scenario.templates), template and template.text])
         for model in design.models:
             for repeat in range(1, design.repeats + 1):
@@ -268,9 +293,4 @@ def _cells(
                     repeat=repeat,
                     setting=design.setting,
                 )
-                yield Cell(key, told)
-
-
-def _with_template(scenario: Scenario, template: Template) -> Scenario:
-    probes = tuple(replace(probe, template=template.text) for probe in scenario.probes)
-    return replace(scenario, probes=probes)
+                yield Cell(key, scenario)

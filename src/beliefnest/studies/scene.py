@@ -4,19 +4,22 @@ What a change makes of a kind of value is its own matter; which kind stands wher
 once. A key that is not told of is refused, so that no position stays where it was.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from beliefnest.errors import BeliefNestError, InputError, MissingExtraError
+from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 from beliefnest.scenarios.document import Document, KeyPath, Node, plain, wrapped
+from beliefnest.scenarios.reading import template_text
 
 __all__ = ["Kind", "SceneChange", "changed_scene"]
 
 Kind = str
 """`keep`, `block`, `point`, `place` (a block or a point), `yaw`, `facing`, `state`, `program`,
-`text` (read by models), `label` (read by people alone), `static` (a block's name or position), `agent`, `item`, `path`, `wanted` (a block
-state of which only what is written counts)."""
+`text` (read by models), `label` (read by people alone), `agent`, `item`, `path`, `wanted` (a block
+state of which only what is written counts), `static` (a block's name, or a position), `template`
+(a text of Jinja2)."""
 
 
 class SceneChange(Protocol):
@@ -192,8 +195,27 @@ def changed_scene(document: Document, change: SceneChange) -> Document:
     Raises:
         ScenarioError: A value cannot be changed for certain; the message names file, line, key.
     """
-    root = _changed(document, document.root, _SHAPE, (), change)
-    return replace(document, root=root)
+    shape = _SHAPE
+    labels = document.root.value.get("labels")
+    if labels is not None and labels.value is True:
+        # Prompts say what containers are called.
+        containers = {**_SHAPE["containers"].shape, "label": "text"}
+        shape = {**_SHAPE, "containers": _Each(containers)}
+    root = _changed(document, document.root, shape, (), change)
+    templates = dict(_templates(document, change))
+    return replace(document, root=root, templates={**document.templates, **templates})
+
+
+def _templates(document: Document, change: SceneChange) -> Iterator[tuple[str, str]]:
+    """The templates in files that probes name, as they are in the other scene."""
+    probes = document.root.value.get("probes")
+    for number, probe in enumerate(probes.value if probes is not None else ()):
+        named = probe.value.get("template")
+        if named is None or not isinstance(named.value, str) or named.value in BUILT_IN_TEMPLATES:
+            continue
+        path = ("probes", number, "template")
+        text = template_text(document, path, named.value)
+        yield named.value, str(_leaf(document, Node(text), "template", path, change).value)
 
 
 def _changed(

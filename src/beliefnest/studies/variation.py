@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 from beliefnest.errors import InputError
 from beliefnest.scenarios.document import Document, plain
 from beliefnest.studies.changes import Moved, Renamed
-from beliefnest.studies.scene import changed_scene
+from beliefnest.studies.scene import Kind, SceneChange, changed_scene
 from beliefnest.studies.symmetry import SYMMETRIES, Placing, symmetry_named
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box
@@ -58,15 +59,31 @@ class Variation:
             ScenarioError: It cannot be changed for certain.
             InputError: A name of a symmetry, an agent or an item is none.
         """
-        symmetry = symmetry_named(self.values.get("symmetry", "as-written"))
         agents, items = self._names("agents"), self._names("items")
         if agents or items:
-            _check_names(document, agents)
-            document = changed_scene(document, Renamed(agents, items))
-        if symmetry != SYMMETRIES[0]:
-            placing = Placing(symmetry, _box(document))
-            document = changed_scene(document, Moved(placing, Registry.load()))
+            _check_agents(document, agents)
+            _check_items(document, items)
+        for change in self._changes(document):
+            document = changed_scene(document, change)
         return document
+
+    def template(self, text: str, document: Document) -> str:
+        """A prompt template of no scenario's own in that symmetry and under these names.
+
+        Raises:
+            InputError: It cannot be changed for certain, or a name is none.
+        """
+        for change in self._changes(document):
+            text = change.value("template", text)
+        return text
+
+    def _changes(self, document: Document) -> Sequence[SceneChange]:
+        symmetry = symmetry_named(self.values.get("symmetry", "as-written"))
+        agents, items = self._names("agents"), self._names("items")
+        changes: list[SceneChange] = [Renamed(agents, items)] if agents or items else []
+        if symmetry != SYMMETRIES[0]:
+            changes.append(Moved(Placing(symmetry, _box(document)), Registry.load()))
+        return changes
 
     def _names(self, kind: str) -> Mapping[str, str]:
         names = self.values.get(kind, {})
@@ -87,7 +104,7 @@ def _box(document: Document) -> Box:
     return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
 
 
-def _check_names(document: Document, agents: Mapping[str, str]) -> None:
+def _check_agents(document: Document, agents: Mapping[str, str]) -> None:
     known = set(document.root.value["agents"].value)
     unknown = [name for name in agents if name not in known]
     if unknown:
@@ -97,6 +114,35 @@ def _check_names(document: Document, agents: Mapping[str, str]) -> None:
     twice = [name for name in new if new.count(name) > 1]
     if twice:
         raise InputError(f"two agents would be called {twice[0]!r}")
+
+
+def _check_items(document: Document, items: Mapping[str, str]) -> None:
+    named = _NamedItems()
+    changed_scene(document, named)
+    unknown = [name for name in items if name not in named.found | named.words]
+    if unknown:
+        there = ", ".join(sorted(named.found)) or "none"
+        raise InputError(f"there is no item {unknown[0]!r} to rename; items are {there}")
+    new = [items.get(name, name) for name in sorted(named.found | items.keys())]
+    twice = [name for name in new if new.count(name) > 1]
+    if twice:
+        raise InputError(f"two items would be called {twice[0]!r}")
+
+
+class _NamedItems:
+    """Changes nothing, and notes the items that are named, and all words of programs."""
+
+    def __init__(self) -> None:
+        self.found: set[str] = set()
+        self.words: set[str] = set()
+
+    def value(self, kind: Kind, value: Any) -> Any:
+        """The same value."""
+        if kind == "item":
+            self.found.add(value)
+        elif kind == "program":
+            self.words.update(re.findall(r"\w+", value))
+        return value
 
 
 def listed_variations(lists: Mapping[str, Sequence[Any]]) -> list[Variation]:

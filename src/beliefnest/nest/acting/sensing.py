@@ -1,10 +1,11 @@
 """What an agent knows of the world that it acts in, tick by tick, for its program."""
 
+import math
 from collections.abc import Callable
 
 from beliefnest.belief.node_view import NodeView
 from beliefnest.bodies.protocol import Sensed
-from beliefnest.world.values import AgentState, EventKind
+from beliefnest.world.values import AgentState, EventKind, Point, Position
 
 __all__ = ["Sensing", "believer_of"]
 
@@ -67,4 +68,11 @@ class Sensing:
             for event in said
             if event.kind is EventKind.CHAT
         )
-        return Sensed(seen.blocks, agents, dict(seen.items), heard, seen.signs)
+
+        def has_free_line(eye: Point, block: Position) -> bool:
+            away = tuple(part + 0.5 - at for part, at in zip(block, eye, strict=True))
+            yaw = math.atan2(-away[0], -away[2])
+            pitch = math.atan2(away[1], math.hypot(away[0], away[2]))
+            return bool(seen.geometry.sees_blocks(eye, yaw, pitch, [block])[0])
+
+        return Sensed(seen.blocks, agents, dict(seen.items), heard, seen.signs, has_free_line)
