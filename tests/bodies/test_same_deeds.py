@@ -89,6 +89,14 @@ def test_a_lever_is_switched_and_back(world: World) -> None:
     assert back.told[-1][2] == {"position": LEVER, "powered": False}
 
 
+def test_properties_of_blocks_are_of_the_same_types(world: World) -> None:
+    read = f"console.log(JSON.stringify(bot.blockAt(new Vec3{LEVER}).getProperties()))"
+    played = Played(world, {"sally": f"{read}; await turnOnLever(bot, new Vec3{LEVER}); {read}"})
+    before, after = map(json.loads, played.results["sally"].log)
+    assert before == {"face": "floor", "facing": "north", "powered": False}
+    assert after == {**before, "powered": True}
+
+
 def test_a_button_comes_out_again(world: World) -> None:
     pressed = Played(world, {"anne": f"await pressButton(bot, new Vec3{BUTTON})"})
     assert pressed.results["anne"].ok, pressed.results["anne"].error

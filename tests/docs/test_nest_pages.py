@@ -8,7 +8,14 @@ import pytest
 pytestmark = pytest.mark.usefixtures("kept_worlds")
 
 DOCS = Path(__file__).parents[2] / "docs"
-PAGES = ("coming-from-mineflayer.md", "programs.md", "python.md", "timelines.md")
+PAGES = (
+    "coming-from-mineflayer.md",
+    "filters.md",
+    "programs.md",
+    "python.md",
+    "scripted-world.md",
+    "timelines.md",
+)
 
 
 @pytest.mark.parametrize("page", PAGES)

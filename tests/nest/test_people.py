@@ -254,6 +254,19 @@ def test_the_example_of_the_page_runs(tmp_path, monkeypatch, capsys):
     assert "played in real time, which is not repeated" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("is_on", [True, False])
+def test_a_bot_waits_as_the_page_says(is_on):
+    page = (Path(__file__).parents[2] / "docs" / "people.md").read_text(encoding="utf-8")
+    (wait,) = re.findall(r"```javascript\n(.*?)```", page, re.DOTALL)
+    room = yaml.safe_load(WORKSHOP)
+    del room["agents"]["anne"]
+    room["blocks"] += [
+        {"block": f"lever[face=floor,powered={str(is_on).lower()}]", "at": [5, 1, 1]}
+    ]
+    with Nest.open(Scenario.from_mapping(room), world="scripted") as nest:
+        assert nest["/"].run("sally", wait, timeout_ticks=50).ok == is_on
+
+
 def listens(port: int) -> bool:
     with socket.socket() as probe:
         return probe.connect_ex(("127.0.0.1", port)) == 0

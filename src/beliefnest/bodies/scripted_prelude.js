@@ -14,6 +14,9 @@
   let blocks = null
   let grid = null
 
+  // Minecraft's data have these as truth values, and all else as texts.
+  const TRUTH = { true: true, false: false }
+
   // Calls that failed, whose errors the program may still be about to hear of.
   const failed = []
 
@@ -65,7 +68,10 @@
     const text = grid.palette[grid.states[(at[0] * grid.shape[1] + at[1]) * grid.shape[2] + at[2]]]
     if (text === null) return null
     const [name, written] = text.split(/[[\]]/)
-    const properties = Object.fromEntries((written ?? '').split(',').filter(Boolean).map(each => each.split('=')))
+    const properties = Object.fromEntries((written ?? '').split(',').filter(Boolean).map(each => {
+      const [property, value] = each.split('=')
+      return [property, TRUTH[value] ?? value]
+    }))
     const front = seen.signs[cell.join()] ?? ''
     return { name, position: vector(cell), getProperties: () => properties, getSignText: () => [front, ''] }
   }

@@ -1,0 +1,115 @@
+"""Every block of code of the papers is run by a test that is named here, or read by what reads it.
+
+Commands are read as the command line reads them, and not carried out: many want a key, a server
+or a person. Those that lead from an empty folder to a result are carried out by the tests of the
+tutorial and of the guides, and every command by the tests of `cli`.
+"""
+
+import json
+import re
+import shlex
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import typer
+import yaml
+
+from beliefnest.cli.app import app
+from beliefnest.episodes.tasks import builtin_tasks
+from beliefnest.scenarios.loading import builtin_names
+
+ROOT = Path(__file__).parents[2]
+PAPERS = ("README.md", "CONTRIBUTING.md", "docs/*.md", "docs/tasks/*.md", "docs/reference/*.md")
+COMMAND = typer.main.get_command(app)
+RUN_BY = {
+    ("README.md", "python"): "docs/test_docs.py",
+    ("README.md", "bibtex"): "packaging/test_citation.py",
+    ("claims.md", "python"): "docs/test_claims_page.py",
+    ("coming-from-mineflayer.md", "python"): "docs/test_nest_pages.py",
+    ("episodes.md", "python"): "docs/test_episodes_page.py",
+    ("explain.md", "python"): "docs/test_explain_page.py",
+    ("export.md", "jsonl"): "timeline/test_trace.py",
+    ("filters.md", "jinja"): "prompts/test_rendering.py",
+    ("filters.md", "python"): "docs/test_nest_pages.py",
+    ("frames.md", "python"): "frames/test_frames.py",
+    ("inspect.md", "python"): "inspect/test_tasks.py",
+    ("looking.md", "python"): "docs/test_looking_page.py",
+    ("models.md", "python"): "llm/test_docs.py",
+    ("people.md", "javascript"): "nest/test_people.py",
+    ("people.md", "python"): "nest/test_people.py",
+    ("pettingzoo.md", "python"): "env/test_environment.py",
+    ("programs.md", "python"): "docs/test_nest_pages.py",
+    ("python.md", "python"): "docs/test_nest_pages.py",
+    ("scenarios.md", "python"): "docs/test_docs.py",
+    ("scripted-world.md", "python"): "docs/test_nest_pages.py",
+    ("servers.md", "python"): "nest/test_on_servers.py",
+    ("skills.md", "js"): "programs/test_examples.py",
+    ("studies.md", "python"): "docs/test_studies_page.py",
+    ("timelines.md", "python"): "docs/test_nest_pages.py",
+    ("tutorial.md", "python"): "docs/test_tutorial.py",
+    ("visiting.md", "python"): "nest/test_visiting.py",
+}
+"""Page and language to the test that runs its blocks."""
+SHELLS = {"bash", "console", "sh"}
+READ = {"json": json.loads, "toml": tomllib.loads, "yaml": yaml.safe_load}
+SHOWN = {"text"}
+"""What something prints: compared by the tests that run it."""
+
+
+def blocks() -> Iterator[tuple[Path, str, str]]:
+    for pattern in PAPERS:
+        for page in sorted(ROOT.glob(pattern)):
+            text = page.read_text(encoding="utf-8")
+            for language, code in re.findall(r"^ *```(\w*)\n(.*?)^ *```$", text, re.M | re.S):
+                yield page, language, code
+
+
+def commands(program: str) -> Iterator[tuple[str, list[str]]]:
+    for page, language, code in blocks():
+        for line in code.splitlines() if language in SHELLS else ():
+            for part in line.removeprefix("$ ").split("&&"):
+                if part.split()[:1] == [program]:
+                    yield page.name, shlex.split(part, comments=True)[1:]
+
+
+def test_every_block_is_run_or_read() -> None:
+    run = {
+        (page.name, language)
+        for page, language, _ in blocks()
+        if language not in SHELLS | READ.keys() | SHOWN
+    }
+    assert run == set(RUN_BY)
+    for (page, _), test in RUN_BY.items():
+        text = (ROOT / "tests" / test).read_text(encoding="utf-8")
+        assert page in text, f"{test} does not read {page}"
+
+
+@pytest.mark.parametrize("language", READ)
+def test_data_is_of_its_form(language: str) -> None:
+    found = [code for _, each, code in blocks() if each == language]
+    assert found
+    for code in found:
+        lines = code.splitlines() if code.count('\n{"') else [code]
+        for line in lines:
+            READ[language](line)
+
+
+def test_commands_and_their_options_are_those_there_are() -> None:
+    ours = list(commands("beliefnest"))
+    assert len(ours) > 30
+    for page, (name, *arguments) in ours:
+        command = COMMAND.commands[name]
+        context = command.context_class(command, info_name=name)
+        command.parse_args(context, arguments)
+        assert not context.args, f"{page}: {name} {arguments}"
+
+
+def test_tasks_for_inspect_are_those_there_are() -> None:
+    named = {name.replace("-", "_") for name in (*builtin_names(), *builtin_tasks())}
+    asked = [words for _, words in commands("inspect")]
+    assert asked
+    for verb, task, *_ in asked:
+        assert verb == "eval"
+        assert task.removeprefix("beliefnest/") in named | {"scenario", "episode", "hi_tom"}
