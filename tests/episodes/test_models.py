@@ -1,5 +1,7 @@
 """Policies that ask models: what they are told by order, and what comes of bad answers."""
 
+import threading
+
 import pytest
 from tests.llm.conftest import FakeOpenAI, fake
 
@@ -83,6 +85,40 @@ def test_a_model_that_says_nothing_in_time_costs_its_own_round(server: FakeOpenA
         server.closing.set()
     assert "more than 3 s" in part.decisions["anne"].fault
     assert part.ended["sally"].how == "cut"
+
+
+def test_what_cannot_be_used_is_paid_for(server: FakeOpenAI) -> None:
+    server.will(server.says("I would rather not."), server.says(""))
+    with bn.Episode(bn.Task.load("help-find"), {"anne": "model:openai:gpt-4o-mini:0"}) as episode:
+        measures = episode.play(1).measures
+    assert (measures.lost_rounds, measures.requests, measures.tokens) == (1, 2, 300)
+
+
+def test_what_comes_too_late_is_paid_for(server: FakeOpenAI) -> None:
+    server.will(server.says(GOOD))
+    model, asked, released = resolve_policy("model:openai:gpt-4o-mini:0"), [0], threading.Event()
+
+    class Slow:
+        """Asks once, and is a round late."""
+
+        @property
+        def spent(self) -> object:
+            return model.spent  # type: ignore[attr-defined]
+
+        def act(self, view: bn.AgentView) -> str:
+            asked[0] += 1
+            if asked[0] > 1:
+                return ""
+            released.wait()
+            return model.act(view)
+
+    with bn.Episode(bn.Task.load("help-find"), {"anne": Slow()}, patience_s=3.0) as episode:
+        assert episode.play(1).spent.requests == 0
+        released.set()
+        for thread in threading.enumerate():
+            if thread.name == "policy of anne":
+                thread.join()
+        assert episode.play(1).spent.requests == 1
 
 
 def test_an_episode_ends_when_its_tokens_are_spent(server: FakeOpenAI) -> None:

@@ -17,6 +17,7 @@ from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.tasks import parameters_of, source_of
 from beliefnest.errors import InputError, ModelError
+from beliefnest.studies.plot import plot_accuracy
 from beliefnest.studies.running import StudyProgress
 from beliefnest.studies.study import Study
 
@@ -30,6 +31,9 @@ _REPORTS = 20
 """Lines of progress where there is no terminal."""
 
 _COLUMNS = ("task", "order", "policy", "success", "95 %", "ticks", "messages", "false beliefs")
+
+_INCHES = 12.0, 3.2
+"""Of the figure: as wide as a page shows without making its text too small."""
 
 Group = Mapping[str, Any]
 """A row of a study's summary."""
@@ -69,7 +73,7 @@ def run_baselines(options: BaselineOptions) -> int:
     names = Task.names() if options.task is None else (options.task,)
     found = _played(names, options)
     if options.page is not None:
-        _draw(names, options.page.parent / "img")
+        _draw(names, found, options.page.parent / "img")
         options.page.write_text(page_of(names, found, options.seeds), encoding="utf-8")
     if options.as_json:
         content = {"seeds": options.seeds, "baselines": found}
@@ -114,6 +118,8 @@ def page_of(names: Sequence[str], found: Sequence[Group], seeds: int) -> str:
         "mean utterances of players, and mean false beliefs of all agents over the rounds, of all",
         "episodes. The intervals of means are 95 % ones, by the bootstrap.",
         "",
+        "![Success by task and policy, with intervals](img/baselines.png)",
+        "",
         f"| {' | '.join(_COLUMNS)} |",
         "|" + "---|" * len(_COLUMNS),
         *(f"| {' | '.join(_cells(each))} |" for each in found),
@@ -130,8 +136,11 @@ def page_of(names: Sequence[str], found: Sequence[Group], seeds: int) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _draw(names: Sequence[str], folder: Path) -> None:
+def _draw(names: Sequence[str], found: Sequence[Group], folder: Path) -> None:
     folder.mkdir(exist_ok=True)
+    figure = plot_accuracy(found, ("task", "policy"))
+    figure.set_size_inches(*_INCHES)
+    figure.savefig(folder / "baselines.png", dpi=150)
     for name in names:
         with Episode(Task.load(name)) as episode:
             episode.nest.figure(["/"]).save(str(folder / f"task-{name}.png"))

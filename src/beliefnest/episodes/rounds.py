@@ -4,6 +4,8 @@ import threading
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+import msgspec
+
 from beliefnest.episodes.decided import Decision, Part, Spent
 from beliefnest.episodes.view import GO_ON, AgentView, Policy
 from beliefnest.world.texts import is_well_formed
@@ -50,6 +52,7 @@ class Asker:
         self._policies = policies
         self._patience_s = patience_s
         self._waiting: dict[str, threading.Thread] = {}
+        self._late: dict[str, _Answer] = {}
 
     def ask(self, view: AgentView) -> Decision:
         """The program of a round; who does not give one in time gives none."""
@@ -62,6 +65,9 @@ class Asker:
         thread = self._waiting.get(agent)
         if thread is not None and thread.is_alive():
             return Decision(fault="it is still at an earlier round")
+        # What came too late was paid for all the same.
+        late = self._late.pop(agent, _Answer()).decision
+        before = Spent() if late is None else late.spent
         answer = _Answer()
 
         def decide() -> None:
@@ -72,9 +78,11 @@ class Asker:
         self._waiting[agent] = thread
         thread.start()
         thread.join(self._patience_s)
-        if answer.decision is None:
-            return Decision(fault=f"it took more than {self._patience_s:g} s")
-        return answer.decision
+        decision = answer.decision
+        if decision is None:
+            self._late[agent] = answer
+            return Decision(fault=f"it took more than {self._patience_s:g} s", spent=before)
+        return msgspec.structs.replace(decision, spent=before + decision.spent)
 
 
 def slots_of(agents: tuple[str, ...], *, turns: bool) -> tuple[tuple[str, ...], ...]:

@@ -1,12 +1,14 @@
 """Policies that ask a model, which is told as much of others' minds as its order allows."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 
 from beliefnest.episodes.decided import Spent
 from beliefnest.episodes.view import AgentView
-from beliefnest.llm.asking import NoUsableProgramError, ask_for_program
-from beliefnest.llm.messages import Model, Sampling, Usage
+from beliefnest.llm.asking import ask_for_program
+from beliefnest.llm.failures import UnusableAnswerError
+from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 from beliefnest.programs import skills
 from beliefnest.prompts import built_in_template
 from beliefnest.scenarios.goals import Goal, ItemsWith
@@ -42,19 +44,14 @@ class ModelPolicy:
         """
         prompt = self.prompt(view)
         system = view.render(built_in_template("instructions").text, skills=skills())
-        try:
-            answer = ask_for_program(
-                view.noting(self.model),
-                prompt,
-                lambda _: None,
-                self.attempts,
-                system=system,
-                sampling=Sampling(seed=view.brief.seed),
-            )
-        except NoUsableProgramError as error:
-            self._spend(sum((each.answer.usage for each in error.attempts), Usage()))
-            raise
-        self._spend(answer.usage)
+        answer = ask_for_program(
+            _Counted(view.noting(self.model), self._spend),
+            prompt,
+            lambda _: None,
+            self.attempts,
+            system=system,
+            sampling=Sampling(seed=view.brief.seed),
+        )
         return answer.program
 
     def prompt(self, view: AgentView) -> str:
@@ -75,6 +72,33 @@ class ModelPolicy:
 
     def _spend(self, usage: Usage) -> None:
         self.spent += Spent(usage.requests, usage.tokens, usage.cost)
+
+
+@dataclass(frozen=True)
+class _Counted:
+    """A model of which is told what each answer took, also one that cannot be used."""
+
+    model: Model
+    spend: Callable[[Usage], None]
+
+    @property
+    def name(self) -> str:
+        """Name of the model that is asked."""
+        return self.model.name
+
+    def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
+        """Ask it.
+
+        Raises:
+            ModelError: It failed, or its answer is of no use.
+        """
+        try:
+            answer = self.model.answer(messages, sampling)
+        except UnusableAnswerError as error:
+            self.spend(error.usage)
+            raise
+        self.spend(answer.usage)
+        return answer
 
 
 @dataclass
