@@ -12,7 +12,6 @@ from tests.servers import GameServer
 from beliefnest.bodies.address import ServerAddress, overwriting
 from beliefnest.bodies.protocol import World
 from beliefnest.bodies.worlds import check_world, open_world
-from beliefnest.cli.app import run_command_line
 from beliefnest.errors import BeliefNestError, BodyError, InputError, WorldError
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
@@ -120,14 +119,6 @@ def test_what_stands_in_the_box_is_not_touched_unless_asked_and_put_back(server)
     opened(world, Snapshot(0, BOX, blocks, {FOREIGN: {"bread": 3}}, {}))
     world.close()
     server.type("setblock 5 2 5 minecraft:air")
-
-
-def test_a_run_that_cannot_begin_says_why(server, tmp_path, capsys):
-    server.type("setblock 0 -51 4 minecraft:barrel")
-    arguments = ["--condition", "1", "--world", server.address(), "--out", str(tmp_path / "run")]
-    assert run_command_line(["run", "sally-anne", *arguments]) != 0
-    assert "holds 1 other blocks, as barrel at (0, -51, 4)" in capsys.readouterr().err
-    server.type("setblock 0 -51 4 minecraft:air")
 
 
 def test_an_agent_whose_name_is_taken_is_not_let_in(server):

@@ -2,11 +2,14 @@
 
 import html
 import re
+from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 
+from beliefnest.bodies.scripted import ScriptedBodies
 from beliefnest.cli.app import run_command_line
+from beliefnest.errors import BodyError
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
 
@@ -81,3 +84,15 @@ def test_what_happened_is_told_in_words(page: str) -> None:
 
 def test_that_nothing_is_expected_in_a_container_is_said(page: str) -> None:
     assert "items: none<" in page
+
+
+def test_a_run_that_cannot_begin_says_why(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def refuse(*_: object) -> None:
+        raise BodyError("there is no room for it")
+
+    monkeypatch.setattr(ScriptedBodies, "open_body", refuse)
+    arguments = ["--condition", "1", "--world", "scripted", "--out", str(tmp_path / "run")]
+    assert run_command_line(["run", "sally-anne", *arguments]) != 0
+    assert capsys.readouterr().err.endswith("there is no room for it\n")
