@@ -173,6 +173,25 @@ def test_programs_of_files_are_cut_and_gone_on_with(tmp_path: Path) -> None:
     assert ended[:4] == ["cut", "cut", "ok", "none"]
 
 
+@pytest.mark.parametrize("round", [1, 3])
+def test_a_program_begins_where_a_branch_does(tmp_path: Path, round: int) -> None:
+    # Whether what its agent did until then was cut (round 1) or is over (round 3).
+    walk, back, store = tmp_path / "walk.js", tmp_path / "back.js", tmp_path / "walk.bn"
+    walk.write_text("await goToPosition(bot, new Vec3(2, 1, 5), 0)")
+    back.write_text("await goToPosition(bot, new Vec3(14, 1, 5), 0)")
+    with bn.Episode(bn.Task.load(TASK), {"sally": f"program:{walk}"}, store=store) as episode:
+        fork = episode.play().at(round).fork(sally=f"program:{back}")
+        fork.play(1)
+    with bn.Episode.resume(store, branch=fork.branch) as resumed:
+        resumed.play()
+        programs = [part.decisions["sally"].program for part in resumed.parts]
+        assert programs[round] == back.read_text()
+        assert (
+            programs.count(back.read_text())
+            == sum(part.decisions["sally"].goes_on for part in resumed.parts[round:]) + 1
+        )
+
+
 KILLED = """
 import os, sys
 import beliefnest as bn

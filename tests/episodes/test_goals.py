@@ -112,7 +112,8 @@ def test_any_scenario_can_be_played_with_rules_of_its_player() -> None:
     with bn.Episode(task, {"sally": "search:0"}) as episode:
         assert episode.start > 0, "the script comes first"
         assert episode.play().success
-    assert bn.Task.of(scenario).goal.reach == ()
+    with pytest.raises(bn.ScenarioError, match="task sally-anne: there is no goal"):
+        bn.Task.of(scenario)
 
 
 @pytest.mark.parametrize(
@@ -123,6 +124,14 @@ def test_any_scenario_can_be_played_with_rules_of_its_player() -> None:
         ("rounds: 8", "rounds: none", "fetch.yaml:24: episode.rounds: expected 'int'"),
         ("rounds: 8", "round: 8", "fetch.yaml:24: .*did you mean 'rounds'"),
         ("agent: eve, items: {apple: 1}", "block: [1, 1, 1], state: chst", "fetch.yaml:20: .*chst"),
+        ("eve, items: {apple: 1}", "eve, items: {appel: 1}", "fetch.yaml:20: .*never.0.: no item"),
+        (
+            "eve, items: {apple: 1}",
+            "eve, items: {apple: 0}",
+            "fetch.yaml:20: .*expected 'int' >= 1",
+        ),
+        ("agent: eve, items", "container: [2, 1, 2], items", "fetch.yaml:20: .*no container"),
+        ("agent: eve, items: {apple: 1}", "agent: eve, at: [2, 9, 2]", "fetch.yaml:20: .*outside"),
     ],
 )
 def test_what_is_wrong_with_goals_is_told_by_line(

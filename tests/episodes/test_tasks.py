@@ -89,7 +89,7 @@ goal:
         # She looks into the chest, then knows and takes.
         assert episode.play().success
     file.write_text(file.read_text().replace("reach", "raech"))
-    with pytest.raises(bn.ScenarioError, match="raech"):
+    with pytest.raises(bn.ScenarioError, match=r"mine.yaml:10: .*raech"):
         bn.Task.load(str(file))
 
 
@@ -101,6 +101,11 @@ def test_a_goal_that_speaks_of_nobody_is_refused() -> None:
     plain["goal"] = {"reach": [{"items": {"apple": 1}}]}
     with pytest.raises(bn.ScenarioError, match="container and items"):
         bn.Task.from_mapping(plain)
+    plain["goal"] = {}
+    with pytest.raises(bn.ScenarioError, match="there is no goal"):
+        bn.Task.from_mapping(plain)
+    with pytest.raises(bn.ScenarioError, match="missing required field `box`"):
+        bn.Task.from_mapping({"name": "mine", "scenario": {}, "goal": {}})
 
 
 def test_a_liar_is_counted() -> None:

@@ -282,7 +282,7 @@ def test_what_is_no_scenario_is_refused(tmp_path: Path, text: str) -> None:
 def test_unreadable_files_are_named(tmp_path: Path) -> None:
     with pytest.raises(ScenarioError, match=r"missing\.yaml: cannot be read: No such file"):
         Scenario.load(str(tmp_path / "missing.yaml"))
-    with pytest.raises(ScenarioError, match="cannot be read: Is a directory"):
+    with pytest.raises(ScenarioError, match="is a folder; give a"):
         Scenario.load(str(tmp_path))
     binary = tmp_path / "binary.yaml"
     binary.write_bytes(b"name: \xff\xfe")

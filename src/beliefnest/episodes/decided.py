@@ -8,7 +8,16 @@ import msgspec
 
 from beliefnest.bodies.protocol import Past
 
-__all__ = ["Decision", "Ended", "HowEnded", "Part", "Spent", "latest_end", "spent_in"]
+__all__ = [
+    "Decision",
+    "Ended",
+    "HowEnded",
+    "Part",
+    "Spent",
+    "latest_end",
+    "programs_of",
+    "spent_in",
+]
 
 HowEnded = Literal["none", "ok", "cut", "no_way", "failed", "lost"]
 
@@ -88,6 +97,11 @@ class Part(msgspec.Struct, frozen=True):
 def latest_end(parts: Sequence[Part], agent: str) -> Ended:
     """How an agent's latest program ended."""
     return next((p.ended[agent] for p in reversed(parts) if agent in p.ended), Ended())
+
+
+def programs_of(parts: Sequence[Part], agent: str) -> tuple[str, ...]:
+    """What was decided for an agent, round by round."""
+    return tuple(p.decisions[agent].program for p in parts if agent in p.decisions)
 
 
 def spent_in(parts: Sequence[Part]) -> Spent:

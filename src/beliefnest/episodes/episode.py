@@ -8,7 +8,7 @@ from typing import Self
 
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.episodes.choosing import check_resumable, chosen, name_of
-from beliefnest.episodes.decided import Part, Spent, latest_end, spent_in
+from beliefnest.episodes.decided import Part, Spent, latest_end, programs_of, spent_in
 from beliefnest.episodes.helping import Help, help_in
 from beliefnest.episodes.measures import Measures, false_beliefs, measured
 from beliefnest.episodes.moment import Moment
@@ -378,6 +378,7 @@ class Episode:
             nest.at(nest.tick)[path],
             lambda depth: own.imagine(depth, self.task.form.pace),
             own.noting,
+            programs_of(self._parts, agent),
         )
 
     def at(self, round: int) -> "Moment[Self]":

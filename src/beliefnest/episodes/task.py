@@ -4,21 +4,26 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path as FilePath
-from typing import Any, Self
+from typing import Any, Self, cast
 
 import msgspec
 
 from beliefnest.episodes.form import TaskForm
 from beliefnest.episodes.tasks import builtin_tasks, generated
 from beliefnest.errors import BeliefNestError, InputError, ScenarioError, UnknownNameError
-from beliefnest.scenarios.document import plain
+from beliefnest.scenarios.document import Document, Node, plain
 from beliefnest.scenarios.goals import Goal
 from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.reading import read_yaml
 from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, goal_of
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.scenarios.space import box_between
+from beliefnest.world.values import Position
 
 __all__ = ["Task"]
+
+_NO_RULES = ("name", "description", "scenario", "pace")
+"""Keys of a task that do not stand under `episode` of a scenario."""
 
 
 @dataclass(frozen=True)
@@ -71,13 +76,17 @@ class Task:
                 f"no task {name_or_path!r}, and no such file; there are {', '.join(cls.names())}, "
                 f"and of scenarios {', '.join(builtin_names())}"
             )
-        content = plain(read_yaml(file).root)
-        if not isinstance(content, dict) or "scenario" not in content:
+        document = read_yaml(file)
+        if "scenario" not in document.root.value:
             return cls.of(Scenario.load(name_or_path, condition, parameters))
         _check_no_condition(name_or_path, condition)
         if parameters:
             raise InputError(f"{name_or_path} is a task and takes no {', '.join(parameters)}")
-        return cls.from_mapping(content)
+        _check_by_line(document)
+        try:
+            return cls.from_mapping(cast(dict[str, Any], plain(document.root)))
+        except ScenarioError as fault:
+            raise ScenarioError(f"{name_or_path}: {fault}") from None
 
     @classmethod
     def of(cls, scenario: Scenario, **rules: Any) -> Self:
@@ -117,18 +126,30 @@ class Task:
             form = msgspec.convert(content, TaskForm)
         except msgspec.ValidationError as fault:
             raise ScenarioError(f"task: {fault}") from None
+        try:
+            scene = msgspec.convert(form.scenario, _Scene)
+        except msgspec.ValidationError as fault:
+            raise ScenarioError(f"task {form.name}: scenario: {fault}") from None
         task = cls(form, seed)
-        task.check()
+        task.check(scene.box)
         return task
 
-    def check(self) -> None:
+    def check(self, box: tuple[Position, Position]) -> None:
         """See that all of it makes sense.
+
+        Args:
+            box: Of its scenario.
 
         Raises:
             ScenarioError: It does not.
         """
+        if self.form.goal == GoalEntry():
+            raise ScenarioError(
+                f"task {self.name}: there is no goal; say what agents are to `reach`, or what is "
+                "`never` to be the case (in a scenario under `episode`)"
+            )
         try:
-            check_rules(self.form, self.agents)
+            check_rules(self.form, self.agents, box_between(*box))
         except BeliefNestError as fault:
             raise ScenarioError(f"task {self.name}: {fault}") from None
 
@@ -199,6 +220,28 @@ class Task:
         """As plain values; `from_mapping` is the inverse."""
         plain: dict[str, Any] = msgspec.to_builtins(self.form)
         return plain
+
+
+class _Scene(msgspec.Struct):
+    """What has to be known of a scenario before it is built."""
+
+    box: tuple[Position, Position]
+    agents: dict[str, Any]
+
+
+def _check_by_line(document: Document) -> None:
+    """See that a task's file makes sense, as a scenario with its rules under `episode` does.
+
+    Raises:
+        ScenarioError: It does not; the message names file, line and key.
+    """
+    scenario, keys = document.root.value["scenario"], document.root.value
+    if not isinstance(scenario.value, dict):
+        raise document.fault(("scenario",), "is not a mapping of keys to values")
+    rules = {key: node for key, node in keys.items() if key not in _NO_RULES}
+    episode = Node(rules, document.root.line)
+    whole = Node({**scenario.value, "episode": episode}, document.root.line)
+    Scenario.varied(replace(document, root=whole), None)
 
 
 def _check_no_condition(name: str, condition: int | str | None) -> None:

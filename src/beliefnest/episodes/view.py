@@ -80,12 +80,14 @@ class AgentView:
         own: The simulator of the agent's belief.
         imagine: Gives that as a world of its own, down to a depth.
         noting: Lets requests to a model be kept in the run.
+        before: The agent's programs of earlier rounds.
 
     Attributes:
         agent: Whose view it is.
         brief: The task.
         round: The round that begins, from 0.
         last: How the agent's latest program ended.
+        before: The agent's programs of earlier rounds, whoever decided them; empty texts: nothing.
     """
 
     def __init__(
@@ -97,6 +99,7 @@ class AgentView:
         own: ShownSimulator,
         imagine: Callable[[int], Imagination],
         noting: "Callable[[Model], Model]",
+        before: Sequence[str],
     ) -> None:
         self.agent = agent
         self.brief = brief
@@ -105,6 +108,7 @@ class AgentView:
         self._own = own
         self._imagine = imagine
         self._noting = noting
+        self.before = before
 
     @property
     def tick(self) -> int:

@@ -45,7 +45,7 @@ from beliefnest.scenarios.format import (
 from beliefnest.scenarios.functions import judge_of
 from beliefnest.scenarios.people import build_agents
 from beliefnest.scenarios.reading import template_text
-from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, conditions_of
+from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_condition, check_rules
 from beliefnest.scenarios.space import (
     UNKNOWN,
     build_box,
@@ -253,10 +253,13 @@ class _Builder:
         for path, goal in goals.items():
             for key, entries in (("reach", goal.reach), ("never", goal.never)):
                 for number, entry in enumerate(entries):
-                    with self._document.naming(("episode", *path, key, number)):
-                        conditions_of(entry, agents)
+                    where = ("episode", *path, key, number)
+                    with self._document.naming(where):
+                        check_condition(entry, agents, self._snapshot.box)
+                    if entry.container is not None:
+                        self._check_container((*where, "container"), entry.container)
         with self._document.naming(("episode",)):
-            check_rules(rules, agents)
+            check_rules(rules, agents, self._snapshot.box)
         return rules
 
     def _expected(self, path: KeyPath, entry: ExpectationEntry) -> Content:

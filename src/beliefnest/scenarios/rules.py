@@ -19,8 +19,16 @@ from beliefnest.scenarios.goals import (
 )
 from beliefnest.world.paths import parse_path
 from beliefnest.world.registry import Registry
+from beliefnest.world.values import Box
 
-__all__ = ["ConditionEntry", "EpisodeEntry", "GoalEntry", "check_rules", "conditions_of", "goal_of"]
+__all__ = [
+    "ConditionEntry",
+    "EpisodeEntry",
+    "GoalEntry",
+    "check_condition",
+    "check_rules",
+    "goal_of",
+]
 
 Position = tuple[int, int, int]
 
@@ -39,7 +47,9 @@ class ConditionEntry(_Entry, frozen=True):
     path: Annotated[str, _note("Where it is to be the case; / is reality.")] = "/"
     container: Annotated[Position | None, _note("A container that holds `items`.")] = None
     agent: Annotated[str | None, _note("An agent that has `items` or stands `at` a place.")] = None
-    items: Annotated[dict[str, int], _note("Item name to least count.")] = {}
+    items: Annotated[
+        dict[str, Annotated[int, msgspec.Meta(ge=1)]], _note("Item name to least count.")
+    ] = {}
     at: Annotated[Position | None, _note("A block position.")] = None
     within: Annotated[float, _note("Greatest distance from there, in blocks.")] = 1.0
     block: Annotated[Position | None, _note("A block that is in a state.")] = None
@@ -55,7 +65,9 @@ class GoalEntry(_Entry, frozen=True):
 
     reach: Annotated[list[ConditionEntry], _note("True at one and the same tick.")] = []
     never: Annotated[list[ConditionEntry], _note("True at no tick until then.")] = []
-    messages: Annotated[int | None, _note("Most utterances of all players.")] = None
+    messages: Annotated[
+        Annotated[int, msgspec.Meta(ge=0)] | None, _note("Most utterances of all players.")
+    ] = None
     ticks: Annotated[
         Annotated[int, msgspec.Meta(ge=1)] | None,
         _note("Most ticks from the first round until all of `reach` is the case."),
@@ -94,37 +106,62 @@ def goal_of(entry: GoalEntry, agents: Collection[str]) -> Goal:
     if entry.ticks is not None and not entry.reach:
         raise InputError("a goal has `ticks` and nothing to `reach` within them")
     return Goal(
-        tuple(each for one in entry.reach for each in conditions_of(one, agents)),
-        tuple(each for one in entry.never for each in conditions_of(one, agents)),
+        tuple(each for one in entry.reach for each in _conditions_of(one, agents)),
+        tuple(each for one in entry.never for each in _conditions_of(one, agents)),
         entry.messages,
         entry.ticks,
     )
 
 
-def check_rules(entry: EpisodeEntry, agents: Collection[str]) -> None:
+def check_rules(entry: EpisodeEntry, agents: Collection[str], box: Box) -> None:
     """See that goals and rules of play make sense.
 
     Raises:
         InputError: They do not.
         PathError: A condition is about a belief that there is not.
+        UnknownNameError: A condition is about an item or a block that there is not.
     """
     for name in sorted({*entry.players, *entry.goals, *entry.policies, *entry.talk}):
         if name not in agents:
             raise InputError(f"{name!r} is none of the agents {', '.join(sorted(agents))}")
     for goal in (entry.goal, *entry.goals.values()):
         goal_of(goal, agents)
+        for condition in (*goal.reach, *goal.never):
+            check_condition(condition, agents, box)
     for name in sorted(agents):
         if entry.players and (name in entry.players) == (name in entry.policies):
             raise InputError(f"{name} is to be one of `players` or to have a policy in `policies`")
 
 
-def conditions_of(entry: ConditionEntry, agents: Collection[str]) -> list[Condition]:
+def check_condition(entry: ConditionEntry, agents: Collection[str], box: Box) -> None:
+    """See that a condition can come true: that what it names is there.
+
+    Raises:
+        InputError: It makes no sense, or is about a place outside the box.
+        PathError: It is about a belief that there is not.
+        UnknownNameError: It is about an item or a block that there is not.
+    """
+    _conditions_of(entry, agents)
+    registry = Registry.load()
+    for name in entry.items:
+        registry.item_stack(name)
+    if entry.state is not None:
+        registry.state_id(entry.state)
+    named = (entry.container, entry.at, entry.block, entry.like)
+    places = [place for place in named if place is not None]
+    for place in (*places, *(lever for site in entry.sites for lever in site)):
+        if place not in box:
+            raise InputError(
+                f"a condition is about {place}, outside the box {box.low} to {box.high}"
+            )
+
+
+def _conditions_of(entry: ConditionEntry, agents: Collection[str]) -> list[Condition]:
     """The conditions that an entry describes, one for each thing it names.
 
     Raises:
         InputError: It makes no sense.
         PathError: It is about a belief that there is not.
-        UnknownNameError: It is about a block that there is not.
     """
     path = parse_path(entry.path, agents)
     for name in (*entry.agents, *([] if entry.agent is None else [entry.agent])):
@@ -139,10 +176,6 @@ def conditions_of(entry: ConditionEntry, agents: Collection[str]) -> list[Condit
             f"the condition {plain} makes no sense; give container and items, agent and items, "
             "agent and at, agents and sites, block and state, or block and like"
         )
-    for fact in facts:
-        if isinstance(fact, BlockIs):
-            # A state that there is not would never come true.
-            Registry.load().state_id(fact.state)
     return [Condition(fact, path) for fact in facts]
 
 

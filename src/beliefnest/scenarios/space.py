@@ -15,6 +15,7 @@ from beliefnest.world.values import Box, Items, Position
 
 __all__ = [
     "UNKNOWN",
+    "box_between",
     "build_box",
     "build_containers",
     "build_grid",
@@ -28,12 +29,16 @@ UNKNOWN = -1
 """Block state id of what is not known."""
 
 
-def build_box(document: Document, file: ScenarioFile) -> Box:
-    """The box between the two corners, whichever they are."""
-    first, second = file.box
+def box_between(first: Position, second: Position) -> Box:
+    """The box between two corners, whichever they are."""
     low = tuple(min(pair) for pair in zip(first, second, strict=True))
     high = tuple(max(pair) for pair in zip(first, second, strict=True))
-    box = Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+    return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+
+
+def build_box(document: Document, file: ScenarioFile) -> Box:
+    """The box of a scenario; ScenarioError if it is too large."""
+    box = box_between(*file.box)
     if fault := box_fault(box):
         raise document.fault(("box",), fault)
     return box

@@ -42,7 +42,10 @@ class Scripted:
 
 @dataclass(frozen=True)
 class Program:
-    """One program, begun in the first round, which goes on as long as it is cut.
+    """One program, begun when its policy is asked first, which goes on as long as it is cut.
+
+    On a branch that is the round from which on the agent is played so. That is known from what was
+    decided before, so that whoever resumes an episode goes on with the program.
 
     Attributes:
         text: The program.
@@ -52,7 +55,7 @@ class Program:
 
     def act(self, view: AgentView) -> str:
         """The program, until it has ended by itself."""
-        if view.round == 0:
+        if next((each for each in reversed(view.before) if each), "") != self.text:
             return self.text
         return GO_ON if view.last.how == "cut" else ""
 
