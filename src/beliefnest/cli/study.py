@@ -16,6 +16,7 @@ from beliefnest.cli.console import progress_on, stdout
 from beliefnest.cli.report import cost_text
 from beliefnest.cli.text import printable
 from beliefnest.errors import InputError, ModelError, UnknownNameError
+from beliefnest.studies.copies import text_of_copies
 from beliefnest.studies.result import StudyResult
 from beliefnest.studies.running import StudyProgress
 from beliefnest.studies.study import Study, checked_shard
@@ -137,6 +138,9 @@ def _print(result: StudyResult) -> None:
         console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
     if len(told) > _MOST_TOLD:
         console.print(f"and {len(told) - _MOST_TOLD} more", highlight=False)
+    copies = sum(row["copy_of"] is not None for row in result.rows)
+    if copies:
+        console.print(text_of_copies(copies), highlight=False, soft_wrap=True)
     page = result.folder.path / "study.html"
     console.print(f"all rows, intervals and differences: {page}", highlight=False, soft_wrap=True)
 

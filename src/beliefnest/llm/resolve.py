@@ -87,6 +87,11 @@ def resolve_model(
     )
 
 
+def is_of_provider(name: str) -> bool:
+    """Whether a model is a provider's, which may answer the same question in several ways."""
+    return name.partition(":")[0] in PROVIDERS
+
+
 def open_model(name: str, environment: Mapping[str, str], connection: Connection) -> Model:
     """The model of a name with retries, limits, cache and recording around it.
 

@@ -1,7 +1,9 @@
 """Accuracies with intervals, and differences of pairs, from the rows of a study."""
 
+import itertools
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,7 +22,8 @@ def count_rows(
 ) -> list[dict[str, Any]]:
     """For each group of rows how many came out as expected, and how sure that is.
 
-    Rows in which nothing was expected, or which have no result, are counted and not judged.
+    Rows in which nothing was expected, or which have no result, are counted and not judged. Of a
+    row and its copies (`copy_of`) one is counted; `copies` are those that are left out.
 
     Args:
         rows: Of a study.
@@ -29,34 +32,53 @@ def count_rows(
 
     Returns:
         One mapping for each group, in the order in which they come: the columns of `by`; `rows`;
-        `judged`; `right`; `accuracy`, `low` and `high` (the 95 % interval of Wilson), None where
-        none is judged; each outcome with its count; `tokens`, `cost` (None if not known); of each
-        of `means` the mean, and its 95 % interval as `NAME_low`, `NAME_high` (None: no values).
+        `copies`; `judged`; `right`; `accuracy`, `low` and `high` (the 95 % interval of Wilson),
+        None where none is judged; each outcome with its count; `tokens`, `cost` (None if not
+        known); of each of `means` the mean, and its 95 % interval as `NAME_low`, `NAME_high`
+        (None: no values).
     """
-    groups: dict[tuple[Any, ...], list[Row]] = {}
-    for row in rows:
-        groups.setdefault(tuple(row.get(name) for name in by), []).append(row)
+    groups: dict[tuple[Any, ...], list[tuple[Row, _Origin]]] = {}
+    for row, origin in zip(rows, _origins(rows), strict=True):
+        groups.setdefault(tuple(row.get(name) for name in by), []).append((row, origin))
     return [
-        {**dict(zip(by, values, strict=True)), **_counted(group), **_means(group, means or {})}
+        {**dict(zip(by, values, strict=True)), **_counted(group, means or {})}
         for values, group in groups.items()
     ]
 
 
-def _counted(group: Sequence[Row]) -> dict[str, Any]:
+_Origin = tuple[object, int]
+
+
+def _origins(rows: Iterable[Row]) -> Iterator[_Origin]:
+    """What tells rows apart: cell and place in it, of a copy those of what it is a copy of."""
+    places: Counter[object] = Counter()
+    for number, row in enumerate(rows):
+        cell = row.get("cell", number)
+        yield row.get("copy_of") or cell, places[cell]
+        places[cell] += 1
+
+
+def _counted(all_rows: Sequence[tuple[Row, _Origin]], means: Mapping[str, bool]) -> dict[str, Any]:
+    firsts: dict[_Origin, Row] = {}
+    for row, origin in all_rows:
+        firsts.setdefault(origin, row)
+    group = list(firsts.values())
     judged = [row["ok"] for row in group if row.get("ok") is not None]
     right = sum(judged)
     low, high = wilson_interval(right, len(judged)) if judged else (None, None)
-    costs = [row.get("cost") for row in group if row["outcome"] != "error"]
+    costs = [row.get("cost") for row, _ in all_rows if row["outcome"] != "error"]
     return {
-        "rows": len(group),
+        "rows": len(all_rows),
+        "copies": len(all_rows) - len(group),
         "judged": len(judged),
         "right": right,
         "accuracy": right / len(judged) if judged else None,
         "low": low,
         "high": high,
         **{name: sum(row["outcome"] == name for row in group) for name in OUTCOMES},
-        "tokens": sum(row.get("tokens") or 0 for row in group),
+        "tokens": sum(row.get("tokens") or 0 for row, _ in all_rows),
         "cost": None if None in costs else sum(cost or 0.0 for cost in costs),
+        **_means(group, means),
     }
 
 
@@ -78,7 +100,7 @@ class Pairs:
     Attributes:
         one: A value of the column.
         other: Another one.
-        pairs: Rows that both have a judged result for.
+        pairs: Rows that both have a judged result for; copies of a pair are left out.
         both: Pairs that are right with both.
         only_one: Pairs that are right with `one` only.
         only_other: Pairs that are right with `other` only.
@@ -119,7 +141,7 @@ class Pairs:
 
 
 def paired_rows(
-    rows: Iterable[Row], column: str, identity: Sequence[str], same: Sequence[str] = ()
+    rows: Sequence[Row], column: str, identity: Sequence[str], same: Sequence[str] = ()
 ) -> list[Pairs]:
     """All pairs of levels of a column, on rows that are the same in all but it.
 
@@ -137,24 +159,25 @@ def paired_rows(
             f"rows cannot be compared by {column!r}; columns are {', '.join(identity)}"
         )
     others = [name for name in identity if name not in (column, *same)]
-    table: dict[tuple[Any, ...], dict[Any, bool]] = {}
+    table: dict[tuple[Any, ...], dict[Any, tuple[_Origin, bool]]] = {}
     levels: dict[Any, None] = {}
-    for row in rows:
+    for row, origin in zip(rows, _origins(rows), strict=True):
         levels[row[column]] = None
         if row.get("ok") is not None:
             key = tuple(row.get(name) for name in others)
-            table.setdefault(key, {})[row[column]] = row["ok"]
-    names = list(levels)
-    return [
-        _pairs(table.values(), one, other)
-        for number, one in enumerate(names)
-        for other in names[number + 1 :]
-        if any(one in found and other in found for found in table.values())
-    ]
+            table.setdefault(key, {})[row[column]] = (origin, row["ok"])
+    every = (_pairs(table.values(), one, other) for one, other in itertools.combinations(levels, 2))
+    return [pairs for pairs in every if pairs.pairs]
 
 
-def _pairs(table: Iterable[Mapping[Any, bool]], one: Any, other: Any) -> Pairs:
-    found = [(each[one], each[other]) for each in table if one in each and other in each]
+def _pairs(table: Iterable[Mapping[Any, tuple[_Origin, bool]]], one: Any, other: Any) -> Pairs:
+    judged: dict[tuple[_Origin, _Origin], tuple[bool, bool]] = {}
+    for each in table:
+        if one in each and other in each:
+            (first, a), (second, b) = each[one], each[other]
+            judged[first, second] = (a, b)
+    # A row and its own copy are no pair.
+    found = [oks for (first, second), oks in judged.items() if first != second]
     return Pairs(
         one,
         other,

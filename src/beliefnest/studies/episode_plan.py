@@ -8,8 +8,9 @@ from typing import Any
 from beliefnest.episodes.policies import resolve_policy, text_of_policy
 from beliefnest.episodes.task import Task
 from beliefnest.errors import BeliefNestError, MissingExtraError, ModelError
+from beliefnest.studies.chance import episode_draws
 from beliefnest.studies.episode_design import EpisodeDesign, Player
-from beliefnest.studies.plan import SEEDS, Invalid, Plan, digest
+from beliefnest.studies.plan import SEEDS, Invalid, Plan, alike, digest
 
 __all__ = ["EpisodeCell", "EpisodeKey", "plan_episodes"]
 
@@ -72,15 +73,29 @@ class EpisodeKey:
 
 @dataclass(frozen=True)
 class EpisodeCell:
-    """An instance of a task, to be played by somebody once."""
+    """An instance of a task, to be played by somebody once.
+
+    Attributes:
+        key: What tells it from all others.
+        task: The instance.
+        draws: Whether anything in the episode is drawn by its seed.
+    """
 
     key: EpisodeKey
     task: Task
+    draws: bool
 
     def plain(self) -> dict[str, Any]:
         """What a study's plan says of it."""
         key = self.key
-        return {"name": key.name, "key": key.content_json(), "seed": key.seed}
+        # What is read from a file has no instances: every one of them is the same.
+        seeds = ("repeat",) if self.task.seed is not None else ("repeat", "instance")
+        return {
+            "name": key.name,
+            "key": key.content_json(),
+            "seed": key.seed,
+            "alike": None if self.draws else alike(key, seeds),
+        }
 
 
 def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
@@ -148,7 +163,8 @@ def _cells(
                 repeat=repeat,
                 setting=design.setting,
             )
-            yield EpisodeCell(key, tasks[seed])
+            draws = episode_draws(tasks[seed], policies, texts[player.text])
+            yield EpisodeCell(key, tasks[seed], draws)
 
 
 def _policies(task: Task, player: Player) -> dict[str, str]:

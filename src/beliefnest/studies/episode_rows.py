@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from beliefnest.episodes.measures import Measures
+from beliefnest.studies.copies import rows_with_copies
 from beliefnest.studies.rows import FAILED, plain_value, variation_columns
 from beliefnest.studies.store import StudyFolder
 from beliefnest.studies.table import Table
@@ -45,6 +46,7 @@ _COLUMNS = {
     "policies": "string",
     "run": "string",
     "cell": "string",
+    "copy_of": "string",
 }
 """Columns after `task`, `condition` and those of variations, and their types; what they mean is
 told at `Measures`. `needs` is the order that the task needs, `order` that of who plays."""
@@ -58,12 +60,9 @@ _MEASURED = [
 
 
 def _rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """The rows of all planned episodes that have been tried, in the order of the plan."""
     columns = variation_columns(plan)
-    for cell in plan["cells"]:
-        found = folder.cell(cell["name"])
-        if found is None:
-            continue
+
+    def rows_of(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
         key = cell["key"]
         about = {
             "task": key["task"],
@@ -81,6 +80,8 @@ def _rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, An
             yield {**about, "outcome": FAILED, "why_not": found["error"], **ends}
         else:
             yield {**about, **_measured(found), **ends}
+
+    return rows_with_copies(folder, plan, rows_of)
 
 
 def _measured(found: Mapping[str, Any]) -> dict[str, Any]:

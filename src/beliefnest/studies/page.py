@@ -7,6 +7,7 @@ from typing import Any, Protocol
 from jinja2 import Environment, StrictUndefined
 
 from beliefnest.errors import UnknownNameError
+from beliefnest.studies.copies import text_of_copies
 from beliefnest.studies.counting import Pairs
 from beliefnest.studies.plot import plot_accuracy, svg_of
 from beliefnest.studies.rows import variation_columns
@@ -51,6 +52,7 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     environment.filters["percent"] = _percent
     environment.filters["number"] = _number
+    environment.filters["text_of_copies"] = text_of_copies
     template = environment.from_string(
         (files("beliefnest.studies") / "page.html.jinja").read_text(encoding="utf-8")
     )
@@ -67,6 +69,7 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
         columns=[*table.first, *variation_columns(plan), *table.shown],
         rows=rows[:_MOST_ROWS],
         left_out=max(0, len(rows) - _MOST_ROWS),
+        copies=sum(row["copy_of"] is not None for row in rows),
         failed=[row for row in rows if row["outcome"] == "error"],
     )
 

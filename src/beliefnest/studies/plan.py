@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -12,11 +12,23 @@ from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import condition_numbers
 from beliefnest.scenarios.records import expected_json
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.studies.chance import scenario_draws
 from beliefnest.studies.design import Design, Template
 from beliefnest.studies.drawing import drawn_variations
 from beliefnest.studies.variation import Variation, listed_variations
 
-__all__ = ["SEEDS", "Cell", "CellKey", "Invalid", "Key", "Keyed", "Plan", "digest", "plan_cells"]
+__all__ = [
+    "SEEDS",
+    "Cell",
+    "CellKey",
+    "Invalid",
+    "Key",
+    "Keyed",
+    "Plan",
+    "alike",
+    "digest",
+    "plan_cells",
+]
 
 SEEDS = 2**32
 """How many seeds of cells there are."""
@@ -117,6 +129,16 @@ def digest(value: object) -> str:
     return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
 
 
+def alike(key: Key, seeds: Collection[str]) -> str:
+    """What cells have in common that differ by their seed alone.
+
+    Args:
+        key: A cell's.
+        seeds: What in it tells nothing but the seed.
+    """
+    return digest({k: v for k, v in key.content_json().items() if k not in seeds})[:16]
+
+
 @dataclass(frozen=True, slots=True)
 class Cell:
     """A scenario under one condition, varied, to be played with one model once."""
@@ -126,10 +148,14 @@ class Cell:
 
     def plain(self) -> dict[str, Any]:
         """What a study's plan says of it."""
+        key = self.key
+        models = [key.model, *filter(None, [key.setting.get("claims_from")])]
+        draws = scenario_draws(self.scenario, models)
         return {
-            "name": self.key.name,
-            "key": self.key.content_json(),
-            "seed": self.key.seed,
+            "name": key.name,
+            "key": key.content_json(),
+            "seed": key.seed,
+            "alike": None if draws else alike(key, ("repeat",)),
             "probes": [
                 {
                     "label": probe.label,

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from beliefnest.scenarios.judging import OUTCOMES
+from beliefnest.studies.copies import rows_with_copies
 from beliefnest.studies.store import StudyFolder
 from beliefnest.studies.table import Table
 
@@ -42,6 +43,7 @@ _COLUMNS = {
     "program": "string",
     "run": "string",
     "cell": "string",
+    "copy_of": "string",
 }
 """Columns after `scenario`, `condition` and those of variations, and their types. Places are texts
 such as `-2,-51,-4`; `seconds` are the Minecraft ones that the probe's program ran."""
@@ -54,16 +56,14 @@ def variation_columns(plan: Mapping[str, Any]) -> list[str]:
 
 
 def _probe_rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """The rows of all planned cells that have been tried, in the order of the plan.
+    """The rows of a plan, see `rows_with_copies`.
 
     A cell that failed has a row for each of its probes, all with the outcome `error` and its
     reason; one without probes has a single row, which tells of its expectations.
     """
     columns = variation_columns(plan)
-    for cell in plan["cells"]:
-        found = folder.cell(cell["name"])
-        if found is None:
-            continue
+
+    def rows_of(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
         key = cell["key"]
         about = {
             "scenario": key["scenario"],
@@ -78,7 +78,7 @@ def _probe_rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[s
         if found["error"] is not None:
             for probe in cell["probes"] or [{}]:
                 yield {**about, **_failed(probe, found["error"]), **ends}
-            continue
+            return
         held = [each["ok"] for each in found["expectations"]]
         common = {
             "beliefs_ok": all(held) if held else None,
@@ -88,6 +88,8 @@ def _probe_rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[s
             yield {**about, **_probe(probe), **common, **ends}
         if not found["probes"]:
             yield {**about, **_beliefs(found["expectations"]), **common, **ends}
+
+    return rows_with_copies(folder, plan, rows_of)
 
 
 def _probe(probe: Mapping[str, Any]) -> dict[str, Any]:

@@ -19,6 +19,7 @@ __all__ = [
     "Program",
     "Random",
     "Scripted",
+    "draws_by_seed",
     "policy_beside",
     "resolve_policy",
     "text_of_policy",
@@ -81,6 +82,20 @@ def resolve_policy(
 
             return Omniscient()
     raise UnknownNameError(f"no policy {name!r}; write one of {', '.join(POLICIES)}")
+
+
+def draws_by_seed(name: str) -> bool:
+    """Whether a policy itself draws; what the programs draw that it begins is theirs.
+
+    Args:
+        name: As for `resolve_policy`.
+    """
+    kind, _, rest = name.partition(":")
+    if kind == "model":
+        from beliefnest.llm.resolve import is_of_provider
+
+        return is_of_provider(rest)
+    return kind not in ("search", "omniscient", *_READ)
 
 
 def text_of_policy(name: str) -> str:
