@@ -211,6 +211,46 @@ def test_only_who_is_awaited_comes_in_and_acts(scenario):
             assert nest.people == {"anne"}
 
 
+def test_nothing_is_done_while_time_stands_still(scenario):
+    with Nest.open(scenario(1), realtime=True, listen=0) as nest:
+        with (
+            pytest.raises(WorldError, match="not in real time"),
+            Nest.open(Scenario.load("sally-anne"), "scripted") as other,
+        ):
+            other.pause()
+        with Person(nest.address, "anne") as anne:
+            nest.play()
+            nest.pause()
+            nest.pause()
+            nest["/"].step(0)
+            before, place = nest.tick, nest["/"].state.agents["anne"].position
+            # She is not heard, her hand stays as it is, and walking leads nowhere.
+            anne.does("bot.chat('Can you hear me?'); bot.setQuickBarSlot(3)")
+            anne.does("bot.setControlState('forward', true); await bot.waitForTicks(20)")
+            anne.does("bot.clearControlStates(); await bot.waitForTicks(20)")
+            while not anne.is_done:
+                assert nest.people == {"anne"}
+            assert "Time stands still." in anne.read
+            assert any("nobody hears you" in line for line in anne.read)
+            for act in (lambda: nest.wait(None, 1), lambda: nest["/"].run("sally", "1")):
+                with pytest.raises(WorldError, match=rf"stands still at tick {before}.*go_on"):
+                    act()
+            nest["/observer"].switch("what if")
+            assert nest["/observer"].run("sally", "bot.chat('I wonder.')").ok
+            nest["/"].step(0)
+            state = nest["/"].state
+            assert (nest.tick, state.agents["anne"].position, state.chat) == (before, place, [])
+            nest.go_on()
+            # Her game held what was not so, and is told all anew.
+            come = "You are anne."
+            assert nest.wait(lambda: sum(come in line for line in anne.read) == 2, LONG_S)
+            anne.does("bot.chat('Now?')")
+            assert nest.wait(lambda: bool(nest["/"].state.chat), LONG_S)
+            assert [words for _, *words in nest["/"].state.chat] == [["anne", "Now?"]]
+            anne.does(MOVE)
+            assert nest.wait(lambda: contents(nest)["/"][RIGHT] == {"diamond": 1}, LONG_S)
+
+
 def test_worlds_that_nobody_can_join_refuse_people(scenario):
     for world in ("embedded", "scripted"):
         with pytest.raises(InputError, match=r"anne .* is of type human.*realtime=True"):

@@ -28,6 +28,7 @@ class HostedWorld(RealtimeWorld):
     ) -> None:
         super().__init__(seed, limits)
         self._address = address
+        self._paused = False
 
     @classmethod
     def start(cls, address: ListenAddress, seed: int, limits: ProcessLimits | None = None) -> Self:
@@ -60,6 +61,11 @@ class HostedWorld(RealtimeWorld):
         """The version that it has to be."""
         return MINECRAFT
 
+    def pause(self, *, paused: bool) -> None:
+        """Let time stand still in the real world, or go on."""
+        self._paused = paused
+        self._live().request("pause", paused=paused)
+
     def close(self) -> None:
         """End both processes; people are disconnected."""
         self._closed = True
@@ -73,6 +79,7 @@ class HostedWorld(RealtimeWorld):
         )
         try:
             told = channel.request("people", invited=sorted(self._invited))
+            channel.request("pause", paused=self._paused)
         except BodyError:
             channel.close()
             raise

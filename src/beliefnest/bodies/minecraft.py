@@ -10,7 +10,7 @@ from beliefnest.bodies.embedded import MINECRAFT, started
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.node_files import REALTIME
 from beliefnest.bodies.realtime import RealtimeWorld
-from beliefnest.errors import BodyError
+from beliefnest.errors import BodyError, WorldError
 
 __all__ = ["MinecraftWorld", "joined"]
 
@@ -88,6 +88,17 @@ class MinecraftWorld(RealtimeWorld):
     def pid(self) -> int:
         """Process id of the Node that speaks to the server; it is started if it has not been."""
         return self._live().pid
+
+    def pause(self, *, paused: bool) -> None:
+        """Refused: the server's time is its own.
+
+        Raises:
+            WorldError: Always.
+        """
+        raise WorldError(
+            f"the server at {self.address} goes on whatever happens here; only the embedded world "
+            "in real time (realtime=True, listen=PORT) can be paused"
+        )
 
     def close(self) -> None:
         """Put back what was in the box on the server, let all players leave, end both processes.

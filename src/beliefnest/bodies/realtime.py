@@ -106,6 +106,14 @@ class RealtimeWorld(ABC):
         """
         return self._beliefs.another()
 
+    @abstractmethod
+    def pause(self, *, paused: bool) -> None:
+        """Let time stand still in the real world, or go on.
+
+        Raises:
+            WorldError: It is on a server elsewhere, which nobody here can stop.
+        """
+
     def interrupt(self) -> None:
         """Kill both processes; what was built on a server stays there."""
         self._beliefs.interrupt()

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from beliefnest.bodies.realtime import RealtimeWorld
-from beliefnest.bodies.worlds import joined_of
+from beliefnest.bodies.worlds import joined_of, realtime_of
 from beliefnest.errors import InputError, UnknownNameError, WorldError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.script import Progress
@@ -100,6 +100,36 @@ class Joining:
         """
         host = _host_of_person(self, name)
         host.invite(host.invited | {name})
+
+    @in_turn
+    def pause(self: _Joined) -> None:
+        """Let the real world stand still until `go_on`.
+
+        No tick passes, and nothing that people do or say is done; they are told. Beliefs can be
+        looked at, forked and acted in meanwhile. It is not recorded: no time passes.
+
+        Raises:
+            WorldError: It is not in real time, or on a server elsewhere.
+        """
+        _real_time_of(self).pause(paused=True)
+
+    @in_turn
+    def go_on(self: _Joined) -> None:
+        """Let the real world go on after `pause`; nothing changes if it does already.
+
+        Raises:
+            WorldError: It is not in real time, or on a server elsewhere.
+        """
+        _real_time_of(self).pause(paused=False)
+
+
+def _real_time_of(nest: _Joined) -> RealtimeWorld:
+    host = realtime_of(nest._engine.bodies.world)
+    if host is None:
+        raise WorldError(
+            "this world is not in real time: no time passes between calls that could be paused"
+        )
+    return host
 
 
 def _host_of_person(nest: _Joined, name: str) -> RealtimeWorld:

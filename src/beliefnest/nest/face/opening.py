@@ -68,9 +68,17 @@ class Start:
 
     @classmethod
     def of(cls, scenario: HasSetting | Setting, world: str, seed: int) -> Self:
-        """What a run of a scenario is started with."""
+        """What a run of a scenario is started with.
+
+        Raises:
+            InputError: It is a name, or something else.
+        """
         if isinstance(scenario, Setting):
             return cls(scenario, world, seed)
+        if not hasattr(scenario, "setting"):
+            raise InputError(
+                f"{scenario!r} is no scenario; give a loaded one: bn.Scenario.load({scenario!r})"
+            )
         return cls(
             scenario.setting, world, seed, scenario.text, scenario.templates, scenario.condition
         )

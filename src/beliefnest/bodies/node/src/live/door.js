@@ -8,6 +8,7 @@ const versions = require('../versions')
 const { CannotListen } = require('./cannotListen')
 const { ease } = require('./ease')
 const { Gallery } = require('./gallery')
+const { Standstill } = require('./standstill')
 
 // More than there are agents; one who comes too many is told so by name.
 const MOST_CONNECTIONS = 1000
@@ -21,15 +22,22 @@ const REALITY = '/'
 const TRAVEL = /^(?:minecraft:)?(?:tp|teleport)(?: @s| (?<who>\w+))? (?<x>-?\d+(?:\.\d+)?) (?<y>-?\d+(?:\.\d+)?) (?<z>-?\d+(?:\.\d+)?)$/
 
 class PersonEnd extends TcpEnd {
-  /** @param {(place: {x: number, y: number, z: number}) => boolean} mayBeAt whether somebody may go there */
-  constructor (client, mayBeAt, report) {
+  /**
+   * @param {import('minecraft-protocol').Client} client
+   * @param {(place: {x: number, y: number, z: number}) => boolean} mayBeAt whether somebody may go there
+   * @param {import('./standstill').Standstill} standstill
+   * @param {(error: Error) => void} report hears what a packet's handlers throw
+   */
+  constructor (client, mayBeAt, standstill, report) {
     super(client, action => action(), report)
+    this.standstill = standstill
     this.mayBeAt = mayBeAt
     this.player = null
   }
 
   /** What a client says of where it is holds only within the box. */
   deliver (name, params) {
+    if (this.standstill.takes(this, name, params)) return
     if (MOVES.includes(name) && !this.mayBeAt(params)) this.player?.sendSelfPosition()
     else super.deliver(name, params)
   }
@@ -44,6 +52,7 @@ class Door {
     this.present = new Map()
     regions.onTick = region => this.watch(region)
     this.gallery = new Gallery(regions.serv)
+    this.standstill = new Standstill()
     const refuse = regions.serv.command
     regions.serv.command = (player, command) => {
       const end = this.endOf(player)
@@ -77,6 +86,14 @@ class Door {
       if (!this.invited.has(agent)) player._client.end(`${agent} is played by BeliefNest from now on`)
     }
     return [...this.present.keys()].sort()
+  }
+
+  /** Lets time stand still, or go on; people are told. */
+  async pause (isPaused) {
+    if (!await this.regions.pause(isPaused)) return
+    for (const { player } of this.present.values()) player.system(isPaused ? 'Time stands still.' : 'Time goes on.')
+    if (isPaused) this.standstill.isOn = true
+    else for (const end of this.standstill.end()) if (this.present.get(end.username)?.player._client === end) this.comeBack(end.release())
   }
 
   greet (client) {
@@ -158,7 +175,7 @@ class Door {
       client.end(this.refusal(agent))
       return
     }
-    const end = new PersonEnd(client, place => isPlace(place) && region.contains(place), error => blame(end, error))
+    const end = new PersonEnd(client, place => isPlace(place) && region.contains(place), this.standstill, error => blame(end, error))
     end.player = regions.bodies.seat(region, end)
     this.present.set(agent, { player: end.player, ticks: 0, place: null })
     end.on('end', () => {

@@ -1,5 +1,6 @@
 'use strict'
 /** Answers the channel's requests with the embedded server in real time, where people are agents as well. */
+const { BadRequest } = require('../channel/errors')
 const { RealtimeHandler, requireBots } = require('../realtimeHandler')
 const { createServer } = require('../server')
 const { Door } = require('./door')
@@ -22,8 +23,16 @@ class LiveHandler extends RealtimeHandler {
     if (request.op === 'exhibit') return this.door.gallery.open(request) ?? null
     if (request.op === 'lags') return this.door.gallery.lags()
     if (request.op === 'close_exhibit') return this.door.closeExhibit(request.exhibit) ?? null
+    if (request.op === 'pause') return this.door.pause(request.paused).then(() => null)
+    this.requireTime(request)
     if (request.op === 'run') requireBots(this.door.invited, Object.keys(request.programs))
     return super.perform(request)
+  }
+
+  /** @throws {BadRequest} if time is to pass that stands still */
+  requireTime ({ op, ticks }) {
+    if (this.regions === null || this.regions.standstill === null || !(op === 'run' || (op === 'step' && ticks > 0))) return
+    throw new BadRequest(`the real world stands still at tick ${this.tick}; let it go on first: nest.go_on()`)
   }
 
   note (message) {

@@ -29,6 +29,8 @@ class LiveRegions extends Regions {
     // Ends when nobody is at work on the region any more.
     this.turn = Promise.resolve()
     this.failure = null
+    // Ends when time may go on; null while it does.
+    this.standstill = null
     // Called at every tick with the region.
     this.onTick = () => {}
     // Ends when nobody is about to enter or to leave.
@@ -79,8 +81,22 @@ class LiveRegions extends Regions {
   async goOn (region) {
     this.clock.due = performance.now()
     while (this.open === region && this.failure === null) {
-      await this.alone(() => this.open === region ? this.tick(region) : null).catch(error => { this.failure = error })
+      if (this.standstill !== null) {
+        await this.standstill.promise
+        this.clock.due = performance.now()
+      }
+      await this.alone(() => this.open === region && this.standstill === null ? this.tick(region) : null).catch(error => { this.failure = error })
     }
+  }
+
+  /** Lets time stand still, or go on again. @returns {Promise<boolean>} whether that is something else than before */
+  async pause (isPaused) {
+    return this.alone(() => {
+      if (isPaused === (this.standstill !== null)) return false
+      this.standstill?.resolve()
+      this.standstill = isPaused ? Promise.withResolvers() : null
+      return true
+    })
   }
 
   /** Runs a call on the region: its ticks are then the call's to take. */
