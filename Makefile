@@ -1,5 +1,5 @@
 # Shortcuts for working on BeliefNest, inside an environment with `pip install -e ".[dev]"`.
-.PHONY: help test nightly check format schema notices picture notebooks pages baselines docs bench ci
+.PHONY: help test nightly check format schema notices picture notebooks pages baselines docs links bench ci
 
 help: ## What can be made
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /: /' | column -t -s: -o '  '
@@ -42,8 +42,12 @@ notebooks: ## What the notebook of a study shows, by executing it
 baselines: ## docs/tasks.md: all tasks by all baselines, over 50 seeds; takes half an hour
 	beliefnest play --baselines --seeds 50 --jobs 2 --page docs/tasks.md
 
+# Without --quiet, which keeps warnings from --strict as well.
 docs: ## The documentation site, in build/site; a broken link is an error
-	NO_MKDOCS_2_WARNING=1 mkdocs build --quiet --strict
+	NO_MKDOCS_2_WARNING=1 mkdocs build --strict
+
+links: ## The same, asking the web for every outer link as well
+	BELIEFNEST_OUTER_LINKS=true NO_MKDOCS_2_WARNING=1 mkdocs build --strict
 
 bench: ## Measure, beside the figures to reach
 	beliefnest bench

@@ -34,6 +34,8 @@ def write_pictures(images: Path) -> None:
         run_command_line(["show", str(run), "--path", "/observer/sally", "--png", belief])
         with bn.Nest.read(run / "condition-1" / STORE) as nest:
             nest.figure(PATHS).save(images / "figure.png")
+            narrow = nest.figure(("/", "/observer/sally"))
+            narrow.save(images / "sally-anne-narrow.png", size="one column", dpi=300)
             plot = nest.plot_beliefs(container=CHEST, item="diamond", paths=PATHS)
             plot.save(images / "beliefs-over-time.png")
         for name in BATTERIES:

@@ -10,11 +10,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from types import ModuleType, NoneType
 from typing import Any, Literal, get_args, get_origin, get_type_hints
+from urllib.parse import urlsplit
 
 import click
 import typer
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.exceptions import PluginError
+from mkdocs.plugins import event_priority
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
@@ -39,6 +41,7 @@ _PLAIN = {
 NAMES_OF_KINDS = {"class": "Classes", "function": "Functions", "value": "Values"}
 
 
+@event_priority(100)  # Before plugins look at which pages there are.
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the pages that are not in `docs/`."""
     pages: dict[str, Callable[[], str]] = {
@@ -96,13 +99,18 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
 
 
 def on_post_page(output: str, page: Page, config: MkDocsConfig) -> str:
-    """Refuse a page that loads anything from elsewhere."""
+    """Refuse a page that loads anything from elsewhere, or links to what is no address."""
     # A link that only names the page's own address loads nothing.
     loads = (
         r"<(?:script|link(?! rel=.?canonical)|img|iframe)\b[^>]*\b(?:src|href)=\"?https?://[^>]*>"
     )
     if foreign := re.search(loads, output):
         raise PluginError(f"{page.file.src_uri} loads from elsewhere: {foreign[0]}")
+    # Whether somebody answers there is asked by `make links`.
+    for link in re.findall(r"<a\b[^>]*\bhref=\"?(\w+:[^\s\">]*)", output):
+        address = urlsplit(link)
+        if address.scheme not in {"https", "http"} or "." not in (address.hostname or ""):
+            raise PluginError(f"{page.file.src_uri} links to {link}, which is no address")
     return output
 
 
@@ -290,8 +298,10 @@ def _short(default: object) -> str:
 def _type(value: Mapping[str, Any]) -> str:
     """The form of a value in words; that it may be null or a parameter is not said each time."""
     if "$ref" in value:
-        title = _title(value["$ref"].rsplit("/", 1)[-1])
-        return f"[{title}](#{title.lower().replace(' ', '-')})"
+        name = value["$ref"].rsplit("/", 1)[-1]
+        title = _title(name.removesuffix("Override"))
+        link = f"[{title}](#{title.lower().replace(' ', '-')})"
+        return f"any keys of {link}" if name.endswith("Override") else link
     if "anyOf" in value:
         forms = [each for each in value["anyOf"] if not _goes_without_saying(each)]
         return " or ".join(dict.fromkeys(_type(each) for each in forms))

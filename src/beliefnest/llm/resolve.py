@@ -99,7 +99,7 @@ def open_model(name: str, environment: Mapping[str, str], connection: Connection
     are retried, metered and kept.
 
     Raises:
-        As `resolve_model`.
+        BeliefNestError: There is no such model, as `resolve_model` says.
     """
     model = resolve_model(
         name, environment, limits=connection.answer_limits, clock=connection.clock
