@@ -7,6 +7,8 @@ import threading
 from pathlib import Path
 from typing import IO, Any, Self
 
+from tests.servers import given_version
+
 from beliefnest.bodies.node_files import node_path
 
 __all__ = ["Person"]
@@ -18,14 +20,17 @@ _LIMIT_S = 120
 class Person:
     """Somebody who joins; see `test/people/person.js`.
 
+    Their client is of the version that the address of a server under test names.
+
     Attributes:
         read: What they were told in the game.
     """
 
     def __init__(self, address: str | None, name: str) -> None:
         assert address is not None
+        version = given_version()
         self._process = subprocess.Popen(
-            [node_path(), "test/people/person.js", address.rpartition(":")[2], name],
+            [node_path(), "test/people/person.js", address.rpartition(":")[2], name, *version],
             cwd=_ROOM,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,

@@ -1,7 +1,7 @@
 """Minecraft servers for tests: processes that do what a vanilla one does for an operator bot.
 
-`BELIEFNEST_TEST_SERVER=minecraft://HOST:PORT` lets tests that need no console play on a server that
-runs already; nobody's builds may lie near its middle. `design/servers.md` says which tests.
+`BELIEFNEST_TEST_SERVER=minecraft://HOST:PORT?version=1.21.8` lets tests that need no console play
+on a server that runs already, in the middle of its world; `design/servers.md` says which tests.
 """
 
 import json
@@ -12,10 +12,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any, Protocol, Self
+from urllib.parse import parse_qs, urlsplit
 
 from beliefnest.bodies.node_files import node_path
 
-__all__ = ["GameServer", "Served", "serving"]
+__all__ = ["GameServer", "Served", "given_version", "serving"]
 
 _GIVEN = "BELIEFNEST_TEST_SERVER"
 _ROOM = Path(__file__).parents[1] / "src" / "beliefnest" / "bodies" / "node"
@@ -37,6 +38,11 @@ def serving(**options: Any) -> Iterator[Served]:
         return
     with GameServer(**options) as running:
         yield running
+
+
+def given_version() -> list[str]:
+    """The version of the server that runs already, if there is one."""
+    return parse_qs(urlsplit(os.environ.get(_GIVEN, "")).query).get("version", [])
 
 
 def _with_options(address: str, options: dict[str, str | int]) -> str:

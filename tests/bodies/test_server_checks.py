@@ -76,10 +76,11 @@ def test_what_a_server_lacks_and_can_do_without_is_named_at_the_start(server, ca
     assert said.count("\n") == 1
 
 
-def test_nobody_answers():
+@pytest.mark.parametrize("query", ["", "?version=1.20.4"])
+def test_nobody_answers(query):
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
-        address = f"minecraft://127.0.0.1:{free.getsockname()[1]}"
+        address = f"minecraft://127.0.0.1:{free.getsockname()[1]}{query}"
         with pytest.raises(BodyError, match=r"does not answer \(ECONNREFUSED\); start it"):
             open_world(address, 0)
 

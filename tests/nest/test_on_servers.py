@@ -3,14 +3,16 @@
 import json
 import re
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 import pytest
 from tests.profiles import NIGHTLY
-from tests.servers import GameServer, Served, serving
+from tests.servers import GameServer, Served, given_version, serving
 
 from beliefnest import Nest, Scenario
+from beliefnest.bodies.worlds import joined_of, open_world
 from beliefnest.cli.app import run_command_line
 from beliefnest.errors import BodyError, InputError
 from beliefnest.world.values import EventKind
@@ -142,6 +144,10 @@ def test_skills_do_and_are_told_as_in_the_embedded_world(tmp_path):
     scenario = Scenario.load(str(path))
     with serving(latency=15, version="1.20.2") as older:
         played = worked(scenario, older.address())
+        with closing(open_world(older.address(), 0)) as world:
+            joined = joined_of(world)
+            assert joined is not None
+            assert joined.minecraft in ("1.20.2", *given_version())
     for here, there in zip(worked(scenario, "embedded"), played, strict=True):
         assert here == there
 

@@ -6,7 +6,7 @@ from typing import Self
 
 from beliefnest.bodies.address import ServerAddress
 from beliefnest.bodies.channel import Channel
-from beliefnest.bodies.embedded import MINECRAFT, started
+from beliefnest.bodies.embedded import started
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.node_files import REALTIME
 from beliefnest.bodies.realtime import RealtimeWorld
@@ -81,8 +81,9 @@ class MinecraftWorld(RealtimeWorld):
 
     @property
     def minecraft(self) -> str:
-        """The version that it has to be."""
-        return MINECRAFT
+        """The version that the server speaks; it is asked if it has not been."""
+        self._live()
+        return self._versions["minecraft_server"]
 
     @property
     def pid(self) -> int:

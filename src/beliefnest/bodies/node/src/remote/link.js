@@ -83,15 +83,24 @@ class Link extends EventEmitter {
       ...this.server.accounts === null ? [failed('encryption_begin', () => reasons.onlineMode(this.server))] : [],
       failed('disconnect', refused),
       failed('kick_disconnect', refused),
-      failed('error', error => this.server.accounts === null || error.code !== undefined ? reasons.unreachable(this.server, error.code ?? error.message) : reasons.noLogin(this.server, this.name, error.message)),
       failed('end', reason => reasons.unreachable(this.server, `it ended the connection: ${reason}`))
     ]
     try {
       await Promise.race(waiting)
+    } catch (error) {
+      // Whatever is waited for, an error of the connection ends it.
+      throw error instanceof reasons.Unplayable ? error : this.broken(error)
     } finally {
       ending.abort()
       await Promise.allSettled(waiting)
     }
+  }
+
+  /** @returns {Unplayable} what an error of the connection means before the player is there */
+  broken ({ code, message }) {
+    return this.server.accounts === null || code !== undefined
+      ? reasons.unreachable(this.server, code ?? message)
+      : reasons.noLogin(this.server, this.name, message)
   }
 
   lost (reason, key) {

@@ -1,6 +1,6 @@
 'use strict'
 /**
- * Somebody with a Minecraft client, as a process of its own: `node person.js PORT NAME`. Takes programs on its standard
+ * Somebody with a Minecraft client, as a process of its own: `node person.js PORT NAME [VERSION]`. Takes programs on its standard
  * input, one a line as JSON, and plays them one after the other; what it prints, one JSON object a line, is what
  * came of it: `{"here": true}`, `{"done": N}`, `{"failed": why}`, `{"left": why}`. It leaves with the end of its input.
  */
@@ -22,10 +22,10 @@ function textOf (reason) {
   return text
 }
 
-function main (port, username) {
-  const registry = require('prismarine-registry')(versions.minecraft)
+function main (port, username, version = versions.minecraft) {
+  const registry = require('prismarine-registry')(version)
   rememberBlocks(registry)
-  const client = minecraft.createClient({ host: '127.0.0.1', port, username, version: versions.minecraft, auth: 'offline', hideErrors: true })
+  const client = minecraft.createClient({ host: '127.0.0.1', port, username, version, auth: 'offline', hideErrors: true })
   const bot = startBot(client, REAL_TIME)
   let why = 'the connection ended'
   client.on('kick_disconnect', ({ reason }) => { why = textOf(reason) })
@@ -53,4 +53,4 @@ function listen (bot) {
   input.on('close', () => turn.then(() => bot.quit()))
 }
 
-main(Number(process.argv[2]), process.argv[3])
+main(Number(process.argv[2]), ...process.argv.slice(3))
