@@ -115,6 +115,45 @@ def test_summaries_have_intervals_and_differences_are_of_pairs(whole: Path) -> N
     assert "bring.yaml" in page and "<svg" in page and "search:1" in page
 
 
+FAR = """
+conditions:
+  1: {description: As written.}
+  2: {parameters: {spot: {default: [7, 1, 1]}}}
+"""
+
+
+def test_all_conditions_of_a_scenario_are_played_in_all_its_symmetries(here: Path) -> None:
+    Path("bring.yaml").write_text(TASK + FAR)
+    study = bn.Study(
+        tasks=["bring.yaml", "help-find"],
+        policies=["search", "program:idle.js", "program:take.js"],
+        orders=[0],
+        variations={"symmetry": ["as-written", "mirrored"]},
+    )
+    plan = study.plan()
+    searched = [cell for cell in plan.cells if cell.key.player == "search"]
+    told = [(cell.key.condition, cell.key.variation["symmetry"]) for cell in searched]
+    assert told == list(itertools.product((1, 2), ("as-written", "mirrored")))
+    places = [cell.task.form.scenario["containers"][0]["at"] for cell in searched]
+    assert places == [[1, 1, 1], [7, 1, 1], [7, 1, 1], [1, 1, 1]]
+    why = {each.why for each in plan.invalid}
+    assert {each.partition(";")[0] for each in why} == {
+        "task help-find has no parameter 'symmetry'",
+        "programs of files are not moved or renamed with the scene: program:take.js",
+    }
+
+
+def test_conditions_that_a_task_does_not_have_are_listed(here: Path) -> None:
+    Path("bring.yaml").write_text(TASK + FAR)
+    plan = bn.Study(tasks=["bring.yaml", "help-find"], policies="random", conditions=[2, 9]).plan()
+    assert [(cell.key.task, cell.key.condition) for cell in plan.cells] == [
+        ("bring", 2),
+        ("help-find", None),
+    ]
+    (invalid,) = plan.invalid
+    assert "there is no condition 9; conditions are 1, 2" in invalid.why
+
+
 def test_shards_come_to_the_same_bytes(whole: Path, here: Path) -> None:
     command = ["study", "study.yaml", "--jobs", "1"]
     assert run_command_line([*command, "--out", "a", "--shard", "1/2"]) in (0, 1)

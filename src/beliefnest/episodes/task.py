@@ -13,8 +13,7 @@ from beliefnest.episodes.tasks import builtin_tasks, generated
 from beliefnest.errors import BeliefNestError, InputError, ScenarioError, UnknownNameError
 from beliefnest.scenarios.document import Document, Node, plain
 from beliefnest.scenarios.goals import Goal
-from beliefnest.scenarios.loading import builtin_names
-from beliefnest.scenarios.reading import read_yaml
+from beliefnest.scenarios.loading import builtin_names, condition_number, read_document
 from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, goal_of
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.space import box_between
@@ -68,17 +67,9 @@ class Task:
         if name_or_path in builtin_tasks():
             _check_no_condition(name_or_path, condition)
             return cls.from_mapping(generated(name_or_path, seed, parameters), seed)
-        file = FilePath(name_or_path)
-        if name_or_path in builtin_names():
-            return cls.of(Scenario.load(name_or_path, condition, parameters))
-        if not file.is_file():
-            raise UnknownNameError(
-                f"no task {name_or_path!r}, and no such file; there are {', '.join(cls.names())}, "
-                f"and of scenarios {', '.join(builtin_names())}"
-            )
-        document = read_yaml(file)
-        if "scenario" not in document.root.value:
-            return cls.of(Scenario.load(name_or_path, condition, parameters))
+        document = _written(name_or_path)
+        if _is_scenario(document):
+            return cls.of(Scenario.varied(document, condition_number(condition), parameters))
         _check_no_condition(name_or_path, condition)
         if parameters:
             raise InputError(f"{name_or_path} is a task and takes no {', '.join(parameters)}")
@@ -87,6 +78,19 @@ class Task:
             return cls.from_mapping(cast(dict[str, Any], plain(document.root)))
         except ScenarioError as fault:
             raise ScenarioError(f"{name_or_path}: {fault}") from None
+
+    @staticmethod
+    def scenario_document(name_or_path: str) -> Document | None:
+        """What is written in the scenario that is played; None: it is a task, as `load` takes it.
+
+        Raises:
+            UnknownNameError: There is no such task and no such file.
+            ScenarioError: The file cannot be read.
+        """
+        if name_or_path in builtin_tasks():
+            return None
+        document = _written(name_or_path)
+        return document if _is_scenario(document) else None
 
     @classmethod
     def of(cls, scenario: Scenario, **rules: Any) -> Self:
@@ -242,6 +246,20 @@ def _check_by_line(document: Document) -> None:
     episode = Node(rules, document.root.line)
     whole = Node({**scenario.value, "episode": episode}, document.root.line)
     Scenario.varied(replace(document, root=whole), None)
+
+
+def _written(name_or_path: str) -> Document:
+    """What stands in the file of a scenario or task; UnknownNameError if there is none."""
+    if name_or_path not in builtin_names() and not FilePath(name_or_path).is_file():
+        raise UnknownNameError(
+            f"no task {name_or_path!r}, and no such file; there are {', '.join(Task.names())}, "
+            f"and of scenarios {', '.join(builtin_names())}"
+        )
+    return read_document(name_or_path)
+
+
+def _is_scenario(document: Document) -> bool:
+    return "scenario" not in document.root.value
 
 
 def _check_no_condition(name: str, condition: int | str | None) -> None:

@@ -2,15 +2,19 @@
 
 import itertools
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from beliefnest.episodes.policies import resolve_policy, text_of_policy
 from beliefnest.episodes.task import Task
 from beliefnest.errors import BeliefNestError, MissingExtraError, ModelError
+from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.loading import condition_numbers
+from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.chance import episode_draws
 from beliefnest.studies.episode_design import EpisodeDesign, Player
 from beliefnest.studies.plan import SEEDS, Invalid, Plan, alike, digest
+from beliefnest.studies.variation import Variation, listed_variations
 
 __all__ = ["EpisodeCell", "EpisodeKey", "plan_episodes"]
 
@@ -108,22 +112,23 @@ def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
     """
     texts = {player.text: _texts(player) for player in design.players}
     found: list[EpisodeCell | Invalid] = []
-    for name, condition in itertools.product(design.tasks, design.conditions or (None,)):
-        # As it is written it has to be right: a fault in it is no matter of a variation.
-        Task.load(name, design.seeds[0])
-        for values in itertools.product(*design.variations.values()):
-            variation = dict(zip(design.variations, values, strict=True))
+    for name in design.tasks:
+        document = Task.scenario_document(name)
+        there = (None,) if document is None else condition_numbers(document)
+        chosen = there if there == (None,) else design.conditions or there
+        for condition, variation in itertools.product(chosen, listed_variations(design.variations)):
+            place = _Place(name, document, condition, variation)
+            if condition in there:
+                # As it is written it has to be right: a fault in it is no matter of a variation.
+                replace(place, variation=Variation()).task(design.seeds[0])
             try:
-                tasks = {
-                    seed: Task.load(name, seed, condition=condition, **variation)
-                    for seed in design.seeds
-                }
+                tasks = {seed: place.task(seed) for seed in design.seeds}
             except MissingExtraError:
                 raise
             except BeliefNestError as error:
-                found.append(Invalid(name, condition, variation, str(error)))
+                found.append(place.invalid(str(error)))
                 continue
-            found += _cells(design, _Place(name, condition, variation), tasks, texts)
+            found += _cells(design, place, tasks, texts)
     cells = [each for each in found if isinstance(each, EpisodeCell)]
     seeds = {seed: number for number, seed in enumerate(design.seeds)}
     cells.sort(key=lambda cell: (cell.key.repeat, seeds[cell.key.instance]))
@@ -132,11 +137,31 @@ def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """Where a cell stands in a study, but for who plays, and which instance and repeat it is."""
+    """Where a cell stands in a study, but for who plays, and which instance and repeat it is.
+
+    Attributes:
+        name: Name, or path, of a task or scenario.
+        document: What is written in the scenario; None: it is a task.
+        condition: Number of the scenario's condition; None: as written.
+        variation: What varies.
+    """
 
     name: str
+    document: Document | None
     condition: int | None
-    variation: Mapping[str, Any]
+    variation: Variation
+
+    def task(self, seed: int) -> Task:
+        """An instance."""
+        if self.document is None:
+            return Task.load(self.name, seed, **self.variation.values)
+        varied = self.variation
+        scene = varied.scene if varied.changes_scene else None
+        return Task.of(Scenario.varied(self.document, self.condition, varied.parameters, scene))
+
+    def invalid(self, why: str) -> Invalid:
+        """It makes no episode."""
+        return Invalid(self.name, self.condition, self.variation.values, why)
 
 
 def _cells(
@@ -148,14 +173,18 @@ def _cells(
         strange = sorted(policies.keys() - set(tasks[design.seeds[0]].agents))
         if strange:
             why = f"{place.name} has no agent {strange[0]!r} for the policies {player.text}"
-            yield Invalid(place.name, place.condition, place.variation, why)
+            yield place.invalid(why)
+            continue
+        if place.document is not None and place.variation.changes_scene and any(texts[player.text]):
+            why = f"programs of files are not moved or renamed with the scene: {player.text}"
+            yield place.invalid(why)
             continue
         for seed, repeat in itertools.product(design.seeds, range(1, design.repeats + 1)):
             key = EpisodeKey(
                 task=tasks[seed].name,
                 content=digest([instances[seed], texts[player.text]])[:16],
                 condition=place.condition,
-                variation=place.variation,
+                variation=place.variation.values,
                 player=player.name,
                 order="" if player.order is None else str(player.order),
                 policies=policies,
