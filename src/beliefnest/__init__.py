@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from beliefnest.bodies.limits import ProcessLimits
     from beliefnest.bodies.protocol import ProgramResult
     from beliefnest.episodes.episode import Episode
+    from beliefnest.episodes.record import Budget
     from beliefnest.episodes.task import Task
     from beliefnest.episodes.view import GO_ON, AgentView
     from beliefnest.errors import (
@@ -54,6 +55,7 @@ __all__ = [
     "BeliefNestError",
     "BodyError",
     "BranchError",
+    "Budget",
     "Claim",
     "ClaimKind",
     "Contents",
@@ -91,6 +93,7 @@ _HOMES = {
     "GO_ON": "beliefnest.episodes.view",
     "AgentView": "beliefnest.episodes.view",
     "Attempt": "beliefnest.nest.face.exploration",
+    "Budget": "beliefnest.episodes.record",
     "Claim": "beliefnest.world.claims",
     "ClaimKind": "beliefnest.world.claims",
     "Contents": "beliefnest.nest.explain.parts",

@@ -6,6 +6,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -146,6 +147,20 @@ def test_an_episode_is_branched_at_any_round(tmp_path: Path) -> None:
         assert not episode.success
     with bn.Episode.resume(tmp_path / "e.bn", {"anne": Waits()}) as resumed:
         assert resumed.branch == "main"
+
+
+@pytest.mark.parametrize("policy", [None, 5, object()])
+def test_who_cannot_act_is_refused(policy: Any) -> None:
+    with pytest.raises(bn.InputError, match=r"the policy of anne is .*act\(view\)"):
+        bn.Episode(bn.Task.load(TASK), {"anne": policy})
+
+
+def test_there_is_something_to_spend() -> None:
+    for wrong in ({"ticks": 0}, {"tokens": -1}, {"cost": -0.5}):
+        with pytest.raises(bn.InputError, match="of a budget is"):
+            bn.Budget(**wrong)
+    with pytest.raises(bn.InputError, match="patience is -1 s"):
+        bn.Episode(bn.Task.load(TASK), patience_s=-1)
 
 
 def test_policies_must_be_of_agents_and_exist() -> None:

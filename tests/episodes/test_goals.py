@@ -152,4 +152,7 @@ def test_the_command_plays_scenarios(
     assert run_command_line(["play", fetch, "--agent", policy, "--condition", "1"]) == 0
     assert "/eve: 1 apple in the container at (11, 1, 5): at tick" in capsys.readouterr().out
     assert run_command_line(["play", fetch, "--agent", policy, "--condition", "2"]) == 1
+    assert "not to be: eve has 1 apple: at no tick" in capsys.readouterr().out
+    assert run_command_line(["play", fetch, "--set", "spot=[9, 1, 1]", "--rounds", "0"]) == 1
+    assert "container at (9, 1, 1): at no tick" in capsys.readouterr().out
     assert run_command_line(["play", "help-find", "--condition", "2"]) == 2

@@ -118,8 +118,16 @@ def test_the_command_plays_and_goes_on(tmp_path: Path, capsys: pytest.CaptureFix
     assert run_command_line([*arguments, "--measure-help"]) == 0
     told = "help: needed by 1, given to 1 of them; superfluous: 0"
     assert told in capsys.readouterr().out
-    for wrong in (["play"], ["play", "x"], ["play", "help-find", "--agent", "anne"]):
-        assert run_command_line(wrong) == 2
+    for wrong in (
+        ["play"],
+        ["play", "x"],
+        ["play", "sally-anne"],
+        ["play", "help-find", "--agent", "anne"],
+        ["play", "help-find", "--agent", "anne=random", "--agent", "anne=search:1"],
+        ["play", "help-find", "--set", "agents=two"],
+        ["play", "help-find", "--patience", "0"],
+    ):
+        assert run_command_line(wrong) == 2, wrong
 
 
 def test_the_command_tells_if_a_task_is_not_what_it_claims(
@@ -142,6 +150,7 @@ def test_the_command_goes_on_with_no_other_episode(
         (["help-find"], "the seed is 1"),
         (["help-find", "--seed", "1", "--world", "embedded"], "the world is scripted"),
         (["help-find", "--seed", "1", "--set", "chests=5"], "the instance is another one"),
+        (["help-find", "--seed", "1", "--agent", "anne=random"], "the policies are anne=search:1"),
     ):
         assert run_command_line(["play", *other, *out]) == 2
         assert found in " ".join(capsys.readouterr().err.split())

@@ -30,7 +30,7 @@ class PlayOptions:
         task: Name of a built-in task or scenario, or a file of either; None: nothing was named.
         condition: Number of a scenario's condition; None: as written.
         agents: `NAME=POLICY`, each.
-        parameters: `NAME=NUMBER`, each: the size of a task, or a parameter of a scenario.
+        parameters: `NAME=VALUE`, each: the size of a task, or a parameter of a scenario.
         rounds: Most rounds; None: as many as the task has.
         seed: Which instance, and what drives every random number.
         world: Where it is played.
@@ -67,11 +67,8 @@ def play_task(options: PlayOptions) -> int:
         raise InputError(f"name a task: {', '.join(Task.names())}, or a file")
     check_world(options.world, servers=False)
     policies = _pairs(options.agents, "--agent", "NAME=POLICY")
-    numbers = _pairs(options.parameters, "--set", "NAME=NUMBER")
-    for name, value in numbers.items():
-        if not value.isdecimal():
-            raise InputError(f"--set {name}={value}: give a whole number")
-    parameters = {name: int(value) for name, value in numbers.items()}
+    given = _pairs(options.parameters, "--set", "NAME=VALUE")
+    parameters = {name: _value(text) for name, text in given.items()}
     task = Task.load(options.task, options.seed, condition=options.condition, **parameters)
     with _episode(task, policies, options) as episode, progress_on(task.name) as on_progress:
         limit = task.form.rounds if options.rounds is None else options.rounds
@@ -107,7 +104,6 @@ def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> E
     try:
         held = Episode.resume(
             _store_in(options.out),
-            policies,
             budget=options.budget if options.budget != Budget() else None,
             patience_s=options.patience_s,
         )
@@ -121,12 +117,14 @@ def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> E
         ("seed", asked.seed, held.seed),
         ("world", asked.world, held.world),
         ("instance", asked.task.plain(), held.task.plain()),
+        ("policies", _told(asked.policies), _told(held.policies)),
     ):
         if of_asked != of_held:
             held.close()
             found = "another one" if isinstance(of_held, dict) else of_held
+            verb = "are" if what == "policies" else "is"
             raise InputError(
-                f"{options.out} holds an episode of which the {what} is {found}; ask for the "
+                f"{options.out} holds an episode of which the {what} {verb} {found}; ask for the "
                 "same to go on with it, or name another folder"
             )
     return held
@@ -146,17 +144,34 @@ def _pairs(given: Sequence[str], option: str, form: str) -> dict[str, str]:
         name, equals, value = text.partition("=")
         if not equals or not name or not value:
             raise InputError(f"{option} is {text!r}; write {form}")
+        if name in pairs:
+            raise InputError(f"{option} names {name!r} twice; name it once")
         pairs[name] = value
     return pairs
 
 
+def _value(text: str) -> Any:
+    """The value of a parameter: a number, a list and the like as in JSON, else the text."""
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text
+
+
+def _told(policies: Mapping[str, str]) -> str:
+    return ", ".join(f"{agent}={policy}" for agent, policy in policies.items())
+
+
 def _report(episode: Episode) -> dict[str, Any]:
-    measures = episode.measures.row()
+    measures, count = episode.measures.row(), len(episode.task.goal.reach)
     return {
         "task": episode.task.name,
         "world": episode.world,
         "success": episode.success,
-        "goal": [{"condition": text, "tick": tick} for text, tick in episode.conditions],
+        "goal": [
+            {"condition": text, "never": number >= count, "tick": tick}
+            for number, (text, tick) in enumerate(episode.conditions)
+        ],
         "measures": measures,
         "rounds": [
             {
@@ -185,8 +200,9 @@ def _print(report: Mapping[str, Any]) -> None:
     console = stdout()
     console.print(folded(table))
     for condition in report["goal"]:
-        when = "never" if condition["tick"] is None else f"at tick {condition['tick']}"
-        console.print(f"{condition['condition']}: {when}", markup=False, highlight=False)
+        when = "at no tick" if condition["tick"] is None else f"at tick {condition['tick']}"
+        kind = "not to be: " if condition["never"] else ""
+        console.print(f"{kind}{condition['condition']}: {when}", markup=False, highlight=False)
     measures = report["measures"]
     if measures["help_needed"] is not None:
         console.print(

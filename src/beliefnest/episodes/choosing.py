@@ -25,6 +25,8 @@ def chosen(
         InputError: There is a policy for nobody.
         UnknownNameError: There is no such policy.
     """
+    if not isinstance(policies, Mapping):
+        raise InputError(f"policies is {policies!r}; give a mapping from agents to policies")
     for agent in policies:
         if agent not in task.agents:
             raise InputError(f"{agent!r} is none of the agents: {', '.join(task.agents)}")
@@ -36,6 +38,11 @@ def chosen(
             by_itself = "person"
         own = task.form.policies.get(agent, by_itself)
         given = policies.get(agent, own)
+        if not isinstance(given, str) and not callable(getattr(given, "act", None)):
+            raise InputError(
+                f"the policy of {agent} is {given!r}; give the name of one, or an object with "
+                "act(view)"
+            )
         names[agent] = name_of(given)
         chosen[agent] = resolve_policy(given) if isinstance(given, str) else given
     return names, chosen

@@ -7,7 +7,7 @@ import msgspec
 
 from beliefnest.bodies.protocol import NO_WAY, Fault, Past, ProgramResult
 from beliefnest.episodes.decided import Decision, Ended, Part, Spent
-from beliefnest.errors import BranchError, NotBegunError, StoreError
+from beliefnest.errors import BranchError, InputError, NotBegunError, StoreError
 
 __all__ = [
     "Branch",
@@ -53,6 +53,15 @@ class Budget(msgspec.Struct, frozen=True, omit_defaults=True):
     ticks: int | None = None
     tokens: int | None = None
     cost: float | None = None
+
+    def __post_init__(self) -> None:
+        for name, value, least in (
+            ("ticks", self.ticks, 1),
+            ("tokens", self.tokens, 1),
+            ("cost", self.cost, 0),
+        ):
+            if value is not None and not value >= least:
+                raise InputError(f"{name} of a budget is {value!r}; give at least {least}, or None")
 
     def is_spent(self, ticks: int, spent: Spent) -> bool:
         """Whether nothing is left after so many ticks, and what policies have spent."""

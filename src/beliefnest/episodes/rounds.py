@@ -8,6 +8,7 @@ import msgspec
 
 from beliefnest.episodes.decided import Decision, Part, Spent
 from beliefnest.episodes.view import GO_ON, AgentView, Policy
+from beliefnest.errors import InputError
 from beliefnest.world.texts import is_well_formed
 
 __all__ = ["Asker", "Replayed", "replayed", "slots_of"]
@@ -46,9 +47,14 @@ class Asker:
     Args:
         policies: By agent.
         patience_s: Seconds after which a policy has lost its round; None: it is waited for.
+
+    Raises:
+        InputError: There is no time to answer.
     """
 
     def __init__(self, policies: Mapping[str, Policy], patience_s: float | None) -> None:
+        if patience_s is not None and not patience_s > 0:
+            raise InputError(f"patience is {patience_s!r} s; give more than 0, or None to wait")
         self._policies = policies
         self._patience_s = patience_s
         self._waiting: dict[str, threading.Thread] = {}

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from beliefnest.errors import ModelError
+from beliefnest.errors import InputError, ModelError
 from beliefnest.llm.failures import UnusableAnswerError
 from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 
@@ -21,6 +21,11 @@ class RunLimits:
 
     tokens: int | None = 1_000_000
     cost: float | None = 5.0
+
+    def __post_init__(self) -> None:
+        for name, value in (("max_tokens", self.tokens), ("max_cost", self.cost)):
+            if value is not None and not value >= 0:
+                raise InputError(f"{name} is {value!r}; give at least 0, or none for no limit")
 
 
 @dataclass

@@ -95,7 +95,7 @@ def parse_yaml(text: str, source: str) -> Document:
     except YAMLError as error:
         raise ScenarioError(f"{source}: broken YAML: {' '.join(str(error).split())}") from None
     if not isinstance(content, CommentedMap):
-        raise ScenarioError(f"{source}: is not a mapping of keys to values; see docs/scenarios.md")
+        raise ScenarioError(f"{source}: is not a mapping of keys to values")
     root = _Conversion(source).node(content, 1, 0)
     return Document(source=source, root=root, folder=Path(), text=text)
 

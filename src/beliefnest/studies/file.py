@@ -1,5 +1,6 @@
 """The file that describes a study."""
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal
@@ -62,7 +63,8 @@ def read_design(path: Path) -> Design | EpisodeDesign:
     try:
         return _scenarios(found, path) if found.tasks is None else _episodes(found, path)
     except BeliefNestError as error:
-        key = next((key for key in _StudyFile.__struct_fields__ if key in str(error)), None)
+        words = re.findall(r"\w+", str(error))
+        key = next((word for word in words if word in _StudyFile.__struct_fields__), None)
         raise document.fault((key,) if key else (), str(error)) from None
 
 
