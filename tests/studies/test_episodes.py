@@ -205,12 +205,12 @@ def test_a_model_that_cannot_be_asked_is_no_result(here: Path, monkeypatch: Any)
     monkeypatch.setenv("OPENAI_API_KEY", "none")
     monkeypatch.setenv("OPENAI_BASE_URL", "http://127.0.0.1:9/v1")
     study = bn.Study(
-        tasks="bring.yaml", models=["offline", "openai:gpt-4o-mini"], orders=[0], max_tokens=0
+        tasks="bring.yaml", models=["offline", "openai:gpt-4o-mini"], orders=[0], max_cost=0
     )
     result = study.run("out", jobs=1)
     outcomes = {row["player"]: row["outcome"] for row in result.rows}
     assert outcomes == {"model:offline": "wrong", "model:openai:gpt-4o-mini": "error"}
-    assert "may use 0" in result.rows[1]["why_not"]
+    assert "may cost 0.00" in result.rows[1]["why_not"]
     folder = StudyFolder.existing("out")
     assert sum(folder.cell(name)["error"] is None for name in folder.names()) == 1
 
@@ -223,7 +223,11 @@ def test_a_model_that_cannot_be_asked_is_no_result(here: Path, monkeypatch: Any)
         ("models: [offline]", "orders is empty"),
         ("orders: [0]", "needs policies"),
         ("policies: [random]\norders: [one]", "orders"),
-        ("policies: [random]\nseeds: 0", "seeds is 0"),
+        ("policies: [random]\nseeds: 0", "study.yaml:3: seeds: seeds is 0"),
+        ("policies: [random]\nseeds: [1, 1]", "study.yaml:3: seeds: seeds: 1 is named twice"),
+        ("policies: [random]\nmax_tokens: 0", "study.yaml:3: max_tokens: max_tokens is 0"),
+        ("policies: [random]\nmax_cost: -1", "study.yaml:3: max_cost: max_cost is -1"),
+        ("policies: [{}]", "study.yaml:2: policies: policies has {}"),
         ("policies: [random]\ntemplates: [paper]", "templates cannot stand beside tasks"),
         ("policies: [random]\nvariations: 3", "variations of tasks are lists"),
         ("policies: [random, random]", "'random' is named twice"),
@@ -238,3 +242,14 @@ def test_a_wrong_study_is_told_in_one_line(
     shown = capsys.readouterr().err.splitlines()
     assert told in shown[-1]
     assert not list(itertools.chain(Path("out").glob("cells/*.json")))
+
+
+def test_policies_of_a_study_are_names(here: Path) -> None:
+    for policies in ([bn], [{"ann": 5}], [None]):
+        with pytest.raises(bn.InputError, match="policies has"):
+            bn.Study(tasks="bring.yaml", policies=policies)  # type: ignore[arg-type]
+
+
+def test_a_name_alone_is_a_list_of_one_in_files_too(here: Path) -> None:
+    Path("study.yaml").write_text("tasks: bring.yaml\npolicies: random\n")
+    assert len(bn.Study.load("study.yaml").plan().cells) == 1

@@ -177,8 +177,8 @@ def test_a_world_that_fails_is_a_row_that_says_why(tmp_path):
         ("scenarios: [small.yaml]\nrepeats: 0\n", "study.yaml:2: repeats: repeats is 0"),
         ("scenarios: [small.yaml]\nrepeat: 2\n", "study.yaml:2: repeat: unknown key"),
         (
-            "scenarios: [small.yaml]\nmodels: offline\n",
-            "study.yaml:2: models: expected 'array | null'",
+            "scenarios: small.yaml\nmodels: 3\n",
+            "study.yaml:2: models: expected 'str | array | null', got 'int'",
         ),
         ("scenarios: [small.yaml]\nvariations: {spot: 3}\n", "study.yaml:2: variations: expected"),
         ("scenarios: [small.yaml]\nvariations: {spot: []}\n", "variations of 'spot' are []"),
@@ -187,7 +187,8 @@ def test_a_world_that_fails_is_a_row_that_says_why(tmp_path):
         ("scenarios: [small.yaml]\nmodels: [ofline]\n", "did you mean offline?"),
         ("scenarios: [smal.yaml]\n", "smal.yaml"),
         ("scenarios: [small.yaml]\ntemplates: [none.txt]\n", "none.txt"),
-        ("- small.yaml\n", "is not a mapping"),
+        ("- small.yaml\n", "study.yaml: is not a mapping of keys to values"),
+        ("scenarios: small.yaml\nmax_cost: .nan\n", "study.yaml:2: max_cost: max_cost is nan"),
     ],
 )
 def test_a_wrong_study_is_told_in_one_line(text, told, tmp_path, capsys):
@@ -202,7 +203,7 @@ def test_a_wrong_study_is_told_in_one_line(text, told, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        (["--jobs", "0"], "jobs is 0"),
+        (["--jobs", "0"], "'--jobs'"),
         (["--backend", "threads"], "there is no backend 'threads'; there are loky, dask, ray"),
         (["--shard", "3/2"], "there is no shard 3 of 2"),
         (["--shard", "half"], "write it as 1/4"),

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from beliefnest.bodies.worlds import check_world
-from beliefnest.errors import BeliefNestError, InputError, ScenarioError
+from beliefnest.errors import BeliefNestError, ScenarioError
 from beliefnest.llm.budget import RunLimits
 from beliefnest.prompts.templates import (
     BUILT_IN_TEMPLATES,
@@ -17,6 +17,7 @@ from beliefnest.prompts.templates import (
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.expressions import evaluate
 from beliefnest.scenarios.parameters import declared_in
+from beliefnest.studies.checking import StudyKeyError, checked_lists, is_count
 from beliefnest.studies.variation import CHANGES, Variation
 
 __all__ = ["Constraint", "Design", "Template", "template_named"]
@@ -62,33 +63,36 @@ class Design:
     def __post_init__(self) -> None:
         for name, values in (("scenarios", self.scenarios), ("models", self.models)):
             if not values:
-                raise InputError(f"a study without {name} has no cells; name at least one")
+                raise StudyKeyError(name, f"a study without {name} has no cells; name at least one")
             twice = [value for value in values if values.count(value) > 1]
             if twice:
-                raise InputError(f"{name}: {twice[0]!r} is named twice; use repeats to do it again")
+                raise StudyKeyError(
+                    name, f"{name}: {twice[0]!r} is named twice; use repeats to do it again"
+                )
         for name, number in (("repeats", self.repeats), ("attempts", self.attempts)):
-            if not _is_count(number):
-                raise InputError(f"{name} is {number!r}; it must be a whole number, at least 1")
+            if not is_count(number):
+                raise StudyKeyError(
+                    name, f"{name} is {number!r}; it must be a whole number, at least 1"
+                )
         if not isinstance(self.seed, int) or isinstance(self.seed, bool):
-            raise InputError(f"seed is {self.seed!r}; it must be a whole number")
+            raise StudyKeyError("seed", f"seed is {self.seed!r}; it must be a whole number")
         check_world(self.world, servers=False)
         self._check_variations()
 
     def _check_variations(self) -> None:
         variations = self.variations
         if isinstance(variations, int):
-            if not _is_count(variations):
-                raise InputError(
-                    f"variations is {variations!r}; give at least 1, or lists of values"
+            if not is_count(variations):
+                raise StudyKeyError(
+                    "variations",
+                    f"variations is {variations!r}; give at least 1, or lists of values",
                 )
             return
         if not isinstance(variations, Mapping):
-            raise InputError(f"variations is {variations!r}; give a number, or lists of values")
-        for name, values in variations.items():
-            if isinstance(values, str) or not isinstance(values, Sequence) or not values:
-                raise InputError(
-                    f"variations of {name!r} are {values!r}; give a list of at least one value"
-                )
+            raise StudyKeyError(
+                "variations", f"variations is {variations!r}; give a number, or lists of values"
+            )
+        checked_lists(variations)
 
     @property
     def setting(self) -> dict[str, Any]:
@@ -132,10 +136,6 @@ class Design:
                 told = getattr(constraint, "__name__", str(constraint))
                 return ScenarioError(f"the constraint {told!r} does not hold")
         return None
-
-
-def _is_count(number: object) -> bool:
-    return isinstance(number, int) and not isinstance(number, bool) and number >= 1
 
 
 def template_named(name: str, folder: Path = Path()) -> Template:

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from beliefnest.bodies.worlds import check_world
-from beliefnest.errors import InputError
 from beliefnest.llm.budget import RunLimits
+from beliefnest.studies.checking import StudyKeyError, checked_lists, is_count
 
 __all__ = [
     "EpisodeDesign",
@@ -14,6 +14,7 @@ __all__ = [
     "Player",
     "Policies",
     "check_episodes_alone",
+    "listed",
     "seeds_of",
 ]
 
@@ -86,24 +87,30 @@ class EpisodeDesign:
         for name, values in lists.items():
             twice = [value for value in values if values.count(value) > 1]
             if twice:
-                raise InputError(f"{name}: {twice[0]!r} is named twice; use repeats to do it again")
+                again = "use repeats to do it again"
+                raise StudyKeyError(name, f"{name}: {twice[0]!r} is named twice; {again}")
         for name in ("tasks", "seeds"):
             if not lists[name]:
-                raise InputError(f"a study without {name} has no cells; name at least one")
+                raise StudyKeyError(name, f"a study without {name} has no cells; name at least one")
         if not self.policies and not self.models:
-            raise InputError("a study of episodes needs policies, or models and orders, that play")
+            raise StudyKeyError(
+                "policies", "a study of episodes needs policies, or models and orders, that play"
+            )
+        for policies in self.policies:
+            _check_policies(policies)
         if not self.orders and (self.models or "search" in self.policies):
-            raise InputError("orders is empty; models and search play at the orders named there")
+            raise StudyKeyError(
+                "orders", "orders is empty; models and search play at the orders named there"
+            )
         for order in self.orders:
             if order != "omniscient" and (isinstance(order, bool) or not isinstance(order, int)):
-                raise InputError(f"orders has {order!r}; give whole numbers, or 'omniscient'")
-        if isinstance(self.repeats, bool) or not isinstance(self.repeats, int) or self.repeats < 1:
-            raise InputError(f"repeats is {self.repeats!r}; it must be a whole number, at least 1")
-        for name, values in self.variations.items():
-            if isinstance(values, str) or not isinstance(values, Sequence) or not values:
-                raise InputError(
-                    f"variations of {name!r} are {values!r}; give a list of at least one value"
+                raise StudyKeyError(
+                    "orders", f"orders has {order!r}; give whole numbers, or 'omniscient'"
                 )
+        if not is_count(self.repeats):
+            told = f"repeats is {self.repeats!r}; it must be a whole number, at least 1"
+            raise StudyKeyError("repeats", told)
+        checked_lists(self.variations)
         check_world(self.world, servers=False)
 
     @property
@@ -144,6 +151,21 @@ class EpisodeDesign:
         }
 
 
+def _check_policies(policies: object) -> None:
+    names = policies.values() if isinstance(policies, Mapping) else [policies]
+    if not names or not all(isinstance(name, str) for name in names):
+        raise StudyKeyError(
+            "policies",
+            f"policies has {policies!r}; give names as `beliefnest play --agent` takes them, or "
+            "mappings from agent to such a name",
+        )
+
+
+def listed(policies: Sequence[Policies] | Policies) -> tuple[Policies, ...]:
+    """Policies of all players, or a mapping, alone are a list of one."""
+    return (policies,) if isinstance(policies, str | Mapping) else tuple(policies)
+
+
 def seeds_of(seeds: Sequence[int] | int, first: int) -> tuple[int, ...]:
     """Which instances are played: so many from the first on, or those that are listed.
 
@@ -151,8 +173,8 @@ def seeds_of(seeds: Sequence[int] | int, first: int) -> tuple[int, ...]:
         InputError: It is no number of them.
     """
     if isinstance(seeds, int):
-        if isinstance(seeds, bool) or seeds < 1:
-            raise InputError(f"seeds is {seeds!r}; give at least 1, or a list of seeds")
+        if not is_count(seeds):
+            raise StudyKeyError("seeds", f"seeds is {seeds!r}; give at least 1, or a list of seeds")
         return tuple(range(first, first + seeds))
     return tuple(seeds)
 
@@ -176,4 +198,4 @@ def check_episodes_alone(
     }
     for name, value in given.items():
         if value:
-            raise InputError(f"{name} cannot stand beside tasks; make two studies of it")
+            raise StudyKeyError(name, f"{name} cannot stand beside tasks; make two studies of it")

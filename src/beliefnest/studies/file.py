@@ -1,24 +1,25 @@
 """The file that describes a study."""
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal
 
 import msgspec
 
+from beliefnest.bodies.worlds import check_world
 from beliefnest.episodes.policies import policy_beside
 from beliefnest.episodes.task import Task
-from beliefnest.errors import BeliefNestError, InputError, ScenarioError
-from beliefnest.llm.budget import RunLimits
+from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.document import Document, plain
 from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.reading import read_yaml
-from beliefnest.studies.design import Design, template_named
+from beliefnest.studies.checking import StudyKeyError, checked_limits, several
+from beliefnest.studies.design import Design, Template, template_named
 from beliefnest.studies.episode_design import (
     EpisodeDesign,
     Policies,
     check_episodes_alone,
+    listed,
     seeds_of,
 )
 
@@ -28,22 +29,22 @@ __all__ = ["read_design"]
 class _StudyFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The form of a study's file; what each key means is told at `Design` and `EpisodeDesign`."""
 
-    scenarios: list[str] = []
-    models: list[str] | None = None
-    templates: list[str] = []
+    scenarios: list[str] | str = []
+    models: list[str] | str | None = None
+    templates: list[str] | str = []
     repeats: int = 1
     seed: int = 0
     variations: dict[str, list[Any]] | int = {}
     conditions: list[int] | None = None
-    constraints: list[str] = []
+    constraints: list[str] | str = []
     world: str | None = None
     attempts: int = 3
     temperature: float | None = 0.0
     max_tokens: int | None = 1_000_000
     max_cost: float | None = 5.0
     claims_from: str | None = None
-    tasks: list[str] | None = None
-    policies: list[str | dict[str, str]] = []
+    tasks: list[str] | str | None = None
+    policies: list[str | dict[str, str]] | str | dict[str, str] = []
     orders: list[int | Literal["omniscient"]] = []
     seeds: list[int] | int = 1
     help: bool = False
@@ -60,43 +61,53 @@ def read_design(path: Path) -> Design | EpisodeDesign:
         found = msgspec.convert(plain(document.root), _StudyFile)
     except msgspec.ValidationError as error:
         raise _fault(document, str(error)) from None
+    if found.world is not None:
+        with document.naming(("world",)):
+            check_world(found.world, servers=False)
+    with document.naming(("templates",)):
+        templates = tuple(template_named(name, path.parent) for name in several(found.templates))
     try:
-        return _scenarios(found, path) if found.tasks is None else _episodes(found, path)
-    except BeliefNestError as error:
-        words = re.findall(r"\w+", str(error))
-        key = next((word for word in words if word in _StudyFile.__struct_fields__), None)
-        raise document.fault((key,) if key else (), str(error)) from None
+        if found.tasks is None:
+            return _scenarios(found, path, templates)
+        return _episodes(found, path, several(found.tasks))
+    except StudyKeyError as fault:
+        raise document.fault((fault.key,), str(fault)) from None
 
 
-def _scenarios(found: _StudyFile, path: Path) -> Design:
-    if found.policies or found.orders:
-        raise InputError("policies and orders are for tasks; name tasks to play episodes")
+def _scenarios(found: _StudyFile, path: Path, templates: tuple[Template, ...]) -> Design:
+    for key, value in (("policies", found.policies), ("orders", found.orders)):
+        if value:
+            raise StudyKeyError(
+                key, "policies and orders are for tasks; name tasks to play episodes"
+            )
     return Design(
-        scenarios=tuple(_beside(name, path, builtin_names()) for name in found.scenarios),
-        models=("offline",) if found.models is None else tuple(found.models),
-        templates=tuple(template_named(name, path.parent) for name in found.templates),
+        scenarios=tuple(_beside(name, path, builtin_names()) for name in several(found.scenarios)),
+        models=("offline",) if found.models is None else several(found.models),
+        templates=templates,
         repeats=found.repeats,
         seed=found.seed,
         variations=found.variations,
         conditions=None if found.conditions is None else tuple(found.conditions),
-        constraints=tuple(found.constraints),
+        constraints=several(found.constraints),
         world="embedded" if found.world is None else found.world,
         attempts=found.attempts,
         temperature=found.temperature,
-        limits=RunLimits(found.max_tokens, found.max_cost),
+        limits=checked_limits(found.max_tokens, found.max_cost),
         claims_from=found.claims_from,
     )
 
 
-def _episodes(found: _StudyFile, path: Path) -> EpisodeDesign:
+def _episodes(found: _StudyFile, path: Path, tasks: Sequence[str]) -> EpisodeDesign:
     check_episodes_alone(found.scenarios, found.templates, found.constraints, found.claims_from)
     if isinstance(found.variations, int):
-        raise InputError("variations of tasks are lists; give `seeds` for instances")
+        raise StudyKeyError(
+            "variations", "variations of tasks are lists; give `seeds` for instances"
+        )
     known = [*Task.names(), *builtin_names()]
     return EpisodeDesign(
-        tasks=tuple(_beside(name, path, known) for name in found.tasks or ()),
-        policies=tuple(_policies_beside(each, path.parent) for each in found.policies),
-        models=() if found.models is None else tuple(found.models),
+        tasks=tuple(_beside(name, path, known) for name in tasks),
+        policies=tuple(_policies_beside(each, path.parent) for each in listed(found.policies)),
+        models=() if found.models is None else several(found.models),
         orders=tuple(found.orders),
         seeds=seeds_of(found.seeds, found.seed),
         repeats=found.repeats,
@@ -104,7 +115,7 @@ def _episodes(found: _StudyFile, path: Path) -> EpisodeDesign:
         conditions=None if found.conditions is None else tuple(found.conditions),
         world="scripted" if found.world is None else found.world,
         help=found.help,
-        limits=RunLimits(found.max_tokens, found.max_cost),
+        limits=checked_limits(found.max_tokens, found.max_cost),
     )
 
 

@@ -9,16 +9,17 @@ from typing import Any, Self
 from filelock import Timeout
 
 from beliefnest.errors import InputError, ModelError
-from beliefnest.llm.budget import RunLimits
 from beliefnest.llm.resolve import resolve_model
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import read_document
+from beliefnest.studies.checking import StudyKeyError, checked_limits, several
 from beliefnest.studies.design import Constraint, Design, Template, template_named
 from beliefnest.studies.episode_design import (
     EpisodeDesign,
     Order,
     Policies,
     check_episodes_alone,
+    listed,
     seeds_of,
 )
 from beliefnest.studies.episode_plan import EpisodeCell, plan_episodes
@@ -99,12 +100,14 @@ class Study:
         if tasks:
             check_episodes_alone(scenarios, templates, constraints, claims_from)
             if isinstance(variations, int):
-                raise InputError("variations of tasks are lists; give `seeds` for instances")
+                raise StudyKeyError(
+                    "variations", "variations of tasks are lists; give `seeds` for instances"
+                )
             self._hold(
                 EpisodeDesign(
-                    tasks=_several(tasks),
-                    policies=_listed(policies),
-                    models=() if models is None else _several(models),
+                    tasks=several(tasks),
+                    policies=listed(policies),
+                    models=() if models is None else several(models),
                     orders=tuple(orders),
                     seeds=seeds_of(seeds, seed),
                     repeats=repeats,
@@ -112,7 +115,7 @@ class Study:
                     conditions=None if conditions is None else tuple(conditions),
                     world="scripted" if world is None else world,
                     help=help,
-                    limits=RunLimits(max_tokens, max_cost),
+                    limits=checked_limits(max_tokens, max_cost),
                 )
             )
             return
@@ -120,8 +123,8 @@ class Study:
             raise InputError("policies and orders are for tasks; name `tasks` to play episodes")
         self._hold(
             Design(
-                scenarios=_several(scenarios),
-                models=("offline",) if models is None else _several(models),
+                scenarios=several(scenarios),
+                models=("offline",) if models is None else several(models),
                 templates=_templates(templates),
                 repeats=repeats,
                 seed=seed,
@@ -131,7 +134,7 @@ class Study:
                 world="embedded" if world is None else world,
                 attempts=attempts,
                 temperature=temperature,
-                limits=RunLimits(max_tokens, max_cost),
+                limits=checked_limits(max_tokens, max_cost),
                 claims_from=claims_from,
             )
         )
@@ -275,17 +278,8 @@ class Study:
         }
 
 
-def _several(names: Sequence[str] | str) -> tuple[str, ...]:
-    """A name alone is a list of one."""
-    return (names,) if isinstance(names, str) else tuple(str(name) for name in names)
-
-
-def _listed(policies: Sequence[Policies] | Policies) -> tuple[Policies, ...]:
-    return (policies,) if isinstance(policies, str | Mapping) else tuple(policies)
-
-
 def _templates(names: Sequence[str] | None) -> tuple[Template, ...]:
-    return () if names is None else tuple(template_named(name) for name in _several(names))
+    return () if names is None else tuple(template_named(name) for name in several(names))
 
 
 def _constraints(constraints: Sequence[Constraint]) -> tuple[Constraint, ...]:
