@@ -139,7 +139,6 @@ class Agents {
     await Promise.all(placing.map(([agent]) => this.isPerson(agent) ? null : this.answered(agent)))
     await Promise.all(placing.map(([agent, state]) => this.arrived(agent, state)))
     for (const [agent, state] of placing) {
-      this.scene.witnesses.get(agent).stoodAt = this.scene.witnesses.get(agent).position.floored()
       if (!this.isPerson(agent)) this.settle(this.bot(agent), state)
       this.latest.set(agent, this.look(agent))
     }
@@ -181,6 +180,8 @@ class Agents {
     do await person?.ask()
     while (!await this.operator.until(isDone, person === null ? PLACING_MS : ASKED_EVERY_MS) && performance.now() < end)
     if (isDone()) {
+      // Before anything else is waited for: it may lose its connection meanwhile.
+      witnesses.get(agent).stoodAt = position().floored()
       if (person === null) await this.sees(this.bot(agent))
       return
     }

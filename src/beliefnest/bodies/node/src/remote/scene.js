@@ -154,13 +154,14 @@ class Scene {
     })
   }
 
-  /** A door is where its lower half is, whichever half was used. */
+  /** A door is where its lower half is, whichever half was used; the half that changes first tells it. */
   usedDoor (position, { name, properties }) {
     const isUpper = name.endsWith('_door') && properties.half === 'upper'
     const lower = isUpper ? position.offset(0, -1, 0) : position
-    const who = this.whoTried('use', lower) ?? this.whoTried('use', lower.offset(0, 1, 0))
-    // What both halves of a door show was done once.
-    if (who !== null || !isUpper) this.did(who, lower, 'use_door', { position: listOf(lower), open: properties.open })
+    const upper = lower.offset(0, 1, 0)
+    const other = this.at(isUpper ? lower : upper)
+    if (name.endsWith('_door') && other.name === name && other.properties.open === properties.open) return
+    this.did(this.whoTried('use', lower) ?? this.whoTried('use', upper), lower, 'use_door', { position: listOf(lower), open: properties.open })
   }
 
   /** What appears beside what somebody used with a block in hand, or in its place, that one has put. */

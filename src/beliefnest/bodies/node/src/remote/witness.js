@@ -45,8 +45,9 @@ class Witness extends EventEmitter {
     return this.region.tick
   }
 
+  /** Where it is; of a bot that is on its way back, where it stood. */
   get position () {
-    return (this.person ?? this.bot).entity.position
+    return (this.person ?? this.bot).entity?.position ?? this.stoodAt
   }
 
   emitEvent ({ kind, detail }) {

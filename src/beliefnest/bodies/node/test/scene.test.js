@@ -1,0 +1,54 @@
+'use strict'
+/** What a server elsewhere tells of blocks, made into deeds of those who did them. */
+require('../src/prepare').prepare()
+const assert = require('node:assert/strict')
+const { test } = require('node:test')
+const { Vec3 } = require('vec3')
+const { Box } = require('../src/regions/box')
+const { BlockMapping } = require('../src/remote/versions')
+const { Scene } = require('../src/remote/scene')
+const { Witness } = require('../src/remote/witness')
+const { minecraft } = require('../src/versions')
+
+const registry = require('prismarine-registry')(minecraft)
+const { encode } = require('../src/server/plugins/lib/states')
+const Item = require('prismarine-item')(registry)
+const LOWER = new Vec3(0, 0, 0)
+
+const half = (name, open) => encode(registry, 'oak_door', { half: name, open: String(open) })
+
+/** A place with a door, which is shut, and what is told of it. */
+function place () {
+  const box = new Box([0, 0, 0], [0, 1, 0])
+  const told = []
+  const recorder = { blockChanged () {}, event: ({ kind, actor, detail }) => told.push([kind, actor, detail.open]) }
+  const region = { box, recorder, tick: 0, toServer: ([x, y, z]) => new Vec3(x, y, z), emit () {} }
+  const scene = new Scene(region, new BlockMapping(registry, registry), {}, {}, async () => null)
+  scene.settle(Int32Array.from([half('lower', false), half('upper', false)]))
+  const witness = new Witness('sally', region, scene, Item)
+  witness.bot = { entity: { position: new Vec3(0.5, 0, 0.5) } }
+  scene.witnesses.set('sally', witness)
+  return { scene, witness, told }
+}
+
+for (const order of [['lower', 'upper'], ['upper', 'lower']]) {
+  test(`a door is told of as often as it was used, also when the ${order[1]} half is heard of after the next use`, () => {
+    const { scene, witness, told } = place()
+    const change = (name, open) => scene.blockChanged(name === 'upper' ? LOWER.offset(0, 1, 0) : LOWER, half(name, open))
+    witness.use({ location: LOWER })
+    change(order[0], true)
+    // Its bot has seen the door open, and shuts it.
+    witness.use({ location: LOWER })
+    change(order[1], true)
+    for (const name of order) change(name, false)
+    scene.endTick()
+    assert.deepEqual(told, [['use_door', 'sally', true], ['use_door', 'sally', false]])
+  })
+}
+
+test('a bot that is on its way back is where it stood', () => {
+  const { witness } = place()
+  witness.stoodAt = new Vec3(3, 1, 4)
+  witness.bot = { entity: undefined }
+  assert.deepEqual(witness.position, new Vec3(3, 1, 4))
+})
