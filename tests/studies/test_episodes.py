@@ -106,6 +106,8 @@ def test_summaries_have_intervals_and_differences_are_of_pairs(whole: Path) -> N
     differences = result.differences("policy").set_index(["one", "other"])
     pair = differences.loc[("search:0", "program:idle.js")]
     assert (pair["pairs"], pair["only_one"], pair["only_other"]) == (4, 4, 0)
+    none = result.differences("task")
+    assert len(none) == 0 and list(none.columns) == ["one", "other", *differences.columns]
     by_order = result.differences("order")
     assert list(by_order[["one", "other", "both"]].itertuples(index=False, name=None)) == [
         ("0", "1", 4)

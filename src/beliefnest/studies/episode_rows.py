@@ -70,7 +70,7 @@ def _rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, An
             **{name: plain_value(key["variation"].get(name)) for name in columns},
             "player": key["player"],
             "order": key["order"] or None,
-            "policy": f"{key['player']}:{key['order']}" if key["order"] else key["player"],
+            "policy": _policy(key["player"], key["order"]),
             "instance": key["instance"],
             "repeat": key["repeat"],
             "seed": cell["seed"],
@@ -82,6 +82,13 @@ def _rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, An
             yield {**about, **_measured(found), **ends}
 
     return rows_with_copies(folder, plan, rows_of)
+
+
+def _policy(player: str, order: str) -> str:
+    """What the command line calls who plays."""
+    if (player, order) == ("search", "omniscient"):
+        return "omniscient:search"
+    return f"{player}:{order}" if order else player
 
 
 def _measured(found: Mapping[str, Any]) -> dict[str, Any]:

@@ -14,6 +14,11 @@ __all__ = ["plot_accuracy", "svg_of"]
 _COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#000000")
 """Of Okabe and Ito, told apart by everybody."""
 
+_LETTER = 0.085
+"""Inches that a letter takes."""
+_WIDEST = 1.6
+"""Inches to which bars are spread for what stands below them; longer texts are turned."""
+
 
 def plot_accuracy(groups: Sequence[Mapping[str, Any]], by: Sequence[str]) -> "Figure":
     """Bars from 0 to 1 with 95 % intervals.
@@ -32,7 +37,8 @@ def plot_accuracy(groups: Sequence[Mapping[str, Any]], by: Sequence[str]) -> "Fi
     judged = [group for group in groups if group["accuracy"] is not None]
     along = list(dict.fromkeys(_told(group[by[0]]) for group in judged))
     colours = list(dict.fromkeys(_legend(group, by) for group in judged))
-    figure = Figure(figsize=(max(3.2, 0.6 + 0.5 * len(along) * max(1, len(colours))), 2.8))
+    title = ", ".join(by[1:])
+    figure = Figure(figsize=_inches(along, colours, title))
     axes = figure.add_subplot()
     width = 0.8 / max(1, len(colours))
     for number, name in enumerate(colours):
@@ -45,14 +51,38 @@ def plot_accuracy(groups: Sequence[Mapping[str, Any]], by: Sequence[str]) -> "Fi
         axes.bar(middles, heights, width * 0.9, color=colour, label=name or None)
         axes.errorbar(middles, heights, [below, above], fmt="none", ecolor="#333333", capsize=3)
     axes.set_xticks(range(len(along)), along)
+    if _label(along) > _slot(along, colours):
+        axes.tick_params("x", labelrotation=20)
     axes.set_xlabel(by[0])
     axes.set_ylabel("accuracy, 95 % interval")
     axes.set_ylim(0, 1.02)
     axes.spines[["top", "right"]].set_visible(False)
     if len(colours) > 1:
-        axes.legend(title=", ".join(by[1:]), frameon=False, bbox_to_anchor=(1.0, 1.0))
+        axes.legend(title=title, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     figure.set_layout_engine("tight")
     return figure
+
+
+def _inches(along: Sequence[str], colours: Sequence[str], title: str) -> tuple[float, float]:
+    """Width and height of a figure in which bars, what stands below them and the legend fit."""
+    width = 0.6 + max(2.6, len(along) * _slot(along, colours))
+    if len(colours) < 2:
+        return width, 2.8
+    return width + 0.7 + _LETTER * _longest([*colours, title]), max(2.8, 0.6 + 0.22 * len(colours))
+
+
+def _slot(along: Sequence[str], colours: Sequence[str]) -> float:
+    """Inches along the axis of the bars that stand together."""
+    return max(0.5 * max(1, len(colours)), min(_label(along), _WIDEST))
+
+
+def _label(along: Sequence[str]) -> float:
+    """Inches of the longest text below bars."""
+    return 0.2 + _LETTER * _longest(along)
+
+
+def _longest(texts: Sequence[str]) -> int:
+    return max(map(len, texts), default=0)
 
 
 def _legend(group: Mapping[str, Any], by: Sequence[str]) -> str:

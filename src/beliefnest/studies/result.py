@@ -19,6 +19,12 @@ if TYPE_CHECKING:
 
 __all__ = ["StudyResult"]
 
+_DIFFERENCES = (
+    *("one", "other", "pairs", "both", "only_one", "only_other"),
+    *("difference", "low", "high", "p"),
+)
+"""Columns of `differences`, also where there is no pair."""
+
 
 @dataclass(frozen=True)
 class StudyResult:
@@ -144,7 +150,7 @@ class StudyResult:
             }
             for pairs in self.paired(between)
         ]
-        return _pandas().DataFrame.from_records(found)
+        return _pandas().DataFrame.from_records(found, columns=_DIFFERENCES)
 
     def seconds(self) -> "pandas.DataFrame":
         """Wall time of each cell, as far as it is known: `cell`, `seconds`."""
