@@ -133,6 +133,22 @@ def test_a_killed_study_goes_on_to_the_same_rows(whole, tmp_path):
     assert tables_of(out) == tables_of(whole[0])
 
 
+OWNER = """
+import subprocess, sys, time
+worker = "import os, time; from beliefnest.studies.ending import end_with; "
+worker += "end_with(os.getppid()); print('begun', flush=True); time.sleep(3600)"
+subprocess.run([sys.executable, "-c", worker])
+"""
+
+
+def test_a_worker_ends_with_a_study_that_is_killed():
+    with subprocess.Popen([sys.executable, "-c", OWNER], stdout=subprocess.PIPE) as owner:
+        assert owner.stdout.readline() == b"begun\n"
+        owner.kill()
+        # The end of what the worker may write is its own end.
+        assert owner.stdout.read() == b""
+
+
 def test_a_study_that_has_ended_can_become_larger(tmp_path):
     name = small_in(tmp_path)
     seen = []

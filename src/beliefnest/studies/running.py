@@ -1,9 +1,10 @@
 """Playing the cells of a plan that have not been played, one by one or by joblib."""
 
 import contextlib
+import os
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from beliefnest.errors import InputError, MissingExtraError, UnknownNameError
 from beliefnest.llm.messages import Usage
@@ -131,6 +132,8 @@ def _parallel(cells: Sequence[Keyed], terms: Terms, jobs: int, backend: str) -> 
         from joblib import Parallel, delayed, parallel_config
     except ModuleNotFoundError:
         raise MissingExtraError("several jobs need joblib", "study", ", or use one job") from None
+    if backend == "loky":
+        terms = replace(terms, owner=os.getpid())
     # Cells take long enough to be given out one by one.
     form = "list" if backend == "ray" else "generator_unordered"
     with _engine(backend, jobs), parallel_config(backend=backend, n_jobs=jobs):

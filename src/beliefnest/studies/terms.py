@@ -21,6 +21,7 @@ class Terms:
         ledger: File in which spending is counted.
         runs: Folder of recorded runs; None: nothing is recorded.
         limits: What the whole study may spend.
+        owner: Process with which those that play end; None: they have lives of their own.
         environment: Where models are and their keys; None: the worker's own environment.
     """
 
@@ -28,6 +29,7 @@ class Terms:
     ledger: Path
     runs: Path | None
     limits: RunLimits
+    owner: int | None = None
     environment: Mapping[str, str] | None = None
 
     @property

@@ -17,6 +17,7 @@ from beliefnest.nest.face.nest import Nest
 from beliefnest.prompts import Renderer
 from beliefnest.scenarios.records import expectation_json, probe_json
 from beliefnest.scenarios.running import Asking, run_scenario
+from beliefnest.studies.ending import end_with
 from beliefnest.studies.episode_plan import EpisodeCell
 from beliefnest.studies.episode_playing import play_episode
 from beliefnest.studies.plan import Cell, Keyed
@@ -118,6 +119,8 @@ _kept = _Kept()
 def play_in_process(cell: Keyed, terms: Terms) -> CellResult:
     """Play a cell with the worker that this thread keeps until its process ends."""
     if _kept.worker is None:
+        if terms.owner is not None:
+            end_with(terms.owner)
         # The process behind a world ends with the one that started it.
         _kept.worker = Worker(ExitStack())
     return _kept.worker.play(cell, terms)
