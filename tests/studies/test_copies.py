@@ -86,3 +86,20 @@ def test_repeats_of_a_scenario_are_copies_where_nobody_draws(tmp_path: Path) -> 
     drawing = SMALL + "script: [{agent: ann, program: 'Math.random()'}]\n"
     study = bn.Study(small_in(tmp_path, drawing), repeats=3, world="scripted")
     assert {row["copy_of"] for row in study.run(tmp_path / "b", jobs=1).rows} == {None}
+
+
+def test_probes_of_a_cell_are_compared_and_what_never_differs_alone_is_told(
+    tmp_path: Path,
+) -> None:
+    second = SMALL[SMALL.index("  - label: fetch") :].replace("fetch", "again")
+    study = bn.Study(
+        small_in(tmp_path, SMALL + second.replace("Get a", "Take a")),
+        world="scripted",
+        variations={"count": [1, 2]},
+    )
+    result = study.run(tmp_path / "out", jobs=1)
+    (pairs,) = result.differences("probe").to_dict("records")
+    assert (pairs["one"], pairs["other"], pairs["pairs"]) == ("fetch", "again", 2)
+    assert list(result.differences("model").columns[:3]) == ["one", "other", "pairs"]
+    with pytest.raises(bn.InputError, match="no two rows differ in 'task' alone"):
+        result.differences("task")

@@ -112,6 +112,10 @@ def test_summaries_have_intervals_and_differences_are_of_pairs(whole: Path) -> N
     assert list(by_order[["one", "other", "both"]].itertuples(index=False, name=None)) == [
         ("0", "1", 4)
     ]
+    apart = result.differences("policy", by=["task", "spot"])
+    assert list(apart.columns[:4]) == ["task", "spot", "one", "other"]
+    assert set(apart["pairs"]) == {2} and set(apart["spot"]) == {"1,1,1", "7,1,1"}
+    assert list(result.differences("task").columns[:3]) == ["one", "other", "pairs"]
     assert result.plot().axes[0].get_xlabel() == "task"
     page = (whole / "study.html").read_text("utf-8")
     assert "bring.yaml" in page and "<svg" in page and "search:1" in page
@@ -255,3 +259,9 @@ def test_policies_of_a_study_are_names(here: Path) -> None:
 def test_a_name_alone_is_a_list_of_one_in_files_too(here: Path) -> None:
     Path("study.yaml").write_text("tasks: bring.yaml\npolicies: random\n")
     assert len(bn.Study.load("study.yaml").plan().cells) == 1
+
+
+def test_the_upper_bound_has_the_name_that_the_command_line_takes(here: Path) -> None:
+    study = bn.Study(tasks="bring.yaml", policies=["search"], orders=["omniscient"])
+    (row,) = study.run("out", jobs=1).rows
+    assert row["policy"] == "omniscient:search" == study.plan().cells[0].key.policies["ann"]

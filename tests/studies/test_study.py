@@ -111,7 +111,7 @@ def test_different_results_of_one_cell_do_not_merge(whole, tmp_path):
     content = StudyFolder.existing(whole[0]).cell(name)
     other.write_cell(name, {**content, "ticks": 7})
     with pytest.raises(bn.InputError, match=f"different results of the cell {name}"):
-        StudyFolder.existing(whole[0]).take_over([tmp_path / "other"])
+        StudyFolder.existing(whole[0]).take_over([tmp_path / "other"], [name])
 
 
 def test_a_killed_study_goes_on_to_the_same_rows(whole, tmp_path):
@@ -131,6 +131,21 @@ def test_a_killed_study_goes_on_to_the_same_rows(whole, tmp_path):
     subprocess.run([*command, "--jobs", "1"], check=True)
     assert cells_of(out) == cells_of(whole[0])
     assert tables_of(out) == tables_of(whole[0])
+
+
+def test_a_folder_of_another_study_is_neither_gone_on_in_nor_merged(whole, tmp_path, capsys):
+    name = small_in(tmp_path, SMALL.replace("name: small", "name: other"))
+    bn.Study(name, world="scripted").run(tmp_path / "other", jobs=1)
+    command = ["study", str(whole[1]), "--jobs", "1", "--out"]
+    assert run_command_line([*command, str(tmp_path / "other")]) == 2
+    told = "other holds a study of other, and this one is of small; name another folder"
+    assert told in capsys.readouterr().err
+    merge = ["--merge", str(tmp_path / "other")]
+    assert run_command_line([*command, str(tmp_path / "out"), *merge]) == 2
+    shown = capsys.readouterr().err
+    assert "study: checking all variations\n" in shown
+    assert "holds no cell of this study" in shown
+    assert not cells_of(tmp_path / "out")
 
 
 OWNER = """

@@ -55,7 +55,9 @@ def progress_on(title: str) -> Iterator[OnProgress]:
         console.width = _width(terminal=False) or _PLAIN_WIDTH
 
         def say(what: str, done: int, total: int) -> None:
-            console.print(f"{title}: {printable(what)} ({done}/{total})", highlight=False)
+            # Of what is one step alone, or is not counted yet, there is nothing to count.
+            count = f" ({done}/{total})" if total else ""
+            console.print(f"{title}: {printable(what)}{count}", highlight=False)
 
         yield say
         return
@@ -69,5 +71,5 @@ def progress_on(title: str) -> Iterator[OnProgress]:
     with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task("starting the world", total=None)
         yield lambda what, done, total: bar.update(
-            task, description=printable(what), completed=done, total=total
+            task, description=printable(what), completed=done, total=total or None
         )

@@ -63,10 +63,11 @@ def run_study(options: StudyOptions) -> int:
     study = Study.load(options.file, options.claims_from)
     now = datetime.now()
     folder = options.out or Path("studies", f"{options.file.stem}-{now:%Y%m%d-%H%M%S}")
-    if options.merge:
-        study.take_over(folder, options.merge)
     with progress_on(options.file.stem) as on_progress:
         on_progress("checking all variations", 0, 0)
+        if options.merge:
+            taken = study.take_over(folder, options.merge)
+            on_progress(f"took over {taken} cells", 0, 0)
 
         def told(progress: StudyProgress) -> None:
             on_progress(_progress_text(progress), progress.done, progress.total)

@@ -15,6 +15,7 @@ __all__ = [
     "Policies",
     "check_episodes_alone",
     "listed",
+    "policy_named",
     "seeds_of",
 ]
 
@@ -122,14 +123,14 @@ class EpisodeDesign:
         for policies in self.policies:
             if policies == "search":
                 for order in self.orders:
-                    name = "omniscient:search" if order == "omniscient" else f"search:{order}"
-                    yield Player("search", order, name)
+                    yield Player("search", order, policy_named("search", str(order)))
             else:
                 player = Player("", None, policies)
                 yield Player(player.text, None, policies)
         for model in self.models:
             for order in self.orders:
-                yield Player(f"model:{model}", order, f"model:{model}:{order}")
+                name = f"model:{model}"
+                yield Player(name, order, policy_named(name, str(order)))
 
     @property
     def setting(self) -> dict[str, Any]:
@@ -164,6 +165,13 @@ def _check_policies(policies: object) -> None:
 def listed(policies: Sequence[Policies] | Policies) -> tuple[Policies, ...]:
     """Policies of all players, or a mapping, alone are a list of one."""
     return (policies,) if isinstance(policies, str | Mapping) else tuple(policies)
+
+
+def policy_named(player: str, order: str) -> str:
+    """What the command line calls who plays; without an order, the name says all."""
+    if (player, order) == ("search", "omniscient"):
+        return "omniscient:search"
+    return f"{player}:{order}" if order else player
 
 
 def seeds_of(seeds: Sequence[int] | int, first: int) -> tuple[int, ...]:

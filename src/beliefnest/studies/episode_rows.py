@@ -5,6 +5,7 @@ from typing import Any
 
 from beliefnest.episodes.measures import Measures
 from beliefnest.studies.copies import rows_with_copies
+from beliefnest.studies.episode_design import policy_named
 from beliefnest.studies.rows import FAILED, plain_value, variation_columns
 from beliefnest.studies.store import StudyFolder
 from beliefnest.studies.table import Table
@@ -70,7 +71,7 @@ def _rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, An
             **{name: plain_value(key["variation"].get(name)) for name in columns},
             "player": key["player"],
             "order": key["order"] or None,
-            "policy": _policy(key["player"], key["order"]),
+            "policy": policy_named(key["player"], key["order"]),
             "instance": key["instance"],
             "repeat": key["repeat"],
             "seed": cell["seed"],
@@ -82,13 +83,6 @@ def _rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, An
             yield {**about, **_measured(found), **ends}
 
     return rows_with_copies(folder, plan, rows_of)
-
-
-def _policy(player: str, order: str) -> str:
-    """What the command line calls who plays."""
-    if (player, order) == ("search", "omniscient"):
-        return "omniscient:search"
-    return f"{player}:{order}" if order else player
 
 
 def _measured(found: Mapping[str, Any]) -> dict[str, Any]:

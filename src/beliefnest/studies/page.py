@@ -1,6 +1,6 @@
 """The page of a study: its figure, its summary, its rows, and what has no result."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from importlib.resources import files
 from typing import Any, Protocol
 
@@ -36,7 +36,9 @@ class Counted(Protocol):
     def counted(self, by: Sequence[str]) -> Sequence[Mapping[str, Any]]:
         """The rows of `summary` as plain values."""
 
-    def paired(self, between: str) -> Sequence[Pairs]:
+    def paired(
+        self, between: str, by: Sequence[str] = ()
+    ) -> Sequence[tuple[tuple[Any, ...], Pairs]]:
         """The rows of `differences` as values."""
 
 
@@ -65,13 +67,24 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
         groups=groups,
         means=[name for name in table.means if any(each[name] is not None for each in groups)],
         figure=_figure(groups, by),
-        differences=[(name, each) for name in table.compared for each in result.paired(name)],
+        differences=list(_differences(result)),
         columns=[*table.first, *variation_columns(plan), *table.shown],
         rows=rows[:_MOST_ROWS],
         left_out=max(0, len(rows) - _MOST_ROWS),
         copies=sum(row["copy_of"] is not None for row in rows),
         failed=[row for row in rows if row["outcome"] == "error"],
     )
+
+
+def _differences(result: Counted) -> Iterator[tuple[str, str, Pairs]]:
+    """Column, what it was compared in, pairs: in all, and in each task or scenario of several."""
+    whole = result.table.groups[0]
+    several = len({row[whole] for row in result.rows}) > 1
+    for column in result.table.compared:
+        for _, pairs in result.paired(column):
+            yield column, f"every {whole}" if several else "", pairs
+        for values, pairs in result.paired(column, [whole]) if several else ():
+            yield column, str(values[0]), pairs
 
 
 def _players(plan: Mapping[str, Any]) -> str:

@@ -111,13 +111,24 @@ class StudyResult:
         """The rows of `summary` as plain values."""
         return count_rows(self.rows, by, self.table.means)
 
-    def paired(self, between: str) -> list[Pairs]:
-        """The rows of `differences` as values; InputError if rows are not told apart by it."""
+    def paired(self, between: str, by: Sequence[str] = ()) -> list[tuple[tuple[Any, ...], Pairs]]:
+        """The rows of `differences` as values: those of `by`, and what is compared.
+
+        Raises:
+            InputError: Rows are not told apart by the column.
+        """
         table = self.table
         identity = [*table.identity, *variation_columns(self._plan)]
-        return paired_rows(self.rows, between, identity, table.same.get(between, ()))
+        groups: dict[tuple[Any, ...], list[dict[str, Any]]] = {}
+        for row in self.rows:
+            groups.setdefault(tuple(row[name] for name in by), []).append(row)
+        return [
+            (values, pairs)
+            for values, rows in groups.items()
+            for pairs in paired_rows(rows, between, identity, table.same.get(between, ()))
+        ]
 
-    def differences(self, between: str) -> "pandas.DataFrame":
+    def differences(self, between: str, by: Sequence[str] | str = ()) -> "pandas.DataFrame":
         """Paired differences of accuracy between the values of a column.
 
         Pairs are rows that are the same in scenario, condition, variation, model, template, repeat
@@ -125,18 +136,28 @@ class StudyResult:
 
         Args:
             between: Such as `model` or `condition`.
+            by: Columns that tell groups apart, such as `task`, in each of which it is done anew.
 
         Returns:
-            For each two values: `pairs`, how many are right with `both` or one of them, the
-            `difference`, `low` and `high` (95 %, Bonett and Price), `p` (McNemar, exact).
+            For each two values: those of `by`; `one`, `other`; `pairs`, how many are right with
+            `both` or one of them, the `difference`, `low` and `high` (95 %, Bonett and Price), `p`
+            (McNemar, exact).
 
         Raises:
-            InputError: There is no such column.
+            InputError: There is no such column, or no two rows differ in it alone.
             MissingExtraError: pandas is not installed.
         """
         self._columns(between)
+        names = self._columns(by)
+        compared = self.paired(between, names)
+        levels = list(dict.fromkeys(row[between] for row in self.rows))
+        if len(levels) > 1 and not compared:
+            raise InputError(
+                f"no two rows differ in {between!r} alone, which is {levels[0]!r}, {levels[1]!r}"
+            )
         found = [
             {
+                **dict(zip(names, values, strict=True)),
                 "one": pairs.one,
                 "other": pairs.other,
                 "pairs": pairs.pairs,
@@ -148,9 +169,10 @@ class StudyResult:
                 "high": pairs.interval[1],
                 "p": pairs.p,
             }
-            for pairs in self.paired(between)
+            for values, pairs in compared
         ]
-        return _pandas().DataFrame.from_records(found, columns=_DIFFERENCES)
+        columns = [*names, *_DIFFERENCES]
+        return _pandas().DataFrame.from_records(found, columns=columns)
 
     def seconds(self) -> "pandas.DataFrame":
         """Wall time of each cell, as far as it is known: `cell`, `seconds`."""

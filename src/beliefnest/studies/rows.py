@@ -165,5 +165,6 @@ PROBES = Table(
         *("model", "template", "repeat", "probe", "path", "expected", "intended", "opened"),
         *("arrived", "answered", "outcome", "why_not", "ticks", "tokens"),
     ),
+    same={"probe": ("path", "acts_in", "agent", "task")},
 )
 """Of studies of scenarios."""

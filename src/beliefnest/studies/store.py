@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -124,18 +124,47 @@ class StudyFolder:
             raise InputError(f"{self.path / _PLAN} is not that of a study of this version")
         return found
 
-    def take_over(self, others: Iterable[Path]) -> int:
+    def check_subjects(self, plan: Mapping[str, Any]) -> None:
+        """Refuse a folder that holds another study than the one that is to go on in it.
+
+        Scenarios, tasks and all else may have been added and taken away since; another study is
+        one that has no scenario or task in common with what was planned last.
+
+        Args:
+            plan: Of the study.
+
+        Raises:
+            InputError: It is that of another study, or damaged.
+        """
+        there = _subjects(self.plan()) if (self.path / _PLAN).is_file() else set()
+        own = _subjects(plan)
+        if there and own and there.isdisjoint(own):
+            raise InputError(
+                f"{self.path} holds a study of {', '.join(sorted(there))}, and this one is of "
+                f"{', '.join(sorted(own))}; name another folder"
+            )
+
+    def take_over(self, others: Iterable[Path], planned: Collection[str]) -> int:
         """Take the cells of other folders of the same study, which other machines ran.
+
+        Args:
+            others: The folders.
+            planned: Names of all cells of the study.
 
         Returns:
             How many were new here.
 
         Raises:
-            InputError: A folder is none of a study, or two have different results of one cell;
-                nothing was taken.
+            InputError: A folder is none of a study, holds cells and none of this study, or two have
+                different results of one cell; nothing was taken.
         """
         new: dict[str, dict[str, Any]] = {}
         for other in map(StudyFolder.existing, others):
+            if other.names() and other.names().isdisjoint(planned):
+                raise InputError(
+                    f"{other.path} holds no cell of this study; another study ran there, or one "
+                    "with other files, seeds or settings"
+                )
             for name in sorted(other.names()):
                 theirs = other.cell(name) or {}
                 ours = new.get(name) or self.cell(name)
@@ -149,6 +178,12 @@ class StudyFolder:
         for name, content in new.items():
             self.write_cell(name, content)
         return len(new)
+
+
+def _subjects(plan: Mapping[str, Any]) -> set[str]:
+    """Names of scenarios and tasks that are played."""
+    keys = (cell["key"] for cell in plan["cells"])
+    return {str(key.get("scenario") or key["task"]) for key in keys}
 
 
 def _json(content: Mapping[str, Any]) -> str:

@@ -223,6 +223,7 @@ class Study:
         if not plan.cells and plan.invalid:
             raise InputError(f"no combination makes a scenario; the first: {plan.invalid[0].why}")
         self._check_models(backend)
+        place.check_subjects(self._plan_json(plan))
         terms = Terms(
             answers=place.answers.absolute(),
             ledger=place.ledger.absolute(),
@@ -244,11 +245,14 @@ class Study:
             How many were new.
 
         Raises:
-            InputError: A folder is none of a study, or two hold different results of one cell.
+            InputError: A folder is none of this study, or two hold different results of one cell.
         """
+        plan = self.plan()
+        planned = {cell.key.name for cell in plan.cells}
         place = StudyFolder.open(folder)
+        place.check_subjects(self._plan_json(plan))
         with place.lock():
-            return place.take_over([Path(other) for other in others])
+            return place.take_over([Path(other) for other in others], planned)
 
     def _check_models(self, backend: str) -> None:
         """Refuse a model that there is not, or that lacks a key, before anything is played."""
