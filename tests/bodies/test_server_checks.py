@@ -58,6 +58,7 @@ def opened(world: World, snapshot: Snapshot | None = None) -> None:
     [
         (("deop BeliefNest", "op BeliefNest"), {}, r"not use /fill, /setblock.*: op BeliefNest"),
         (("lack item", "lack"), {}, r"BeliefNest may not use /item"),
+        (("lack completions", "lack"), {"patience": 3}, r"does not answer requests for compl"),
         (("verify BeliefNest", "trust BeliefNest"), {}, r"asks Microsoft.*online-mode=false"),
         (("room 0", "room 9"), {}, r"is full.*raise max-players"),
         (None, {"version": "1.16.5"}, r"speaks Minecraft 1\.16\.5; .* 1\.20\.4, .*1\.21\.8.*pip"),

@@ -51,6 +51,10 @@ const wrongVersion = (server, found, held) => new Unplayable(
 const noOperator = (server, lacking) => new Unplayable(
   `on ${where(server)} ${server.operator} may not use ${lacking.map(name => `/${name}`).join(', ')}; on its console: op ${server.operator}`)
 
+const noCompletions = server => new Unplayable(
+  `${where(server)} does not answer requests for completions of commands, as vanilla ones do: nothing else tells when what was typed is done. ` +
+  'Play on another server, or in another version that it speaks (?version=)')
+
 /** What is said of a server that can be played on, and lacks something. */
 const lesser = (server, lacking) =>
   `${where(server)} lets ${server.operator} not use ${lacking.map(([name, without]) => `/${name} (${without})`).join(', ')}`
@@ -69,4 +73,4 @@ const gone = (server, player, why, seconds) => new Unplayable(
   `the connection of ${player} to ${where(server)} was lost (${why}) and did not come back within ${seconds} s; ` +
   'what was recorded until the last call is kept: when the server runs again, go on with Nest.resume')
 
-module.exports = { gone, lesser, noLogin, noOperator, onlineMode, refusal, spawnProtected, stalled, tooFar, unreachable, Unplayable, wrongVersion }
+module.exports = { gone, lesser, noCompletions, noLogin, noOperator, onlineMode, refusal, spawnProtected, stalled, tooFar, unreachable, Unplayable, wrongVersion }

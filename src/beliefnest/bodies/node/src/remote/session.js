@@ -36,6 +36,10 @@ async function beginSession (server, tell = () => {}) {
     const lacking = Object.entries(USEFUL).filter(([name]) => !operator.can(name))
     if (lacking.length > 0) tell(reasons.lesser(server, lacking))
     if (!await operator.until(() => clock.isSet)) throw reasons.stalled(server, PING_MS / 1000)
+    await operator.settled().catch(error => {
+      // Time that goes on there says that it does not stand still.
+      throw link.isHere && clock.silence < PING_MS ? reasons.noCompletions(server) : error
+    })
   } catch (error) {
     await link.close()
     throw error

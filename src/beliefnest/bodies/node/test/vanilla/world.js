@@ -33,7 +33,7 @@ class OpenWorld {
   constructor (serv, { ops, age }) {
     this.serv = serv
     this.ops = new Set(ops)
-    // Set on the console: commands that are not there, whether only operators may use blocks, how many may come in, who is to be verified.
+    // Set on the console: commands (or `completions`) that are not there, whether only operators may use blocks, how many may come in, who is to be verified.
     this.lacking = new Set()
     this.isProtected = false
     this.room = Infinity
@@ -74,7 +74,9 @@ class OpenWorld {
     player.updateHealth(state.health)
     this.tellCommands(player)
     this.tellAge([player])
-    end.on('tab_complete', ({ transactionId }) => end.write('tab_complete', { transactionId, start: 1, length: 0, matches: [] }))
+    end.on('tab_complete', ({ transactionId }) => {
+      if (!this.lacking.has('completions')) end.write('tab_complete', { transactionId, start: 1, length: 0, matches: [] })
+    })
     player.on('disconnected', () => this.known.set(player.username, {
       position: region.toScenario(player.position), ...player.pose, on_ground: player.onGround, health: player.health, food: player.food, gameMode: player.gameMode
     }))
