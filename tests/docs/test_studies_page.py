@@ -37,7 +37,8 @@ def test_from_the_scenario_to_the_figure_and_by_command(
 
 def test_the_study_of_episodes_is_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    Path("mine.yaml").write_text(SCENARIO, encoding="utf-8")
+    goal = "episode: {goal: {reach: [{agent: ann, items: {diamond: 1}}]}}"
+    Path("mine.yaml").write_text(f"{SCENARIO}\n{goal}\n", encoding="utf-8")
     Path("mine.js").write_text("", encoding="utf-8")
     Path("minds.yaml").write_text(EPISODES, encoding="utf-8")
     plan = bn.Study.load("minds.yaml").plan()
