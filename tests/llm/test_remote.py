@@ -18,6 +18,7 @@ from beliefnest.llm import (
     resolve_model,
 )
 from beliefnest.llm.failures import TransientModelError
+from beliefnest.llm.providers import PROVIDERS, endpoint
 
 KEY = "sk-a-very-secret-key"
 ASK = (Message("system", "Be brief."), Message("user", "Get a diamond."))
@@ -104,8 +105,13 @@ def test_any_compatible_server(fake, clock):
     fake.will(fake.says(PROGRAM))
     own = {"COMPATIBLE_BASE_URL": fake.url, "COMPATIBLE_API_KEY": KEY}
     asked = resolve_model("compatible:some-model", own, clock=clock)
-    assert asked.answer(ASK, Sampling()).usage.cost is None
+    assert asked.answer(ASK, Sampling()).usage.cost == 0.0
     assert fake.requests[0].headers["authorization"] == f"Bearer {KEY}"
+    costs = {
+        url: endpoint(PROVIDERS["compatible"], {"COMPATIBLE_BASE_URL": url}).cost(None)
+        for url in ("http://192.168.1.7:8000/v1", "https://api.example.org/v1")
+    }
+    assert list(costs.values()) == [0.0, None]
 
 
 FAULTS = [

@@ -161,3 +161,34 @@ def test_what_the_prompt_does_not_tell_is_not_answered() -> None:
 )
 def test_answers_are_read(text: str, options: tuple[str, ...], answer: str | None) -> None:
     assert parse_answer(text, options)[0] == answer
+
+
+@pytest.mark.parametrize(
+    ("expect", "told"),
+    [
+        ({"takes": {}}, "expect.takes: name at least one item"),
+        ({"says": " "}, "expect.says: give part of what is to be said"),
+        (
+            {
+                "answers": {
+                    "question": "Where?",
+                    "right": ["here", "there"],
+                    "options": ["here", "there"],
+                }
+            },
+            "options: are all right",
+        ),
+        (
+            {"answers": {"question": "Where?", "right": "A", "options": ["A", "B"]}},
+            "options: 'A' is a letter, by which options are called",
+        ),
+        (
+            {"answers": {"question": "Where?", "right": "here", "wrong": ["here"]}},
+            "wrong: 'here' is right as well",
+        ),
+    ],
+)
+def test_what_cannot_fail_or_cannot_be_right_is_refused(expect: dict[str, Any], told: str) -> None:
+    probe = {"path": "/ann", "acts_in": "/ann", "agent": "ann", "task": "Go.", "expect": expect}
+    with pytest.raises(bn.ScenarioError, match=told):
+        bn.Scenario.from_mapping({**ROOM, "probes": [probe]})

@@ -10,11 +10,16 @@ import sys
 from pathlib import Path
 
 import pytest
+from joblib.externals.loky.process_executor import TerminatedWorkerError
 from tests.profiles import at_night
 from tests.studies.small import SMALL, small_in, study_in
 
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
+from beliefnest.llm.budget import RunLimits
+from beliefnest.llm.messages import Usage
+from beliefnest.studies.running import _engine
+from beliefnest.studies.spending import SharedBudget, spent_in
 from beliefnest.studies.store import StudyFolder
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
@@ -254,3 +259,89 @@ def test_a_folder_of_something_else_stays_as_it_is(tmp_path, capsys):
     assert run_command_line(["study", str(file), "--out", str(tmp_path / "out")]) == 2
     assert "holds no study" in capsys.readouterr().err
     assert [each.name for each in (tmp_path / "out").iterdir()] == ["thesis.txt"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ({"scenarios": None}, "scenarios is None; give a name, or a list of names"),
+        ({"models": [None]}, "models is [None]"),
+        ({"templates": 3}, "templates is 3"),
+        ({"templates": ["paper", "paper"]}, "templates: 'paper' is named twice"),
+        ({"conditions": []}, "conditions is []"),
+        ({"conditions": ["one"]}, "'one' is no condition"),
+        ({"constraints": [3]}, "constraints has 3"),
+        ({"variations": {"count": [1, 1]}}, "variations of 'count': '1' is named twice"),
+        ({"variations": {"count": [float("nan")]}}, "variations of 'count' have nan"),
+        ({"world": 3}, "world is 3"),
+        ({"temperature": -1}, "temperature is -1"),
+        ({"max_tokens": -1}, "max_tokens is -1"),
+        ({"max_cost": "5"}, "max_cost is '5'"),
+        ({"claims_from": 3}, "claims_from is 3"),
+        ({"seeds": 3}, "policies, orders, seeds and help are for tasks"),
+    ],
+)
+def test_a_wrong_argument_is_told_by_its_name(tmp_path, arguments, told):
+    with pytest.raises(bn.BeliefNestError) as caught:
+        bn.Study(**{"scenarios": small_in(tmp_path), **arguments})
+    assert told in str(caught.value)
+
+
+def test_conditions_may_be_one_and_texts():
+    for conditions in (2, "2", ["2"]):
+        plan = bn.Study("sally-anne", conditions=conditions).plan()
+        assert [cell.key.condition for cell in plan.cells] == [2]
+
+
+def test_a_constraint_that_breaks_is_listed_with_its_error(tmp_path):
+    def far(values):
+        return values["distance"] > 3
+
+    (invalid,) = bn.Study(small_in(tmp_path), constraints=far).plan().invalid
+    assert invalid.why == "the constraint 'far' raised KeyError: 'distance'"
+
+
+def test_what_rows_could_not_tell_apart_is_refused(tmp_path):
+    own = SMALL.replace("parameters:\n", "parameters:\n  task: {default: 1, values: [1, 2]}\n")
+    with pytest.raises(bn.InputError, match="'task' is called as a column of the table"):
+        bn.Study(small_in(tmp_path, own), variations={"task": [1, 2]}).plan()
+    one, other = tmp_path / "one", tmp_path / "other"
+    for folder in (one, other):
+        folder.mkdir()
+    with pytest.raises(bn.InputError, match="are both called 'small'"):
+        bn.Study([small_in(one), small_in(other)]).plan()
+
+
+def test_wide_ranges_take_no_room(tmp_path):
+    wide = SMALL.replace(
+        "parameters:\n", "parameters:\n  any: {default: 0, range: [0, 10000000000]}\n"
+    )
+    plan = bn.Study(small_in(tmp_path, wide), variations=3, seed=1).plan()
+    assert len({cell.key.variation["any"] for cell in plan.cells}) == 3
+    endless = wide.replace("range: [0, 10000000000]", "range: [0.0, 1.0], step: 1.0e-9")
+    with pytest.raises(bn.ScenarioError, match=r"more than 1,000,000 values; give a greater step"):
+        bn.Study(small_in(tmp_path, endless), variations=3).plan()
+
+
+def test_merged_runs_and_times_come_along(tmp_path):
+    study = bn.Study(small_in(tmp_path))
+    study.run(tmp_path / "part", jobs=1, record=True)
+    assert study.take_over(tmp_path / "all", [tmp_path / "part"]) == 1
+    result = study.run(tmp_path / "all", jobs=1)
+    assert (tmp_path / "all" / result.rows[0]["run"]).is_file()
+    assert len(result.seconds()) == 1
+
+
+def test_a_line_that_was_cut_off_spoils_no_other(tmp_path):
+    folder = StudyFolder.open(tmp_path / "out")
+    for file in (folder.ledger, folder.path / "seconds.jsonl"):
+        file.write_text('{"cell": "on', "utf-8")
+    SharedBudget.of(RunLimits(), folder.ledger).add(Usage(1, 10, 5, 0.5))
+    folder.note_seconds("one", 1.5)
+    assert spent_in(folder.ledger) == Usage(1, 10, 5, 0.5)
+    assert folder.seconds() == {"one": 1.5}
+
+
+def test_a_process_that_is_ended_is_told_of():
+    with pytest.raises(bn.BodyError, match="what has ended is kept"), _engine("loky", 2):
+        raise TerminatedWorkerError

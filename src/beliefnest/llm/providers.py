@@ -2,7 +2,9 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from ipaddress import ip_address
 from typing import Literal
+from urllib.parse import urlsplit
 
 from beliefnest.errors import ModelError
 
@@ -49,6 +51,18 @@ class Endpoint:
     url: str
     key: "_Key"
     key_variable: str
+
+    def cost(self, listed: float | None) -> float | None:
+        """US dollars that an answer costs, None where that is not known.
+
+        Args:
+            listed: What the library's price list says; None: the model is not on it.
+        """
+        if self.provider.free:
+            return 0.0
+        # A provider's name says that what is asked may be handed on to it.
+        is_own = self.provider.default_url is None and _is_near(self.url)
+        return 0.0 if listed is None and is_own else listed
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -123,6 +137,16 @@ PROVIDERS: Mapping[str, Provider] = {
     )
 }
 """Name to provider; `compatible` is any other server that speaks OpenAI's protocol."""
+
+
+def _is_near(url: str) -> bool:
+    """Whether a server is on this machine, or has an address of a private network."""
+    host = urlsplit(url).hostname or ""
+    try:
+        return host == "localhost" or ip_address(host).is_private
+    except ValueError:
+        # A name, which may lead anywhere.
+        return False
 
 
 def endpoint(provider: Provider, environment: Mapping[str, str]) -> Endpoint:

@@ -307,7 +307,7 @@ def _usage(model: RemoteModel, messages: Sequence[Message], response: "ModelResp
     # The library hands on what the server said, whatever that is.
     if not any(tokens) or not all(_is_count(each) for each in tokens):
         return _guessed_usage(model, messages, len(response.text or ""))
-    cost = 0.0 if model.endpoint.provider.free else _cost(response)
+    cost = model.endpoint.cost(_cost(response))
     return Usage(1, counted.input_tokens, counted.output_tokens, cost)
 
 
@@ -317,7 +317,7 @@ def _is_count(value: object) -> bool:
 
 def _guessed_usage(model: RemoteModel, messages: Sequence[Message], received: int) -> Usage:
     sent = sum(len(message.text) for message in messages)
-    cost = 0.0 if model.endpoint.provider.free else None
+    cost = model.endpoint.cost(None)
     return Usage(1, _guessed_tokens(sent), _guessed_tokens(received), cost)
 
 

@@ -202,9 +202,13 @@ class _Builder:
             slots = AGENT_SLOTS
             items = dict(entry.takes)
             place = (*path, "takes")
+            if not items:
+                raise self._document.fault(place, "name at least one item")
             check_items(self._document, place, items, self._registry, slots, "an inventory")
             expected.append(Takes(items))
         if entry.says is not None:
+            if not entry.says.strip():
+                raise self._document.fault((*path, "says"), "give part of what is to be said")
             expected.append(Says(entry.says))
         for number, answers in enumerate(_listed(entry.answers)):
             expected.append(self._answers((*path, "answers", number), answers))
@@ -232,6 +236,17 @@ class _Builder:
             raise self._document.fault((*path, "options"), f"are more than {_MOST_OPTIONS}")
         if len({each.casefold() for each in entry.options}) < len(entry.options):
             raise self._document.fault((*path, "options"), "has an option twice")
+        if entry.options and set(right) == set(entry.options):
+            raise self._document.fault((*path, "options"), "are all right; give one that is not")
+        letters = [each for each in entry.options if len(each.strip()) == 1 and each.isalpha()]
+        if letters:
+            raise self._document.fault(
+                (*path, "options"),
+                f"{letters[0]!r} is a letter, by which options are called; write it out",
+            )
+        both = [each for each in right if each in entry.wrong]
+        if both:
+            raise self._document.fault((*path, "wrong"), f"{both[0]!r} is right as well")
         if entry.options and entry.wrong:
             raise self._document.fault((*path, "wrong"), "is for answers in words, without options")
         options, wrong = tuple(entry.options), tuple(entry.wrong)

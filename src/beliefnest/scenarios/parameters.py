@@ -6,8 +6,9 @@ lists with commas, so that `new Vec3(${spot})` is a position.
 """
 
 import json
+import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -24,11 +25,12 @@ _HOLE = re.compile(r"\$\{([^{}]*)\}")
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,63}", re.ASCII)
 _PROGRAMS = ("program", "programs")
 """Keys below which `${...}` may be JavaScript's own."""
+_MOST_VALUES = 1_000_000
 _KEYS = ("parameters", "constraints")
 """Keys that say what parameters there are."""
 
 
-def choices(declared: ParameterEntry) -> list[Any] | None:
+def choices(declared: ParameterEntry) -> Sequence[Any] | None:
     """All values of a parameter, in order; None: it is any number in its range."""
     if declared.values:
         return list(declared.values)
@@ -39,6 +41,8 @@ def choices(declared: ParameterEntry) -> list[Any] | None:
     step = declared.step if declared.step is not None else int(whole)
     if not step:
         return None
+    if isinstance(low, int) and isinstance(high, int) and isinstance(step, int):
+        return range(low, high + 1, step)
     return [low + number * step for number in range(int((high - low) / step + 1e-9) + 1)]
 
 
@@ -78,7 +82,18 @@ def _declared(document: Document, name: object, entry: Node) -> ParameterEntry:
         raise document.fault((*path, "range"), "ends below its beginning")
     if found.step is not None and (found.range is None or found.step < 0):
         raise document.fault((*path, "step"), "needs a range, and is no less than 0")
+    if found.range is not None and not all(map(math.isfinite, found.range)):
+        raise document.fault((*path, "range"), "has an end that is no finite number")
+    if found.range is not None and _count_of(found) > _MOST_VALUES:
+        raise document.fault(path, f"has more than {_MOST_VALUES:,} values; give a greater step")
     return found
+
+
+def _count_of(declared: ParameterEntry) -> float:
+    """How many values a range has, where they are kept as a list."""
+    if declared.range is None or not declared.step or isinstance(declared.step, int):
+        return 0
+    return (declared.range[1] - declared.range[0]) / declared.step
 
 
 def broken_constraint(

@@ -1,13 +1,27 @@
 """What is wrong with what a study is asked to combine, by its key."""
 
+import json
 import math
+import os
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, TypeGuard
 
 from beliefnest.errors import InputError
 from beliefnest.llm.budget import RunLimits
+from beliefnest.scenarios.loading import condition_number
 
-__all__ = ["StudyKeyError", "checked_limits", "checked_lists", "is_count", "several"]
+__all__ = [
+    "StudyKeyError",
+    "check_count",
+    "check_once",
+    "checked_conditions",
+    "checked_limits",
+    "checked_lists",
+    "is_amount",
+    "is_count",
+    "is_whole",
+    "several",
+]
 
 
 class StudyKeyError(InputError):
@@ -23,14 +37,65 @@ class StudyKeyError(InputError):
         self.key = key
 
 
-def several(names: Sequence[str] | str) -> tuple[str, ...]:
-    """A name alone is a list of one."""
-    return (names,) if isinstance(names, str) else tuple(str(name) for name in names)
+def several(key: str, names: object) -> tuple[str, ...]:
+    """Names or paths; one alone is a list of one.
+
+    Raises:
+        StudyKeyError: It is neither.
+    """
+    found = [names] if isinstance(names, str | os.PathLike) else names
+    if isinstance(found, Sequence) and all(isinstance(each, str | os.PathLike) for each in found):
+        return tuple(map(os.fspath, found))
+    raise StudyKeyError(key, f"{key} is {names!r}; give a name, or a list of names")
+
+
+def checked_conditions(conditions: object) -> tuple[int, ...] | None:
+    """Numbers of conditions, also as texts; one alone is a list of one, None stays None.
+
+    Raises:
+        StudyKeyError: It is neither, or an empty list.
+        ScenarioError: One of them is no number.
+    """
+    if conditions is None:
+        return None
+    found = [conditions] if isinstance(conditions, int | str) else conditions
+    if not isinstance(found, Sequence) or not found:
+        told = f"conditions is {conditions!r}; give numbers, or leave it out for all of them"
+        raise StudyKeyError("conditions", told)
+    numbers = tuple(number for each in found if (number := condition_number(each)) is not None)
+    check_once("conditions", numbers)
+    return numbers
+
+
+def check_once(key: str, values: Sequence[Any], what: str = "") -> None:
+    """Refuse lists with a value in them twice; StudyKeyError names it."""
+    twice = [value for value in values if values.count(value) > 1]
+    if twice:
+        told = f"{what or key}: {twice[0]!r} is named twice; use repeats to do it again"
+        raise StudyKeyError(key, told)
+
+
+def check_count(key: str, number: object) -> None:
+    """Refuse what is no number of times; StudyKeyError says so."""
+    if not is_count(number):
+        raise StudyKeyError(key, f"{key} is {number!r}; it must be a whole number, at least 1")
+
+
+def is_whole(number: object) -> TypeGuard[int]:
+    """Whether it is a whole number."""
+    return isinstance(number, int) and not isinstance(number, bool)
+
+
+def is_amount(number: object) -> TypeGuard[float]:
+    """Whether it is a finite number that is not below 0."""
+    if isinstance(number, bool) or not isinstance(number, int | float):
+        return False
+    return math.isfinite(number) and number >= 0
 
 
 def is_count(number: object) -> bool:
     """Whether it is a whole number, at least 1."""
-    return isinstance(number, int) and not isinstance(number, bool) and number >= 1
+    return is_whole(number) and number >= 1
 
 
 def checked_limits(max_tokens: int | None, max_cost: float | None) -> RunLimits:
@@ -50,7 +115,7 @@ def checked_limits(max_tokens: int | None, max_cost: float | None) -> RunLimits:
 
 
 def checked_lists(variations: Mapping[str, Sequence[Any]]) -> None:
-    """Refuse what is no list of values.
+    """Refuse what is no list of different values that can stand in a file.
 
     Raises:
         StudyKeyError: It is none, or empty.
@@ -61,3 +126,19 @@ def checked_lists(variations: Mapping[str, Sequence[Any]]) -> None:
                 "variations",
                 f"variations of {name!r} are {values!r}; give a list of at least one value",
             )
+        for value in values:
+            if not _is_plain(value):
+                told = f"variations of {name!r} have {value!r}; give texts, finite numbers, and "
+                raise StudyKeyError("variations", f"{told}lists and mappings of them")
+        check_once("variations", [json.dumps(v) for v in values], f"variations of {name!r}")
+
+
+def _is_plain(value: object) -> bool:
+    """Whether it can stand in a file."""
+    if isinstance(value, Mapping):
+        return all(isinstance(key, str) and _is_plain(inner) for key, inner in value.items())
+    if isinstance(value, list | tuple):
+        return all(map(_is_plain, value))
+    if isinstance(value, float):
+        return math.isfinite(value)
+    return value is None or isinstance(value, str | int)

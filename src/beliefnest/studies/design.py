@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from beliefnest.bodies.worlds import check_world
-from beliefnest.errors import BeliefNestError, ScenarioError
+from beliefnest.errors import BeliefNestError, InputError, ScenarioError
 from beliefnest.llm.budget import RunLimits
 from beliefnest.prompts.templates import (
     BUILT_IN_TEMPLATES,
@@ -17,7 +17,15 @@ from beliefnest.prompts.templates import (
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.expressions import evaluate
 from beliefnest.scenarios.parameters import declared_in
-from beliefnest.studies.checking import StudyKeyError, checked_lists, is_count
+from beliefnest.studies.checking import (
+    StudyKeyError,
+    check_count,
+    check_once,
+    checked_lists,
+    is_amount,
+    is_count,
+    is_whole,
+)
 from beliefnest.studies.variation import CHANGES, Variation
 
 __all__ = ["Constraint", "Design", "Template", "template_named"]
@@ -64,17 +72,17 @@ class Design:
         for name, values in (("scenarios", self.scenarios), ("models", self.models)):
             if not values:
                 raise StudyKeyError(name, f"a study without {name} has no cells; name at least one")
-            twice = [value for value in values if values.count(value) > 1]
-            if twice:
-                raise StudyKeyError(
-                    name, f"{name}: {twice[0]!r} is named twice; use repeats to do it again"
-                )
-        for name, number in (("repeats", self.repeats), ("attempts", self.attempts)):
-            if not is_count(number):
-                raise StudyKeyError(
-                    name, f"{name} is {number!r}; it must be a whole number, at least 1"
-                )
-        if not isinstance(self.seed, int) or isinstance(self.seed, bool):
+            check_once(name, values)
+        check_once("templates", [template.name for template in self.templates])
+        check_count("repeats", self.repeats)
+        check_count("attempts", self.attempts)
+        if self.temperature is not None and not is_amount(self.temperature):
+            told = f"temperature is {self.temperature!r}; give a number, at least 0, or None"
+            raise StudyKeyError("temperature", told)
+        for name, text in (("world", self.world), ("claims_from", self.claims_from or "")):
+            if not isinstance(text, str):
+                raise StudyKeyError(name, f"{name} is {text!r}; give a name")
+        if not is_whole(self.seed):
             raise StudyKeyError("seed", f"seed is {self.seed!r}; it must be a whole number")
         check_world(self.world, servers=False)
         self._check_variations()
@@ -131,11 +139,21 @@ class Design:
         defaults = {name: entry.default for name, entry in declared.items()}
         values = {**dict.fromkeys(CHANGES), **defaults, **variation.values}
         for constraint in self.constraints:
-            held = constraint(values) if callable(constraint) else evaluate(constraint, values)
-            if not held:
-                told = getattr(constraint, "__name__", str(constraint))
+            told = getattr(constraint, "__name__", str(constraint))
+            if not _holds(constraint, told, values):
                 return ScenarioError(f"the constraint {told!r} does not hold")
         return None
+
+
+def _holds(constraint: Constraint, told: str, values: Mapping[str, Any]) -> bool:
+    if isinstance(constraint, str):
+        return bool(evaluate(constraint, values))
+    try:
+        return bool(constraint(values))
+    except Exception as error:  # a user's function may raise anything; it is told
+        raise InputError(
+            f"the constraint {told!r} raised {type(error).__name__}: {error}"
+        ) from error
 
 
 def template_named(name: str, folder: Path = Path()) -> Template:

@@ -3,7 +3,7 @@
 import itertools
 import random
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -81,7 +81,7 @@ class _Drawing:
         taken: Names of agents and items that are not given to others.
     """
 
-    lists: Mapping[str, list[Any] | None]
+    lists: Mapping[str, Sequence[Any] | None]
     ranges: Mapping[str, tuple[float, float]]
     symmetries: tuple[str, ...]
     agents: tuple[str, ...]

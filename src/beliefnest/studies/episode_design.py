@@ -6,7 +6,13 @@ from typing import Any, Literal
 
 from beliefnest.bodies.worlds import check_world
 from beliefnest.llm.budget import RunLimits
-from beliefnest.studies.checking import StudyKeyError, checked_lists, is_count
+from beliefnest.studies.checking import (
+    StudyKeyError,
+    check_count,
+    check_once,
+    checked_lists,
+    is_count,
+)
 
 __all__ = [
     "EpisodeDesign",
@@ -14,6 +20,7 @@ __all__ = [
     "Player",
     "Policies",
     "check_episodes_alone",
+    "check_scenarios_alone",
     "listed",
     "policy_named",
     "seeds_of",
@@ -86,10 +93,7 @@ class EpisodeDesign:
             "seeds": self.seeds,
         }
         for name, values in lists.items():
-            twice = [value for value in values if values.count(value) > 1]
-            if twice:
-                again = "use repeats to do it again"
-                raise StudyKeyError(name, f"{name}: {twice[0]!r} is named twice; {again}")
+            check_once(name, values)
         for name in ("tasks", "seeds"):
             if not lists[name]:
                 raise StudyKeyError(name, f"a study without {name} has no cells; name at least one")
@@ -108,9 +112,7 @@ class EpisodeDesign:
                 raise StudyKeyError(
                     "orders", f"orders has {order!r}; give whole numbers, or 'omniscient'"
                 )
-        if not is_count(self.repeats):
-            told = f"repeats is {self.repeats!r}; it must be a whole number, at least 1"
-            raise StudyKeyError("repeats", told)
+        check_count("repeats", self.repeats)
         checked_lists(self.variations)
         check_world(self.world, servers=False)
 
@@ -185,6 +187,19 @@ def seeds_of(seeds: Sequence[int] | int, first: int) -> tuple[int, ...]:
             raise StudyKeyError("seeds", f"seeds is {seeds!r}; give at least 1, or a list of seeds")
         return tuple(range(first, first + seeds))
     return tuple(seeds)
+
+
+def check_scenarios_alone(policies: object, orders: object, seeds: object, help: object) -> None:
+    """Refuse what a study of scenarios does not combine.
+
+    Raises:
+        StudyKeyError: Something of it is given.
+    """
+    given = {"policies": policies, "orders": orders, "seeds": seeds != 1, "help": help}
+    for name, value in given.items():
+        if value:
+            told = "policies, orders, seeds and help are for tasks; name tasks to play episodes"
+            raise StudyKeyError(name, told)
 
 
 def check_episodes_alone(

@@ -13,7 +13,7 @@ from beliefnest.scenarios.loading import condition_numbers
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.chance import episode_draws
 from beliefnest.studies.episode_design import EpisodeDesign, Player
-from beliefnest.studies.plan import SEEDS, Invalid, Plan, alike, digest
+from beliefnest.studies.plan import SEEDS, Invalid, Plan, alike, check_called, digest
 from beliefnest.studies.variation import Variation, listed_variations
 
 __all__ = ["EpisodeCell", "EpisodeKey", "plan_episodes"]
@@ -112,6 +112,7 @@ def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
     """
     texts = {player.text: _texts(player) for player in design.players}
     found: list[EpisodeCell | Invalid] = []
+    called: dict[str, str] = {}
     for name in design.tasks:
         document = Task.scenario_document(name)
         there = (None,) if document is None else condition_numbers(document)
@@ -128,6 +129,7 @@ def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
             except BeliefNestError as error:
                 found.append(place.invalid(str(error)))
                 continue
+            check_called(called, tasks[design.seeds[0]].name, name)
             found += _cells(design, place, tasks, texts)
     cells = [each for each in found if isinstance(each, EpisodeCell)]
     seeds = {seed: number for number, seed in enumerate(design.seeds)}

@@ -13,12 +13,13 @@ from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.document import Document, plain
 from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.reading import read_yaml
-from beliefnest.studies.checking import StudyKeyError, checked_limits, several
+from beliefnest.studies.checking import StudyKeyError, checked_conditions, checked_limits, several
 from beliefnest.studies.design import Design, Template, template_named
 from beliefnest.studies.episode_design import (
     EpisodeDesign,
     Policies,
     check_episodes_alone,
+    check_scenarios_alone,
     listed,
     seeds_of,
 )
@@ -65,30 +66,30 @@ def read_design(path: Path) -> Design | EpisodeDesign:
         with document.naming(("world",)):
             check_world(found.world, servers=False)
     with document.naming(("templates",)):
-        templates = tuple(template_named(name, path.parent) for name in several(found.templates))
+        templates = tuple(
+            template_named(name, path.parent) for name in several("templates", found.templates)
+        )
     try:
         if found.tasks is None:
             return _scenarios(found, path, templates)
-        return _episodes(found, path, several(found.tasks))
+        return _episodes(found, path, several("tasks", found.tasks))
     except StudyKeyError as fault:
         raise document.fault((fault.key,), str(fault)) from None
 
 
 def _scenarios(found: _StudyFile, path: Path, templates: tuple[Template, ...]) -> Design:
-    for key, value in (("policies", found.policies), ("orders", found.orders)):
-        if value:
-            raise StudyKeyError(
-                key, "policies and orders are for tasks; name tasks to play episodes"
-            )
+    check_scenarios_alone(found.policies, found.orders, found.seeds, found.help)
     return Design(
-        scenarios=tuple(_beside(name, path, builtin_names()) for name in several(found.scenarios)),
-        models=("offline",) if found.models is None else several(found.models),
+        scenarios=tuple(
+            _beside(name, path, builtin_names()) for name in several("scenarios", found.scenarios)
+        ),
+        models=("offline",) if found.models is None else several("models", found.models),
         templates=templates,
         repeats=found.repeats,
         seed=found.seed,
         variations=found.variations,
-        conditions=None if found.conditions is None else tuple(found.conditions),
-        constraints=several(found.constraints),
+        conditions=checked_conditions(found.conditions),
+        constraints=several("constraints", found.constraints),
         world="embedded" if found.world is None else found.world,
         attempts=found.attempts,
         temperature=found.temperature,
@@ -107,12 +108,12 @@ def _episodes(found: _StudyFile, path: Path, tasks: Sequence[str]) -> EpisodeDes
     return EpisodeDesign(
         tasks=tuple(_beside(name, path, known) for name in tasks),
         policies=tuple(_policies_beside(each, path.parent) for each in listed(found.policies)),
-        models=() if found.models is None else several(found.models),
+        models=() if found.models is None else several("models", found.models),
         orders=tuple(found.orders),
         seeds=seeds_of(found.seeds, found.seed),
         repeats=found.repeats,
         variations=found.variations,
-        conditions=None if found.conditions is None else tuple(found.conditions),
+        conditions=checked_conditions(found.conditions),
         world="scripted" if found.world is None else found.world,
         help=found.help,
         limits=checked_limits(found.max_tokens, found.max_cost),

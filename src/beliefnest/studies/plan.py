@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Generic, Protocol, TypeVar
 
-from beliefnest.errors import BeliefNestError, MissingExtraError
+from beliefnest.errors import BeliefNestError, InputError, MissingExtraError
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import condition_numbers
@@ -19,6 +19,7 @@ from beliefnest.studies.variation import Variation, listed_variations
 
 __all__ = [
     "SEEDS",
+    "C",
     "Cell",
     "CellKey",
     "Invalid",
@@ -26,6 +27,7 @@ __all__ = [
     "Keyed",
     "Plan",
     "alike",
+    "check_called",
     "digest",
     "plan_cells",
 ]
@@ -214,9 +216,11 @@ def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan[Cell]:
 
     Raises:
         ScenarioError: A scenario is wrong as it is written, before it is varied.
+        InputError: Two scenarios are called the same.
     """
     cells: list[Cell] = []
     invalid: list[Invalid] = []
+    called: dict[str, str] = {}
     for name in design.scenarios:
         document = documents[name]
         conditions = _conditions(design, document)
@@ -231,11 +235,22 @@ def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan[Cell]:
                 except BeliefNestError as error:
                     invalid.append(Invalid(name, condition, variation.values, str(error)))
                     continue
+                check_called(called, scenario.name, name)
                 cells += _cells(design, document, asked, variation)
     order = {model: number for number, model in enumerate(design.models)}
     # Whole rounds: what is done first is a smaller study of the same form.
     cells.sort(key=lambda cell: (cell.key.repeat, order[cell.key.model]))
     return Plan(tuple(cells), tuple(invalid))
+
+
+def check_called(called: dict[str, str], name: str, source: str) -> None:
+    """Note what the scenario or task of a file is called; InputError if another one is so too."""
+    other = called.setdefault(name, source)
+    if other != source:
+        raise InputError(
+            f"{other} and {source} are both called {name!r}, so that their rows could not be told "
+            "apart; give one another name"
+        )
 
 
 def _variations(design: Design, document: Document) -> Sequence[Variation]:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from beliefnest.errors import InputError, MissingExtraError
+from beliefnest.studies.checking import several
 from beliefnest.studies.counting import Pairs, count_rows, paired_rows
 from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.rows import PROBES, variation_columns
@@ -197,6 +198,8 @@ class StudyResult:
         from beliefnest.studies.plot import plot_accuracy
 
         names = self._columns(self.table.groups[-2:] if by is None else by)
+        if not names:
+            raise InputError("by is empty; name at least one column to draw along")
         return plot_accuracy(count_rows(self.rows, names), names)
 
     def write_page(self, file: str | Path, by: Sequence[str] | str | None = None) -> Path:
@@ -225,11 +228,11 @@ class StudyResult:
 
     def _columns(self, names: Sequence[str] | str) -> list[str]:
         known = [*self.table.first, *variation_columns(self._plan), *self.table.columns]
-        chosen = [names] if isinstance(names, str) else list(names)
+        chosen = several("by", names)
         for name in chosen:
             if name not in known:
                 raise InputError(f"there is no column {name!r}; there are {', '.join(known)}")
-        return chosen
+        return list(chosen)
 
 
 def _frame(

@@ -3,11 +3,13 @@
 import contextlib
 import os
 from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 
-from beliefnest.errors import InputError, MissingExtraError, UnknownNameError
+from beliefnest.errors import BodyError, MissingExtraError, UnknownNameError
 from beliefnest.llm.messages import Usage
+from beliefnest.studies.checking import check_count
 from beliefnest.studies.plan import Keyed
 from beliefnest.studies.spending import spent_in
 from beliefnest.studies.store import StudyFolder
@@ -63,12 +65,12 @@ def run_cells(
     Cells that failed before are tried again.
 
     Raises:
-        InputError: `jobs` is no count.
+        InputError: `jobs` is no number of them.
         UnknownNameError: There is no such backend.
         MissingExtraError: It is not installed.
+        BodyError: A process that played cells was ended.
     """
-    if not isinstance(jobs, int) or jobs < 1:
-        raise InputError(f"jobs is {jobs!r}; it must be at least 1")
+    check_count("jobs", jobs)
     if backend not in BACKENDS:
         raise UnknownNameError(f"there is no backend {backend!r}; there are {', '.join(BACKENDS)}")
     left = [cell for cell in cells if _is_open(folder, cell)]
@@ -163,6 +165,11 @@ def _engine(backend: str, jobs: int) -> Iterator[None]:
         if (error.name or "").partition(".")[0] not in ("dask", "distributed", "ray"):
             raise
         raise MissingExtraError(f"the backend {backend!r} is not installed", backend) from None
+    except BrokenProcessPool:
+        raise BodyError(
+            "a process that played cells was ended, by somebody or for want of memory; what has "
+            "ended is kept, and the same study goes on"
+        ) from None
 
 
 def _enter_dask(stack: ExitStack, jobs: int) -> None:

@@ -8,6 +8,7 @@ from filelock import FileLock
 
 from beliefnest.llm.budget import Budget, RunLimits
 from beliefnest.llm.messages import Usage
+from beliefnest.studies.store import append_line
 
 __all__ = ["SharedBudget", "spent_in"]
 
@@ -38,8 +39,8 @@ class SharedBudget(Budget):
             "output_tokens": usage.output_tokens,
             "cost": usage.cost,
         }
-        with FileLock(f"{self.file}.lock"), self.file.open("a", encoding="utf-8") as file:
-            file.write(json.dumps(line) + "\n")
+        with FileLock(f"{self.file}.lock"):
+            append_line(self.file, json.dumps(line))
 
     @classmethod
     def of(cls, limits: RunLimits, file: Path) -> "SharedBudget":

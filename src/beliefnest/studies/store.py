@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +14,7 @@ from filelock import FileLock
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular_text
 
-__all__ = ["StudyFolder"]
+__all__ = ["StudyFolder", "append_line"]
 
 _PLAN = "study.json"
 _FORM = "beliefnest study 1"
@@ -98,16 +99,14 @@ class StudyFolder:
 
     def note_seconds(self, name: str, seconds: float) -> None:
         """Note how long a cell took."""
-        with (self.path / "seconds.jsonl").open("a", encoding="utf-8") as file:
-            file.write(json.dumps({"cell": name, "seconds": round(seconds, 3)}) + "\n")
+        append_line(self._times, json.dumps({"cell": name, "seconds": round(seconds, 3)}))
 
     def seconds(self) -> dict[str, float]:
         """How long cells took, as far as it is known."""
-        file = self.path / "seconds.jsonl"
-        lines = file.read_text(encoding="utf-8").splitlines() if file.is_file() else []
+        lines = self._times.read_text("utf-8").splitlines() if self._times.is_file() else []
         found = {}
         for line in lines:
-            # The last line may have been cut off by the end of the process.
+            # A process that was ended while it wrote leaves a part of a line.
             if line.endswith("}"):
                 noted = json.loads(line)
                 found[noted["cell"]] = noted["seconds"]
@@ -147,6 +146,8 @@ class StudyFolder:
     def take_over(self, others: Iterable[Path], planned: Collection[str]) -> int:
         """Take the cells of other folders of the same study, which other machines ran.
 
+        With them come their recorded runs, and how long they took.
+
         Args:
             others: The folders.
             planned: Names of all cells of the study.
@@ -159,6 +160,7 @@ class StudyFolder:
                 different results of one cell; nothing was taken.
         """
         new: dict[str, dict[str, Any]] = {}
+        homes: dict[str, StudyFolder] = {}
         for other in map(StudyFolder.existing, others):
             if other.names() and other.names().isdisjoint(planned):
                 raise InputError(
@@ -169,15 +171,27 @@ class StudyFolder:
                 theirs = other.cell(name) or {}
                 ours = new.get(name) or self.cell(name)
                 if ours is None or ours.get("error") is not None:
-                    new[name] = theirs
+                    new[name], homes[name] = theirs, other
                 elif theirs.get("error") is None and theirs != ours:
                     raise InputError(
                         f"{other.path} and {self.path} have different results of the cell {name}; "
                         "one of them ran with another version or model"
                     )
+        seconds = {other.path: other.seconds() for other in homes.values()}
         for name, content in new.items():
+            other = homes[name]
+            run = other.path / str(content.get("run") or f"runs/{name}.bn")
+            if run.is_file():
+                _copy(run, self.run(name))
+            if name in seconds[other.path]:
+                self.note_seconds(name, seconds[other.path][name])
             self.write_cell(name, content)
         return len(new)
+
+    @property
+    def _times(self) -> Path:
+        """How long each cell took, one line each."""
+        return self.path / "seconds.jsonl"
 
 
 def _subjects(plan: Mapping[str, Any]) -> set[str]:
@@ -200,6 +214,22 @@ def _read(file: Path) -> dict[str, Any]:
     if not isinstance(content, dict):
         raise InputError(f"{file} is not part of a study; delete it to run it again")
     return content
+
+
+def append_line(file: Path, line: str) -> None:
+    """Write a line at the end of a file, after whatever was cut off there."""
+    with file.open("ab+") as opened:
+        size = opened.seek(0, os.SEEK_END)
+        opened.seek(max(0, size - 1))
+        begin = b"\n" if opened.read(1) not in (b"", b"\n") else b""
+        opened.write(begin + line.encode() + b"\n")
+
+
+def _copy(source: Path, target: Path) -> None:
+    target.parent.mkdir(exist_ok=True)
+    draft = target.with_name(f"{target.name}.{os.getpid()}.part")
+    shutil.copyfile(source, draft)
+    draft.replace(target)
 
 
 def _write(path: Path, text: str) -> None:

@@ -12,22 +12,32 @@ from beliefnest.errors import InputError, ModelError
 from beliefnest.llm.resolve import resolve_model
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import read_document
-from beliefnest.studies.checking import StudyKeyError, checked_limits, several
+from beliefnest.studies.checking import (
+    StudyKeyError,
+    checked_conditions,
+    checked_limits,
+    is_whole,
+    several,
+)
 from beliefnest.studies.design import Constraint, Design, Template, template_named
 from beliefnest.studies.episode_design import (
     EpisodeDesign,
     Order,
     Policies,
     check_episodes_alone,
+    check_scenarios_alone,
     listed,
     seeds_of,
 )
 from beliefnest.studies.episode_plan import EpisodeCell, plan_episodes
+from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.file import read_design
-from beliefnest.studies.plan import Cell, Plan, plan_cells
+from beliefnest.studies.plan import C, Cell, Plan, plan_cells
 from beliefnest.studies.result import StudyResult
+from beliefnest.studies.rows import PROBES, variation_columns
 from beliefnest.studies.running import OnStudyProgress, StudyProgress, run_cells
 from beliefnest.studies.store import StudyFolder
+from beliefnest.studies.table import Table
 from beliefnest.studies.terms import Terms
 
 __all__ = ["Study"]
@@ -105,31 +115,30 @@ class Study:
                 )
             self._hold(
                 EpisodeDesign(
-                    tasks=several(tasks),
+                    tasks=several("tasks", tasks),
                     policies=listed(policies),
-                    models=() if models is None else several(models),
+                    models=() if models is None else several("models", models),
                     orders=tuple(orders),
                     seeds=seeds_of(seeds, seed),
                     repeats=repeats,
                     variations=variations or {},
-                    conditions=None if conditions is None else tuple(conditions),
+                    conditions=checked_conditions(conditions),
                     world="scripted" if world is None else world,
                     help=help,
                     limits=checked_limits(max_tokens, max_cost),
                 )
             )
             return
-        if policies or orders:
-            raise InputError("policies and orders are for tasks; name `tasks` to play episodes")
+        check_scenarios_alone(policies, orders, seeds, help)
         self._hold(
             Design(
-                scenarios=several(scenarios),
-                models=("offline",) if models is None else several(models),
+                scenarios=several("scenarios", scenarios),
+                models=("offline",) if models is None else several("models", models),
                 templates=_templates(templates),
                 repeats=repeats,
                 seed=seed,
                 variations={} if variations is None else variations,
-                conditions=None if conditions is None else tuple(conditions),
+                conditions=checked_conditions(conditions),
                 constraints=_constraints(constraints),
                 world="embedded" if world is None else world,
                 attempts=attempts,
@@ -176,14 +185,15 @@ class Study:
 
         Raises:
             ScenarioError: A scenario is wrong as it is written.
+            InputError: Scenarios, or a parameter and a column of the table, are called the same.
             UnknownNameError: There is no such task or policy.
         """
         if self._plan is None:
             design = self._design
             if isinstance(design, Design):
-                self._plan = plan_cells(design, self._documents)
+                self._plan = _told_apart(plan_cells(design, self._documents), PROBES)
             else:
-                self._plan = plan_episodes(design)
+                self._plan = _told_apart(plan_episodes(design), EPISODES)
         return self._plan
 
     def run(
@@ -216,6 +226,7 @@ class Study:
             ScenarioError: A scenario is wrong as it is written.
             UnknownNameError: A model, a backend, or what it needs, is not there.
             ModelError: A model lacks its key.
+            BodyError: A process that played cells was ended; the same call goes on.
         """
         place = StudyFolder.open(folder)
         plan = self.plan()
@@ -282,13 +293,31 @@ class Study:
         }
 
 
+def _told_apart(plan: Plan[C], table: Table) -> Plan[C]:
+    """The plan, if what varies has columns of its own in the table; else InputError says so."""
+    for name in variation_columns({"cells": [cell.plain() for cell in plan.cells]}):
+        if name in table.first or name in table.columns:
+            raise InputError(
+                f"the parameter {name!r} is called as a column of the table is; "
+                "give it another name"
+            )
+    return plan
+
+
 def _templates(names: Sequence[str] | None) -> tuple[Template, ...]:
-    return () if names is None else tuple(template_named(name) for name in several(names))
+    if names is None:
+        return ()
+    return tuple(template_named(name) for name in several("templates", names))
 
 
 def _constraints(constraints: Sequence[Constraint]) -> tuple[Constraint, ...]:
     if isinstance(constraints, str) or callable(constraints):
         return (constraints,)
+    given: Sequence[object] = constraints
+    for each in given:
+        if not isinstance(each, str) and not callable(each):
+            told = f"constraints has {each!r}; give expressions, or functions of values"
+            raise StudyKeyError("constraints", told)
     return tuple(constraints)
 
 
@@ -298,12 +327,18 @@ def checked_shard(shard: tuple[int, int]) -> tuple[int, int]:
     Raises:
         InputError: There is no such shard.
     """
-    number, count = shard
+    number, count = _two(shard)
     if not 1 <= number <= count:
         raise InputError(
             f"there is no shard {number} of {count}; give 1/{count} to {count}/{count}"
         )
     return number, count
+
+
+def _two(shard: object) -> tuple[int, int]:
+    if isinstance(shard, tuple | list) and len(shard) == 2 and all(map(is_whole, shard)):
+        return shard[0], shard[1]
+    raise InputError(f"shard is {shard!r}; give its number and how many there are, such as (1, 4)")
 
 
 def _say_nothing(progress: StudyProgress) -> None:
