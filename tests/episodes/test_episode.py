@@ -145,6 +145,10 @@ def test_an_episode_is_branched_at_any_round(tmp_path: Path) -> None:
         assert not late.success
         assert facts_of(episode) == before
         assert not episode.success
+        strange: list[Any] = [-1, 99, 1.5, None]
+        for number in strange:
+            with pytest.raises(bn.InputError, match=f"round {number} was not played"):
+                episode.at(number)
     with bn.Episode.resume(tmp_path / "e.bn", {"anne": Waits()}) as resumed:
         assert resumed.branch == "main"
 

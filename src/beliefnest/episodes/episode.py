@@ -387,8 +387,8 @@ class Episode:
         Raises:
             InputError: There is no such round.
         """
-        if not 0 <= round <= len(self._parts) // len(self._slots):
-            raise InputError(f"round {round} was not played; there are {self.rounds}")
+        if round not in range(len(self._parts) // len(self._slots) + 1):
+            raise InputError(f"round {round!r} was not played; there are {self.rounds}")
         return Moment(self, round)
 
     def forked(self, round: int, policies: Mapping[str, "str | Policy"]) -> Self:
