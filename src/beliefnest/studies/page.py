@@ -89,7 +89,7 @@ def _differences(result: Counted) -> Iterator[tuple[str, str, Pairs]]:
 
 def _players(plan: Mapping[str, Any]) -> str:
     if "tasks" in plan:
-        return f"policies {', '.join(plan['players'])}; {len(plan['seeds'])} instances of each"
+        return f"policies {', '.join(plan['players'])}; {len(plan['seeds'])} seeds of each"
     return f"models {', '.join(plan['models'])}; seed {plan['seed']}"
 
 
