@@ -51,7 +51,7 @@ const CONNECTIONS = {
     createClient: require('./createClient'), ping: require('./ping')
   }`]],
   host: [...WITHOUT_ACCOUNTS, [/minecraft-protocol\/src\/index\.js$/, `module.exports = {
-    createClient () { throw new Error('this build opens no connections') }, createServer: require('./createServer'), states: require('./states')
+    createClient () { throw new Error('this build opens no connections') }, createServer: require('./createServer')
   }`]]
 }
 

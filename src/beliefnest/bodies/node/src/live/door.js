@@ -2,7 +2,6 @@
 /** Where people come in: a TCP port, and who may take an agent's place in the region that is open. */
 const { once } = require('node:events')
 const minecraft = require('minecraft-protocol')
-const { states } = minecraft
 const { TcpEnd } = require('../net/tcpEnd')
 const versions = require('../versions')
 const { CannotListen } = require('./cannotListen')
@@ -17,6 +16,7 @@ const STANDING_TICKS = 10
 // What a handshake asks for who wants to play.
 const LOGIN = 2
 const MOVES = ['position', 'position_look']
+const TURNS = ['look', 'position_look']
 const REALITY = '/'
 // The game's own `/tp`, of oneself.
 const TRAVEL = /^(?:minecraft:)?(?:tp|teleport)(?: @s| (?<who>\w+))? (?<x>-?\d+(?:\.\d+)?) (?<y>-?\d+(?:\.\d+)?) (?<z>-?\d+(?:\.\d+)?)$/
@@ -35,10 +35,11 @@ class PersonEnd extends TcpEnd {
     this.player = null
   }
 
-  /** What a client says of where it is holds only within the box. */
+  /** What a client says of where it is and looks holds only within the box, and only if it is a place and a direction. */
   deliver (name, params) {
     if (this.standstill.takes(this, name, params)) return
-    if (MOVES.includes(name) && !this.mayBeAt(params)) this.player?.sendSelfPosition()
+    const isWrong = (MOVES.includes(name) && !this.mayBeAt(params)) || (TURNS.includes(name) && !isDirection(params))
+    if (isWrong) this.player?.sendSelfPosition()
     else super.deliver(name, params)
   }
 }
@@ -201,10 +202,12 @@ class Door {
 }
 
 /** Says so to a game of another version than ours; who only asks who is here gets an answer all the same. */
-function refuseVersion (client, { protocolVersion, nextState }, { version, minecraftVersion }) {
-  if (protocolVersion === version || nextState !== LOGIN) return
-  client.state = states.LOGIN
-  client.end(`This is Minecraft ${minecraftVersion}; start the game in that version`)
+function refuseVersion (client, asked, { version, minecraftVersion }) {
+  if (asked.protocolVersion === version || asked.nextState !== LOGIN) return
+  // The library answers of its own, and then lets in who does not leave by itself: it is to hear neither of the version nor of the login.
+  asked.protocolVersion = version
+  client.removeAllListeners('login_start')
+  setImmediate(() => client.end(`This is Minecraft ${minecraftVersion}; start the game in that version`))
 }
 
 /** Tells a person who is an agent from now on who else is there. */
@@ -237,6 +240,10 @@ function blame (end, error) {
 
 function isPlace ({ x, y, z }) {
   return [x, y, z].every(Number.isFinite)
+}
+
+function isDirection ({ yaw, pitch }) {
+  return [yaw, pitch].every(Number.isFinite)
 }
 
 module.exports = { Door }

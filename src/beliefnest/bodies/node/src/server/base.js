@@ -11,7 +11,7 @@ module.exports = [
   named('spawn', require('flying-squid/src/lib/plugins/spawn')),
   require('./movement'),
   named('health', require('flying-squid/src/lib/plugins/health')),
-  named('animations', require('flying-squid/src/lib/plugins/animations')),
+  require('./gestures'),
   named('sound', require('flying-squid/src/lib/plugins/sound')),
   named('particle', require('flying-squid/src/lib/plugins/particle')),
   require('./metadata'),

@@ -102,8 +102,35 @@ test('who is cut off with something in hand keeps it', async () => {
   assert.deepEqual((await snapshot()).agents.anne.inventory, { diamond: 3 })
 })
 
-test('a game of another version is told which one it has to be', async () => {
-  const client = join('anne', '1.19.4')
-  const [{ reason }] = await once(client, 'disconnect')
+test('who says to look nowhere stays where they are and looks where they did', async () => {
+  const client = await anneIn()
+  for (const yaw of [NaN, Infinity]) {
+    client.write('look', { yaw, pitch: 0, onGround: true })
+    client.write('position_look', { x: START[0], y: START[1], z: START[2] + 1, yaw, pitch: 0, onGround: true })
+  }
+  await settled(client)
+  const { anne } = (await snapshot()).agents
+  assert.deepEqual([anne.position, anne.yaw, anne.pitch], [START, 0, 0])
+})
+
+test('a game of another version is told which one it has to be, and is not let in', async () => {
+  const client = join('anne', '1.20.2')
+  const entered = []
+  client.on('success', () => entered.push('success'))
+  const [[{ reason }]] = await Promise.all([once(client, 'disconnect'), once(client, 'end')])
   assert.match(reason, /This is Minecraft 1\.20\.4; start the game in that version/)
+  assert.deepEqual(entered, [])
+})
+
+test('all that a game is sent of bots who sprint and sneak can be read', async () => {
+  const client = await anneIn()
+  const errors = []
+  client.on('error', error => errors.push(error.message))
+  const flags = []
+  client.on('entity_metadata', ({ metadata }) => flags.push(...metadata.filter(({ key }) => key === 0)))
+  await node.request('run', {
+    region: '/', programs: { sally: 'for (const state of ["sprint", "sneak"]) for (const on of [true, false]) { bot.setControlState("forward", on); bot.setControlState(state, on); await bot.waitForTicks(3) }' }, timeout_ticks: 200
+  })
+  await settled(client)
+  assert.deepEqual([errors, flags.map(({ type, value }) => [type, value])], [[], [['byte', 8], ['byte', 0], ['byte', 2], ['byte', 0]]])
 })
