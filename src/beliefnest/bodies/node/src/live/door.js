@@ -18,6 +18,7 @@ const LOGIN = 2
 const MOVES = ['position', 'position_look']
 const TURNS = ['look', 'position_look']
 const REALITY = '/'
+const NO_LONGER_SHOWN = 'What you looked at is no longer shown'
 // The game's own `/tp`, of oneself.
 const TRAVEL = /^(?:minecraft:)?(?:tp|teleport)(?: @s| (?<who>\w+))? (?<x>-?\d+(?:\.\d+)?) (?<y>-?\d+(?:\.\d+)?) (?<z>-?\d+(?:\.\d+)?)$/
 
@@ -80,9 +81,16 @@ class Door {
     return listening.socketServer.address().port
   }
 
-  /** Says who may come; who is there and may no longer be is sent away. @returns {string[]} who is there */
+  /**
+   * Says who may come; who is there and may no longer be is sent away, and who looks at something and may come again is told.
+   * @returns {string[]} who is there
+   */
   invite (names) {
+    const before = this.invited
     this.invited = new Set(names)
+    for (const visitor of this.gallery.visitors) {
+      if (this.invited.has(visitor.name) && !before.has(visitor.name)) this.inTurn(() => this.callBack(visitor))
+    }
     for (const [agent, { player }] of this.present) {
       if (!this.invited.has(agent)) player._client.end(`${agent} is played by BeliefNest from now on`)
     }
@@ -94,14 +102,18 @@ class Door {
     if (!await this.regions.pause(isPaused)) return
     for (const { player } of this.present.values()) player.system(isPaused ? 'Time stands still.' : 'Time goes on.')
     if (isPaused) this.standstill.isOn = true
-    else for (const end of this.standstill.end()) if (this.present.get(end.username)?.player._client === end) this.comeBack(end.release())
+    else for (const end of this.standstill.end()) if (this.present.get(end.username)?.player._client === end) this.greet(end.release())
   }
 
-  greet (client) {
-    const refusal = this.refusal(client.username)
-    if (refusal === null) this.inTurn(() => { if (!client.ended) this.letIn(client) })
-    else if (this.mayVisit(client.username)) this.visit(client, this.gallery.entrance)
-    else client.end(refusal)
+  /** Lets somebody in as the agent that they are, or else to look; to whom neither is open it says why, or what is given. */
+  greet (client, parting) {
+    this.inTurn(() => {
+      if (client.ended) return
+      const refusal = this.refusal(client.username)
+      if (refusal === null) this.letIn(client)
+      else if (this.mayVisit(client.username)) this.visit(client, this.gallery.entrance)
+      else client.end(parting ?? refusal)
+    })
   }
 
   /** Whether somebody who is no agent can come and look: at what is embodied, if anything is. */
@@ -128,31 +140,40 @@ class Door {
     else if (exhibit === null) tell(`Nothing stands there. ${this.gallery.directions()}`)
     else if (exhibit.name !== REALITY) this.visit(end.release(), { exhibit, place: centred(place) })
     else if (isSeated) tell('You are there already, and walk.')
-    else if (this.refusal(end.username) === null) this.comeBack(end.release())
-    else this.visit(end.release(), { exhibit, place: centred(place) })
+    else this.goToReality(end.release(), centred(place))
     return true
   }
 
-  comeBack (client) {
-    this.inTurn(() => { if (!client.ended) this.letIn(client) })
+  /** As the agent that they are, or else to look at it. */
+  goToReality (client, place) {
+    this.inTurn(() => {
+      if (client.ended) return
+      const exhibit = this.gallery.at(place)
+      if (this.refusal(client.username) === null) this.letIn(client)
+      else if (exhibit === null) client.end(NO_LONGER_SHOWN)
+      else this.visit(client, { exhibit, place })
+    })
+  }
+
+  /** Somebody who visits can be their agent again: at once if they look at reality, else by its line. */
+  callBack (visitor) {
+    if (!this.gallery.visitors.has(visitor) || this.refusal(visitor.name) !== null) return
+    if (visitor.exhibit.name === REALITY) this.letIn(visitor.end.release())
+    else visitor.system(`You can be ${visitor.name} again. ${this.gallery.directions()}`)
   }
 
   visit (client, { exhibit, place }) {
     const visitor = this.gallery.admit(client, (each, command) => {
-      if (!this.travel(each.end, command, text => each.system(text))) each.system('Visitors have one command: /tp X Y Z')
+      if (!this.travel(each.end, command, text => each.system(text))) each.system(`Visitors have one command, /tp X Y Z. ${this.gallery.directions()}`)
     })
     visitor.enter(exhibit, place)
-    visitor.system(`${greeting(exhibit)} ${this.gallery.directions()}`)
+    const away = this.regions.open?.bodies.has(visitor.name) && !this.invited.has(visitor.name) ? `${visitor.name} is played by BeliefNest now. ` : ''
+    visitor.system(`${greeting(exhibit)} ${away}${this.gallery.directions()}`)
   }
 
   /** What is no longer shown nobody looks at: agents come back to where they stand, visitors have to go. */
   closeExhibit (name) {
-    for (const { end } of this.gallery.close(name)) {
-      const client = end.release()
-      if (this.refusal(client.username) === null) this.comeBack(client)
-      else if (this.mayVisit(client.username)) this.visit(client, this.gallery.entrance)
-      else client.end('What you looked at is no longer shown')
-    }
+    for (const { end } of this.gallery.close(name)) this.greet(end.release(), NO_LONGER_SHOWN)
   }
 
   /** @returns {string | null} why somebody cannot come in, as a sentence for them */

@@ -79,6 +79,34 @@ test('a visitor is shown what stands there, and what their client sends changes 
   assert.ok(!listed.includes('guest'))
 })
 
+test('who was taken over while they looked at something is called back when handed back', async () => {
+  await node.request('exhibit', { exhibit: '/', origin: [0, 0], stand: [0, -51, 0], box: BOX, blocks: floor(), containers: [], signs: [], agents: {} })
+  for (const client of clients.splice(0)) client.socket.destroy()
+  while ((await node.request('people', { invited: ['anne'] })).here.length > 0) await node.request('step', { region: '/', ticks: 1 })
+  const client = join('anne')
+  const answerTo = async command => {
+    const line = told(client)
+    type(client, command)
+    return line
+  }
+  const handOver = async (invited, seen) => {
+    const line = seen === undefined ? null : told(client)
+    assert.deepEqual((await node.request('people', { invited })).here, [])
+    if (seen !== undefined) assert.match(await line, seen)
+  }
+  assert.match(await told(client), /You are anne\. Here/)
+  await answerTo(`tp ${X} -51 0`)
+  await handOver([])
+  await handOver(['anne'], /You can be anne again.*tp 0 -51 0/)
+  assert.match(await answerTo('tp 0 -51 0'), /You are anne\. Here/)
+  await answerTo(`tp ${X} -51 0`)
+  await handOver([])
+  assert.match(await answerTo('tp 0 -51 0'), /the real world.*anne is played by BeliefNest now/)
+  await handOver(['anne'], /You are anne\. Here/)
+  client.socket.destroy()
+  await node.request('close_exhibit', { exhibit: '/' })
+})
+
 test('who is no longer to see anything has to go', async () => {
   const guest = join('other')
   await told(guest)
