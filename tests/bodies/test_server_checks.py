@@ -61,7 +61,7 @@ def opened(world: World, snapshot: Snapshot | None = None) -> None:
         (("lack completions", "lack"), {"patience": 3}, r"does not answer requests for compl"),
         (("verify BeliefNest", "trust BeliefNest"), {}, r"asks Microsoft.*online-mode=false"),
         (("room 0", "room 9"), {}, r"is full.*raise max-players"),
-        (None, {"version": "1.16.5"}, r"speaks Minecraft 1\.16\.5; .* 1\.20\.4, .*1\.21\.8.*pip"),
+        (None, {"version": "1.16.5"}, r"\?version=1\.16\.5 asks.* 1\.20\.4, .*1\.21\.8.*pip"),
     ],
 )
 def test_what_the_operator_lacks_is_said(server, lines, query, said):
@@ -135,6 +135,13 @@ def test_an_agent_whose_name_is_taken_is_not_let_in(server):
     first.close()
 
 
+def test_an_agent_does_not_have_the_operators_name(server):
+    world = open_world(server.address(), 0)
+    with pytest.raises(InputError, match=r"both called BeliefNest; .*\?operator=NAME"):
+        opened(world, replace(start(), agents={"BeliefNest": AgentState((1.5, 1.0, 3.5))}))
+    world.close()
+
+
 @pytest.mark.parametrize(
     ("address", "said"),
     [
@@ -147,6 +154,7 @@ def test_an_agent_whose_name_is_taken_is_not_let_in(server):
         ("minecraft://host?patience=0", "from 1 to 3600"),
         ("minecraft://host?keep=perhaps", "yes or no"),
         ("minecraft://host?where=here", "there are version, operator, at"),
+        ("Minecraft://host?at=0,0&at=16,16", "option 'at' twice"),
     ],
 )
 def test_addresses_are_checked_before_anything_is_started(address, said):

@@ -125,14 +125,17 @@ def structure() -> bytes:
 
 
 def test_a_structure_file_becomes_a_scenario_that_runs(tmp_path, capsys):
-    file, out = tmp_path / "house.nbt", tmp_path / "house.yaml"
+    file, out = tmp_path / "house.nbt", tmp_path / "house 2.1.yaml"
     file.write_bytes(structure())
     assert run_command_line(["capture", str(file), "--at", "8", "-4", "8", "-o", str(out)]) == 0
     told = capsys.readouterr()
     assert "blocks that Minecraft 1.20.4 has not, now air: minecraft:unobtainium" in told.err
     assert "items that Minecraft 1.20.4 has not: ray_gun" in told.err
     assert "beliefnest run" in told.out
-    with Nest.open(Scenario.load(str(out)), "scripted") as nest:
+    # As the file is called, with what a name can have in it.
+    house = Scenario.load(str(out))
+    assert house.name == "house-2-1"
+    with Nest.open(house, "scripted") as nest:
         state = nest["/"].state
         assert state.containers[(8, -3, 8)].items == {"bread": 2}
         # Nobody stood there, so somebody was put where one can stand.

@@ -206,9 +206,11 @@ def test_only_who_is_awaited_comes_in_and_acts(scenario):
             assert anne.left() == "anne is played by BeliefNest from now on"
         assert nest["/"].run("anne", act).ok
         nest.hand_back("anne")
-        with Person(nest.address, "anne"):
+        with Person(nest.address, "anne") as anne:
             nest.wait_for_people()
             assert nest.people == {"anne"}
+            nest.close()
+            assert anne.left() == "The run is over"
 
 
 def test_nothing_is_done_while_time_stands_still(scenario):

@@ -21,7 +21,7 @@ _FORM = "write minecraft://HOST:PORT, with options as ?version=1.20.4&at=0,160&o
 
 def is_server(world: str) -> bool:
     """Whether the name of a world is the address of a server."""
-    return world.startswith(f"{SCHEME}://")
+    return world.lower().startswith(f"{SCHEME}://")
 
 
 def overwriting(world: str) -> str:
@@ -88,6 +88,8 @@ class ServerAddress:
             if key not in _OPTIONS:
                 known = ", ".join(_OPTIONS)
                 raise InputError(f"{text!r} has the option {key!r}; there are {known}")
+            if key in options:
+                raise InputError(f"{text!r} has the option {key!r} twice; give it once")
             options[key] = _OPTIONS[key](key, value)
         return cls(host, _PORT if port is None else port, **options)
 

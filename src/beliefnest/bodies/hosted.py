@@ -1,5 +1,6 @@
 """The embedded world in real time, where people are agents as well; beliefs in another process."""
 
+from contextlib import suppress
 from dataclasses import replace
 from typing import Self
 
@@ -67,11 +68,17 @@ class HostedWorld(RealtimeWorld):
         self._live().request("pause", paused=paused)
 
     def close(self) -> None:
-        """End both processes; people are disconnected."""
+        """End both processes; people are told that it is over."""
         self._closed = True
         self._beliefs.close()
-        if self._channel is not None:
-            self._channel.close()
+        channel, self._channel = self._channel, None
+        if channel is None:
+            return
+        # Where the process has ended already, everybody is gone.
+        with suppress(BodyError):
+            if not channel.lost:
+                channel.request("shutdown")
+        channel.close()
 
     def _started(self) -> Channel:
         channel, self._versions = started(

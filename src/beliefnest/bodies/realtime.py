@@ -8,7 +8,7 @@ from beliefnest.bodies.embedded import EmbeddedBody, EmbeddedWorld
 from beliefnest.bodies.exhibits import Exhibit, Plot, Shown
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.protocol import Body, Sink
-from beliefnest.errors import BodyError
+from beliefnest.errors import BodyError, InputError
 from beliefnest.world.frames import Snapshot
 
 __all__ = ["RealtimeBody", "RealtimeWorld"]
@@ -92,7 +92,13 @@ class RealtimeWorld(ABC):
 
         Raises:
             WorldError: A server's place holds other blocks, or does not become as asked for.
+            InputError: An agent has the name of another player, as the operator of a server.
         """
+        for taken in sorted(self.players & snapshot.agents.keys()):
+            raise InputError(
+                f"an agent and a player besides the agents are both called {taken}; give one of "
+                "them another name, the operator of a server by ?operator=NAME"
+            )
         self._beliefs.knows(snapshot.agents)
         if name != _REALITY:
             return self._beliefs.open_body(name, seed, snapshot, sink)

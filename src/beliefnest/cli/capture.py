@@ -1,5 +1,6 @@
 """`beliefnest capture`: a place of a server, or of a file, as a scenario."""
 
+import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +17,8 @@ __all__ = ["CaptureOptions", "write_capture"]
 
 _LARGEST_FILE = 64 * 2**20
 _SUFFIX = ".yaml"
+_NO_NAME = re.compile(r"[^A-Za-z0-9_-]+")
+_LONGEST_NAME = 64
 
 
 @dataclass(frozen=True)
@@ -50,7 +53,7 @@ def write_capture(options: CaptureOptions) -> None:
     if out.exists():
         raise InputError(f"{out} exists already; choose another name")
     captured = _captured(options)
-    text = scenario_text(options.name or out.stem, _description(options), captured.snapshot)
+    text = scenario_text(options.name or _name(out), _description(options), captured.snapshot)
     try:
         with out.open("x", encoding="utf-8") as file:
             file.write(text)
@@ -59,6 +62,11 @@ def write_capture(options: CaptureOptions) -> None:
     for sentence in captured.left_out:
         sys.stderr.write(printable(f"left out: {sentence}") + "\n")
     sys.stdout.write(f"{out} is written; run it with: beliefnest run {out}\n")
+
+
+def _name(out: Path) -> str:
+    """The file's, of what a scenario's name can have in it."""
+    return _NO_NAME.sub("-", out.stem)[:_LONGEST_NAME]
 
 
 def _captured(options: CaptureOptions) -> Captured:

@@ -57,7 +57,14 @@ class Waiting:
 
         It is called with tick, speaker and text, in the thread and at the end of the call of the
         nest that records it; in it the nest can be used.
+
+        Raises:
+            InputError: It is no function.
         """
+        if not callable(callback):
+            raise InputError(
+                f"on_chat is given {callback!r}; give a function of tick, speaker, text"
+            )
         self._engine.bodies.chat_listeners.append(callback)
 
     @in_turn

@@ -1,6 +1,7 @@
 'use strict'
 /** Where people come in: a TCP port, and who may take an agent's place in the region that is open. */
 const { once } = require('node:events')
+const { setTimeout: sleep } = require('node:timers/promises')
 const minecraft = require('minecraft-protocol')
 const { TcpEnd } = require('../net/tcpEnd')
 const versions = require('../versions')
@@ -18,6 +19,7 @@ const LOGIN = 2
 const MOVES = ['position', 'position_look']
 const TURNS = ['look', 'position_look']
 const REALITY = '/'
+const GOODBYE_MS = 500
 const NO_LONGER_SHOWN = 'What you looked at is no longer shown'
 // The game's own `/tp`, of oneself.
 const TRAVEL = /^(?:minecraft:)?(?:tp|teleport)(?: @s| (?<who>\w+))? (?<x>-?\d+(?:\.\d+)?) (?<y>-?\d+(?:\.\d+)?) (?<z>-?\d+(?:\.\d+)?)$/
@@ -49,6 +51,7 @@ class Door {
   /** @param {import('./liveRegions').LiveRegions} regions */
   constructor (regions) {
     this.regions = regions
+    this.listening = null
     this.invited = new Set()
     // Who is there: player, and for how many ticks where.
     this.present = new Map()
@@ -78,7 +81,17 @@ class Door {
       throw new CannotListen(host, port, error)
     }
     listening.on('error', error => process.stderr.write(`port of people: ${error.message}\n`))
+    this.listening = listening
     return listening.socketServer.address().port
+  }
+
+  /** Sends everybody away with a sentence; resolves when all have heard it, or do not listen. */
+  async close () {
+    const clients = Object.values(this.listening.clients)
+    this.listening.socketServer.close()
+    const gone = clients.map(client => once(client, 'end'))
+    for (const client of clients) client.end('The run is over')
+    await Promise.race([Promise.all(gone), sleep(GOODBYE_MS)])
   }
 
   /**

@@ -24,6 +24,7 @@ class LiveHandler extends RealtimeHandler {
     if (request.op === 'lags') return this.door.gallery.lags()
     if (request.op === 'close_exhibit') return this.door.closeExhibit(request.exhibit) ?? null
     if (request.op === 'pause') return this.door.pause(request.paused).then(() => null)
+    if (request.op === 'shutdown') await this.door.close()
     this.requireTime(request)
     if (request.op === 'run') requireBots(this.door.invited, Object.keys(request.programs))
     return super.perform(request)

@@ -71,7 +71,7 @@ class Operator {
 
   /** @throws {Unplayable} if what is needed cannot be typed */
   async requireRights () {
-    await this.until(() => this.commandNames !== null)
+    if (!await this.until(() => this.commandNames !== null)) throw reasons.noCommands(this.server)
     const lacking = NEEDED.filter(name => !this.can(name))
     if (lacking.length > 0) throw reasons.noOperator(this.server, lacking)
   }

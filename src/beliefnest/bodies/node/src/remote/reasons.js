@@ -48,8 +48,16 @@ const wrongVersion = (server, found, held) => new Unplayable(
   'of these, or install further versions (docs/servers.md: pip install ./packages/versions); one that speaks several, or lies about it, is ' +
   `played on with ?version=${held[0]}`)
 
+const notHeld = ({ version }, held) => new Unplayable(
+  `?version=${version} asks for a Minecraft of which this installation does not have what is needed; it has that for ${held.join(', ')}, ` +
+  'and further versions can be installed (docs/servers.md: pip install ./packages/versions)')
+
 const noOperator = (server, lacking) => new Unplayable(
-  `on ${where(server)} ${server.operator} may not use ${lacking.map(name => `/${name}`).join(', ')}; on its console: op ${server.operator}`)
+  `on ${where(server)} ${server.operator} may not use ${lacking.map(name => `/${name}`).join(', ')}; on its console: op ${server.operator}. ` +
+  'If it is an operator already, the server has no such commands, and cannot be played on')
+
+const noCommands = server => new Unplayable(
+  `${where(server)} does not tell which commands there are, as the game's own does; without /fill, /setblock and others it cannot be played on`)
 
 const noCompletions = server => new Unplayable(
   `${where(server)} does not answer requests for completions of commands, as vanilla ones do: nothing else tells when what was typed is done. ` +
@@ -73,4 +81,4 @@ const gone = (server, player, why, seconds) => new Unplayable(
   `the connection of ${player} to ${where(server)} was lost (${why}) and did not come back within ${seconds} s; ` +
   'what was recorded until the last call is kept: when the server runs again, go on with Nest.resume')
 
-module.exports = { gone, lesser, noCompletions, noLogin, noOperator, onlineMode, refusal, spawnProtected, stalled, tooFar, unreachable, Unplayable, wrongVersion }
+module.exports = { gone, lesser, noCommands, noCompletions, noLogin, noOperator, notHeld, onlineMode, refusal, spawnProtected, stalled, tooFar, unreachable, Unplayable, wrongVersion }

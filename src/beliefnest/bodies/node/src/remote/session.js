@@ -49,10 +49,10 @@ async function beginSession (server, tell = () => {}) {
 
 /** @returns {Promise<string>} the version held that the server speaks, as the address or its answer to a ping says */
 async function versionOf (server) {
-  const { host, port } = server
-  const spoken = server.version === null ? await pinged(server, { host, port }) : { name: server.version, key: server.version }
+  const { host, port, version } = server
+  const spoken = version === null ? await pinged(server, { host, port }) : { name: version, key: version }
   const found = heldFor(spoken.key)
-  if (found === null) throw reasons.wrongVersion(server, spoken.name, held())
+  if (found === null) throw version === null ? reasons.wrongVersion(server, spoken.name, held()) : reasons.notHeld(server, held())
   return found
 }
 
