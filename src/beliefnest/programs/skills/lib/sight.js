@@ -118,4 +118,4 @@ function hindranceOf (bot, position, place = bot.entity.position) {
   return hindrance(shapesOf(bot), eyeAbove(place, bot.getControlState('sneak')), position)
 }
 
-module.exports = { eyeAbove, hindrance, hindranceOf, inReach, sees, shapesOf }
+module.exports = { boxesAt, enters, eyeAbove, hindrance, hindranceOf, inReach, sees, shapesOf }

@@ -3,12 +3,14 @@
 const { once } = require('node:events')
 const { setTimeout: sleep } = require('node:timers/promises')
 const minecraft = require('minecraft-protocol')
+const { Vec3 } = require('vec3')
 const { TcpEnd } = require('../net/tcpEnd')
 const versions = require('../versions')
 const { CannotListen } = require('./cannotListen')
 const { ease } = require('./ease')
 const { Gallery } = require('./gallery')
 const { Standstill } = require('./standstill')
+const { canGo } = require('./way')
 
 // More than there are agents; one who comes too many is told so by name.
 const MOST_CONNECTIONS = 1000
@@ -38,7 +40,7 @@ class PersonEnd extends TcpEnd {
     this.player = null
   }
 
-  /** What a client says of where it is and looks holds only within the box, and only if it is a place and a direction. */
+  /** What a client says of where it is and looks holds only within the box, where a way leads, and if it is a place and a direction. */
   deliver (name, params) {
     if (this.standstill.takes(this, name, params)) return
     const isWrong = (MOVES.includes(name) && !this.mayBeAt(params)) || (TURNS.includes(name) && !isDirection(params))
@@ -210,7 +212,9 @@ class Door {
       client.end(this.refusal(agent))
       return
     }
-    const end = new PersonEnd(client, place => isPlace(place) && region.contains(place), this.standstill, error => blame(end, error))
+    const shapesAt = (x, y, z) => regions.serv.blocks.at(new Vec3(x, y, z)).shapes
+    const mayBeAt = place => isPlace(place) && region.contains(place) && canGo(shapesAt, end.player.position, place)
+    const end = new PersonEnd(client, mayBeAt, this.standstill, error => blame(end, error))
     end.player = regions.bodies.seat(region, end)
     this.present.set(agent, { player: end.player, ticks: 0, place: null })
     end.on('end', () => {

@@ -74,6 +74,18 @@ test('who says to be outside the box, or nowhere, stays where they are', async (
   assert.deepEqual((await snapshot()).agents.anne.position, START)
 })
 
+test('who says to be within a block, beyond one, or far away, stays where they were', async () => {
+  const client = await anneIn()
+  for (const [x, y, z] of [[START[0], -52, START[2]], [-3.5, -51, 6], [9.5, -51, 9.5]]) client.write('position', { x, y, z, onGround: true })
+  await settled(client)
+  assert.deepEqual((await snapshot()).agents.anne.position, START)
+  for (const z of [3.5, START[2]]) {
+    client.write('position', { x: START[0], y: START[1], z, onGround: true })
+    await settled(client)
+    assert.deepEqual((await snapshot()).agents.anne.position, [START[0], START[1], z])
+  }
+})
+
 test('what is no line of text is refused with a sentence, and nobody hears it', async () => {
   const client = await anneIn()
   const told = []
