@@ -34,7 +34,8 @@ SCRIPT = [
 TRAVEL = """
 const there = at => Math.abs(bot.entity.position.x - at) < 30
 bot.chat(LINE)
-while (!there(X) || !bot.blockAt(new Vec3(X - 2, -51, -4))) await waitTicks(bot, 1)
+const corners = [[-2, -4], [2, -4], [-2, 11], [2, 11]].map(([x, z]) => new Vec3(X + x, -51, z))
+while (!there(X) || !corners.every(place => bot.blockAt(place))) await waitTicks(bot, 1)
 """
 LOOK = """
 await goToPosition(bot, new Vec3(X, -51, -2), 1)
