@@ -138,13 +138,13 @@ class EmbeddedBody:
             past={agent: msgspec.to_builtins(each) for agent, each in rules.past.items()},
             senses={agent: each.whole() for agent, each in telling.items()},
         )
-        self._tick, self._internal_state = answer["tick"], answer["hidden"]
+        self._tick, self._internal_state = answer["tick"], answer["internal_state"]
         return messages.results_of(answer["results"], tuple(self._happened))
 
     def step(self, ticks: int) -> None:
         """Let ticks pass without programs."""
         answer = self._channel.request("step", self._take, region=self._region, ticks=ticks)
-        self._tick, self._internal_state = answer["tick"], answer["hidden"]
+        self._tick, self._internal_state = answer["tick"], answer["internal_state"]
 
     def set_state(self, snapshot: Snapshot) -> None:
         """Be as the snapshot says, by changing only what differs; no frames are sent."""
@@ -327,5 +327,5 @@ def _difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
         ],
         "agents": agents,
         "items": messages.items_message(after.items),
-        "hidden": after.internal_state,
+        "internal_state": after.internal_state,
     }

@@ -53,7 +53,7 @@ class _Snapshot(msgspec.Struct, frozen=True):
     containers: list[tuple[int, int, int, dict[str, int]]]
     agents: dict[str, AgentState]
     items: dict[int, DroppedItem] = {}
-    hidden: bytes = b""
+    internal_state: bytes = b""
     signs: list[tuple[int, int, int, str]] = []
 
 
@@ -101,7 +101,7 @@ def snapshot_of(message: Mapping[str, Any], box: Box) -> Snapshot:
         {(x, y, z): items for x, y, z, items in sorted(got.containers, key=lambda c: c[:3])},
         dict(sorted(got.agents.items())),
         dict(sorted(got.items.items())),
-        got.hidden,
+        got.internal_state,
         {(x, y, z): text for x, y, z, text in sorted(got.signs)},
     )
 
@@ -115,7 +115,7 @@ def snapshot_message(snapshot: Snapshot) -> dict[str, Any]:
         "containers": contents_message(snapshot.containers),
         "agents": {name: agent_message(agent) for name, agent in snapshot.agents.items()},
         "items": items_message(snapshot.items),
-        "hidden": snapshot.internal_state,
+        "internal_state": snapshot.internal_state,
         **signs_message(snapshot.signs),
     }
 

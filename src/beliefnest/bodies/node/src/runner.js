@@ -37,7 +37,7 @@ class Runner {
    * @param {object} [senses] PERCEPTS by agent, of those whose programs are to read nothing else
    * @param {{speechTicks: number, remembers: boolean, past: object}} [rules] ticks that it takes to say something; whether
    *   what programs call is remembered, and PAST by agent, of those that go on where they were cut
-   * @returns {Promise<{tick: number, hidden: Uint8Array, results: object}>} RESULT by agent
+   * @returns {Promise<{tick: number, internal_state: Uint8Array, results: object}>} RESULT by agent
    */
   async run (name, programs, timeoutTicks, senses = {}, rules = USUAL) {
     const region = this.regions.get(name)

@@ -36,7 +36,7 @@ describe('forged', () => {
     const { serv } = handler.regions
     const states = blocks.map(([x, y, z, name, properties]) => [x, y, z, serv.blocks.state(name, properties)])
     region = `forged${++regions}`
-    await perform({ op: 'create_region', region, seed: 'forged', box: BOX, tick: 0, blocks: floor(states), containers, agents, items: {}, hidden: null })
+    await perform({ op: 'create_region', region, seed: 'forged', box: BOX, tick: 0, blocks: floor(states), containers, agents, items: {}, internal_state: null })
   }
 
   const run = async (programs, timeout = 900) => (await perform({ op: 'run', region, programs, timeout_ticks: timeout })).results

@@ -79,7 +79,7 @@ const THREE = () => ({
 /** @returns {object} arguments of create_region */
 function region (name, more = {}) {
   return {
-    region: name, seed: name, box: BOX, tick: 0, blocks: floor(), containers: [], agents: THREE(), items: {}, hidden: null, ...more
+    region: name, seed: name, box: BOX, tick: 0, blocks: floor(), containers: [], agents: THREE(), items: {}, internal_state: null, ...more
   }
 }
 

@@ -72,9 +72,9 @@ class LiveRegions extends Regions {
   }
 
   /** Remembers which region there is, from the moment at which somebody may come to be in it. */
-  async restoreState (region, hidden) {
+  async restoreState (region, internalState) {
     this.open = region
-    await super.restoreState(region, hidden)
+    await super.restoreState(region, internalState)
   }
 
   /** Lets time pass where no call does. */
@@ -109,7 +109,7 @@ class LiveRegions extends Regions {
         for (const frame of this.waiting.splice(0)) this.tell(frame)
         region.recorder.forgetClaims()
         await action()
-        return { tick: region.tick, hidden: NOTHING }
+        return { tick: region.tick, internal_state: NOTHING }
       } finally {
         this.isDriven = false
       }
@@ -142,7 +142,7 @@ class LiveRegions extends Regions {
   }
 
   /** Nothing is told to be under way in what goes on by itself. */
-  hidden () {
+  internalState () {
     return NOTHING
   }
 }

@@ -119,9 +119,9 @@ class Bodies {
     for (const { player } of resting) player.emit('rest')
     await this.clock.advance(0)
     if (clean) return
-    const hidden = this.serv.internalState(region)
+    const goesOn = this.serv.internalState(region)
     await this.replace(region, {})
-    this.serv.restoreState(region, hidden)
+    this.serv.restoreState(region, goesOn)
     await this.clock.advance(0)
   }
 

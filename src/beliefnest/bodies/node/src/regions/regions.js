@@ -55,7 +55,7 @@ class Regions {
   }
 
   /** @returns {Promise<object>} SNAPSHOT of the new region, once every bot stands in it */
-  async create ({ region: name, seed, box: corners, tick, blocks, containers, agents, items, hidden, signs = [], known = Object.keys(agents) }) {
+  async create ({ region: name, seed, box: corners, tick, blocks, containers, agents, items, internal_state: internalState, signs = [], known = Object.keys(agents) }) {
     if (this.byName.has(name)) throw new BadRequest(`there already is a region ${name}`)
     const box = new Box(...corners)
     requireHeight(this.serv, box)
@@ -70,7 +70,7 @@ class Regions {
         applySigns(this.serv, region, signs)
         await this.bodies.add(region, agents)
         applyItems(this.serv, region, items)
-        await this.restoreState(region, hidden)
+        await this.restoreState(region, internalState)
       })
     } catch (error) {
       await this.destroy(name)
@@ -80,7 +80,7 @@ class Regions {
   }
 
   /** @returns {Promise<object>} SNAPSHOT of the region once it is as asked */
-  async apply ({ region: name, blocks, containers, agents, items, tick, hidden, signs = [] }) {
+  async apply ({ region: name, blocks, containers, agents, items, tick, internal_state: internalState, signs = [] }) {
     const region = this.get(name)
     await this.inside(region, async () => {
       applyBlocks(this.serv, region, blocks)
@@ -89,21 +89,21 @@ class Regions {
       await this.bodies.apply(region, agents)
       region.tick = tick
       applyItems(this.serv, region, items)
-      await this.restoreState(region, hidden)
+      await this.restoreState(region, internalState)
     })
     return this.snapshot(region)
   }
 
-  /** Makes a region that is as its SNAPSHOT says go on as `hidden` says; null: with nothing under way. */
-  async restoreState (region, hidden) {
-    this.serv.restoreState(region, hidden?.byteLength > 0 ? decode(hidden) : {})
+  /** Makes a region that is as its SNAPSHOT says go on as its internal state says; null: with nothing under way. */
+  async restoreState (region, internalState) {
+    this.serv.restoreState(region, internalState?.byteLength > 0 ? decode(internalState) : {})
     await this.clock.advance(0)
     region.context.setDate(region.tick * TICK_MS)
     region.recorder.settle()
   }
 
   /** @returns {Uint8Array} what goes on in a region and no SNAPSHOT has; empty if nothing does */
-  hidden (region) {
+  internalState (region) {
     const parts = this.serv.internalState(region)
     return Object.keys(parts).length === 0 ? new Uint8Array(0) : encode(parts)
   }
@@ -123,7 +123,7 @@ class Regions {
   /**
    * Runs `action` in a region that goes on as one made anew from its snapshot would, so that
    * neither an end of the process nor a visit to another branch can be seen in what follows.
-   * @returns {Promise<{tick: number, hidden: Uint8Array}>}
+   * @returns {Promise<{tick: number, internal_state: Uint8Array}>}
    */
   async resumed (region, action) {
     return this.inside(region, async () => {
@@ -133,7 +133,7 @@ class Regions {
       settleItems(this.serv, region)
       await this.bodies.settle(region)
       await action()
-      return { tick: region.tick, hidden: this.hidden(region) }
+      return { tick: region.tick, internal_state: this.internalState(region) }
     })
   }
 
@@ -176,7 +176,7 @@ class Regions {
         signs: signStates(this.serv, region),
         agents: agentStates(this.serv, region),
         items: itemStates(this.serv, region),
-        hidden: this.hidden(region)
+        internal_state: this.internalState(region)
       }
     })
   }

@@ -36,7 +36,7 @@ async function capture ({ operator, clock, theirs, registry }, origin, corners) 
     const found = await contents(setup, present)
     await setup.goAbove()
     return {
-      tick: 0, blocks: new Uint8Array(present.buffer), items: {}, hidden: new Uint8Array(0), signs: signs(operator.bot, scene, present), ...found, ...await players(operator, commands, region), strange: [...mapping.strange].sort()
+      tick: 0, blocks: new Uint8Array(present.buffer), items: {}, internal_state: new Uint8Array(0), signs: signs(operator.bot, scene, present), ...found, ...await players(operator, commands, region), strange: [...mapping.strange].sort()
     }
   } finally {
     operator.type(commands.load('remove'))

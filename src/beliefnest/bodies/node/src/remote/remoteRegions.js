@@ -178,7 +178,7 @@ class RemoteRegions {
       for (const frame of region.waiting.splice(0)) this.send(frame)
       region.recorder.forgetClaims()
       await action()
-      return { tick: region.tick, hidden: NOTHING }
+      return { tick: region.tick, internal_state: NOTHING }
     } finally {
       region.isDriven = false
     }
@@ -289,7 +289,7 @@ class RemoteRegions {
   snapshot ({ tick }) {
     const { scene, agents } = this.open
     return {
-      tick, blocks: new Uint8Array(scene.blocks.slice().buffer), containers: scene.contents.states(), agents: agents.states(), items: scene.items.states(), hidden: NOTHING, signs: scene.signStates()
+      tick, blocks: new Uint8Array(scene.blocks.slice().buffer), containers: scene.contents.states(), agents: agents.states(), items: scene.items.states(), internal_state: NOTHING, signs: scene.signStates()
     }
   }
 

@@ -96,7 +96,7 @@ describe('forged at random', () => {
     const agents = Object.fromEntries(AGENTS.map(name => [name, agent(place(), { inventory: { diamond: 3, dirt: 4, stick: 2 } })]))
     return perform({
       op: 'create_region', region, seed: region, box: BOX, tick: 0, blocks: floor(blocks.map(([x, y, z, name]) => [x, y, z, serv.blocks.state(name)])),
-      containers: [[...CHEST, { diamond: 5, dirt: 5 }], [...HIDDEN, { diamond: 9 }]], agents, items: {}, hidden: null
+      containers: [[...CHEST, { diamond: 5, dirt: 5 }], [...HIDDEN, { diamond: 9 }]], agents, items: {}, internal_state: null
     })
   }
 
@@ -175,8 +175,8 @@ describe('forged at random', () => {
       const y = Math.floor(index / shape[2]) % shape[1]
       blocks.push([Math.floor(index / shape[1] / shape[2]) + BOX[0][0], y + BOX[0][1], z + BOX[0][2], state])
     })
-    const { tick, containers, agents, items, hidden } = past
-    await perform({ op: 'apply', region, blocks, containers, agents, items, hidden, tick })
+    const { tick, containers, agents, items, internal_state: internalState } = past
+    await perform({ op: 'apply', region, blocks, containers, agents, items, internal_state: internalState, tick })
   }
 
   const look = async region => (await perform({ op: 'run', region, programs: Object.fromEntries(AGENTS.map(name => [name, READ])), timeout_ticks: 40 })).results

@@ -63,7 +63,7 @@ describe('random programs', () => {
   function create (region, seed, places = START) {
     const states = BLOCKS.map(([x, y, z, name, properties]) => [x, y, z, serv.blocks.state(name, properties)])
     const agents = Object.fromEntries(Object.entries(places).map(([name, place]) => [name, agent(place, { inventory: INVENTORIES[name], food: 8 })]))
-    return perform({ op: 'create_region', region, seed, box: BOXED, tick: 0, blocks: floor(states, BOXED), containers: CONTAINERS, agents, items: {}, hidden: null })
+    return perform({ op: 'create_region', region, seed, box: BOXED, tick: 0, blocks: floor(states, BOXED), containers: CONTAINERS, agents, items: {}, internal_state: null })
   }
 
   /** A snapshot as frames change it; items by what they are, for numbers are the region's own. */
@@ -148,9 +148,9 @@ describe('random programs', () => {
     const last = await perform({ op: 'snapshot', region })
     try {
       assert.deepEqual(told.filter(frame => frame.region !== region), [], 'frames of other regions')
-      // No frame tells what is hidden.
-      const { tick, hidden } = plain(last)
-      assert.deepEqual({ ...fold(first, told), tick, hidden }, plain(last))
+      // No frame tells the internal state.
+      const { tick, internal_state: internalState } = plain(last)
+      assert.deepEqual({ ...fold(first, told), tick, internal_state: internalState }, plain(last))
       const food = Object.fromEntries(Object.entries(first.agents).map(([name, state]) => [name, state.food]))
       const missing = mayBeMissing(worth, told, food, last.tick - first.tick, FURNACES.length + 1)
       const describe = state => serv.blocks.describe(state)

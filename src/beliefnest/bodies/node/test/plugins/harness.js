@@ -27,7 +27,7 @@ async function inWorld ({ agents = { sally: agent([0.5, FLOOR, 0.5]) }, blocks =
   const { serv } = regions
   const states = blocks.map(([x, y, z, name, properties]) => [x, y, z, serv.blocks.state(name, properties)])
   await regions.create({
-    region: 'test', seed: 'test', box, tick: 0, blocks: floor(states, box), containers, agents, items: {}, hidden: null
+    region: 'test', seed: 'test', box, tick: 0, blocks: floor(states, box), containers, agents, items: {}, internal_state: null
   })
   await regions.inside(regions.get('test'), () => body(worldOf(regions, frames)))
 }

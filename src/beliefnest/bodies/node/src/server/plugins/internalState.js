@@ -20,5 +20,5 @@ module.exports.server = (serv) => {
     parts.map(([name, { save }]) => [name, save(region)]).filter(([, rows]) => rows.length > 0))
 
   /** Makes what goes on in a region be as `serv.internalState` said. */
-  serv.restoreState = (region, hidden) => parts.forEach(([name, { restore }]) => restore(hidden[name] ?? [], region))
+  serv.restoreState = (region, parted) => parts.forEach(([name, { restore }]) => restore(parted[name] ?? [], region))
 }
