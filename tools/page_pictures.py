@@ -45,7 +45,7 @@ def _page(folder: Path, name: str, condition: int | None) -> Path:
         command += ["--condition", str(condition)]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     page = folder.with_suffix(".html")
-    write_page(PageOptions(folder, page, "/", None, 2))
+    write_page(PageOptions(folder, page, "/", None, None, 2))
     return page
 
 
