@@ -16,6 +16,7 @@ check: ## Linters and type checkers
 	ruff check
 	ruff format --check
 	mypy
+	mypy tools
 	lint-imports
 	cd src/beliefnest/bodies/node && $(NODE) node_modules/eslint/bin/eslint.js .
 	cd src/beliefnest/viewer/page/web && $(NODE) node_modules/eslint/bin/eslint.js .

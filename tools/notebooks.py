@@ -9,7 +9,7 @@ import nbformat
 NOTEBOOK = Path(__file__).parents[1] / "docs" / "notebooks" / "study.ipynb"
 
 if __name__ == "__main__":
-    notebook = nbformat.read(NOTEBOOK, as_version=4)
+    notebook = nbformat.read(NOTEBOOK, as_version=4)  # type: ignore[no-untyped-call]  # nbformat has no types here
     with tempfile.TemporaryDirectory() as folder:
         resources = {"metadata": {"path": folder}}
         client = nbclient.NotebookClient(notebook, resources=resources, record_timing=False)
@@ -23,4 +23,5 @@ if __name__ == "__main__":
                 if "execution_count" in output:
                     output.execution_count = None
     notebook.metadata.pop("language_info", None)
-    NOTEBOOK.write_text(nbformat.writes(notebook) + "\n", encoding="utf-8")
+    written = nbformat.writes(notebook)  # type: ignore[no-untyped-call]  # as above
+    NOTEBOOK.write_text(written + "\n", encoding="utf-8")

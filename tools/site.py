@@ -201,8 +201,11 @@ def commands_page() -> str:
         "where), 3 if a world or a model failed.",
     ]
     subcommands: Mapping[str, click.Command] = getattr(command, "commands", {})
-    registered = [each for each in app.registered_commands if each.callback is not None]
-    callbacks = {each.name or each.callback.__name__: each.callback for each in registered}
+    callbacks = {
+        each.name or each.callback.__name__: each.callback
+        for each in app.registered_commands
+        if each.callback is not None
+    }
     for name, sub in sorted(subcommands.items()):
         lines += [
             "",
@@ -313,7 +316,8 @@ def _type(value: Mapping[str, Any]) -> str:
     if isinstance(inside, dict):
         form = _type(inside)
         return f"list of {form}" if "items" in value else f"mapping of names to {form}"
-    return _PLAIN.get(value.get("type", "anything"), value.get("type", "anything"))
+    plain: str = value.get("type", "anything")
+    return _PLAIN.get(plain, plain)
 
 
 def _goes_without_saying(form: Mapping[str, Any]) -> bool:

@@ -35,7 +35,8 @@ This file is written by `make notices`.
 
 def notices() -> str:
     """The whole text."""
-    packages, folders = {}, {}
+    packages: dict[str, dict[str, str]] = {}
+    folders: dict[str, Path] = {}
     for listed, modules in BUNDLES.items():
         found = json.loads(listed.read_text(encoding="utf-8"))
         packages |= found
