@@ -64,6 +64,15 @@ def test_a_task_of_another_size_needs_its_order_too(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", bn.Task.names())
+def test_a_task_of_more_agents_needs_its_order_too(name: str) -> None:
+    for seed in range(at_night(10, 2)):
+        task = bn.Task.load(name, seed=seed, agents=3)
+        assert len(task.agents) == 3
+        assert played(task, task.order), seed
+        assert not played(task, task.order - 1), seed
+
+
+@pytest.mark.parametrize("name", bn.Task.names())
 def test_a_task_names_its_source(name: str) -> None:
     first = source_of(name).splitlines()[0]
     assert any(year in first for year in map(str, range(1970, 2026)))

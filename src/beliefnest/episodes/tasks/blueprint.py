@@ -1,25 +1,28 @@
 """A blueprint of which each sees another part (Clark and Krych 2004, building from another's plan).
 
 Blocks are to stand as in a model. Each builder can reach plots whose model only the other sees. Who
-reckons with what the other does not see tells it.
+reckons with what the other does not see tells it. Further agents build beside Bob: they see what he
+sees, and say nothing.
 """
 
 import random
 from typing import Any
 
-from beliefnest.episodes.tasks.building import FLOOR, WALL, belief, chest, hall, wall
+from beliefnest.episodes.tasks.building import FLOOR, WALL, abreast, also, belief, chest, hall, wall
 
-PARAMETERS = {"plots": (2, 1, 3)}
+PARAMETERS = {"plots": (2, 1, 3), "agents": (2, 2, 4)}
 
 _COLOURS = ("red_wool", "white_wool")
+_BUILDERS = ("bob", "carl", "dora")
 
 
-def instance(chance: random.Random, plots: int) -> dict[str, Any]:
+def instance(chance: random.Random, plots: int, agents: int) -> dict[str, Any]:
     """An instance.
 
     Args:
         chance: Draws the model, and what stands on plots at first.
         plots: How many plots each builder can reach.
+        agents: Anne and Bob, and builders beside Bob who see what he sees and say nothing.
     """
     width, depth, middle = 26, 3 * plots + 4, 13
     rows = [3 + 3 * number for number in range(plots)]
@@ -39,11 +42,16 @@ def instance(chance: random.Random, plots: int) -> dict[str, Any]:
             stand.append({"block": first, "at": [x, 1, z]})
             blocks.append({"block": wanted, "at": [model_x, 1, z]})
         stores[(9 if x == 9 else width - 9, 1, depth - 1)] = dict.fromkeys(_COLOURS, plots)
-    feet = {"anne": [11.5, 1, 1.5], "bob": [width - 10.5, 1, 1.5]}
+    builders = _BUILDERS[: agents - 1]
+    feet = {
+        "anne": [11.5, 1, 1.5],
+        **abreast(builders, [width - 10.5, 1, 1.5], (0, 1)),
+    }
     return {
         "description": (
             "On each plot is to stand what stands in its model. Anne and Bob cannot leave their "
             "halves; each sees only the model of the other's plots."
+            f"{also(builders[1:], 'can build where Bob can, but cannot talk.')}"
         ),
         "order": 1,
         "scenario": {
@@ -57,6 +65,7 @@ def instance(chance: random.Random, plots: int) -> dict[str, Any]:
         },
         "goal": {"reach": [{"block": list(place), "like": list(model)} for place, model in pairs]},
         "players": ["anne", "bob"],
+        **({"policies": dict.fromkeys(builders[1:], "search:0")} if builders[1:] else {}),
         "talk": ["anne", "bob"],
         "round_ticks": 10,
         "rounds": 4 + 5 * plots,

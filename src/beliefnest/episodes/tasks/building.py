@@ -1,9 +1,9 @@
 """Parts that built-in tasks have in common: halls with a floor, walls, chests."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-__all__ = ["FLOOR", "WALL", "WINDOW", "belief", "chest", "floor", "hall", "wall"]
+__all__ = ["FLOOR", "WALL", "WINDOW", "abreast", "also", "belief", "chest", "floor", "hall", "wall"]
 
 FLOOR, WALL, WINDOW = "smooth_stone", "stone_bricks", "glass"
 
@@ -23,6 +23,27 @@ def wall(low: Position, high: Position, block: str = WALL) -> dict[str, Any]:
 def chest(at: Position, items: Mapping[str, int] | None = None, label: str = "") -> dict[str, Any]:
     """A chest with what is in it."""
     return {"at": list(at), "items": dict(items or {}), "label": label}
+
+
+def abreast(
+    names: Sequence[str], first: Sequence[float], step: tuple[float, float]
+) -> dict[str, list[float]]:
+    """Feet of people in a row.
+
+    Args:
+        names: Of them all.
+        first: Feet of the first one.
+        step: Blocks in x and z from each to the next.
+    """
+    x, y, z = first
+    return {
+        name: [x + number * step[0], y, z + number * step[1]] for number, name in enumerate(names)
+    }
+
+
+def also(names: Sequence[str], text: str) -> str:
+    """What a description says of further people, as in " Ben and Cleo can ..."; of none nothing."""
+    return f" {' and '.join(name.capitalize() for name in names)} {text}" if names else ""
 
 
 def belief(

@@ -2,82 +2,81 @@
 
 A lift rises while both of its levers are on and somebody is at each of them. There are two lifts;
 both people stand nearer to one that Anne sees and Bob does not know of. They do not talk: who
-reckons with what the other sees goes where the other will be.
+reckons with what the other sees goes where the other will be. Further agents stand beside Bob and
+see what he sees; each lift then has a lever for each of them.
 """
 
 import random
 from typing import Any
 
-from beliefnest.episodes.tasks.building import FLOOR, WALL, hall, wall
+from beliefnest.episodes.tasks.building import FLOOR, WALL, abreast, also, hall, wall
 
-PARAMETERS = {"far": (14, 12, 20)}
+PARAMETERS = {"far": (14, 12, 20), "agents": (2, 2, 4)}
+
+_COMPANIONS = ("bob", "carl", "dora")
 
 
-def instance(chance: random.Random, far: int) -> dict[str, Any]:
+def instance(chance: random.Random, far: int, agents: int) -> dict[str, Any]:
     """An instance.
 
     Args:
         chance: Draws the side and the places.
         far: Blocks between the lift that Bob does not see and the one that he does.
+        agents: Anne and Bob, and people beside Bob who see what he sees; a lever of each lift for
+            each of them.
     """
     corner = 5
     width, depth = corner + far + 5, 12
     x, z = corner + far + chance.randint(0, 2), chance.randint(1, 3)
-    sites = [[(0, 1, 0), (0, 1, 6)], [(x, 1, z), (x, 1, z + 8)]]
+    sites = [_site((0, 1, 0), 6, agents), _site((x, 1, z), 8, agents)]
     # Behind these walls, with a gap at their corner, is the lift that Bob does not see.
     blocks = [
         wall((corner, 1, 0), (corner, 2, 5)),
         wall((0, 1, 7), (corner + 1, 2, 7)),
     ]
-    # Both stand nearer to it than to the other one.
-    anne, bob = (corner - 1.5, 1, 4.5), (corner + 2.5, 1, 10.5)
+    # All stand nearer to it than to the other one.
+    companions = _COMPANIONS[: agents - 1]
+    feet = {
+        "anne": [corner - 1.5, 1, 4.5],
+        **abreast(companions, [corner + 2.5, 1, 10.5], (1, 0)),
+    }
     mirrored = chance.random() < 0.5
     levers = [place for site in sites for place in site]
+    every = "both" if agents == 2 else "all"
     content = {
         "description": (
-            "A lift rises while both of its levers are on, with somebody at each. Anne and Bob do "
-            "not talk."
+            f"A lift rises while {every} of its levers are on, with somebody at each. Anne and Bob "
+            f"do not talk.{also(companions[1:], 'cannot talk either.')}"
         ),
         "order": 1,
         "scenario": {
             "name": "joint-lift",
-            **hall(
-                width,
-                depth,
-                [
-                    *blocks,
-                    *map(_lever, levers),
-                ],
-            ),
-            "agents": {
-                "anne": {"position": list(anne), "facing": "north"},
-                "bob": {"position": list(bob), "facing": "north"},
-            },
+            **hall(width, depth, [*blocks, *map(_lever, levers)]),
+            "agents": {name: {"position": at, "facing": "north"} for name, at in feet.items()},
             "perception": {"max_visible_distance": 64},
             "static_blocks": [FLOOR, WALL],
             "initial_beliefs": [
                 {
                     "path": path,
                     "blocks": [_lever(place) for place in known],
-                    "agents": {"anne": list(anne), "bob": list(bob)},
+                    "agents": feet,
                 }
                 for path, known in (("/anne", levers), ("/**", sites[-1]))
             ],
         },
-        "goal": {
-            "reach": [
-                {
-                    "agents": ["anne", "bob"],
-                    "sites": [[list(place) for place in site] for site in sites],
-                }
-            ]
-        },
+        "goal": {"reach": [{"agents": list(feet), "sites": [list(map(list, s)) for s in sites]}]},
         "players": ["anne"],
-        "policies": {"bob": "search:0"},
+        "policies": dict.fromkeys(companions, "search:0"),
         "round_ticks": 5,
         "rounds": -(-(far + 11) // 5),
     }
     return _mirror(content, width) if mirrored else content
+
+
+def _site(first: tuple[int, int, int], length: int, levers: int) -> list[tuple[int, int, int]]:
+    """Places of a lift's levers, in a row from north to south."""
+    x, y, z = first
+    return [(x, y, z + length * number // (levers - 1)) for number in range(levers)]
 
 
 def _lever(at: tuple[int, int, int]) -> dict[str, Any]:

@@ -2,26 +2,29 @@
 
 What is ordered lies in the pantry, where only the cook can go; tables are where only the waiter can
 go. Between them are hatches. The waiter sees only some of them, and does not look into the others:
-who reckons with what the waiter sees puts what is ordered where it is noticed.
+who reckons with what the waiter sees puts what is ordered where it is noticed. Further agents are
+waiters who see what the first one sees.
 """
 
 import random
 from typing import Any
 
-from beliefnest.episodes.tasks.building import belief, chest, hall, wall
+from beliefnest.episodes.tasks.building import abreast, also, belief, chest, hall, wall
 
-PARAMETERS = {"orders": (1, 1, 2), "hatches": (2, 2, 3)}
+PARAMETERS = {"orders": (1, 1, 2), "hatches": (2, 2, 3), "agents": (2, 2, 4)}
 
 _DISHES = ("bread", "apple", "cookie", "pumpkin_pie")
+_WAITERS = ("waiter", "wendy", "will")
 
 
-def instance(chance: random.Random, orders: int, hatches: int) -> dict[str, Any]:
+def instance(chance: random.Random, orders: int, hatches: int, agents: int) -> dict[str, Any]:
     """An instance.
 
     Args:
         chance: Draws places, dishes, and which hatch can be seen.
         orders: How many dishes are ordered.
         hatches: How many hatches there are; the waiter sees the cook at one of them.
+        agents: The cook, and waiters side by side who see the same.
     """
     width, depth = 10 * hatches, 12
     dishes = chance.sample(_DISHES, orders)
@@ -40,11 +43,16 @@ def instance(chance: random.Random, orders: int, hatches: int) -> dict[str, Any]
     store, table = (near, 1, 1), (near, 1, 11)
     first: dict[tuple[int, int, int], dict[str, int]] = {place: {} for place in places}
     first |= {table: {}, store: dict.fromkeys(dishes, 1)}
-    feet = {"cook": [near + 0.5, 1, 2.5], "waiter": [glass + 0.5, 1, 9.5]}
+    waiters = _WAITERS[: agents - 1]
+    feet = {
+        "cook": [near + 0.5, 1, 2.5],
+        **abreast(waiters, [glass + 0.5, 1, 9.5], (1, 0)),
+    }
     return {
         "description": (
             f"Ordered: {', '.join(dishes)}. The cook fetches it from the store and puts it into a "
             "hatch; the waiter brings it from there to the table. They do not talk."
+            f"{also(waiters[1:], 'can do what the waiter can.')}"
         ),
         "order": 1,
         "scenario": {
@@ -61,7 +69,7 @@ def instance(chance: random.Random, orders: int, hatches: int) -> dict[str, Any]
         },
         "goal": {"reach": [{"container": list(table), "items": dict.fromkeys(dishes, 1)}]},
         "players": ["cook"],
-        "policies": {"waiter": "search:0"},
+        "policies": dict.fromkeys(waiters, "search:0"),
         "round_ticks": 10,
         "rounds": 3 + 3 * orders,
     }

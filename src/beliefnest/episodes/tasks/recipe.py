@@ -2,25 +2,28 @@
 
 Two cooks in rooms apart have one pot between them. What each has to bring lies in its own room, in
 a chest that only the other knows. Whoever reckons with what the other does not know says it.
+Further agents cook beside Bob: they know what he knows, and say nothing.
 """
 
 import random
 from typing import Any
 
-from beliefnest.episodes.tasks.building import belief, chest, hall, wall
+from beliefnest.episodes.tasks.building import abreast, also, belief, chest, hall, wall
 
-PARAMETERS = {"chests": (4, 2, 6), "reach": (18, 16, 24)}
+PARAMETERS = {"chests": (4, 2, 6), "reach": (18, 16, 24), "agents": (2, 2, 4)}
 
 _ITEMS = ("wheat", "sugar", "egg", "apple", "carrot")
+_COOKS = ("bob", "carl", "dora")
 
 
-def instance(chance: random.Random, chests: int, reach: int) -> dict[str, Any]:
+def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dict[str, Any]:
     """An instance.
 
     Args:
         chance: Draws places and ingredients.
         chests: How many chests stand in each room.
         reach: Blocks from the pot to the end of each room.
+        agents: Anne and Bob, and cooks beside Bob who know what he knows and say nothing.
     """
     width, depth = 2 * reach, 8
     wanted = dict(zip(("anne", "bob"), chance.sample(_ITEMS, 2), strict=True))
@@ -34,10 +37,16 @@ def instance(chance: random.Random, chests: int, reach: int) -> dict[str, Any]:
         place: {} for places in rooms.values() for place in places[1:]
     }
     known = {cook: {rooms[cook][0]: {wanted[cook]: 1}} for cook in wanted}
+    cooks = _COOKS[: agents - 1]
+    feet = {
+        "anne": [reach - 3.5, 1, 4.5],
+        **abreast(cooks, [reach + 4.5, 1, 4.5], (0, 1)),
+    }
     return {
         "description": (
             f"The pot needs {wanted['anne']} and {wanted['bob']}. Anne and Bob cannot leave their "
             "rooms. Each knows where in the other's room the other's half is, and not its own."
+            f"{also(cooks[1:], 'can go where Bob can, but cannot talk.')}"
         ),
         "order": 1,
         "scenario": {
@@ -45,19 +54,17 @@ def instance(chance: random.Random, chests: int, reach: int) -> dict[str, Any]:
             **hall(width, depth, [wall((reach, 1, 0), (reach, 3, depth), "glass")]),
             "containers": [chest(pot, label="pot")]
             + [chest(place, items) for place, items in sorted({**others, **contents}.items())],
-            "agents": {
-                "anne": {"position": [reach - 3.5, 1, 4.5], "facing": "north"},
-                "bob": {"position": [reach + 4.5, 1, 4.5], "facing": "north"},
-            },
+            "agents": {name: {"position": at, "facing": "north"} for name, at in feet.items()},
             "perception": {"max_visible_distance": 64, "testimony": "accept"},
             "initial_beliefs": [
                 belief("/**", {pot: {}}),
                 belief("/anne", {pot: {}, **known["bob"]}, complete=False),
-                belief("/bob", {pot: {}, **known["anne"]}, complete=False),
+                *(belief(f"/{name}", {pot: {}, **known["anne"]}, complete=False) for name in cooks),
             ],
         },
         "goal": {"reach": [{"container": list(pot), "items": dict.fromkeys(wanted.values(), 1)}]},
         "players": ["anne", "bob"],
+        **({"policies": dict.fromkeys(cooks[1:], "search:0")} if cooks[1:] else {}),
         "talk": ["anne", "bob"],
         "round_ticks": 5,
         "rounds": -(-(2 * reach + 4) // 5),

@@ -3,24 +3,29 @@
 The watchman knows what is in the coffers and takes it that the spy does not. The spy knows, and
 wants gold. Taken where the watchman looks on, it would tell him that the spy knows what is in them
 now. Whoever does not reckon with what the watchman believes about the spy's own beliefs takes the
-nearest.
+nearest. Further agents are watchmen beside him, who must not learn it either.
 """
 
+import itertools
 import random
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from beliefnest.episodes.tasks.building import belief, chest, hall, wall
+from beliefnest.episodes.tasks.building import abreast, also, belief, chest, hall, wall
 
-PARAMETERS = {"coffers": (5, 2, 6), "reach": (10, 8, 16)}
+PARAMETERS = {"coffers": (5, 2, 6), "reach": (10, 8, 16), "agents": (2, 2, 4)}
+
+_WATCHMEN = ("watchman", "warden", "sentry")
 
 
-def instance(chance: random.Random, coffers: int, reach: int) -> dict[str, Any]:
+def instance(chance: random.Random, coffers: int, reach: int, agents: int) -> dict[str, Any]:
     """An instance.
 
     Args:
         chance: Draws places and sides.
         coffers: How many coffers there are; one of them the watchman cannot see.
         reach: Blocks from the middle of the hall to its ends.
+        agents: The spy, and watchmen side by side, none of whom must find out.
     """
     width, depth = 2 * reach, 10
     mirrored = chance.random() < 0.5
@@ -37,11 +42,12 @@ def instance(chance: random.Random, coffers: int, reach: int) -> dict[str, Any]:
     contents = {place: {"gold_ingot": 3} for place in places}
     (low, high) = sorted((screen["fill"][0][0], screen["fill"][1][0]))
     screen = wall((int(turned(low)), 1, 0), (int(turned(high)), 3, 6))
-    nothing: dict[tuple[int, int, int], dict[str, int]] = {place: {} for place in places}
+    watchmen = _WATCHMEN[: agents - 1]
+    posts = abreast(watchmen, [turned(1.5, feet=True), 1, 5.5], (0, 1))
     return {
         "description": (
             "The spy wants a gold ingot. The watchman must not find out that the spy knows what is "
-            "in any of the coffers."
+            f"in any of the coffers.{also(watchmen[1:], 'must not find out either.')}"
         ),
         "order": 2,
         "scenario": {
@@ -50,25 +56,39 @@ def instance(chance: random.Random, coffers: int, reach: int) -> dict[str, Any]:
             "containers": [chest(place, contents[place], "coffer") for place in places],
             "agents": {
                 "spy": {"position": [turned(reach + 0.5, feet=True), 1, 5.5], "facing": "north"},
-                "watchman": {"position": [turned(1.5, feet=True), 1, 5.5], "facing": "north"},
+                **{name: {"position": at, "facing": "north"} for name, at in posts.items()},
             },
             "perception": {"max_visible_distance": 64},
-            "initial_beliefs": [
-                belief("/**", contents),
-                belief("/watchman/spy/**", nothing, complete=False),
-                belief("/spy/watchman/spy/**", nothing, complete=False),
-            ],
+            "initial_beliefs": _beliefs(watchmen, contents),
         },
         "goal": {
             "reach": [{"agent": "spy", "items": {"gold_ingot": 1}}],
             "never": [
-                {"path": "/watchman/spy", "container": list(place), "items": {"gold_ingot": 1}}
+                {"path": f"/{name}/spy", "container": list(place), "items": {"gold_ingot": 1}}
+                for name in watchmen
                 for place in places
             ],
         },
-        "goals": {"watchman": {}},
+        "goals": {name: {} for name in watchmen},
         "players": ["spy"],
-        "policies": {"watchman": "search:0"},
+        "policies": dict.fromkeys(watchmen, "search:0"),
         "round_ticks": 10,
         "rounds": -(-(2 * reach + 20) // 10),
     }
+
+
+def _beliefs(
+    watchmen: Sequence[str], contents: Mapping[tuple[int, int, int], Mapping[str, int]]
+) -> list[dict[str, Any]]:
+    """All know what is in the coffers, and each watchman takes it that the spy does not."""
+    nothing: dict[tuple[int, int, int], dict[str, int]] = {place: {} for place in contents}
+    # So they also take it of one another that they think so.
+    pairs = [f"{one}/{other}" for one, other in itertools.permutations(watchmen, 2)]
+    known = [f"spy/{name}" for name in watchmen]
+    return [
+        belief("/**", contents),
+        *(
+            belief(f"/{path}/spy/**", nothing, complete=False)
+            for path in (*watchmen, *known, *pairs)
+        ),
+    ]
