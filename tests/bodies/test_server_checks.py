@@ -13,9 +13,9 @@ from beliefnest.bodies.address import ServerAddress, overwriting
 from beliefnest.bodies.protocol import World
 from beliefnest.bodies.worlds import check_world, open_world
 from beliefnest.errors import BeliefNestError, BodyError, InputError, WorldError
-from beliefnest.world.frames import Snapshot
+from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import AgentState, Box
+from beliefnest.world.values import AgentState, Box, EventKind
 
 BOX = Box((0, 0, 0), (6, 4, 6))
 CHEST, FOREIGN = (2, 1, 2), (5, 2, 5)
@@ -58,7 +58,6 @@ def opened(world: World, snapshot: Snapshot | None = None) -> None:
     [
         (("deop BeliefNest", "op BeliefNest"), {}, r"not use /fill, /setblock.*: op BeliefNest"),
         (("lack item", "lack"), {}, r"BeliefNest may not use /item"),
-        (("lack completions", "lack"), {"patience": 3}, r"does not answer requests for compl"),
         (("verify BeliefNest", "trust BeliefNest"), {}, r"asks Microsoft.*online-mode=false"),
         (("room 0", "room 9"), {}, r"is full.*raise max-players"),
         (None, {"version": "1.16.5"}, r"\?version=1\.16\.5 asks.* 1\.20\.4, .*1\.21\.8.*pip"),
@@ -74,6 +73,25 @@ def test_what_a_server_lacks_and_can_do_without_is_named_at_the_start(server, ca
         open_world(server.address(), 0).close()
     said = capsys.readouterr().err
     assert "BeliefNest not use /data (signs cannot be written on" in said
+    assert said.count("\n") == 1
+
+
+def test_a_server_that_answers_no_completions_is_waited_for(capsys):
+    with GameServer(tickMs=10) as server:
+        server.type("lack completions")
+        world = open_world(server.address(), 0)
+        frames: list[Frame] = []
+        body = world.open_body("/", "seed", start(), frames.append)
+        assert body.snapshot().containers == start().containers
+        put = "await depositItemIntoChest(bot, new Vec3(2, 1, 2), {diamond: 2})"
+        result = body.run({"sally": put}, 600)["sally"]
+        assert result.ok, result.error
+        told = [event.kind for frame in frames for event in frame.events]
+        assert EventKind.DEPOSIT_ITEM_INTO_CHEST in told
+        assert body.snapshot().containers == {CHEST: {"emerald": 2, "diamond": 2}}
+        world.close()
+    said = capsys.readouterr().err
+    assert "does not answer requests for completions of commands" in said
     assert said.count("\n") == 1
 
 

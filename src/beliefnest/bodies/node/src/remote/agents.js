@@ -177,8 +177,8 @@ class Agents {
     const has = () => isDeepStrictEqual(this.look(agent).inventory, sorted(state.inventory))
     const isDone = person === null || this.operator.can('data') ? () => there() && has() : there
     const end = performance.now() + PLACING_MS
-    do await person?.ask()
-    while (!await this.operator.until(isDone, person === null ? PLACING_MS : ASKED_EVERY_MS) && performance.now() < end)
+    await person?.ask()
+    while (!await this.operator.until(isDone, ASKED_EVERY_MS) && performance.now() < end) await (person?.ask() ?? this.askSlots(agent))
     if (isDone()) {
       // Before anything else is waited for: it may lose its connection meanwhile.
       witnesses.get(agent).stoodAt = position().floored()
@@ -187,6 +187,12 @@ class Agents {
     }
     const what = there() ? `has ${JSON.stringify(this.look(agent).inventory)} instead of ${JSON.stringify(state.inventory)}` : `is at ${position()} instead of (${state.position.join(', ')})`
     throw new BadRequest(`${agent} ${what} on the server; it said last: ${this.operator.lines.at(-1) ?? 'nothing'}`)
+  }
+
+  /** Has a bot shown all it has anew, as a server does for a click of long ago: what it was shown of single slots may be wrong. */
+  async askSlots (agent) {
+    const { isHere, bot } = this.links.get(agent)
+    if (isHere && !bot.currentWindow) bot._syncWindow(bot.inventory).catch(() => {})
   }
 
   /** Resolves when a bot has been shown the box, or the part of it that the server shows from there. */
@@ -256,7 +262,7 @@ class Agents {
 
   /** Resolves when the server has handled what an agent's client has sent, and the client what was sent to it before. */
   async answered (agent) {
-    await this.bot(agent).tabComplete('/', true, false, ANSWER_MS).catch(() => {})
+    await this.operator.settling.settled(this.bot(agent), ANSWER_MS)
   }
 
   /** Resolves when all agents and the operator are connected. @throws {Unplayable} if one was given up */

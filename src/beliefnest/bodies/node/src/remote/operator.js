@@ -4,6 +4,7 @@ const { once } = require('node:events')
 const { Vec3 } = require('vec3')
 const { NEEDED } = require('./commands')
 const reasons = require('./reasons')
+const { ByCompletions } = require('./settling')
 const { parseSnbt } = require('./snbt')
 const { until } = require('./waiting')
 
@@ -24,10 +25,12 @@ class Operator {
   /**
    * @param {import('./link').Link} link
    * @param {object} server what reasons.js tells of it
+   * @param {object} [settling] of settling.js
    */
-  constructor (link, server) {
+  constructor (link, server, settling = new ByCompletions()) {
     this.link = link
     this.server = server
+    this.settling = settling
     this.lines = []
     // The question that is asked last: answers do not say to which one they are.
     this.asked = Promise.resolve()
@@ -46,7 +49,7 @@ class Operator {
 
   /** Types a command; what comes of it is looked at elsewhere. */
   type (command) {
-    this.bot._client.chat(`/${command}`)
+    this.settling.type(this.bot, command)
   }
 
   /**
@@ -85,8 +88,7 @@ class Operator {
     const end = performance.now() + patience
     while (performance.now() < end) {
       if (!this.link.isHere) await this.link.present()
-      const answer = await this.bot.tabComplete('/', true, false, Math.min(patience, ANSWER_MS)).catch(() => null)
-      if (answer !== null) return
+      if (await this.settling.settled(this.bot, Math.min(patience, ANSWER_MS))) return
     }
     throw reasons.stalled(this.server, this.server.patience)
   }

@@ -59,13 +59,14 @@ const noOperator = (server, lacking) => new Unplayable(
 const noCommands = server => new Unplayable(
   `${where(server)} does not tell which commands there are, as the game's own does; without /fill, /setblock and others it cannot be played on`)
 
-const noCompletions = server => new Unplayable(
-  `${where(server)} does not answer requests for completions of commands, as vanilla ones do: nothing else tells when what was typed is done. ` +
-  'Play on another server, or in another version that it speaks (?version=)')
 
 /** What is said of a server that can be played on, and lacks something. */
 const lesser = (server, lacking) =>
   `${where(server)} lets ${server.operator} not use ${lacking.map(([name, without]) => `/${name} (${without})`).join(', ')}`
+
+const noCompletions = server =>
+  `${where(server)} does not answer requests for completions of commands, as vanilla ones do; commands are typed singly, and 3 ticks waited for where its answer would say ` +
+  'that all is done: what comes later is told later'
 
 const tooFar = (server, { low, high }) => new Unplayable(
   `${where(server)} does not show all of the box from (${low.join(', ')}) to (${high.join(', ')}); raise view-distance in server.properties and restart it`)

@@ -8,6 +8,7 @@ const { Link } = require('./link')
 const { Operator } = require('./operator')
 const { ServerClock } = require('./serverClock')
 const reasons = require('./reasons')
+const { answersCompletions, ByWaiting } = require('./settling')
 const ours = require('../versions')
 const { held, heldFor, registryOf } = require('./versions')
 
@@ -36,10 +37,10 @@ async function beginSession (server, tell = () => {}) {
     const lacking = Object.entries(USEFUL).filter(([name]) => !operator.can(name))
     if (lacking.length > 0) tell(reasons.lesser(server, lacking))
     if (!await operator.until(() => clock.isSet)) throw reasons.stalled(server, PING_MS / 1000)
-    await operator.settled().catch(error => {
-      // Time that goes on there says that it does not stand still.
-      throw link.isHere && clock.silence < PING_MS ? reasons.noCompletions(server) : error
-    })
+    if (!await answersCompletions(operator.bot, clock, server.patience * 1000, () => reasons.stalled(server, server.patience))) {
+      operator.settling = new ByWaiting(clock)
+      tell(reasons.noCompletions(server))
+    }
   } catch (error) {
     await link.close()
     throw error

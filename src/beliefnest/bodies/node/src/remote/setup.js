@@ -199,7 +199,7 @@ class Setup {
     const isGate = () => scene.at(cell).name === 'oak_fence_gate'
     operator.type(this.commands.blocks({ state: shut, low, high }))
     await operator.until(isGate)
-    await bot.tabComplete('/', true, false).catch(() => {})
+    await operator.settling.settled(bot, USE_MS)
     bot._client.write('block_place', {
       location: cell, direction: 1, hand: 0, cursorX: 0.5, cursorY: 0.5, cursorZ: 0.5, insideBlock: false, sequence: 0
     })

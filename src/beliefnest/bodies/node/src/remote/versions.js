@@ -63,11 +63,11 @@ class BlockMapping {
 
   /** @returns {string} a state of ours as the server's commands name it. @throws {BadRequest} if the server has no such block */
   textForServer (state) {
-    if (this.isSame) return this.states.text(state)
+    if (this.isSame) return shortText(this.registry, this.states, state)
     const { name, properties } = this.states.describe(state)
     const found = sameBlock(this.theirs, name, properties, OTHER_NAMES[name] ?? [])
     if (found === null) throw new BadRequest(`the server's Minecraft ${this.theirs.version.minecraftVersion} has no block ${name}; let the scenario have another one`)
-    return this.theirStates.text(found)
+    return shortText(this.theirs, this.theirStates, found)
   }
 
   mapped (state) {
@@ -78,6 +78,12 @@ class BlockMapping {
     this.strange.add(name)
     return this.registry.blocksByName[solid ? STONE : AIR].defaultState
   }
+}
+
+/** A state as commands have it: a block alone is its default state, also on servers whose commands know no properties. */
+function shortText (registry, states, state) {
+  const { name } = states.describe(state)
+  return registry.blocksByName[name].defaultState === state ? name : states.text(state)
 }
 
 /** @returns {number | null} the state of a block of one of these names, with those of the properties that it has */
