@@ -31,6 +31,7 @@ class ByWaiting {
   constructor (clock) {
     this.clock = clock
     this.typed = Promise.resolve()
+    this.done = 0
   }
 
   /** Types a command when something was said to the last one. */
@@ -46,11 +47,17 @@ class ByWaiting {
     const due = this.clock.age + SILENT_TICKS
     await until(() => isSaid || this.clock.age >= due, ANSWER_MS)
     bot.off('messagestr', hear)
+    this.done += 1
   }
 
-  /** @returns {Promise<boolean>} whether the ticks to be waited for have passed in time */
+  /** @returns {Promise<boolean>} false if nothing goes on for so long */
   async settled (_, milliseconds) {
-    await this.typed
+    let isTyped = false
+    this.typed.then(() => { isTyped = true })
+    while (!isTyped) {
+      const { done } = this
+      if (!await until(() => isTyped || this.done > done, milliseconds)) return false
+    }
     const due = this.clock.age + TICKS
     return until(() => this.clock.age >= due, milliseconds)
   }
