@@ -67,7 +67,7 @@ def test_a_task_of_another_size_needs_its_order_too(name: str) -> None:
 def test_a_task_of_more_agents_needs_its_order_too(name: str) -> None:
     # More than one plot takes planners longest of all.
     smaller = {"plots": 1} if name == "blueprint" else {}
-    for seed in range(at_night(10, 2)):
+    for seed in range(at_night(10, 1)):
         task = bn.Task.load(name, seed=seed, agents=3, **smaller)
         assert len(task.agents) == 3
         assert played(task, task.order), seed
