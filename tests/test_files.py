@@ -38,7 +38,7 @@ def odd(request, tmp_path):
 @pytest.mark.parametrize("reader", READERS.values(), ids=READERS)
 def test_what_is_no_regular_file_is_refused(reader, odd):
     with pytest.raises(
-        BeliefNestError, match=r"it is a FIFO|it is a device|Is a directory"
+        BeliefNestError, match=r"it is a FIFO|it is a device|Is a directory|is a folder"
     ) as fault:
         reader(odd)
     assert str(odd) in str(fault.value)
