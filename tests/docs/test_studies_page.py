@@ -44,6 +44,6 @@ def test_the_study_of_episodes_is_one(tmp_path: Path, monkeypatch: pytest.Monkey
     plan = bn.Study.load("minds.yaml").plan()
     players = {cell.key.player for cell in plan.cells}
     assert players == {"search", "random", "model:offline", "anne=program:mine.js"}
-    # The recipe and the scenario are of one size.
-    assert {each.scenario for each in plan.invalid} == {"recipe", "mine.yaml"}
-    assert len(plan.cells) == 50 * 2 * (4 + 1 + 4 + 1)
+    # The scenario is of one size.
+    assert {each.scenario for each in plan.invalid} == {"mine.yaml"}
+    assert len(plan.cells) == 2 * 50 * 2 * (4 + 1 + 4 + 1)

@@ -119,6 +119,9 @@ def killed_in(monkeypatch, op, times=1) -> Iterator[list[int]]:
 
     def asking(self, name, *handlers, **arguments):
         asked.append(name)
+        if name == op and len(killed) < times:
+            # However long this process waits for its turn, Node does not get as far as an answer.
+            os.kill(self.pid, signal.SIGSTOP)
         return request(self, name, *handlers, **arguments)
 
     def answering(self, *handlers):
