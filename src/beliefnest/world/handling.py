@@ -8,11 +8,11 @@ stands, is refused here, and so is what would move something else.
 import functools
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import msgspec
 
-from beliefnest.errors import BodyError, WorldError
+from beliefnest.errors import WorldError
+from beliefnest.world.bundled import read_bundled
 from beliefnest.world.doors import is_door
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Point, Position
@@ -27,7 +27,6 @@ __all__ = [
 ]
 
 _FORMAT = 1
-_BUNDLE = Path(__file__).parents[1] / "_bundle"
 _SIDES = ((0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1), (-1, 0, 0), (1, 0, 0))
 _HALF_WIDTH, _HEIGHT = 0.3, 1.8
 _LAMP = "redstone_lamp"
@@ -210,18 +209,5 @@ def _overlaps(box: tuple[float, ...], place: Position, feet: Point) -> bool:
 
 @functools.lru_cache(maxsize=4)
 def _load(version: str) -> Handling:
-    path = _BUNDLE / f"handling-{version}.msgpack"
-    try:
-        file = msgspec.msgpack.decode(path.read_bytes(), type=_File)
-    except FileNotFoundError:
-        raise BodyError(f"{path} is missing: build the package with `pip install .`") from None
-    except msgspec.MsgspecError as error:
-        raise BodyError(
-            f"{path} is damaged ({error}): build it anew with `pip install .`"
-        ) from None
-    if (file.format, file.minecraft) != (_FORMAT, version):
-        raise BodyError(
-            f"{path} is of Minecraft {file.minecraft}, format {file.format}, where {version}, "
-            f"format {_FORMAT} was expected: build it anew with `pip install .`"
-        )
+    file = read_bundled("handling", version, _File, _FORMAT)
     return Handling(file.breaking, file.pressed)

@@ -13,14 +13,14 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from types import MappingProxyType
 
 import msgspec
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.errors import BodyError, InputError, UnknownNameError
+from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.world.bundled import read_bundled
 
 __all__ = ["AIR", "CONTAINER_NAMES", "BoxBounds", "Registry", "parse_state"]
 
@@ -36,7 +36,6 @@ BoxBounds = tuple[float, float, float, float, float, float]
 """A box in blocks from the block's lower corner: x0, y0, z0, x1, y1, z1."""
 
 _FORMAT = 1
-_BUNDLE = Path(__file__).parents[1] / "_bundle"
 _STATE_TEXT = re.compile(r"(?:minecraft:)?([a-z0-9_]+)(?:\[([^\[\]]*)\])?")
 _PROPERTY_TEXT = re.compile(r"\s*([a-z0-9_]+)\s*=\s*([a-z0-9_]+)\s*")
 _CLEAR_NAMES = frozenset({"glass", "tinted_glass", "glass_pane", "barrier", "ice"})
@@ -288,26 +287,7 @@ def parse_state(text: str) -> tuple[str, dict[str, str]]:
 
 @functools.lru_cache(maxsize=4)
 def _load(version: str) -> Registry:
-    path = _BUNDLE / f"registry-{version}.msgpack"
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError:
-        raise BodyError(
-            f"there is no registry of Minecraft {version} at {path}: "
-            "build the package with `pip install .`"
-        ) from None
-    try:
-        file = msgspec.msgpack.decode(content, type=_RegistryFile)
-    except msgspec.MsgspecError as error:
-        raise BodyError(
-            f"{path} is damaged ({error}): build it anew with `pip install .`"
-        ) from None
-    if (file.format, file.minecraft) != (_FORMAT, version):
-        raise BodyError(
-            f"{path} holds Minecraft {file.minecraft}, format {file.format}, where {version}, "
-            f"format {_FORMAT} was expected: build it anew with `pip install .`"
-        )
-    return _build(file)
+    return _build(read_bundled("registry", version, _RegistryFile, _FORMAT))
 
 
 def _build(file: _RegistryFile) -> Registry:
