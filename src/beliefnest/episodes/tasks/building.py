@@ -3,7 +3,20 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-__all__ = ["FLOOR", "WALL", "WINDOW", "abreast", "also", "belief", "chest", "floor", "hall", "wall"]
+__all__ = [
+    "FLOOR",
+    "WALL",
+    "WINDOW",
+    "Position",
+    "abreast",
+    "also",
+    "belief",
+    "booths",
+    "chest",
+    "floor",
+    "hall",
+    "wall",
+]
 
 FLOOR, WALL, WINDOW = "smooth_stone", "stone_bricks", "glass"
 
@@ -39,6 +52,26 @@ def abreast(
     return {
         name: [x + number * step[0], y, z + number * step[1]] for number, name in enumerate(names)
     }
+
+
+def booths(
+    names: Sequence[str], first: int
+) -> tuple[dict[str, dict[str, Any]], list[dict[str, Any]]]:
+    """People in booths of glass, four blocks apart, from which they see and speak and reach nothing.
+
+    Args:
+        names: Of the people.
+        first: x of the first one.
+
+    Returns:
+        The people as agents of a scenario, who face north at z = 11, and the blocks around them.
+    """
+    places = {name: first + 4 * number for number, name in enumerate(names)}
+    people = {
+        name: {"position": [x + 0.5, 1, 11.5], "facing": "north"} for name, x in places.items()
+    }
+    panes = [wall((x - 1, 1, 10), (x + 1, 2, 12), WINDOW) for x in places.values()]
+    return people, panes + [wall((x, 1, 11), (x, 2, 11), "air") for x in places.values()]
 
 
 def also(names: Sequence[str], text: str) -> str:

@@ -8,7 +8,7 @@ reckon with what Sally believes sees no need to say anything.
 import random
 from typing import Any
 
-from beliefnest.episodes.tasks.building import belief, chest, hall, wall
+from beliefnest.episodes.tasks.building import belief, booths, chest, hall
 
 PARAMETERS = {"chests": (4, 2, 8), "reach": (16, 16, 24), "agents": (2, 2, 4)}
 
@@ -31,10 +31,7 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
     places = _places(chance, chests, sides)
     before, now = places[0], places[1]
     onlookers = _ONLOOKERS[: agents - 2]
-    booths = {name: 4 + 4 * number for number, name in enumerate(("anne", *onlookers))}
-    glass = [wall((x - 1, 1, 10), (x + 1, 2, 12), "glass") for x in booths.values()] + [
-        {"block": "air", "fill": [[x, 1, 11], [x, 2, 11]]} for x in booths.values()
-    ]
+    behind_glass, glass = booths(["anne", *onlookers], 4)
     contents = {place: ({item: 1} if place == now else {}) for place in places}
     jitter = chance.randint(-1, 1)
     return {
@@ -49,10 +46,7 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
             "containers": [chest(place, contents[place]) for place in places],
             "agents": {
                 "sally": {"position": [reach + jitter + 0.5, 1, 5.5], "facing": "north"},
-                **{
-                    name: {"position": [x + 0.5, 1, 11.5], "facing": "north"}
-                    for name, x in booths.items()
-                },
+                **behind_glass,
             },
             "perception": {"max_visible_distance": 64, "testimony": "accept"},
             "initial_beliefs": [

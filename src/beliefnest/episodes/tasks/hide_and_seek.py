@@ -9,7 +9,7 @@ what he makes of what she is after tells him the truth. Further agents look for 
 import random
 from typing import Any
 
-from beliefnest.episodes.tasks.building import abreast, also, belief, chest, hall, wall
+from beliefnest.episodes.tasks.building import abreast, also, belief, booths, chest, hall
 
 PARAMETERS = {"chests": (3, 2, 6), "reach": (14, 14, 20), "agents": (2, 2, 4)}
 
@@ -31,7 +31,7 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
     rows = {x: chance.sample(range(1, 9), 8) for x in ends}
     places = [(ends[number > 0], 1, rows[ends[number > 0]].pop()) for number in range(chests)]
     contents = {place: ({item: 1} if place == places[0] else {}) for place in places}
-    booth = 4
+    eve, glass = booths(["eve"], 4)
     # The treasure is at the end that he is nearer to.
     start = reach + (2 if ends[0] > reach else -2)
     seekers = _SEEKERS[: agents - 1]
@@ -44,21 +44,14 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
         "order": 2,
         "scenario": {
             "name": "hide-and-seek",
-            **hall(
-                width,
-                12,
-                [
-                    wall((booth - 1, 1, 10), (booth + 1, 2, 12), "glass"),
-                    wall((booth, 1, 11), (booth, 2, 11), "air"),
-                ],
-            ),
+            **hall(width, 12, glass),
             "containers": [chest(place, contents[place]) for place in places],
             "agents": {
                 **{
                     name: {"position": at, "facing": "north"}
                     for name, at in abreast(seekers, [start + 0.5, 1, 5.5], (0, 1)).items()
                 },
-                "eve": {"position": [booth + 0.5, 1, 11.5], "facing": "north"},
+                **eve,
             },
             "perception": {"max_visible_distance": 64, "testimony": "accept"},
             "initial_beliefs": [

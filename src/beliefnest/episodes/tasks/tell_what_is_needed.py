@@ -7,15 +7,18 @@ to the book.
 """
 
 import random
+from collections.abc import Sequence
 from typing import Any
 
-from beliefnest.episodes.tasks.building import belief, chest, hall, wall
+from beliefnest.episodes.tasks.building import Position, belief, booths, chest, hall, wall
 
 PARAMETERS = {"items": (3, 1, 4), "moved": (1, 1, 2), "reach": (26, 26, 32), "agents": (2, 2, 4)}
 
 _SPEECH, _ROUND, _REACH = 12, 15, 3
 _ITEMS = ("diamond", "emerald", "apple", "compass", "bread")
 _ONLOOKERS = ("ben", "cleo")
+
+_Contents = dict[Position, dict[str, int]]
 
 
 def instance(
@@ -32,21 +35,10 @@ def instance(
     """
     width, wanted = 2 * reach, chance.sample(_ITEMS, items)
     moved = min(moved, items)
-    ends = chance.sample([1, width - 1], 2)
-    rows = {x: chance.sample(range(1, 9), 8) for x in ends}
-    near = chance.sample([(reach + dx, 1, z) for dx in (-4, -2, 2, 4) for z in (2, 8)], items)
-    before, now = {}, {}
-    for number, item in enumerate(wanted):
-        if number < moved:
-            before[(ends[0], 1, rows[ends[0]].pop())] = {item: 1}
-            now[(ends[1], 1, rows[ends[1]].pop())] = {item: 1}
-        else:
-            before[near[number]] = now[near[number]] = {item: 1}
+    before, now = _placed(chance, wanted, moved, reach)
     places = sorted(before.keys() | now.keys())
     onlookers = _ONLOOKERS[: agents - 2]
-    booths = {name: 8 + 4 * number for number, name in enumerate(onlookers)}
-    glass = [wall((x - 1, 1, 10), (x + 1, 2, 12), "glass") for x in booths.values()]
-    glass += [wall((x, 1, 11), (x, 2, 11), "air") for x in booths.values()]
+    behind_glass, glass = booths(onlookers, 8)
     rounds = -(-(reach + 24 + 6 * items + 20 * (moved - 1)) // _ROUND)
     # As far as she gets in the time that saying what has to be said leaves, and no further.
     book, passage = _passage(width, rounds * _ROUND - _SPEECH * moved - 10)
@@ -66,10 +58,7 @@ def instance(
             "agents": {
                 "nora": {"position": [2.5, 1, 14.5], "facing": "north"},
                 "max": {"position": [reach + 0.5, 1, 5.5], "facing": "north"},
-                **{
-                    name: {"position": [x + 0.5, 1, 11.5], "facing": "north"}
-                    for name, x in booths.items()
-                },
+                **behind_glass,
             },
             "perception": {
                 "max_visible_distance": 80,
@@ -96,7 +85,33 @@ def instance(
     }
 
 
-def _passage(width: int, errand: int) -> tuple[tuple[int, int, int], list[dict[str, Any]]]:
+def _placed(
+    chance: random.Random, wanted: Sequence[str], moved: int, reach: int
+) -> tuple[_Contents, _Contents]:
+    """Where things were, and where they are: the moved ones at one end and the other, the rest between.
+
+    Args:
+        chance: Draws sides and places.
+        wanted: The things.
+        moved: How many of them were moved, the first ones.
+        reach: Blocks from the middle of the hall to its ends.
+    """
+    ends = chance.sample([1, 2 * reach - 1], 2)
+    rows = {x: chance.sample(range(1, 9), 8) for x in ends}
+    middle = [(reach + dx, 1, z) for dx in (-4, -2, 2, 4) for z in (2, 8)]
+    near = chance.sample(middle, len(wanted))
+    before: _Contents = {}
+    now: _Contents = {}
+    for number, item in enumerate(wanted):
+        if number < moved:
+            before[(ends[0], 1, rows[ends[0]].pop())] = {item: 1}
+            now[(ends[1], 1, rows[ends[1]].pop())] = {item: 1}
+        else:
+            before[near[number]] = now[near[number]] = {item: 1}
+    return before, now
+
+
+def _passage(width: int, errand: int) -> tuple[Position, list[dict[str, Any]]]:
     """Where the book is at the end of a passage behind glass, there and back, and its blocks.
 
     Args:
