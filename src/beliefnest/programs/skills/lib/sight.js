@@ -6,7 +6,8 @@
 
 /** How far the middle of a block may be from the eye. */
 const REACH = 6
-const STANDING_EYES = 1.62
+/** How high above their feet people who stand have their eyes. */
+const EYE_HEIGHT = 1.62
 const SNEAKING_EYES = 1.27
 /** How much of a line may lie within a box: touching is not entering. */
 const TOUCH = 1e-9
@@ -108,7 +109,7 @@ function hindrance (shapesAt, eye, block) {
 }
 
 /** Where the eye of somebody is whose feet are at a position. */
-const eyeAbove = (feet, sneaks) => feet.offset(0, sneaks ? SNEAKING_EYES : STANDING_EYES, 0)
+const eyeAbove = (feet, sneaks) => feet.offset(0, sneaks ? SNEAKING_EYES : EYE_HEIGHT, 0)
 
 /** Boxes of the blocks that a bot knows, as `sees` asks for them. */
 const shapesOf = bot => (x, y, z) => bot.world.blockIn(x, y, z)?.shapes ?? []
@@ -118,4 +119,4 @@ function hindranceOf (bot, position, place = bot.entity.position) {
   return hindrance(shapesOf(bot), eyeAbove(place, bot.getControlState('sneak')), position)
 }
 
-module.exports = { boxesAt, enters, eyeAbove, hindrance, hindranceOf, inReach, sees, shapesOf }
+module.exports = { EYE_HEIGHT, boxesAt, enters, eyeAbove, hindrance, hindranceOf, inReach, sees, shapesOf }

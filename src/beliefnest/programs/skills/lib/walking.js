@@ -3,11 +3,10 @@
 const { until } = require('./waiting')
 const { show } = require('./arguments')
 const { passDoors } = require('./doors')
-const { hindranceOf, sees, shapesOf } = require('./sight')
+const { EYE_HEIGHT, hindranceOf, sees, shapesOf } = require('./sight')
 const { stepUntil } = require('./stepping')
 
 const REACH = 4
-const EYES = 1.62
 const STILL = 0.01
 const SETTLE_TICKS = 10
 const MIDDLE = 0.15
@@ -100,11 +99,11 @@ const canSee = (bot, eye, block) => sees(shapesOf(bot), eye, block)
 /** A goal of the pathfinder, and whether it is reached, judged by the eyes of who stands at a place. */
 function viewpoint ({ bot, goals }, block, accepts) {
   const goal = new goals.GoalNear(block.x, block.y, block.z, REACH)
-  goal.isEnd = node => accepts(node, node.offset(0.5, EYES, 0.5))
+  goal.isEnd = node => accepts(node, node.offset(0.5, EYE_HEIGHT, 0.5))
   const arrived = () => {
     const { position } = bot.entity
     // The last step ends somewhere in the block that was aimed at.
-    return accepts(position.floored(), position.offset(0, EYES, 0)) || goal.isEnd(position.floored())
+    return accepts(position.floored(), position.offset(0, EYE_HEIGHT, 0)) || goal.isEnd(position.floored())
   }
   return { goal, arrived }
 }
@@ -118,7 +117,7 @@ async function stepToView (context, block) {
   const middle = bot.entity.position.floored().offset(0.5, 0, 0.5)
   if (hindranceOf(bot, block) === null || hindranceOf(bot, block, middle) !== null) return
   const near = () => bot.entity.position.xzDistanceTo(middle) < MIDDLE || hindranceOf(bot, block) === null
-  await bot.lookAt(middle.offset(0, EYES, 0), true)
+  await bot.lookAt(middle.offset(0, EYE_HEIGHT, 0), true)
   await stepUntil(context, near, STEP_TICKS)
   await settle(bot)
 }

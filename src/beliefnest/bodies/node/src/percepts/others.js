@@ -5,9 +5,9 @@
  */
 const { EventEmitter } = require('node:events')
 const { Vec3 } = require('vec3')
+const { EYE_HEIGHT } = require('../../../../programs/skills/lib/sight')
 
 const FIRST_ITEM = 1000
-const EYES = 1.62
 /** Mineflayer's order of what a player wears and holds. */
 const SLOTS = ['main_hand', 'off_hand', 'feet', 'legs', 'chest', 'head']
 
@@ -93,7 +93,7 @@ class Others {
   }
 
   agent (username) {
-    return this.entity('player', { id: this.idOf(username), username, eyeHeight: EYES })
+    return this.entity('player', { id: this.idOf(username), username, eyeHeight: EYE_HEIGHT })
   }
 
   dropped (number) {

@@ -2,6 +2,7 @@
 /** The bot that serves a place on a server elsewhere: it types commands, and its client is what the place looks like. */
 const { once } = require('node:events')
 const { Vec3 } = require('vec3')
+const { EYE_HEIGHT } = require('../../../../programs/skills/lib/sight')
 const { NEEDED } = require('./commands')
 const reasons = require('./reasons')
 const { ByCompletions } = require('./settling')
@@ -10,7 +11,6 @@ const { until } = require('./waiting')
 
 const ANSWER_MS = 5000
 const MOST_LINES = 20
-const EYE_HEIGHT = 1.62
 const TOP = 1
 // How many commands are typed before the server's answer is awaited: the more, the sooner it answers.
 const FEWEST_AT_ONCE = 8

@@ -1,5 +1,6 @@
 'use strict'
 /** A person who is an agent on a server elsewhere: what the operator sees of them, and what the server says they have. */
+const { EYE_HEIGHT } = require('../../../../programs/skills/lib/sight')
 const { rounded, sorted } = require('../regions/facts')
 const { wrap } = require('../server/angles')
 const { possessionsIn } = require('../places/held')
@@ -12,7 +13,6 @@ const ASKED_EVERY = 20
 // Ticks for which an arm that swung may be about something.
 const SWUNG_WITHIN = 20
 const REACH = 6
-const EYE_HEIGHT = 1.62
 // Radians off the line of sight at which a block still may be what somebody acts on.
 const AIM = 0.8
 const FROM_THE_HAND = 1.5

@@ -1,5 +1,6 @@
 'use strict'
 /** Makes a place on a server elsewhere as asked, and looks whether it is. */
+const { EYE_HEIGHT } = require('../../../../programs/skills/lib/sight')
 const { BadRequest } = require('../channel/errors')
 const { countByName } = require('../server/plugins/lib/items')
 const { stacksIn, totals } = require('../places/held')
@@ -17,7 +18,6 @@ const COLUMNS_MS = 20_000
 const MOST_TOLD = 5
 const ABOVE = 3
 const LINES = 4
-const EYE_HEIGHT = 1.62
 const USE_MS = 3000
 const BESIDE = [[0, -1], [1, 0], [0, 1], [-1, 0]]
 
