@@ -19,7 +19,7 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.errors import BodyError, InputError, UnknownNameError
 from beliefnest.world.bundled import read_bundled
 
 __all__ = ["AIR", "CONTAINER_NAMES", "BoxBounds", "Registry", "parse_state"]

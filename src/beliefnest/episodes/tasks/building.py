@@ -57,7 +57,7 @@ def abreast(
 def booths(
     names: Sequence[str], first: int
 ) -> tuple[dict[str, dict[str, Any]], list[dict[str, Any]]]:
-    """People in booths of glass, four blocks apart, from which they see and speak and reach nothing.
+    """People in booths of glass, four blocks apart, who see and speak and reach nothing.
 
     Args:
         names: Of the people.

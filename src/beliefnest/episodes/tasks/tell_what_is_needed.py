@@ -88,7 +88,7 @@ def instance(
 def _placed(
     chance: random.Random, wanted: Sequence[str], moved: int, reach: int
 ) -> tuple[_Contents, _Contents]:
-    """Where things were, and where they are: the moved ones at one end and the other, the rest between.
+    """Where things were, and where they are: the moved ones at the ends, the rest between.
 
     Args:
         chance: Draws sides and places.
