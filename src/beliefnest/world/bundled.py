@@ -1,23 +1,25 @@
 """Facts of Minecraft in files that are written when the package is built."""
 
 from pathlib import Path
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
 import msgspec
 
 from beliefnest.errors import BodyError
 
-__all__ = ["read_bundled"]
+__all__ = ["Bundled", "read_bundled"]
 
 _BUNDLE = Path(__file__).parents[1] / "_bundle"
 
 
-class _File(Protocol):
+class Bundled(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What every such file says of itself: its format and the version it is about."""
+
     format: int
     minecraft: str
 
 
-FileT = TypeVar("FileT", bound=_File)
+FileT = TypeVar("FileT", bound=Bundled)
 
 
 def read_bundled(kind: str, version: str, form: type[FileT], file_format: int) -> FileT:
@@ -26,7 +28,7 @@ def read_bundled(kind: str, version: str, form: type[FileT], file_format: int) -
     Args:
         kind: What the file is called before its version.
         version: Of Minecraft.
-        form: Its content, which tells its own format and version.
+        form: Its content.
         file_format: The one that is read.
 
     Raises:

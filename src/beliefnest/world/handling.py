@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import msgspec
 
 from beliefnest.errors import WorldError
-from beliefnest.world.bundled import read_bundled
+from beliefnest.world.bundled import Bundled, read_bundled
 from beliefnest.world.doors import is_door
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Point, Position
@@ -41,9 +41,7 @@ class _Breaking(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     drops: dict[str, int]
 
 
-class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    format: int
-    minecraft: str
+class _File(Bundled, frozen=True, forbid_unknown_fields=True):
     breaking: dict[str, _Breaking]
     pressed: dict[str, int]
 

@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.errors import BodyError, InputError, UnknownNameError
-from beliefnest.world.bundled import read_bundled
+from beliefnest.world.bundled import Bundled, read_bundled
 
 __all__ = ["AIR", "CONTAINER_NAMES", "BoxBounds", "Registry", "parse_state"]
 
@@ -53,9 +53,7 @@ class _BlockFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     lets_light_through: bool
 
 
-class _RegistryFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    format: int
-    minecraft: str
+class _RegistryFile(Bundled, frozen=True, forbid_unknown_fields=True):
     blocks: list[_BlockFile]
     shapes: list[list[BoxBounds]]
     items: list[tuple[str, int]]
