@@ -103,13 +103,19 @@ class OlderFormat:
 
 
 class Database:
-    """An open run file; made by `create`, `open` or `read`."""
+    """An open run file; made by `create`, `in_memory`, `open` or `read`.
+
+    Attributes:
+        path: The file.
+        writable: Whether it was opened to be written.
+    """
 
     def __init__(self, connection: sqlite3.Connection, path: Path, lock: WriterLock | None) -> None:
         self._connection = connection
         self._lock = lock
         self._open = True
         self.path = path
+        self.writable = lock is not None
 
     @classmethod
     def create(cls, path: Path) -> "Database":
@@ -131,6 +137,17 @@ class Database:
                     database.execute(statement)
                 database.execute(f"PRAGMA application_id = {APPLICATION_ID}")
                 database.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
+        return database
+
+    @classmethod
+    def in_memory(cls) -> "Database":
+        """What a new run file is, without a file."""
+        memory = ":memory:"
+        connection = sqlite3.connect(memory, isolation_level=None, check_same_thread=False)
+        database = cls(connection, Path(memory), None)
+        database.writable = True
+        for statement in STATEMENTS:
+            database.execute(statement)
         return database
 
     @classmethod
@@ -182,11 +199,6 @@ class Database:
         except BaseException:
             lock.release()
             raise
-
-    @property
-    def writable(self) -> bool:
-        """Whether it was opened to be written."""
-        return self._lock is not None
 
     def execute(self, sql: str, values: Iterable[object] = ()) -> sqlite3.Cursor:
         """Run a statement that returns nothing."""
@@ -258,7 +270,7 @@ class Database:
         finally:
             if self._lock is not None:
                 self._lock.release()
-        if self._lock is None:
+        if not self.writable:
             _remove_empty_log(self.path)
 
     @contextmanager

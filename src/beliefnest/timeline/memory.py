@@ -1,10 +1,13 @@
 """Timelines in memory, for nests that are not kept."""
 
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from operator import attrgetter
+from weakref import finalize
 
+from beliefnest.timeline.database import Database
 from beliefnest.timeline.journal import (
     Entry,
     EntryFilter,
@@ -20,196 +23,41 @@ from beliefnest.timeline.journal import (
     count_of_events,
     is_found,
 )
-from beliefnest.timeline.memory_records import MemoryRecords
+from beliefnest.timeline.records import Records
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
 
 __all__ = ["MemoryJournal"]
 
 
-class MemoryJournal:
-    """A journal that ends with the process."""
-
-    def __init__(self) -> None:
-        self._infos: dict[TimelineKey, TimelineInfo] = {}
-        self._entries: dict[TimelineKey, list[Entry]] = {}
-        self._found: dict[TimelineKey, _Found] = {}
-        self._checkpoints: dict[TimelineKey, dict[tuple[str, int], bytes]] = {}
-        self._body_states: dict[TimelineKey, dict[tuple[int, int], bytes]] = {}
-        self.records = MemoryRecords()
-
-    @property
-    def writable(self) -> bool:
-        """It is."""
-        return True
-
-    def timelines(self) -> Sequence[TimelineInfo]:
-        """All timelines, in order of creation."""
-        return tuple(self._infos.values())
-
-    def info(self, key: TimelineKey) -> TimelineInfo:
-        """One timeline; BranchError if there is none of that key."""
-        info = self._infos.get(key)
-        if info is None:
-            raise branch_missing(key, (k.branch for k in self._infos if k.path == key.path))
-        return info
-
-    def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
-        """Begin an empty timeline; BranchError if it is there or its base is not."""
-        if key in self._infos:
-            raise branch_taken(key)
-        if base is not None:
-            check_base(key, base, self.info(base.timeline).entries)
-        self._infos[key] = TimelineInfo(key, base, start, start)
-        self._entries[key] = []
-        self._found[key] = _Found()
-        self._checkpoints[key] = {}
-        self._body_states[key] = {}
-
-    def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:
-        """Add entries and move the head."""
-        info = self.info(key)
-        check_append(info, entries, head)
-        self._entries[key].extend(entries)
-        self._found[key].extend(entries, info.entries)
-        self._infos[key] = replace(info, head=head, entries=info.entries + len(entries))
-
-    def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
-        """Entries number start to stop - 1, oldest first."""
-        return iter(self._entries[self.info(key).key][start:stop])
-
-    def entries_until(self, key: TimelineKey, tick: int) -> int:
-        """How many entries lie at `tick` or before."""
-        entries = self._entries[self.info(key).key]
-        low, high = 0, len(entries)
-        while low < high:
-            middle = (low + high) // 2
-            if entries[middle].tick <= tick:
-                low = middle + 1
-            else:
-                high = middle
-        return low
-
-    def filtered(
-        self, key: TimelineKey, start: int, stop: int, what: EntryFilter
-    ) -> Iterator[tuple[int, Entry]]:
-        """Those of entries start to stop - 1 that are looked for, with their numbers."""
-        entries, numbers = self._entries[self.info(key).key], self._found[key].numbers[what]
-        low, high = bisect_left(numbers, start), bisect_left(numbers, stop)
-        return iter([(number, entries[number]) for number in numbers[low:high]])
-
-    def events_until(self, key: TimelineKey, entries: int) -> int:
-        """How many events the first `entries` entries have."""
-        found = self._found[self.info(key).key]
-        before = bisect_left(found.numbers[EntryFilter.EVENTS], entries)
-        return found.events[before - 1] if before else 0
-
-    def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
-        """The last state of each agent that the first `entries` entries name."""
-        there, agents = self._entries[self.info(key).key], {}
-        for name, numbers in self._found[key].agents.items():
-            before = bisect_left(numbers, entries)
-            entry = there[numbers[before - 1]] if before else None
-            if isinstance(entry, Frame):
-                agents[name] = entry.agents[name]
-        return agents
-
-    def rename(self, key: TimelineKey, name: str) -> None:
-        """Give a timeline's branch another name; timelines based on it follow."""
-        old = self.info(key)
-        new_key = TimelineKey(key.path, name)
-        if new_key in self._infos:
-            raise branch_taken(new_key)
-        infos = {}
-        for info in self._infos.values():
-            changed = replace(old, key=new_key) if info is old else info
-            if changed.base is not None and changed.base.timeline == key:
-                changed = replace(changed, base=replace(changed.base, timeline=new_key))
-            infos[changed.key] = changed
-        self._infos = infos
-        self._entries[new_key] = self._entries.pop(key)
-        self._found[new_key] = self._found.pop(key)
-        self._checkpoints[new_key] = self._checkpoints.pop(key)
-        self._body_states[new_key] = self._body_states.pop(key)
-        self.records.follow_rename(key.path, key.branch, name)
-
-    def delete(self, key: TimelineKey) -> None:
-        """Remove a timeline; BranchError if another is based on it."""
-        self.info(key)
-        based = [
-            i.key for i in self._infos.values() if i.base is not None and i.base.timeline == key
-        ]
-        if based:
-            raise branch_carries(key, based)
-        del self._infos[key], self._entries[key], self._found[key]
-        del self._checkpoints[key], self._body_states[key]
-        self.records.forget_branch(key.path, key.branch)
-
-    def describe(self, key: TimelineKey, description: str) -> None:
-        """Set a timeline's description."""
-        self._infos[key] = replace(self.info(key), description=description)
-
-    def put_checkpoint(self, key: TimelineKey, name: str, entries: int, body: bytes) -> None:
-        """Keep bytes that stand for the first `entries` entries; InputError if too few."""
-        check_place(self.info(key), entries)
-        self._checkpoints[key][name, entries] = body
-
-    def nearest_checkpoint(
-        self, key: TimelineKey, name: str, entries: int
-    ) -> tuple[int, bytes] | None:
-        """The last checkpoint of that name at or before entry `entries`, with its place."""
-        there = self._checkpoints[self.info(key).key]
-        places = [at for kind, at in there if kind == name and at <= entries]
-        return (max(places), there[name, max(places)]) if places else None
-
-    def put_body_state(self, key: TimelineKey, entries: int, tick: int, state: bytes) -> None:
-        """Keep the internal state of a timeline's body at a moment; InputError if too few."""
-        check_place(self.info(key), entries)
-        self._body_states[key][entries, tick] = state
-
-    def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
-        """The internal state that was kept for a moment; None if none was."""
-        return self._body_states[self.info(key).key].get((entries, tick))
-
-    @contextmanager
-    def together(self) -> Iterator[None]:
-        """Do all that is done inside or, if it raises, none of it."""
-        infos, entries, found = self._infos.copy(), self._entries.copy(), self._found.copy()
-        checkpoints = {key: there.copy() for key, there in self._checkpoints.items()}
-        body_states = {key: there.copy() for key, there in self._body_states.items()}
-        try:
-            with self.records.together():
-                yield
-        except BaseException:
-            for key, info in infos.items():
-                del entries[key][info.entries :]
-                found[key].cut(info.entries)
-            self._infos, self._entries, self._found = infos, entries, found
-            self._checkpoints, self._body_states = checkpoints, body_states
-            raise
-
-    def close(self) -> None:
-        """Nothing is held open."""
-
-
-class _Found:
-    """Which entries of a timeline in memory are looked for, rising.
+@dataclass
+class _Timeline:
+    """A timeline with its entries, and which of them are looked for.
 
     Attributes:
-        numbers: Of entries, by what is looked for.
+        info: What is known of it besides.
+        entries: All of them; only `extend` and `cut` change them.
+        found: Numbers of entries, rising, by what is looked for.
         events: How many events there are up to each entry with events.
-        agents: Entries that tell of an agent, by name.
+        agents: Numbers of the entries that tell of an agent, rising, by name.
+        checkpoints: By name and number of entries.
+        body_states: By number of entries and tick.
     """
 
-    def __init__(self) -> None:
-        self.numbers: dict[EntryFilter, list[int]] = {what: [] for what in EntryFilter}
-        self.events: list[int] = []
-        self.agents: dict[str, list[int]] = {}
+    info: TimelineInfo
+    entries: list[Entry] = field(default_factory=list)
+    found: dict[EntryFilter, list[int]] = field(
+        default_factory=lambda: {what: [] for what in EntryFilter}
+    )
+    events: list[int] = field(default_factory=list)
+    agents: dict[str, list[int]] = field(default_factory=dict)
+    checkpoints: dict[tuple[str, int], bytes] = field(default_factory=dict)
+    body_states: dict[tuple[int, int], bytes] = field(default_factory=dict)
 
-    def extend(self, entries: Sequence[Entry], first: int) -> None:
-        """Take in entries, from number `first` on."""
-        for number, entry in enumerate(entries, start=first):
-            for what, numbers in self.numbers.items():
+    def extend(self, entries: Sequence[Entry], head: int) -> None:
+        """Add entries, and move the head."""
+        for number, entry in enumerate(entries, start=len(self.entries)):
+            for what, numbers in self.found.items():
                 if is_found(entry, what):
                     numbers.append(number)
             count = count_of_events(entry)
@@ -218,9 +66,169 @@ class _Found:
             if isinstance(entry, Frame):
                 for name in entry.agents:
                     self.agents.setdefault(name, []).append(number)
+        self.entries.extend(entries)
+        self.info = replace(self.info, head=head, entries=len(self.entries))
 
-    def cut(self, length: int) -> None:
-        """Forget the entries from number `length` on."""
-        for numbers in (*self.numbers.values(), *self.agents.values()):
+    def copy(self) -> "_Timeline":
+        """The timeline as it is; once entries were added, `cut` has to follow."""
+        checkpoints, body_states = self.checkpoints.copy(), self.body_states.copy()
+        return replace(self, checkpoints=checkpoints, body_states=body_states)
+
+    def cut(self) -> None:
+        """Forget entries that were added since it was copied."""
+        length = self.info.entries
+        del self.entries[length:]
+        for numbers in (*self.found.values(), *self.agents.values()):
             del numbers[bisect_left(numbers, length) :]
-        del self.events[len(self.numbers[EntryFilter.EVENTS]) :]
+        del self.events[len(self.found[EntryFilter.EVENTS]) :]
+
+
+class MemoryJournal:
+    """A journal that ends with the process."""
+
+    def __init__(self) -> None:
+        self._timelines: dict[TimelineKey, _Timeline] = {}
+        self._database = Database.in_memory()
+        # It need not be closed, and can be read when it was.
+        finalize(self, self._database.close)
+        self.records = Records(self._database)
+
+    @property
+    def writable(self) -> bool:
+        """It is."""
+        return True
+
+    def timelines(self) -> Sequence[TimelineInfo]:
+        """All timelines, in order of creation."""
+        return tuple(timeline.info for timeline in self._timelines.values())
+
+    def info(self, key: TimelineKey) -> TimelineInfo:
+        """One timeline; BranchError if there is none of that key."""
+        return self._timeline(key).info
+
+    def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
+        """Begin an empty timeline; BranchError if it is there or its base is not."""
+        if key in self._timelines:
+            raise branch_taken(key)
+        if base is not None:
+            check_base(key, base, self.info(base.timeline).entries)
+        self._timelines[key] = _Timeline(TimelineInfo(key, base, start, start))
+
+    def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:
+        """Add entries and move the head."""
+        timeline = self._timeline(key)
+        check_append(timeline.info, entries, head)
+        timeline.extend(entries, head)
+
+    def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
+        """Entries number start to stop - 1, oldest first."""
+        return iter(self._timeline(key).entries[start:stop])
+
+    def entries_until(self, key: TimelineKey, tick: int) -> int:
+        """How many entries lie at `tick` or before."""
+        return bisect_right(self._timeline(key).entries, tick, key=attrgetter("tick"))
+
+    def filtered(
+        self, key: TimelineKey, start: int, stop: int, what: EntryFilter
+    ) -> Iterator[tuple[int, Entry]]:
+        """Those of entries start to stop - 1 that are looked for, with their numbers."""
+        timeline = self._timeline(key)
+        numbers = timeline.found[what]
+        low, high = bisect_left(numbers, start), bisect_left(numbers, stop)
+        return iter([(number, timeline.entries[number]) for number in numbers[low:high]])
+
+    def events_until(self, key: TimelineKey, entries: int) -> int:
+        """How many events the first `entries` entries have."""
+        timeline = self._timeline(key)
+        before = bisect_left(timeline.found[EntryFilter.EVENTS], entries)
+        return timeline.events[before - 1] if before else 0
+
+    def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
+        """The last state of each agent that the first `entries` entries name."""
+        timeline, agents = self._timeline(key), {}
+        for name, numbers in timeline.agents.items():
+            before = bisect_left(numbers, entries)
+            entry = timeline.entries[numbers[before - 1]] if before else None
+            if isinstance(entry, Frame):
+                agents[name] = entry.agents[name]
+        return agents
+
+    def rename(self, key: TimelineKey, name: str) -> None:
+        """Give a timeline's branch another name; timelines based on it follow."""
+        renamed, new_key = self._timeline(key), TimelineKey(key.path, name)
+        if new_key in self._timelines:
+            raise branch_taken(new_key)
+        renamed.info = replace(renamed.info, key=new_key)
+        for timeline in self._based_on(key):
+            base = timeline.info.base
+            timeline.info = replace(timeline.info, base=base and replace(base, timeline=new_key))
+        # They stay in order of creation.
+        self._timelines = {each.info.key: each for each in self._timelines.values()}
+        self.records.follow_rename(key.path, key.branch, name)
+
+    def delete(self, key: TimelineKey) -> None:
+        """Remove a timeline; BranchError if another is based on it."""
+        self._timeline(key)
+        based = [timeline.info.key for timeline in self._based_on(key)]
+        if based:
+            raise branch_carries(key, based)
+        del self._timelines[key]
+        self.records.forget_branch(key.path, key.branch)
+
+    def describe(self, key: TimelineKey, description: str) -> None:
+        """Set a timeline's description."""
+        timeline = self._timeline(key)
+        timeline.info = replace(timeline.info, description=description)
+
+    def put_checkpoint(self, key: TimelineKey, name: str, entries: int, body: bytes) -> None:
+        """Keep bytes that stand for the first `entries` entries; InputError if too few."""
+        timeline = self._timeline(key)
+        check_place(timeline.info, entries)
+        timeline.checkpoints[name, entries] = body
+
+    def nearest_checkpoint(
+        self, key: TimelineKey, name: str, entries: int
+    ) -> tuple[int, bytes] | None:
+        """The last checkpoint of that name at or before entry `entries`, with its place."""
+        there = self._timeline(key).checkpoints
+        places = [at for kind, at in there if kind == name and at <= entries]
+        return (max(places), there[name, max(places)]) if places else None
+
+    def put_body_state(self, key: TimelineKey, entries: int, tick: int, state: bytes) -> None:
+        """Keep the internal state of a timeline's body at a moment; InputError if too few."""
+        timeline = self._timeline(key)
+        check_place(timeline.info, entries)
+        timeline.body_states[entries, tick] = state
+
+    def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
+        """The internal state that was kept for a moment; None if none was."""
+        return self._timeline(key).body_states.get((entries, tick))
+
+    @contextmanager
+    def together(self) -> Iterator[None]:
+        """Do all that is done inside or, if it raises, none of it."""
+        before = {key: timeline.copy() for key, timeline in self._timelines.items()}
+        try:
+            with self._database.transaction():
+                yield
+        except BaseException:
+            for timeline in before.values():
+                timeline.cut()
+            self._timelines = before
+            raise
+
+    def close(self) -> None:
+        """Nothing is held open."""
+
+    def _timeline(self, key: TimelineKey) -> _Timeline:
+        timeline = self._timelines.get(key)
+        if timeline is None:
+            raise branch_missing(key, (k.branch for k in self._timelines if k.path == key.path))
+        return timeline
+
+    def _based_on(self, key: TimelineKey) -> list[_Timeline]:
+        return [
+            timeline
+            for timeline in self._timelines.values()
+            if timeline.info.base is not None and timeline.info.base.timeline == key
+        ]

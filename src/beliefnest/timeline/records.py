@@ -1,20 +1,21 @@
-"""What a run file keeps besides timelines: what ran, with which results."""
+"""What a run keeps besides its timelines: what ran, with which results."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal, TypeVar
+from typing import Literal, Protocol, TypeVar
 
 import msgspec
 
 from beliefnest.errors import NotBegunError, StoreError
 from beliefnest.timeline import codec
 from beliefnest.timeline.database import Database, Row, checked, checksum
-from beliefnest.timeline.journal import FOLLOW, TimelineKey
+from beliefnest.timeline.journal import FOLLOW, Journal, TimelineKey
 
 __all__ = [
     "ProgramRecord",
     "PromptRecord",
     "Records",
+    "RunJournal",
     "RunRecord",
     "Senses",
     "path_from",
@@ -294,6 +295,14 @@ class Records:
         )
         for number, *row in rows:
             yield number, checked(tuple(row), self._database.path, f"{table} {number}")
+
+
+class RunJournal(Journal, Protocol):
+    """A journal that keeps what ran together with its timelines."""
+
+    @property
+    def records(self) -> Records:
+        """What ran; it follows timelines that are renamed or deleted."""
 
 
 def _belongs_to(record: ProgramRecord | PromptRecord) -> TimelineKey:

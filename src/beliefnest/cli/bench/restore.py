@@ -8,9 +8,8 @@ from beliefnest.bodies.embedded import EmbeddedWorld
 from beliefnest.cli.bench.figures import Figure, median_seconds
 from beliefnest.errors import BodyError
 from beliefnest.nest.acting.engine import Engine
-from beliefnest.nest.past.recording import Recording
+from beliefnest.nest.face.opening import Start, begun
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.timeline.memory import MemoryJournal
 
 __all__ = ["measure"]
 
@@ -22,7 +21,7 @@ _AGENTS = ("ann", "bob", "cleo")
 def measure() -> Sequence[Figure]:
     """From the kill until all bodies have gone on by a tick."""
     world = EmbeddedWorld.start(0)
-    engine = Engine(Recording(_room().setting, MemoryJournal()), world).begin()
+    engine = begun(Start.of(_room(), "embedded", 0), world, None)
     try:
         _go_apart(engine)
 

@@ -19,7 +19,7 @@ from beliefnest.nest.past.setting_codec import encode_start
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.prompts import Renderer
 from beliefnest.timeline.memory import MemoryJournal
-from beliefnest.timeline.records import RunRecord
+from beliefnest.timeline.records import RunJournal, RunRecord
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.nameable import ClaimsFrom
 
@@ -113,11 +113,7 @@ def begun(
         InputError: People are to be in it, and cannot join this world.
     """
     _invite(start.setting, world)
-    if store is None:
-        recording = Recording(start.setting, MemoryJournal(), start.seed, renderer)
-        recording.journal.records.add_versions(own_versions())
-        return Engine(recording, world, reader_of(claims_from, recording)).begin()
-    journal = SqliteJournal.create_file(store)
+    journal: RunJournal = MemoryJournal() if store is None else SqliteJournal.create_file(store)
     try:
         with journal.together():
             journal.records.set_run(start.record(world))

@@ -11,7 +11,7 @@ from beliefnest.nest.face.telling import Telling
 from beliefnest.nest.face.viewing import Viewing
 from beliefnest.nest.past.over_time import Moment, over_time
 from beliefnest.nest.past.recording import Recording, read_recording
-from beliefnest.nest.past.run_log import RunJournal
+from beliefnest.timeline.records import RunJournal
 from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.journal import FOLLOW, TimelineKey, lineage
 from beliefnest.timeline.records import ProgramRecord, PromptRecord

@@ -13,7 +13,7 @@ from typing import Self
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import BranchError, StoreError, TickError
 from beliefnest.nest.past.history import History
-from beliefnest.nest.past.run_log import RunJournal
+from beliefnest.timeline.records import RunJournal
 from beliefnest.nest.past.setting import MAIN, Setting
 from beliefnest.nest.past.setting_codec import decode_start
 from beliefnest.nest.past.views import Blocks, LiveState
