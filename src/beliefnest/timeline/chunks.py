@@ -8,48 +8,64 @@ that are looked for are found without reading the others.
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from pathlib import Path
+from typing import NamedTuple
 
 import msgspec
 import zstandard
 
 from beliefnest.errors import BranchError, StoreError
 from beliefnest.timeline import codec
-from beliefnest.timeline.database import Database, Row, checked, checksum
+from beliefnest.timeline.database import Database
 from beliefnest.timeline.journal import Entry, EntryFilter, count_of_events, is_found
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
 
-__all__ = ["CHUNK_ENTRIES", "Chunks", "decompressed"]
+__all__ = ["CHUNK_ENTRIES", "Chunks"]
 
 CHUNK_ENTRIES = 128
 """Entries of one compressed chunk: larger ones hardly pack better and are slower to read from."""
 
-_COLUMNS = (
-    "timeline, first, count, first_tick, last_tick, events, changes, agents, compressed, body"
-)
+_COMPRESSION = 1
+"""Level of zstandard; higher ones save nothing on poses, which are noise in their last digits."""
 
 
-def decompressed(unpacker: zstandard.ZstdDecompressor, body: bytes, path: Path) -> bytes:
-    """Unpacked bytes of a value of the file `path`; StoreError if they are damaged."""
-    try:
-        return unpacker.decompress(body)
-    except zstandard.ZstdError as fault:
-        raise StoreError(f"{path} is damaged; restore it from a copy ({fault})") from fault
+class _Chunk(NamedTuple):
+    """A row of the table of chunks."""
+
+    timeline: int
+    first: int
+    count: int
+    first_tick: int
+    last_tick: int
+    events: int
+    changes: int
+    agents: bytes
+    compressed: int
+    body: bytes
+
+
+_COLUMNS = ", ".join(_Chunk._fields)
 
 
 class Chunks:
     """The chunks of all timelines of a file, which are named by their rows' ids."""
 
-    def __init__(
-        self,
-        database: Database,
-        packer: zstandard.ZstdCompressor,
-        unpacker: zstandard.ZstdDecompressor,
-    ) -> None:
+    def __init__(self, database: Database) -> None:
         self._database = database
-        self._packer = packer
-        self._unpacker = unpacker
+        self._packer = zstandard.ZstdCompressor(level=_COMPRESSION)
+        self._unpacker = zstandard.ZstdDecompressor()
+
+    def compressed(self, body: bytes) -> bytes:
+        """The bytes, compressed."""
+        return self._packer.compress(body)
+
+    def decompressed(self, body: bytes) -> bytes:
+        """What was compressed; StoreError if it is damaged."""
+        try:
+            return self._unpacker.decompress(body)
+        except zstandard.ZstdError as fault:
+            path = self._database.path
+            raise StoreError(f"{path} is damaged; restore it from a copy ({fault})") from fault
 
     def add(
         self,
@@ -97,8 +113,9 @@ class Chunks:
             found = self._chunk(timeline, "first <= ? ORDER BY first DESC", start)
             if found is None and gone is not None and not self._has(timeline):
                 raise gone()
-            first, encoded = (0, []) if found is None else self._unpacked(found)
-            part = encoded[start - first : stop - first]
+            part = []
+            if found is not None:
+                part = self._encoded(found)[start - found.first : stop - found.first]
             if not part:
                 raise StoreError(
                     f"{self._database.path} is damaged; restore it from a copy "
@@ -112,8 +129,7 @@ class Chunks:
         found = self._chunk(timeline, "last_tick > ? ORDER BY last_tick, first", tick)
         if found is None:
             return None
-        first, encoded = self._unpacked(found)
-        return first + bisect_right(codec.decode_ticks(encoded), tick)
+        return found.first + bisect_right(codec.decode_ticks(self._encoded(found)), tick)
 
     def filtered(
         self, timeline: int, start: int, stop: int, what: EntryFilter
@@ -130,10 +146,10 @@ class Chunks:
             )
             if found is None:
                 return
-            first, encoded = self._unpacked(found)
-            last = min(stop, first + len(encoded))
-            for number in range(max(start, first), last):
-                entry = codec.decode_entry(encoded[number - first])
+            encoded = self._encoded(found)
+            last = min(stop, found.first + found.count)
+            for number in range(max(start, found.first), last):
+                entry = codec.decode_entry(encoded[number - found.first])
                 if is_found(entry, what):
                     yield number, entry
             start = last
@@ -147,9 +163,8 @@ class Chunks:
         )
         count = 0 if whole is None else int(whole[0])
         last = self._chunk(timeline, "first < ? ORDER BY first DESC", entries)
-        first, encoded = (0, []) if last is None else self._unpacked(last)
-        if first + len(encoded) > entries:
-            part = (codec.decode_entry(entry) for entry in encoded[: entries - first])
+        if last is not None and last.first + last.count > entries:
+            part = map(codec.decode_entry, self._encoded(last)[: entries - last.first])
             count += sum(map(count_of_events, part))
         return count
 
@@ -159,28 +174,24 @@ class Chunks:
         first = 0
         agents: dict[str, AgentState | None] = {}
         if last is not None:
-            first, count = last[1], last[2]
-            if first + count <= entries:
-                first += count
+            first = last.first
+            if first + last.count <= entries:
+                first += last.count
             agents = self._agents_before(timeline, first)
         return agents | codec.decode_last_agents(self.raw(timeline, first, entries))
 
     def _agents_before(self, timeline: int, first: int) -> dict[str, AgentState | None]:
         """What the compressed chunk before an entry, if there is one, knows of agents."""
         found = self._chunk(timeline, "first < ? ORDER BY first DESC", first)
-        if found is None:
-            return {}
-        known = checked(found, self._database.path, "entries")[7]
-        return codec.decode_agents(self._decompressed(known))
+        return {} if found is None else codec.decode_agents(self.decompressed(found.agents))
 
     def _has(self, timeline: int) -> bool:
         return bool(self._database.rows("SELECT id FROM timeline WHERE id = ?", (timeline,)))
 
-    def _chunk(self, timeline: int, where: str, *values: int) -> Row | None:
-        return self._database.row(
-            f"SELECT {_COLUMNS}, seal FROM piece WHERE timeline = ? AND {where} LIMIT 1",
-            (timeline, *values),
-        )
+    def _chunk(self, timeline: int, where: str, *values: int) -> _Chunk | None:
+        chosen, what = f"piece WHERE timeline = ? AND {where} LIMIT 1", "entries"
+        found = self._database.sound_rows(_COLUMNS, chosen, (timeline, *values), what)
+        return next(map(_Chunk._make, found), None)
 
     def _write(
         self,
@@ -193,28 +204,28 @@ class Chunks:
         """Write a chunk; compressed, with what is known of agents after it, unless that is None."""
         body, known = codec.join(encoded), b""
         if agents is not None:
-            body = self._packer.compress(body)
-            known = self._packer.compress(codec.encode(agents))
-        counts = (
+            body, known = self.compressed(body), self.compressed(codec.encode(agents))
+        chunk = _Chunk(
+            timeline,
+            first,
+            len(encoded),
+            entries[0].tick,
+            entries[-1].tick,
             sum(count_of_events(entry) for entry in entries),
             sum(is_found(entry, EntryFilter.CHANGES) for entry in entries),
+            known,
+            int(agents is not None),
+            body,
         )
-        ticks = (entries[0].tick, entries[-1].tick)
-        packed = int(agents is not None)
-        values = (timeline, first, len(encoded), *ticks, *counts, known, packed, body)
-        self._database.execute(
-            f"INSERT INTO piece ({_COLUMNS}, seal) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-            (*values, checksum(*values)),
-        )
+        self._database.write("INSERT INTO piece", **chunk._asdict())
 
-    def _unpacked(self, row: Row) -> tuple[int, list[msgspec.Raw]]:
-        """Number of a chunk's first entry, and its encoded entries."""
-        path = self._database.path
-        _, first, count, *_, compressed, body = checked(row, path, "entries")
-        encoded = codec.split(self._decompressed(body) if compressed else body)
-        if len(encoded) != count:
-            raise StoreError(f"{path} is damaged; only {len(encoded)} of {count} entries are in it")
-        return first, encoded
-
-    def _decompressed(self, body: bytes) -> bytes:
-        return decompressed(self._unpacker, body, self._database.path)
+    def _encoded(self, chunk: _Chunk) -> list[msgspec.Raw]:
+        """The encoded entries of a chunk."""
+        body = self.decompressed(chunk.body) if chunk.compressed else chunk.body
+        encoded = codec.split(body)
+        if len(encoded) != chunk.count:
+            raise StoreError(
+                f"{self._database.path} is damaged; "
+                f"only {len(encoded)} of {chunk.count} entries are in it"
+            )
+        return encoded

@@ -7,7 +7,7 @@ a misspelt kind raises StoreError and names where in the value it lies.
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, TypeVar, cast
+from typing import Any, Literal, TypeVar, cast
 
 import msgspec
 import numpy as np
@@ -46,24 +46,11 @@ class _Tick(msgspec.Struct):
     tick: int
 
 
-class _FrameTick(msgspec.Struct, tag="frame", array_like=True):
-    value: _Tick
-
-
-class _EditTick(msgspec.Struct, tag="edit", array_like=True):
-    value: _Tick
-
-
 class _Agents(msgspec.Struct):
     agents: dict[str, msgspec.Raw] = {}
 
 
-class _FrameAgents(msgspec.Struct, tag="frame", array_like=True):
-    value: _Agents
-
-
-class _EditAgents(msgspec.Struct, tag="edit", array_like=True):
-    value: _Agents
+_Tag = Literal["frame", "edit"]
 
 
 class _SnapshotBody(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
@@ -85,8 +72,8 @@ def _plain(value: object) -> object:
 
 _ENCODER = msgspec.msgpack.Encoder(enc_hook=_plain)
 _ENTRY = msgspec.msgpack.Decoder(_FrameEntry | _EditEntry)
-_ENTRY_TICK = msgspec.msgpack.Decoder(_FrameTick | _EditTick)
-_ENTRY_AGENTS = msgspec.msgpack.Decoder(_FrameAgents | _EditAgents)
+_ENTRY_TICK = msgspec.msgpack.Decoder(tuple[_Tag, _Tick])
+_ENTRY_AGENTS = msgspec.msgpack.Decoder(tuple[_Tag, _Agents])
 _AGENTS = msgspec.msgpack.Decoder(dict[str, AgentState | None])
 _ENCODED = msgspec.msgpack.Decoder(list[msgspec.Raw])
 
@@ -109,11 +96,7 @@ def decode(data: bytes, kind: type[T]) -> T:
     Raises:
         StoreError: The bytes hold no such value.
     """
-    try:
-        value = msgspec.msgpack.decode(data, type=kind)
-    except (msgspec.MsgspecError, UnicodeDecodeError) as fault:
-        raise StoreError(f"stored bytes are no {kind.__name__}: {fault}") from fault
-    return cast(T, _with_tuples(value))
+    return cast(T, _with_tuples(_decoded(msgspec.msgpack.Decoder(kind), data, kind.__name__)))
 
 
 def encode_entry(entry: Entry) -> bytes:
@@ -127,29 +110,19 @@ def encode_entry(entry: Entry) -> bytes:
 
 def decode_entry(data: bytes | msgspec.Raw) -> Entry:
     """A frame or an edit from the bytes of `encode_entry`; StoreError if they are none."""
-    try:
-        entry = _ENTRY.decode(data).value
-    except (msgspec.MsgspecError, UnicodeDecodeError) as fault:
-        raise StoreError(f"stored bytes are no entry of a timeline: {fault}") from fault
-    return cast(Entry, _with_tuples(entry))
+    return cast(Entry, _with_tuples(_decoded(_ENTRY, data, "entry of a timeline").value))
 
 
 def decode_agents(data: bytes) -> dict[str, AgentState | None]:
     """Agents by name from the bytes `encode` made of them; StoreError if they are none."""
-    try:
-        return _AGENTS.decode(data)
-    except (msgspec.MsgspecError, UnicodeDecodeError) as fault:
-        raise StoreError(f"stored bytes are no agents: {fault}") from fault
+    return _decoded(_AGENTS, data, "agents")
 
 
 def decode_last_agents(entries: Iterable[msgspec.Raw]) -> dict[str, AgentState | None]:
     """What encoded entries say last of each agent; StoreError if one is no entry."""
     last: dict[str, msgspec.Raw] = {}
-    try:
-        for entry in entries:
-            last.update(_ENTRY_AGENTS.decode(entry).value.agents)
-    except msgspec.MsgspecError as fault:
-        raise StoreError(f"stored bytes are no entries of a timeline: {fault}") from fault
+    for entry in entries:
+        last.update(_decoded(_ENTRY_AGENTS, entry, "entry of a timeline")[1].agents)
     return decode_agents(_ENCODER.encode(last))
 
 
@@ -160,18 +133,12 @@ def join(entries: Iterable[bytes | msgspec.Raw]) -> bytes:
 
 def split(data: bytes) -> list[msgspec.Raw]:
     """The encoded entries that were joined; StoreError if the bytes are none."""
-    try:
-        return _ENCODED.decode(data)
-    except msgspec.MsgspecError as fault:
-        raise StoreError(f"stored bytes are no entries of a timeline: {fault}") from fault
+    return _decoded(_ENCODED, data, "entries of a timeline")
 
 
 def decode_ticks(encoded: Sequence[msgspec.Raw]) -> list[int]:
     """Ticks of encoded entries, without decoding the rest; StoreError if one is none."""
-    try:
-        return [_ENTRY_TICK.decode(entry).value.tick for entry in encoded]
-    except msgspec.MsgspecError as fault:
-        raise StoreError(f"stored bytes are no entries of a timeline: {fault}") from fault
+    return [_decoded(_ENTRY_TICK, entry, "entry of a timeline")[1].tick for entry in encoded]
 
 
 def encode_snapshot(snapshot: Snapshot) -> bytes:
@@ -216,6 +183,13 @@ def decode_snapshot(data: bytes) -> Snapshot:
     return Snapshot(
         body.tick, box, blocks, body.containers, body.agents, body.items, signs=body.signs
     )
+
+
+def _decoded(decoder: msgspec.msgpack.Decoder[T], data: bytes | msgspec.Raw, what: str) -> T:
+    try:
+        return decoder.decode(data)
+    except (msgspec.MsgspecError, UnicodeDecodeError) as fault:
+        raise StoreError(f"stored bytes are no {what}: {fault}") from fault
 
 
 def _with_tuples(value: Any) -> Any:

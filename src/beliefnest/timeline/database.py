@@ -94,12 +94,12 @@ class OlderFormat:
     Attributes:
         version: Its number.
         statements: What a file of it consists of.
-        convert: Makes it a file of this format; the path is for messages.
+        convert: Makes it a file of this format.
     """
 
     version: int
     statements: tuple[str, ...]
-    convert: Callable[[sqlite3.Connection, Path], None]
+    convert: Callable[["Database"], None]
 
 
 class Database:
@@ -219,6 +219,27 @@ class Database:
         rows = self.rows(sql, values)
         return rows[0] if rows else None
 
+    def sound_rows(
+        self, columns: str, rest: str, values: Iterable[object], what: str
+    ) -> Iterator[Row]:
+        """Columns of the rows that the rest of a query chooses; StoreError if one is damaged.
+
+        `what` names them in its message.
+        """
+        for row in self.rows(f"SELECT {columns}, seal FROM {rest}", values):
+            yield checked(row, self.path, what)
+
+    def write(self, into: str, **row: object) -> None:
+        """Write a row with its checksum; `into` is an `INSERT INTO` with a table, or the like.
+
+        The last value may be long bytes.
+        """
+        marks = ", ".join("?" * (len(row) + 1))
+        values = tuple(row.values())
+        self.execute(
+            f"{into} ({', '.join(row)}, seal) VALUES ({marks})", (*values, checksum(*values))
+        )
+
     @contextmanager
     def transaction(self) -> Iterator[None]:
         """Do all that follows or, if anything raises, none of it. May be nested."""
@@ -282,18 +303,13 @@ class Database:
             self.close()
             raise
 
-    def check_structure(self) -> None:
-        """Check every page of the file; takes time in proportion to its size."""
-        self._expect_ok("PRAGMA integrity_check(1)")
-
     def _check_small_tables(self) -> None:
         for table in SMALL_TABLES:
-            self._expect_ok(f"PRAGMA integrity_check({table})")
-
-    def _expect_ok(self, check: str) -> None:
-        found = self.row(check)
-        if found is None or found[0] != "ok":
-            raise StoreError(f"{self.path} {_DAMAGED} ({found[0] if found else 'check failed'})")
+            found = self.row(f"PRAGMA integrity_check({table})")
+            if found != ("ok",):
+                raise StoreError(
+                    f"{self.path} {_DAMAGED} ({found[0] if found else 'check failed'})"
+                )
 
     def _look(self, older: Sequence[OlderFormat]) -> None:
         """Check a file that is only read, and go over to a converted copy if it is an older one."""
@@ -309,10 +325,7 @@ class Database:
 
     def _convert(self, found: OlderFormat | None) -> None:
         if found is not None:
-            try:
-                found.convert(self._connection, self.path)
-            except _REFUSALS as fault:
-                raise self._fault(fault) from fault
+            found.convert(self)
             self.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
 
     def _recognise(self, older: Sequence[OlderFormat]) -> OlderFormat | None:

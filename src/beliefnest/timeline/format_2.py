@@ -4,14 +4,13 @@ They kept the internal state of bodies among checkpoints, under names like `hidd
 facts of programs as texts.
 """
 
-import sqlite3
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
-from beliefnest.timeline.database import checked, checksum
+from beliefnest.timeline.database import Database, checked, checksum
 from beliefnest.timeline.records import ProgramRecord
 from beliefnest.timeline.schema import BODY_STATE, STATEMENTS
 
@@ -26,29 +25,28 @@ class _Detail:
     detail: Mapping[str, str]
 
 
-def convert_2(connection: sqlite3.Connection, path: Path) -> None:
+def convert_2(database: Database) -> None:
     """Make a file of format 2 one of format 3; the caller opens the transaction.
 
     Raises:
         StoreError: A row is damaged.
     """
-    connection.execute(BODY_STATE)
-    hidden = "FROM keyframe WHERE name LIKE 'hidden %'"
-    for row in connection.execute(
-        f"SELECT timeline, name, entries, body, seal {hidden}"
-    ).fetchall():
-        timeline, name, entries, state = checked(row, path, "the state of a body")
-        values = (timeline, entries, _number(name.removeprefix("hidden "), path), state)
-        connection.execute(
-            "INSERT INTO body_state (timeline, entries, tick, state, seal) VALUES (?, ?, ?, ?, ?)",
-            (*values, checksum(*values)),
+    database.execute(BODY_STATE)
+    hidden = "keyframe WHERE name LIKE 'hidden %'"
+    columns, what = "timeline, name, entries, body", "the state of a body"
+    for timeline, name, entries, state in database.sound_rows(columns, hidden, (), what):
+        database.write(
+            "INSERT INTO body_state",
+            timeline=timeline,
+            entries=entries,
+            tick=_number(name.removeprefix("hidden "), database.path),
+            state=state,
         )
-    connection.execute(f"DELETE {hidden}")
-    programs = connection.execute("SELECT id, path, branch, body, seal FROM program").fetchall()
-    for number, *row in programs:
-        *place, body = checked(tuple(row), path, f"program {number}")
-        body = codec.encode(_typed(body, path))
-        connection.execute(
+    database.execute(f"DELETE FROM {hidden}")
+    for number, *row in database.rows("SELECT id, path, branch, body, seal FROM program"):
+        *place, body = checked(tuple(row), database.path, f"program {number}")
+        body = codec.encode(_typed(body, database.path))
+        database.execute(
             "UPDATE program SET body = ?, seal = ? WHERE id = ?",
             (body, checksum(*place, body), number),
         )

@@ -196,37 +196,29 @@ class Records:
     def put_state(self, name: str, value: bytes) -> None:
         """Keep bytes under a name, in place of what was there: counters, random states."""
         with self._database.transaction():
-            self._database.execute(
-                "INSERT OR REPLACE INTO meta (name, value, seal) VALUES (?, ?, ?)",
-                (name, value, checksum(name, value)),
-            )
+            self._database.write("INSERT OR REPLACE INTO meta", name=name, value=value)
 
     def state(self, name: str) -> bytes | None:
         """The bytes last put under a name; None if there are none."""
-        row = self._database.row("SELECT name, value, seal FROM meta WHERE name = ?", (name,))
-        if row is None:
-            return None
-        value = checked(row, self._database.path, f"state {name!r}")[1]
-        return bytes(value)
+        where, what = "meta WHERE name = ?", f"state {name!r}"
+        found = self._database.sound_rows("name, value", where, (name,), what)
+        return next((bytes(value) for _, value in found), None)
 
     def select(self, path: tuple[str, ...], branch: str) -> None:
         """Note which branch a simulator is on."""
-        text = path_to(path)
         with self._database.transaction():
-            self._database.execute(
-                "INSERT OR REPLACE INTO selected (path, branch, seal) VALUES (?, ?, ?)",
-                (text, branch, checksum(text, branch)),
-            )
+            into = "INSERT OR REPLACE INTO selected"
+            self._database.write(into, path=path_to(path), branch=branch)
 
     def selected(self) -> dict[tuple[str, ...], str]:
         """The branch each simulator is on, of those `select` named, in order of paths."""
-        rows = self._database.rows("SELECT path, branch, seal FROM selected ORDER BY path")
-        sound = [checked(row, self._database.path, "the selected branches") for row in rows]
-        return {path_from(path): branch for path, branch in sound}
+        in_order, what = "selected ORDER BY path", "the selected branches"
+        found = self._database.sound_rows("path, branch", in_order, (), what)
+        return {path_from(path): branch for path, branch in found}
 
     def add_program(self, program: ProgramRecord) -> None:
         """Append a program that has ended."""
-        self._add(program)
+        self._add(program, TimelineKey(program.path, program.branch))
 
     def next_group(self) -> int:
         """A number for programs that run at the same time, which none before has had."""
@@ -240,19 +232,11 @@ class Records:
 
     def add_prompt(self, prompt: PromptRecord) -> None:
         """Append a request to a model with what came of it."""
-        self._add(prompt)
+        self._add(prompt, prompt.timeline)
 
     def prompts(self) -> Sequence[PromptRecord]:
         """All requests to models, in order."""
         return self._all(PromptRecord)
-
-    def verify(self) -> None:
-        """Read every record; StoreError names the first damaged one."""
-        self.selected()
-        self.programs()
-        self.prompts()
-        for (name,) in self._database.rows("SELECT name FROM meta"):
-            self.state(name)
 
     def follow_rename(self, path: tuple[str, ...], branch: str, name: str) -> None:
         """Let all that names a branch name it anew; the caller opens the transaction."""
@@ -272,14 +256,15 @@ class Records:
         for table in ("selected", *_TABLES.values()):
             self._database.execute(f"DELETE FROM {table} WHERE path = ? AND branch = ?", where)
 
-    def _add(self, record: ProgramRecord | PromptRecord) -> None:
-        key = _belongs_to(record)
-        values = (path_to(key.path), key.branch, codec.encode(record))
+    def _add(self, record: ProgramRecord | PromptRecord, key: TimelineKey) -> None:
+        """Append a record, to be renamed and deleted with a timeline."""
+        body = codec.encode(record)
         with self._database.transaction():
-            self._database.execute(
-                f"INSERT INTO {_TABLES[type(record)]} (path, branch, body, seal) "
-                "VALUES (?, ?, ?, ?)",
-                (*values, checksum(*values)),
+            self._database.write(
+                f"INSERT INTO {_TABLES[type(record)]}",
+                path=path_to(key.path),
+                branch=key.branch,
+                body=body,
             )
 
     def _all(self, kind: type[Record]) -> tuple[Record, ...]:
@@ -303,13 +288,6 @@ class RunJournal(Journal, Protocol):
     @property
     def records(self) -> Records:
         """What ran; it follows timelines that are renamed or deleted."""
-
-
-def _belongs_to(record: ProgramRecord | PromptRecord) -> TimelineKey:
-    """The timeline that a record is renamed and deleted with."""
-    if isinstance(record, PromptRecord):
-        return record.timeline
-    return TimelineKey(record.path, record.branch)
 
 
 def _with_branch(record: Record, branch: str) -> Record:

@@ -6,15 +6,13 @@ a past entry is reached by unpacking one chunk.
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, replace
 from pathlib import Path
-
-import zstandard
+from typing import NamedTuple
 
 from beliefnest.errors import BranchError, StoreError
 from beliefnest.timeline import codec
-from beliefnest.timeline.chunks import Chunks, decompressed
-from beliefnest.timeline.database import Database, OlderFormat, Row, checked, checksum
+from beliefnest.timeline.chunks import Chunks
+from beliefnest.timeline.database import Database, OlderFormat, checksum
 from beliefnest.timeline.format_2 import FORMAT_2, convert_2
 from beliefnest.timeline.journal import (
     Entry,
@@ -35,20 +33,12 @@ from beliefnest.world.values import AgentState
 
 __all__ = ["SqliteJournal"]
 
-"""Name of the checkpoints that are snapshots of the timeline's own simulator."""
-
 _OLDER = (OlderFormat(2, FORMAT_2, convert_2),)
 
-_COMPRESSION = 1
-"""Level of zstandard; higher ones save nothing on poses, which are noise in their last digits."""
 
-_COLUMNS = (
-    "id, path, branch, base, base_entries, base_tick, start, head, entries, packed, description"
-)
+class _TimelineRow(NamedTuple):
+    """A row of the table of timelines."""
 
-
-@dataclass(frozen=True, slots=True)
-class _TimelineRow:
     id: int
     path: str
     branch: str
@@ -65,21 +55,8 @@ class _TimelineRow:
     def key(self) -> TimelineKey:
         return TimelineKey(path_from(self.path), self.branch)
 
-    def values(self) -> Row:
-        """Columns in the order of `_COLUMNS`."""
-        return (
-            self.id,
-            self.path,
-            self.branch,
-            self.base,
-            self.base_entries,
-            self.base_tick,
-            self.start,
-            self.head,
-            self.entries,
-            self.packed,
-            self.description,
-        )
+
+_COLUMNS = ", ".join(_TimelineRow._fields)
 
 
 class SqliteJournal:
@@ -87,13 +64,17 @@ class SqliteJournal:
 
     Made by `create_file`, `open` or `read`; to be closed, or used as a context manager. Every call
     may raise StoreError: the disk is full, the file is damaged, closed, or open for reading.
+
+    Attributes:
+        path: The file.
+        writable: Whether it was opened to go on with it.
+        records: What ran.
     """
 
     def __init__(self, database: Database) -> None:
         self._database = database
-        self._packer = zstandard.ZstdCompressor(level=_COMPRESSION)
-        self._unpacker = zstandard.ZstdDecompressor()
-        self._chunks = Chunks(database, self._packer, self._unpacker)
+        self._chunks = Chunks(database)
+        self.path, self.writable = database.path, database.writable
         self.records = Records(database)
 
     @classmethod
@@ -126,7 +107,7 @@ class SqliteJournal:
 
     @classmethod
     def _sound(cls, database: Database) -> "SqliteJournal":
-        with database.closed_on_fault():
+        with database.closed_on_fault(), database.unchanging():
             journal = cls(database)
             journal._check_timelines()
             return journal
@@ -136,16 +117,6 @@ class SqliteJournal:
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-    @property
-    def writable(self) -> bool:
-        """Whether it was opened to go on with it."""
-        return self._database.writable
-
-    @property
-    def path(self) -> Path:
-        """The file."""
-        return self._database.path
 
     def together(self) -> AbstractContextManager[None]:
         """All calls made inside are kept together or, if one raises, not at all."""
@@ -207,11 +178,13 @@ class SqliteJournal:
             packed = row.packed
             if encoded:
                 packed = self._chunks.add(row.id, row.entries, row.packed, encoded, entries)
-            self._write(replace(row, head=head, entries=row.entries + len(encoded), packed=packed))
+            self._write(row._replace(head=head, entries=row.entries + len(encoded), packed=packed))
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
         """Entries number start to stop - 1, oldest first."""
-        return self._entries_of(self._row(key), start, stop)
+        row = self._row(key)
+        found = self._chunks.raw(row.id, start, min(stop, row.entries), lambda: self._missing(key))
+        return map(codec.decode_entry, found)
 
     def entries_until(self, key: TimelineKey, tick: int) -> int:
         """How many entries lie at `tick` or before."""
@@ -242,7 +215,7 @@ class SqliteJournal:
             row = self._row(key)
             if self._found(TimelineKey(key.path, name)) is not None:
                 raise branch_taken(TimelineKey(key.path, name))
-            self._write(replace(row, branch=name))
+            self._write(row._replace(branch=name))
             self.records.follow_rename(key.path, key.branch, name)
 
     def delete(self, key: TimelineKey) -> None:
@@ -264,96 +237,65 @@ class SqliteJournal:
     def describe(self, key: TimelineKey, description: str) -> None:
         """Set a timeline's description."""
         with self._database.transaction():
-            self._write(replace(self._row(key), description=description))
+            self._write(self._row(key)._replace(description=description))
 
     def put_checkpoint(self, key: TimelineKey, name: str, entries: int, body: bytes) -> None:
         """Keep bytes that stand for the first `entries` entries; InputError if too few."""
-        packed = self._packer.compress(body)
+        packed = self._chunks.compressed(body)
         with self._database.transaction():
             row = self._row(key)
             check_place(_info(row, None), entries)
-            values = (row.id, name, entries, packed)
-            self._database.execute(
-                "INSERT OR REPLACE INTO keyframe (timeline, name, entries, body, seal) "
-                "VALUES (?, ?, ?, ?, ?)",
-                (*values, checksum(*values)),
+            self._database.write(
+                "INSERT OR REPLACE INTO keyframe",
+                timeline=row.id,
+                name=name,
+                entries=entries,
+                body=packed,
             )
 
     def nearest_checkpoint(
         self, key: TimelineKey, name: str, entries: int
     ) -> tuple[int, bytes] | None:
         """The last checkpoint of that name at or before entry `entries`, with its place."""
-        found = self._database.row(
-            "SELECT timeline, name, entries, body, seal FROM keyframe "
-            "WHERE timeline = ? AND name = ? AND entries <= ? ORDER BY entries DESC LIMIT 1",
+        found = self._database.sound_rows(
+            "timeline, name, entries, body",
+            "keyframe WHERE timeline = ? AND name = ? AND entries <= ? "
+            "ORDER BY entries DESC LIMIT 1",
             (self._row(key).id, name, entries),
+            f"a keyframe of {key}",
         )
-        if found is None:
-            return None
-        _, _, place, body = checked(found, self.path, f"a keyframe of {key}")
-        return place, self._decompressed(body)
+        return next(((place, self._chunks.decompressed(body)) for *_, place, body in found), None)
 
     def put_body_state(self, key: TimelineKey, entries: int, tick: int, state: bytes) -> None:
         """Keep the internal state of a timeline's body at a moment; InputError if too few."""
         with self._database.transaction():
             row = self._row(key)
             check_place(_info(row, None), entries)
-            values = (row.id, entries, tick, self._packer.compress(state))
-            self._database.execute(
-                "INSERT OR REPLACE INTO body_state (timeline, entries, tick, state, seal) "
-                "VALUES (?, ?, ?, ?, ?)",
-                (*values, checksum(*values)),
+            self._database.write(
+                "INSERT OR REPLACE INTO body_state",
+                timeline=row.id,
+                entries=entries,
+                tick=tick,
+                state=self._chunks.compressed(state),
             )
 
     def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
         """The internal state that was kept for a moment; None if none was."""
-        found = self._database.row(
-            "SELECT timeline, entries, tick, state, seal FROM body_state "
-            "WHERE timeline = ? AND entries = ? AND tick = ?",
+        found = self._database.sound_rows(
+            "timeline, entries, tick, state",
+            "body_state WHERE timeline = ? AND entries = ? AND tick = ?",
             (self._row(key).id, entries, tick),
+            f"the state of a body of {key}",
         )
-        if found is None:
-            return None
-        state = checked(found, self.path, f"the state of a body of {key}")[-1]
-        return self._decompressed(state)
-
-    def verify(self) -> None:
-        """Read the whole file; StoreError names the first damage found.
-
-        Takes time in proportion to its size.
-        """
-        with self._database.unchanging():
-            self._database.check_structure()
-            self.records.verify()
-            self._verify_timelines()
-
-    def _verify_timelines(self) -> None:
-        for row in self._timeline_rows("ORDER BY id"):
-            for _ in self._entries_of(row, 0, row.entries):
-                pass
-            for name, place in self._database.rows(
-                "SELECT name, entries FROM keyframe WHERE timeline = ?", (row.id,)
-            ):
-                self.nearest_checkpoint(row.key, name, place)
-            for place, tick in self._database.rows(
-                "SELECT entries, tick FROM body_state WHERE timeline = ?", (row.id,)
-            ):
-                self.body_state(row.key, place, tick)
+        return next((self._chunks.decompressed(state) for *_, state in found), None)
 
     def close(self) -> None:
         """Close the file and let another writer have it; closing twice is allowed."""
         self._database.close()
 
-    def _entries_of(self, row: _TimelineRow, start: int, stop: int) -> Iterator[Entry]:
-        for entry in self._chunks.raw(
-            row.id, start, min(stop, row.entries), lambda: self._gone(row)
-        ):
-            yield codec.decode_entry(entry)
-
     def _timeline_rows(self, where: str, *values: object) -> Iterator[_TimelineRow]:
-        rows = self._database.rows(f"SELECT {_COLUMNS}, seal FROM timeline {where}", values)
-        for row in rows:
-            yield _TimelineRow(*checked(row, self.path, "a timeline"))
+        found = self._database.sound_rows(_COLUMNS, f"timeline {where}", values, "a timeline")
+        return map(_TimelineRow._make, found)
 
     def _found(self, key: TimelineKey) -> _TimelineRow | None:
         rows = self._timeline_rows("WHERE path = ? AND branch = ?", path_to(key.path), key.branch)
@@ -362,11 +304,12 @@ class SqliteJournal:
     def _row(self, key: TimelineKey) -> _TimelineRow:
         row = self._found(key)
         if row is None:
-            raise branch_missing(key, (other.branch for other in self._beside(key)))
+            raise self._missing(key)
         return row
 
-    def _beside(self, key: TimelineKey) -> Iterator[_TimelineRow]:
-        return self._timeline_rows("WHERE path = ?", path_to(key.path))
+    def _missing(self, key: TimelineKey) -> BranchError:
+        beside = self._timeline_rows("WHERE path = ?", path_to(key.path))
+        return branch_missing(key, (other.branch for other in beside))
 
     def _next_id(self) -> int:
         # The sequence outlives deleted rows, so that a reader never takes one timeline for another.
@@ -374,29 +317,17 @@ class SqliteJournal:
         return 1 if row is None else row[0] + 1
 
     def _write(self, row: _TimelineRow) -> None:
-        values = row.values()
-        marks = ", ".join("?" * (len(values) + 1))
+        marks = ", ".join("?" * (len(row) + 1))
         self._database.execute(
             f"INSERT INTO timeline ({_COLUMNS}, seal) VALUES ({marks}) "
             "ON CONFLICT (id) DO UPDATE SET branch = excluded.branch, head = excluded.head, "
             "entries = excluded.entries, packed = excluded.packed, "
             "description = excluded.description, seal = excluded.seal",
-            (*values, checksum(*values)),
+            (*row, checksum(*row)),
         )
-
-    def _decompressed(self, body: bytes) -> bytes:
-        return decompressed(self._unpacker, body, self.path)
-
-    def _gone(self, row: _TimelineRow) -> BranchError:
-        """The error for a timeline that was deleted while it was read."""
-        return branch_missing(row.key, (other.branch for other in self._beside(row.key)))
 
     def _check_timelines(self) -> None:
         """Check that every timeline has its base and its last entry."""
-        with self._database.unchanging():
-            self._check_ends()
-
-    def _check_ends(self) -> None:
         rows = {row.id: row for row in self._timeline_rows("ORDER BY id")}
         for row in rows.values():
             last = self._database.row(
