@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from beliefnest.errors import StoreError
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.world.frames import Snapshot
@@ -33,6 +34,26 @@ def kept(journal):
     return [
         (info, list(journal.entries(info.key, 0, info.entries))) for info in journal.timelines()
     ]
+
+
+def verify(journal):
+    """Read all of a run file; StoreError names the first damage."""
+    database, records = journal._database, journal.records
+    with journal.unchanging():
+        (found,) = database.row("PRAGMA integrity_check(1)")
+        if found != "ok":
+            raise StoreError(f"{journal.path} is damaged ({found})")
+        kept(journal), records.selected(), records.programs(), records.prompts()
+        for (name,) in database.rows("SELECT name FROM meta"):
+            records.state(name)
+        ids = [number for (number,) in database.rows("SELECT id FROM timeline ORDER BY id")]
+        keys = dict(zip(ids, (info.key for info in journal.timelines()), strict=True))
+        for timeline, name, entries in database.rows(
+            "SELECT timeline, name, entries FROM keyframe"
+        ):
+            journal.nearest_checkpoint(keys[timeline], name, entries)
+        for timeline, *moment in database.rows("SELECT timeline, entries, tick FROM body_state"):
+            journal.body_state(keys[timeline], *moment)
 
 
 def snapshot(tick):

@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 from tests.timeline.conftest import MAIN
 from tests.timeline.format_2 import make_format_2
+from tests.timeline.stored import verify
 
 from beliefnest.errors import StoreError
 from beliefnest.timeline.records import ProgramRecord
@@ -45,7 +46,7 @@ def check(journal):
     assert journal.body_state(MAIN, 7, 14) is None
     assert journal.nearest_checkpoint(MAIN, "world x", 8) == (7, b"cache")
     assert journal.nearest_checkpoint(MAIN, "hidden 12", 8) is None
-    journal.verify()
+    verify(journal)
 
 
 def test_it_is_read_and_left_as_it_is(old_file):

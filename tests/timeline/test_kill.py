@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from tests.profiles import at_night
+from tests.timeline.stored import verify
 
 from beliefnest.timeline.memory import MemoryJournal
 from beliefnest.timeline.store import SqliteJournal
@@ -71,7 +72,7 @@ def test_a_killed_writer_leaves_what_it_was_told_was_kept(tmp_path, seed):
         assert kept(reader) in (before, after)
     with SqliteJournal.open(path) as journal:
         assert kept(journal) in (before, after)
-        journal.verify()
+        verify(journal)
 
 
 def check_ends(reader):

@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from tests.timeline.stored import LONG, MAIN, PLAN, PROGRAM, PROMPT, RUN, kept
+from tests.timeline.stored import LONG, MAIN, PLAN, PROGRAM, PROMPT, RUN, kept, verify
 
 from beliefnest.errors import BranchError, InputError, StoreError
 from beliefnest.timeline.chunks import CHUNK_ENTRIES
@@ -208,7 +208,7 @@ def test_a_file_that_cannot_grow_keeps_what_was_acknowledged(run_file):
     assert str(run_file) in fault
     assert "nothing of this call was kept" in fault
     with SqliteJournal.open(run_file) as journal:
-        journal.verify()
+        verify(journal)
         assert journal.info(MAIN).head == int(head) + 1
 
 
@@ -310,7 +310,7 @@ def test_records_follow_their_branch(run_file):
         assert [p.timeline.branch for p in records.prompts()] == ["try"]
         assert [p.branch for p in records.prompts()] == ["follow"]
         assert records.selected() == {("sally",): "try"}
-        journal.verify()
+        verify(journal)
         journal.delete(TimelineKey(("sally",), "try"))
         assert [p.path for p in records.programs()] == [("anne",)]
         journal.delete(MAIN)

@@ -8,7 +8,7 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
-from tests.timeline.stored import MAIN, PLAN, PROGRAM, PROMPT, RUN, kept, snapshot
+from tests.timeline.stored import MAIN, PLAN, PROGRAM, PROMPT, RUN, kept, snapshot, verify
 
 from beliefnest.errors import StoreError
 from beliefnest.timeline.codec import encode_snapshot
@@ -166,7 +166,7 @@ def test_a_truncated_file_is_refused(sound, tmp_path, part):
     with pytest.raises(StoreError, match=r"run\.bn"):
         everything(path)
     with pytest.raises(StoreError, match=r"run\.bn"), SqliteJournal.open(path) as journal:
-        journal.verify()
+        verify(journal)
 
 
 def test_a_missing_end_is_noticed_where_nothing_lay(run_file):
@@ -204,9 +204,9 @@ def test_rows_that_were_tampered_with_are_found(sound, tmp_path, harm):
         other.execute(harm)
     other.close()
     with pytest.raises(StoreError, match="damaged"), SqliteJournal.open(path) as journal:
-        journal.verify()
+        verify(journal)
     with SqliteJournal.open(sound) as journal:
-        journal.verify()
+        verify(journal)
 
 
 # --- checkpoints and records

@@ -94,11 +94,9 @@ class Columns:
         self.frames: dict[int, Frame] = {}
         self.events: list[Event] = []
         self.acts: dict[int, list[int]] = {}
-        self._tick = Growing(np.int32)
-        self._pose_at, self._block_at, self._event_at = (Growing(np.int32) for _ in range(3))
-        self._pose = [Growing(np.int32) for _ in range(2)]
-        self._block = [Growing(np.int32) for _ in range(2)]
-        self._event = [Growing(np.int32) for _ in range(4)]
+        # Named as in `Facts`.
+        self._columns = {name: Growing(np.int32) for name in Facts._fields}
+        self._tick, self._event_at = self._columns["tick"], self._columns["event_at"]
         self._close_entry()
 
     @property
@@ -149,39 +147,23 @@ class Columns:
 
     def facts(self) -> Facts:
         """The columns for the kernel, which counts entries and events from the stretch's first."""
-        agent, pose = (column.view() for column in self._pose)
-        block_cell, state = (column.view() for column in self._block)
-        kind, actor, event_cell, event_to = (column.view() for column in self._event)
-        return Facts(
-            self._tick.view(),
-            self._pose_at.view(),
-            agent,
-            pose,
-            self._block_at.view(),
-            block_cell,
-            state,
-            self._event_at.view(),
-            kind,
-            actor,
-            event_cell,
-            event_to,
-        )
+        return Facts(*(column.view() for column in self._columns.values()))
 
     def _add(self, frame: Frame) -> None:
-        entry = self.end
+        entry, columns = self.end, self._columns
         if frame.containers or frame.items:
             self.frames[entry] = frame
         if frame.items:
             self.item_entries.append(entry)
         for name, agent in frame.agents.items():
             pose = UNKNOWN if agent is None else self.poses.add(name, agent)
-            self._pose[0].append(self._numbers[name])
-            self._pose[1].append(pose)
+            columns["pose_agent"].append(self._numbers[name])
+            columns["pose_id"].append(pose)
         for place, block in frame.blocks.items():
             state = self._number(block)
             cell = cell_of(self._box, place)
-            self._block[0].append(cell)
-            self._block[1].append(state)
+            columns["block_cell"].append(cell)
+            columns["block_state"].append(state)
             if self._holds[state]:
                 self.held.append(cell)
         for event in frame.events:
@@ -192,19 +174,19 @@ class Columns:
         self._close_entry()
 
     def _add_event(self, entry: int, event: Event) -> None:
-        kind = _KINDS.get(event.kind, KIND_ACT)
+        columns, kind = self._columns, _KINDS.get(event.kind, KIND_ACT)
         place = event.detail.get("position")
         if kind == KIND_ACT:
             if entry not in self.acts:
                 self.act_entries.append(entry)
             number = self._first_event + len(self.events)
             self.acts.setdefault(entry, []).append(number)
-        self._event[0].append(kind)
-        self._event[1].append(NOBODY if event.actor is None else self._numbers[event.actor])
         cell = UNKNOWN if place is None or place not in self._box else cell_of(self._box, place)
-        self._event[2].append(cell)
         to = event.detail.get("to") if kind == KIND_CHAT else None
-        self._event[3].append(NOBODY if to is None else self._numbers[to])
+        columns["event_kind"].append(kind)
+        columns["event_actor"].append(NOBODY if event.actor is None else self._numbers[event.actor])
+        columns["event_cell"].append(cell)
+        columns["event_to"].append(NOBODY if to is None else self._numbers[to])
         if event.detail.get("claims"):
             self._add_claims(entry, event)
         self.events.append(event)
@@ -217,6 +199,7 @@ class Columns:
         self.held.extend(cell_of(self._box, claim.cell) for claim in about)
 
     def _close_entry(self) -> None:
-        self._pose_at.append(len(self._pose[0]))
-        self._block_at.append(len(self._block[0]))
-        self._event_at.append(len(self._event[0]))
+        columns = self._columns
+        columns["pose_at"].append(len(columns["pose_id"]))
+        columns["block_at"].append(len(columns["block_cell"]))
+        columns["event_at"].append(len(columns["event_kind"]))

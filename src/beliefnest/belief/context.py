@@ -81,18 +81,17 @@ class BeliefContext:
         # Compiled code takes its time to load; who only lists scenarios need not wait.
         from beliefnest.perception import beams, shadows
 
-        tables = self.sight.tables()
-        states = self.registry.states
+        sight, registry = self.sight, self.registry
         codes = np.empty(_NUMBERS + 1, dtype=np.uint16)
-        codes[:states], codes[-1] = tables.codes[:states], tables.codes[-1]
+        codes[: registry.states], codes[-1] = sight.state_codes[:-1], sight.state_codes[-1]
         for sign, number in self._signs.items():
             codes[number] = codes[sign.state]
         nx, ny, nz = self.box.shape
         return Space(
             (nx + 2, ny + 2, nz + 2),
-            tables.starts,
-            tables.boxes,
-            tables.reaches,
+            registry.shape_start,
+            registry.shape_boxes,
+            sight.reaches,
             codes,
             self.holds,
             1.0 - np.array(self.box.low, dtype=np.float64),

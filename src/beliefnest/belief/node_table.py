@@ -12,7 +12,7 @@ from beliefnest.belief.arrays import UNKNOWN, Nodes
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis
 from beliefnest.belief.poses import Condition, PoseTable
-from beliefnest.perception.codes import mark_intruded
+from beliefnest.perception.codes import code_grid
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.values import Point, Sign
 
@@ -207,11 +207,8 @@ class NodeTable:
         self._rows["blocks"][node] = blocks.ravel()
         if self._coded is None or self._coded[0] is not blocks:
             space = self.context.space
-            codes = np.zeros(space.sizes, dtype=np.uint16)
-            codes[1:-1, 1:-1, 1:-1] = space.codes[blocks]
-            mark_intruded(codes, space.reaches)
             # Most nodes know the same at first.
-            self._coded = (blocks, codes.ravel())
+            self._coded = (blocks, code_grid(blocks, space.codes, space.reaches).ravel())
         self._rows["codes"][node] = self._coded[1]
 
     def set_pose(self, node: int, agent: int, pose: int, seen_at: int, *, current: bool) -> None:

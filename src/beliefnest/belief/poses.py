@@ -1,6 +1,6 @@
 """Poses of agents, and what goes with each, in a table that the belief kernel reads."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -29,6 +29,10 @@ class Growing:
     def extend(self, rows: Iterable[Any]) -> None:
         """Add rows."""
         self._waiting.extend(rows)
+
+    def extend_by(self, body: bytes) -> None:
+        """Add rows that are given as native bytes."""
+        self.extend(np.frombuffer(body, self._rows.dtype).reshape(-1, *self._rows.shape[1:]))
 
     def view(self) -> npt.NDArray[Any]:
         """The rows so far."""
@@ -68,6 +72,8 @@ class PoseTable:
         self._conditions = Growing(np.int32)
         self._recorded = Growing(np.bool_)
         self._heard = Growing(np.int32)
+        # In the order of `SavedPoses`.
+        self._columns = (self._feet, self._angles, self._conditions, self._recorded, self._heard)
         self._table: list[Condition | None] = [None]
         self._last: dict[str, int] = {}
 
@@ -99,20 +105,17 @@ class PoseTable:
         """
         table = {0: 0}
         first = len(self)
-        feet, angles = other._feet.view()[numbers], other._angles.view()[numbers]
-        conditions, was_recorded = (
-            other._conditions.view()[numbers],
-            other._recorded.view()[numbers],
+        feet, angles, conditions, was_recorded, heard = (
+            column.view()[numbers] for column in other._columns
         )
         for number in np.unique(conditions).tolist():
             if number not in table:
                 table[number] = len(self._table)
                 self._table.append(other._table[number])
-        self._feet.extend(feet)
-        self._angles.extend(angles)
-        self._conditions.extend([table[number] for number in conditions.tolist()])
-        self._recorded.extend(was_recorded & recorded)
-        self._heard.extend(other._heard.view()[numbers])
+        renumbered = [table[number] for number in conditions.tolist()]
+        taken: Sequence[Iterable[Any]] = (feet, angles, renumbered, was_recorded & recorded, heard)
+        for column, rows in zip(self._columns, taken, strict=True):
+            column.extend(rows)
         return np.arange(first, len(self), dtype=np.int32)
 
     def position(self, pose: int) -> Point:
@@ -143,24 +146,18 @@ class PoseTable:
 
     def saved(self) -> "SavedPoses":
         """The table as plain data."""
-        return SavedPoses(
-            self._feet.view().tobytes(),
-            self._angles.view().tobytes(),
-            self._conditions.view().tobytes(),
-            self._recorded.view().tobytes(),
-            self._heard.view().tobytes(),
-            self._table,
+        feet, angles, conditions, recorded, heard = (
+            column.view().tobytes() for column in self._columns
         )
+        return SavedPoses(feet, angles, conditions, recorded, heard, self._table)
 
     @classmethod
     def restored(cls, saved: "SavedPoses") -> "PoseTable":
         """The table that was saved."""
         restored = cls()
-        restored._feet.extend(np.frombuffer(saved.feet, np.float64).reshape(-1, 3))
-        restored._angles.extend(np.frombuffer(saved.angles, np.float64).reshape(-1, 2))
-        restored._conditions.extend(np.frombuffer(saved.conditions, np.int32))
-        restored._recorded.extend(np.frombuffer(saved.recorded, np.bool_))
-        restored._heard.extend(np.frombuffer(saved.heard, np.int32))
+        bodies = (saved.feet, saved.angles, saved.conditions, saved.recorded, saved.heard)
+        for column, body in zip(restored._columns, bodies, strict=True):
+            column.extend_by(body)
         restored._table = list(saved.table)
         return restored
 

@@ -5,6 +5,8 @@ every side. A code is the shape of the cell's own block (`EMPTY`, `FULL`, or `FI
 + the number of a shape), plus `INTRUDED` if the shape of a neighbour reaches into the cell.
 """
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 
@@ -17,7 +19,7 @@ __all__ = [
     "OWN",
     "CodeGrid",
     "Reaches",
-    "mark_intruded",
+    "code_grid",
 ]
 
 CodeGrid = npt.NDArray[np.uint16]
@@ -36,12 +38,17 @@ LIMIT_SLACK = 1e-9
 the rounding of a mirrored or turned world."""
 
 
-def mark_intruded(codes: CodeGrid, reaches: Reaches) -> None:
-    """Set `INTRUDED` in a contiguous grid of codes without it."""
-    flat = codes.reshape(-1)
+def code_grid(
+    blocks: npt.NDArray[np.signedinteger[Any]], codes: npt.NDArray[np.uint16], reaches: Reaches
+) -> CodeGrid:
+    """The grid of codes of a grid of blocks (nx, ny, nz); `codes` are those of each block."""
+    grid = np.zeros([size + 2 for size in blocks.shape], dtype=np.uint16)
+    grid[1:-1, 1:-1, 1:-1] = codes[blocks]
+    flat = grid.reshape(-1)
     reaching = np.flatnonzero(reaches[flat])
     sides = reaches[flat[reaching]]
-    _, ny, nz = codes.shape
+    _, ny, nz = grid.shape
     for side in range(6):
         step = (ny * nz, nz, 1)[side // 2] * (2 * (side % 2) - 1)
         flat[reaching[(sides >> side) & 1 != 0] + step] |= INTRUDED
+    return grid

@@ -20,18 +20,13 @@ from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, OWN
 
 __all__ = [
     "LEAST_LENGTH",
-    "MISSED",
     "NOWHERE",
-    "Boxes",
     "Cell",
     "Codes",
-    "Ray",
     "Scene",
-    "Starts",
     "Vector",
     "allocating",
     "at",
-    "block_entry",
     "cell_at",
     "compiled",
     "hidden_by",
@@ -224,7 +219,7 @@ def span(ray: Ray, low: Vector, high: Vector) -> tuple[float, float]:
 
 
 @inlined
-def block_entry(scene: Scene, code: int, cell: Cell, ray: Ray) -> float:
+def _block_entry(scene: Scene, code: int, cell: Cell, ray: Ray) -> float:
     """Where a ray first enters a box of a cell's own shape; `MISSED` if nowhere."""
     i, j, k = cell
     least = ray[3]
@@ -249,7 +244,7 @@ def _cell_entry(scene: Scene, cell: Cell, target: Cell, ray: Ray) -> tuple[float
     hit = NOWHERE
     code = codes[at(sizes, cell)]
     if code & OWN != EMPTY and cell != target:
-        entry = block_entry(scene, code & OWN, cell, ray)
+        entry = _block_entry(scene, code & OWN, cell, ray)
         if entry != MISSED:
             hit = cell
     if code & INTRUDED:
@@ -260,7 +255,7 @@ def _cell_entry(scene: Scene, cell: Cell, target: Cell, ray: Ray) -> tuple[float
                 and is_inside(sizes, other)
                 and codes[at(sizes, other)] & OWN >= FIRST_SHAPE
             ):
-                t = block_entry(scene, codes[at(sizes, other)] & OWN, other, ray)
+                t = _block_entry(scene, codes[at(sizes, other)] & OWN, other, ray)
                 if t < entry:
                     entry = t
                     hit = other

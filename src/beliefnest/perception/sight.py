@@ -15,20 +15,13 @@ import functools
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from beliefnest.errors import InputError, UnknownNameError
-from beliefnest.perception.codes import (
-    EMPTY,
-    FIRST_SHAPE,
-    FULL,
-    LIMIT_SLACK,
-    CodeGrid,
-    mark_intruded,
-)
+from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, CodeGrid, code_grid
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Point, Position
@@ -37,26 +30,10 @@ if TYPE_CHECKING:
     from beliefnest.perception.beams import Eye
     from beliefnest.perception.rays import Scene
 
-__all__ = ["Geometry", "Sight", "Tables"]
+__all__ = ["Geometry", "Sight"]
 
 BoolArray = npt.NDArray[np.bool_]
 Points = npt.NDArray[np.float64]
-
-
-class Tables(NamedTuple):
-    """Shapes as the kernels of `rays` want them.
-
-    Attributes:
-        starts: int32 (shapes + 1,), first row of each shape in `boxes`.
-        boxes: float64 (n, 6), as `Registry.shape_boxes`.
-        reaches: uint8 by code, the sides at which a shape reaches out of its cell.
-        codes: uint16 by block state, and at the end that of unknown.
-    """
-
-    starts: npt.NDArray[np.int32]
-    boxes: npt.NDArray[np.float64]
-    reaches: npt.NDArray[np.uint8]
-    codes: npt.NDArray[np.uint16]
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,9 +73,7 @@ class Sight:
             UnknownNameError: A value is neither a block state id nor -1.
         """
         _check_grid(blocks, self.registry.states)
-        codes = np.zeros([size + 2 for size in blocks.shape], dtype=np.uint16)
-        codes[1:-1, 1:-1, 1:-1] = self._state_codes[blocks]
-        mark_intruded(codes, self._reaches)
+        codes = code_grid(blocks, self.state_codes, self.reaches)
         codes.flags.writeable = False
         return Geometry(self, origin, codes)
 
@@ -109,11 +84,6 @@ class Sight:
         cos_half = -2.0 if angle >= 360 else math.cos(math.radians(angle) / 2)
         return cos_half, math.inf if far is None else float(far)
 
-    def tables(self) -> "Tables":
-        """What kernels of other rooms need to know of shapes."""
-        starts, boxes = self.registry.shape_start, self.registry.shape_boxes
-        return Tables(starts, boxes, self._reaches, self._state_codes)
-
     @functools.cached_property
     def _transparent(self) -> BoolArray:
         transparent = self.registry.default_transparent.copy()
@@ -123,7 +93,7 @@ class Sight:
         return transparent
 
     @functools.cached_property
-    def _state_codes(self) -> npt.NDArray[np.uint16]:
+    def state_codes(self) -> npt.NDArray[np.uint16]:
         """Code (see `codes`) of each state, and at the end that of unknown."""
         shape_codes = np.arange(len(self.registry.shape_start) - 1) + FIRST_SHAPE
         sizes = np.diff(self.registry.shape_start)
@@ -135,7 +105,7 @@ class Sight:
         return np.append(codes, EMPTY).astype(np.uint16)
 
     @functools.cached_property
-    def _reaches(self) -> npt.NDArray[np.uint8]:
+    def reaches(self) -> npt.NDArray[np.uint8]:
         """By code, the sides at which its shape reaches out of the cell, one bit for each."""
         starts, boxes = self.registry.shape_start, self.registry.shape_boxes
         reaches = np.zeros(len(starts) - 1 + FIRST_SHAPE, dtype=np.uint8)
@@ -181,9 +151,9 @@ class Geometry:
                 raise InputError(f"position {position} lies outside the grid at {self.origin}")
             _check_states(state, state, states)
             i, j, k = cell
-            code = int(self.sight._state_codes[state])
+            code = int(self.sight.state_codes[state])
             place = (i + 1, j + 1, k + 1)
-            set_code(codes.reshape(-1), self._scene.sizes, self.sight._reaches, place, code)
+            set_code(codes.reshape(-1), self._scene.sizes, self.sight.reaches, place, code)
         codes.flags.writeable = False
         return Geometry(self.sight, self.origin, codes)
 
@@ -192,7 +162,7 @@ class Geometry:
         from beliefnest.perception import shadows, views
 
         seer = self._eye(eye, yaw, pitch)
-        noted = shadows.cast_shadows(self._scene, self.sight._reaches, seer[0])
+        noted = shadows.cast_shadows(self._scene, self.sight.reaches, seer[0])
         no_cells = np.empty((0, 3), dtype=np.int64)
         seen = views.seen_blocks(self._scene, seer, no_cells, noted)
         return seen.reshape(self.codes.shape)[1:-1, 1:-1, 1:-1]
@@ -220,8 +190,10 @@ class Geometry:
         Raises:
             InputError: The points are not rows of three numbers.
         """
-        places = _rows(points).astype(np.float64)
-        return self._near(eye, places) & self._free(eye, yaw, pitch, places)
+        from beliefnest.perception import views
+
+        places = self._local(_rows(points).astype(np.float64))
+        return views.seen_points(self._scene, self._eye(eye, yaw, pitch), places)
 
     def sees_agents(self, eye: Point, yaw: float, pitch: float, feet: npt.ArrayLike) -> BoolArray:
         """Which of the agents with feet at (n, 3) are seen.
@@ -258,20 +230,6 @@ class Geometry:
         return Scene(
             self.codes.reshape(-1), (nx, ny, nz), registry.shape_start, registry.shape_boxes
         )
-
-    def _near(self, eye: Point, points: Points) -> BoolArray:
-        far = self.sight.max_visible_distance
-        if far is None:
-            return np.ones(len(points), dtype=np.bool_)
-        x, y, z = (points - np.array(eye)).T
-        near: BoolArray = np.sqrt(x * x + z * z + y * y) <= far + LIMIT_SLACK
-        return near
-
-    def _free(self, eye: Point, yaw: float, pitch: float, points: Points) -> BoolArray:
-        from beliefnest.perception import rays, views
-
-        seer = self._eye(eye, yaw, pitch)
-        return views.seen_points(self._scene, seer, self._local(points), rays.NOWHERE)
 
     def _local(self, points: Points) -> Points:
         """Points in coordinates of the codes, which have a margin of one cell."""

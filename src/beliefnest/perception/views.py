@@ -7,18 +7,11 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.perception.beams import Eye, in_field, in_reach, new_beam, sees_block
-from beliefnest.perception.eyes import eye_sees_agent
-from beliefnest.perception.rays import (
-    Cell,
-    Scene,
-    allocating,
-    cell_at,
-    hidden_by,
-    inlined,
-)
+from beliefnest.perception.eyes import eye_sees_agent, eye_sees_point
+from beliefnest.perception.rays import Cell, Scene, allocating, cell_at, inlined
 from beliefnest.perception.shadows import CLEAR, HIDDEN, UNSURE, Shadows
 
-__all__ = ["Eye", "seen_agents", "seen_blocks", "seen_points"]
+__all__ = ["seen_agents", "seen_blocks", "seen_points"]
 
 
 @allocating
@@ -67,19 +60,9 @@ def seen_agents(scene: Scene, eye: Eye, feet: npt.NDArray[np.float64]) -> npt.ND
 
 
 @allocating
-def seen_points(
-    scene: Scene, eye: Eye, points: npt.NDArray[np.float64], target: Cell
-) -> npt.NDArray[np.bool_]:
-    """To which of the points (n, 3) a ray inside the field of view is free, however far.
-
-    The target, `NOWHERE` if none, hides nothing. It is an argument because compiled constants
-    would be a type of their own, and all below would be compiled twice.
-    """
+def seen_points(scene: Scene, eye: Eye, points: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    """Which of the points (n, 3) are seen."""
     seen = np.zeros(len(points), dtype=np.bool_)
-    x, y, z = eye[0]
     for n in range(len(points)):
-        d = (points[n, 0] - x, points[n, 1] - y, points[n, 2] - z)
-        if in_field(eye, d[0], d[1], d[2]):
-            hit = hidden_by(scene, target, eye[0], d)
-            seen[n] = hit[0] < 0
+        seen[n] = eye_sees_point(scene, eye, (points[n, 0], points[n, 1], points[n, 2]))
     return seen

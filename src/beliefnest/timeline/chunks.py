@@ -34,7 +34,7 @@ class _Chunk(NamedTuple):
 
     timeline: int
     first: int
-    count: int
+    count: int  # type: ignore[assignment]  # the column has the name of a method of tuples
     first_tick: int
     last_tick: int
     events: int

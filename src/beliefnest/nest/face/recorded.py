@@ -11,10 +11,9 @@ from beliefnest.nest.face.telling import Telling
 from beliefnest.nest.face.viewing import Viewing
 from beliefnest.nest.past.over_time import Moment, over_time
 from beliefnest.nest.past.recording import Recording, read_recording
-from beliefnest.timeline.records import RunJournal
 from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.journal import FOLLOW, TimelineKey, lineage
-from beliefnest.timeline.records import ProgramRecord, PromptRecord
+from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunJournal
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import parse_path
 

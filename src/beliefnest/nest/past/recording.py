@@ -13,12 +13,12 @@ from typing import Self
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import BranchError, StoreError, TickError
 from beliefnest.nest.past.history import History
-from beliefnest.timeline.records import RunJournal
 from beliefnest.nest.past.setting import MAIN, Setting
 from beliefnest.nest.past.setting_codec import decode_start
 from beliefnest.nest.past.views import Blocks, LiveState
 from beliefnest.prompts import Renderer
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
+from beliefnest.timeline.records import RunJournal
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import path_text
 
