@@ -140,13 +140,13 @@ class Database:
         return database
 
     @classmethod
-    def in_memory(cls) -> "Database":
-        """What a new run file is, without a file."""
+    def in_memory(cls, statements: Iterable[str]) -> "Database":
+        """A new database that ends with the process, and consists of what statements define."""
         memory = ":memory:"
         connection = sqlite3.connect(memory, isolation_level=None, check_same_thread=False)
         database = cls(connection, Path(memory), None)
         database.writable = True
-        for statement in STATEMENTS:
+        for statement in statements:
             database.execute(statement)
         return database
 

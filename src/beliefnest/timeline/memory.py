@@ -24,6 +24,7 @@ from beliefnest.timeline.journal import (
     is_found,
 )
 from beliefnest.timeline.records import Records
+from beliefnest.timeline.schema import RECORDS
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
 
@@ -88,7 +89,7 @@ class MemoryJournal:
 
     def __init__(self) -> None:
         self._timelines: dict[TimelineKey, _Timeline] = {}
-        self._database = Database.in_memory()
+        self._database = Database.in_memory(RECORDS)
         # It need not be closed, and can be read when it was.
         finalize(self, self._database.close)
         self.records = Records(self._database)

@@ -11,6 +11,7 @@ from contextlib import closing
 __all__ = [
     "APPLICATION_ID",
     "BODY_STATE",
+    "RECORDS",
     "SCHEMA_VERSION",
     "SMALL_TABLES",
     "STATEMENTS",
@@ -35,6 +36,34 @@ BODY_STATE = """CREATE TABLE body_state (
         seal INTEGER NOT NULL,
         PRIMARY KEY (timeline, entries, tick)
     )"""
+
+RECORDS = (
+    """CREATE TABLE meta (
+        name TEXT PRIMARY KEY,
+        value BLOB NOT NULL,
+        seal INTEGER NOT NULL
+    )""",
+    """CREATE TABLE selected (
+        path TEXT PRIMARY KEY,
+        branch TEXT NOT NULL,
+        seal INTEGER NOT NULL
+    )""",
+    """CREATE TABLE program (
+        id INTEGER PRIMARY KEY AUTOINCREMENT,
+        path TEXT NOT NULL,
+        branch TEXT NOT NULL,
+        body BLOB NOT NULL,
+        seal INTEGER NOT NULL
+    )""",
+    """CREATE TABLE prompt (
+        id INTEGER PRIMARY KEY AUTOINCREMENT,
+        path TEXT NOT NULL,
+        branch TEXT NOT NULL,
+        body BLOB NOT NULL,
+        seal INTEGER NOT NULL
+    )""",
+)
+"""Tables of what is kept besides timelines."""
 
 STATEMENTS = (
     # A path is a JSON array of agent names. `packed` of the entries lie in compressed chunks.
@@ -87,30 +116,7 @@ STATEMENTS = (
         UNIQUE (timeline, name, entries)
     )""",
     BODY_STATE,
-    """CREATE TABLE meta (
-        name TEXT PRIMARY KEY,
-        value BLOB NOT NULL,
-        seal INTEGER NOT NULL
-    )""",
-    """CREATE TABLE selected (
-        path TEXT PRIMARY KEY,
-        branch TEXT NOT NULL,
-        seal INTEGER NOT NULL
-    )""",
-    """CREATE TABLE program (
-        id INTEGER PRIMARY KEY AUTOINCREMENT,
-        path TEXT NOT NULL,
-        branch TEXT NOT NULL,
-        body BLOB NOT NULL,
-        seal INTEGER NOT NULL
-    )""",
-    """CREATE TABLE prompt (
-        id INTEGER PRIMARY KEY AUTOINCREMENT,
-        path TEXT NOT NULL,
-        branch TEXT NOT NULL,
-        body BLOB NOT NULL,
-        seal INTEGER NOT NULL
-    )""",
+    *RECORDS,
 )
 
 
