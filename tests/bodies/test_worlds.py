@@ -12,7 +12,7 @@ def frames(scenario: bn.Scenario, worlds: Worlds | None = None) -> list[Frame]:
     with bn.Nest.open(scenario, worlds=worlds) as nest:
         nest.play()
         info = nest["/"].branches()[0]
-        return list(nest._recording.journal.entries(info.key, 0, info.entries))
+        return list(nest.reader.entries(info.key, 0, info.entries))
 
 
 def test_a_lent_world_gives_the_frames_of_a_fresh_one():

@@ -1,7 +1,7 @@
 """All nodes below one timeline, folded together: arrays for the kernel, holdings for the rest."""
 
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from weakref import WeakSet
 
@@ -12,14 +12,14 @@ from beliefnest.belief import kernel
 from beliefnest.belief.arrays import Changes, Facts
 from beliefnest.belief.columns import Columns
 from beliefnest.belief.context import BeliefContext
-from beliefnest.belief.entries import PerceivedEvent
+from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.belief.hearing import Hearing
 from beliefnest.belief.holdings_table import HoldingsTable, RootFacts, SavedHoldings
 from beliefnest.belief.node_table import NodeTable, SavedNode
 from beliefnest.belief.poses import PoseTable, SavedPoses
 from beliefnest.belief.protocols import EventHistory, Reader
 from beliefnest.belief.testimony import Testimony, Verdict
-from beliefnest.world.values import Event, Items, Sign
+from beliefnest.world.values import Event, Items, Point, Sign
 
 __all__ = ["Forest", "ForestState", "NodeState"]
 
@@ -79,14 +79,20 @@ class Forest:
     """
 
     def __init__(
-        self, events: EventHistory, table: NodeTable, holdings: HoldingsTable, tick: int
+        self,
+        events: EventHistory,
+        table: NodeTable,
+        holdings: HoldingsTable,
+        tick: int,
+        since: frozenset[int] | None = None,
     ) -> None:
         self.context, self._events = table.context, events
         self.table, self.holdings = table, holdings
         self.position, self.tick = 0, tick
         self.columns = self._nowhere(0, 0, table.poses)
         self.hearing = Hearing()
-        self.since = frozenset(table.tracked.tolist())
+        tracked = frozenset(table.tracked.tolist())
+        self.since = tracked if since is None else tracked & since
         self.verdicts: Mapping[tuple[int, int], Sequence[Verdict]] = {}
         self._readers: WeakSet[Reader] = WeakSet()
 
@@ -141,6 +147,54 @@ class Forest:
     def poses(self) -> PoseTable:
         """The poses that nodes refer to."""
         return self.table.poses
+
+    @property
+    def paths(self) -> Collection[Path]:
+        """The nodes, each after its parent."""
+        return self.table.index.keys()
+
+    @property
+    def count_of_nodes(self) -> int:
+        """How many nodes there are."""
+        return self.table.count
+
+    @property
+    def has_beliefs(self) -> bool:
+        """Whether there are nodes below node 0."""
+        return self.table.count > 1
+
+    def __contains__(self, path: Path) -> bool:
+        return path in self.table.index
+
+    def node(self, path: Path) -> int:
+        """Number of a node."""
+        return self.table.index[path]
+
+    def block(self, path: Path, cell: int) -> int:
+        """Number of the block that a node holds at a cell; -1: unknown."""
+        return self.table.block(self.node(path), cell)
+
+    def bases(self, path: Path, cells: Sequence[int]) -> dict[int, Basis | None]:
+        """What the blocks of a node at some cells rest on; None where a block is unknown."""
+        return self.table.bases(self.node(path), cells)
+
+    def current_blocks(self, path: Path, cells: Iterable[int]) -> set[int]:
+        """Those of some cells whose block in a node is backed by a perception in the last entry."""
+        return self.table.current_blocks(self.node(path), cells)
+
+    def feet(self, path: Path, agent: str) -> Point | None:
+        """Where a node holds an agent to stand; None: unknown."""
+        pose = self.table.pose(self.node(path), self.context.numbers[agent])
+        return None if pose < 0 else self.poses.position(pose)
+
+    def seen_at(self, path: Path, agent: str) -> int | None:
+        """Tick of what a node holds of an agent's pose; None: it is unknown."""
+        node, number = self.node(path), self.context.numbers[agent]
+        return None if self.table.pose(node, number) < 0 else self.table.seen_at(node, number)
+
+    def is_present(self, path: Path) -> bool:
+        """Whether a node's owner is present in the parent node (semantics, section 5)."""
+        return self.table.is_present(self.node(path))
 
     @property
     def count_of_events(self) -> int:
@@ -199,7 +253,7 @@ class Forest:
         self.table.track()
         other.table.track()
         for path in paths:
-            source = other.table.index[path]
+            source = other.node(path)
             node = self.table.copy_node(other.table, source, is_root=False, recorded=True)
             self.holdings.add(other.holdings.of(source).copy(), other.holdings.last_look(source))
             self.hearing.set(node, 0, other.hearing.of(source, count))
@@ -208,6 +262,10 @@ class Forest:
     def perceive_at_first(self) -> None:
         """Let all nodes but the first perceive what there is, with nothing happening."""
         self._look(self.table.below(0))
+
+    def see_now(self, tick: int) -> None:
+        """Note that what is current of agents' poses is so at a tick."""
+        self.table.see_now(tick)
 
     def skip(self, tick: int) -> None:
         """Let an entry pass that is about no node of this forest."""

@@ -182,20 +182,18 @@ def forked_forest(
         further: More nodes below `root`, each after its parent.
     """
     source.table.track()
-    first, agents = source.table.index[root], range(len(source.context.agents))
+    first, agents = source.node(root), range(len(source.context.agents))
     vitals = {agent: source.holdings.vitals(first, agent) for agent in agents}
     table = NodeTable(source.context, PoseTable(), extra)
     holdings = HoldingsTable(table, RootFacts(vitals=vitals))
     chain = [path[:depth] for depth in range(len(root), len(path) + 1)]
     for wanted in dict.fromkeys((*chain, *further)):
-        old = source.table.index[wanted]
+        old = source.node(wanted)
         is_root = wanted == root
         table.copy_node(source.table, old, is_root=is_root, recorded=False)
         holdings.add(_forked_holdings(source.holdings, old, agents, is_root=is_root))
     table.link()
-    forest = Forest(events, table, holdings, tick)
-    forest.since &= source.since
-    return forest
+    return Forest(events, table, holdings, tick, source.since)
 
 
 def _forked_holdings(

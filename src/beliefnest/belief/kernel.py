@@ -67,7 +67,7 @@ def put(space: Space, nodes: Nodes, node: int, cell: int, state: int) -> None:
 
 
 @inner
-def _put(
+def _put_noted(
     space: Space, nodes: Nodes, changes: Changes, entry: int, node: int, cell: int, state: int
 ) -> None:
     """`put`, and note it where a container is or was."""
@@ -125,7 +125,7 @@ def _apply_entry(space: Space, facts: Facts, nodes: Nodes, changes: Changes, ent
             nodes.seen_at[0, who] = facts.tick[entry]
     for row in range(facts.block_at[entry], facts.block_at[entry + 1]):
         cell, state = whole(facts.block_cell[row]), whole(facts.block_state[row])
-        _put(space, nodes, changes, entry, whole(0), cell, state)
+        _put_noted(space, nodes, changes, entry, whole(0), cell, state)
     for spot in range(len(nodes.tracked)):
         if nodes.blocks[0, nodes.tracked[spot]] != UNKNOWN:
             nodes.basis_at[0, spot] = facts.tick[entry]
@@ -191,7 +191,7 @@ def _observe_blocks(
                 cell = word * _WORD + place
                 if sees_cell(space, nodes, parent, eye, cell):
                     state = whole(nodes.blocks[parent, cell])
-                    _put(space, nodes, changes, entry, node, cell, state)
+                    _put_noted(space, nodes, changes, entry, node, cell, state)
     nodes.fresh[node] = False
 
 

@@ -35,7 +35,7 @@ class NodeView:
         self.path = path
         self.tick = forest.tick
         self._forest = forest
-        self._node = forest.table.index[path]
+        self._node = forest.node(path)
         self.count_of_events = forest.count_of_events
         self._last_look = forest.holdings.last_look(self._node)
         forest.read_by(self)

@@ -89,11 +89,11 @@ class PoseTable:
         if self._table[last] != condition:
             self._table.append(condition)
             last = self._last[name] = len(self._table) - 1
-        return self._add(agent.position, agent.yaw, agent.pitch, last, recorded=True)
+        return self._append(agent.position, agent.yaw, agent.pitch, last, recorded=True)
 
     def add_pose(self, position: Point, yaw: float, pitch: float, speaker: int = NOBODY) -> int:
         """Id of a pose in which nobody was seen; an agent `speaker` may have told of it."""
-        return self._add(position, yaw, pitch, 0, speaker, recorded=False)
+        return self._append(position, yaw, pitch, 0, speaker, recorded=False)
 
     def take(self, other: "PoseTable", numbers: Ints, *, recorded: bool = True) -> Ints:
         """Copy poses of another table; returns their ids in this one.
@@ -161,7 +161,7 @@ class PoseTable:
         restored._table = list(saved.table)
         return restored
 
-    def _add(
+    def _append(
         self,
         position: Point,
         yaw: float,

@@ -41,23 +41,27 @@ class Bodies:
     Args:
         recording: What they are filled from and recorded in.
         world: Where they live.
+        embodying: What people who visit beliefs are shown; it follows the real world.
         reader: Who reads claims out of what is said in them; None: nobody.
 
     Attributes:
         world: Where they live.
         others: Further worlds of the kind, for programs that run at the same time.
         chat_listeners: Called on what is said in the real world.
-        embodying: What people who visit beliefs are shown.
     """
 
     def __init__(
-        self, recording: Recording, world: World, reader: ClaimReader | None = None
+        self,
+        recording: Recording,
+        world: World,
+        embodying: Embodying,
+        reader: ClaimReader | None = None,
     ) -> None:
         self.world = world
         self.others: list[World] = []
         self.chat_listeners: list[ChatListener] = []
         self._recording = recording
-        self.embodying = Embodying(recording, world)
+        self._embodying = embodying
         self._hearsay = None
         if reader is not None:
             self._hearsay = Hearsay(reader, recording.setting, recording.history)
@@ -93,13 +97,13 @@ class Bodies:
         recorder = self._recorder(key)
         body = self.world.open_body(path_text(key.path), self.seed_of(key.path), snapshot, recorder)
         self._embodied[key.path] = _Embodied(body, recorder)
-        self._recording.journal.records.add_versions(self.world.versions)
+        self._recording.records.add_versions(self.world.versions)
 
     def _recorder(self, key: TimelineKey) -> FrameRecorder:
         recording = self._recording
         on_chat = self._tell_chat if key.path == () else None
         # Of reality alone: what goes on faster than real time nobody could watch.
-        follower = self.embodying if key.path == () else None
+        follower = self._embodying if key.path == () else None
         return FrameRecorder(
             recording.journal, recording.history, key, self._hearsay, on_chat, follower
         )
@@ -227,7 +231,7 @@ class Bodies:
                 self._embodied[path].recorder.drop()
             # What was read meanwhile, here or in what is based on it, has not happened.
             self._recording.history.forget_all()
-            self.embodying.look_again()
+            self._embodying.look_again()
             self.restore(path)
             raise
 

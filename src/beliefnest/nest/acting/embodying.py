@@ -68,7 +68,7 @@ class Embodying:
 
     def begin(self, path: Path, unknown: str) -> None:
         """Let a simulator stand there; see `Simulator.embody`."""
-        state = self._recording.history.context.registry.state_id(unknown)
+        state = self._recording.context.registry.state_id(unknown)
         if path == _REALITY:
             raise InputError("the real world stands there already; nest.layout() says where")
         world = self._realtime()
@@ -141,21 +141,21 @@ class Embodying:
 
     def _free_number(self, world: RealtimeWorld) -> int:
         taken = {standing.plot.origin for standing in self._standing.values()}
-        box, number = self._recording.setting.snapshot.box, 1
+        box, number = self._recording.box, 1
         while origin_of(number, box, world.origin) in taken:
             number += 1
         return number
 
     def _plot(self, path: Path, number: int, world: RealtimeWorld) -> Plot:
-        box = self._recording.setting.snapshot.box
+        box = self._recording.box
         x, z = origin = origin_of(number, box, world.origin)
         stand = self._stand(self._recording.reading(path))
         return Plot(box, origin, (stand[0] + x, stand[1], stand[2] + z))
 
     def _stand(self, reading: NodeView) -> Position:
         """The free place nearest to the middle of the agents, or of the box if nobody is known."""
-        box = self._recording.setting.snapshot.box
-        space = BodySpace(self._recording.history.context.registry, box, reading.blocks)
+        box = self._recording.box
+        space = BodySpace(self._recording.context.registry, box, reading.blocks)
         places = [each.position for each in reading.agents.values() if each.position is not None]
         taken = {tuple(map(math.floor, place)) for place in places}
         middle = np.array(places or [box.low, box.high], dtype=float).mean(axis=0)

@@ -14,6 +14,7 @@ from typing import Concatenate, ParamSpec, Self, TypeVar
 from beliefnest.bodies.protocol import KILLED, Body, Fault, Past, ProgramResult, RunRules, World
 from beliefnest.errors import BodyLostError, BranchError, TickError
 from beliefnest.nest.acting.bodies import Bodies
+from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.nest.acting.going_on import encoded_past
 from beliefnest.nest.acting.hearsay import ClaimReader
 from beliefnest.nest.acting.speculation import Speculation, SpeculationStart, speculate
@@ -54,7 +55,7 @@ def _shown(
     @wraps(method)
     def visible(self: "Engine", /, *args: P.args, **kwargs: P.kwargs) -> R:
         result = method(self, *args, **kwargs)
-        self.bodies.embodying.keep_up()
+        self.embodying.keep_up()
         return result
 
     return visible
@@ -69,6 +70,9 @@ class Engine:
         reader: Who reads claims out of what is said; None: nobody.
 
     Attributes:
+        recording: The nest's timelines.
+        world: Where bodies live.
+        embodying: What people who visit beliefs are shown.
         bodies: The bodies of simulators in control mode.
     """
 
@@ -76,7 +80,9 @@ class Engine:
         self, recording: Recording, world: World, reader: ClaimReader | None = None
     ) -> None:
         self.recording = recording
-        self.bodies = Bodies(recording, world, reader)
+        self.world = world
+        self.embodying = Embodying(recording, world)
+        self.bodies = Bodies(recording, world, self.embodying, reader)
 
     def begin(self) -> Self:
         """Start the real world's timeline and give it its body."""
@@ -115,7 +121,7 @@ class Engine:
         if self.recording.selected.get(key.path) != key:
             self.bodies.catch_up(key.path)
             with self.bodies.selecting(key, self.bodies.recorded(key)):
-                self.recording.journal.records.select(key.path, key.branch)
+                self.recording.records.select(key.path, key.branch)
 
     @_shown
     def follow(self, path: Path) -> None:
@@ -123,7 +129,7 @@ class Engine:
         if path == ():
             raise BranchError(f"the real world follows nothing; {FOLLOW!r} is for beliefs")
         if path in self.recording.selected:
-            self.recording.journal.records.select(path, FOLLOW)
+            self.recording.records.select(path, FOLLOW)
             del self.recording.selected[path]
         self.bodies.give_up(path)
 
@@ -188,13 +194,13 @@ class Engine:
         lives = self.bodies.lives()
         while True:
             results = lives.call(
-                lambda: self._run(path, programs, timeout_ticks, step, senses, rules)
+                lambda: self._run_once(path, programs, timeout_ticks, step, senses, rules)
             )
             killed = any(result.killed for result in results.values())
             if not killed or step is None or not lives.spend():
                 return results
 
-    def _run(
+    def _run_once(
         self,
         path: Path,
         programs: Mapping[str, str],
@@ -255,7 +261,7 @@ class Engine:
             self.bodies.start(path, base).snapshot,
             self._rules,
         )
-        worlds = [self.bodies.world, *self.bodies.further_worlds(processes - 1)]
+        worlds = [self.world, *self.bodies.further_worlds(processes - 1)]
         return speculate(worlds, start, jobs, timeout_ticks)
 
     def run_speculated(
@@ -319,7 +325,7 @@ class Engine:
         kept: bool = True,
     ) -> None:
         """Note programs that ran together on a timeline, which was as `before` when they began."""
-        records = self.recording.journal.records
+        records = self.recording.records
         group = records.next_group()
         for agent, result in results.items():
             records.add_program(

@@ -152,7 +152,7 @@ class Imagination:
         wanted = nodes_below(root, depth, source.context.agents)
         news = _News()
         forest = forked_forest(source, news, root, root, tick, further=wanted[1:])
-        forest.table.see_now(tick)
+        forest.see_now(tick)
         believed = NodeView(forest, root)
         world = ScriptedWorld.from_snapshot(replace(believed.snapshot(), tick=tick))
         known = {} if grounds is None else grounds
@@ -183,9 +183,7 @@ class Imagination:
     def knows(self, path: Path) -> bool:
         """Whether beliefs are followed as deep as a path below the root."""
         whole = normalised((*self.root, *path))
-        return whole == self.root or (
-            self._forest is not None and whole in self._forest.table.index
-        )
+        return whole == self.root or (self._forest is not None and whole in self._forest)
 
     def view(self, path: Path = ()) -> NodeView:
         """What a node holds; read it before time goes on.
@@ -198,7 +196,7 @@ class Imagination:
         """
         whole = normalised((*self.root, *path))
         forest = self._fold()
-        if forest is None or whole not in forest.table.index:
+        if forest is None or whole not in forest:
             raise PathError(f"{path_text(whole)} is deeper than this imagination goes")
         return NodeView(forest, whole)
 
@@ -223,7 +221,7 @@ class Imagination:
         """The same once more, to go another way."""
         forest, news = self._fold(), _News()
         if forest is not None:
-            nodes = [path for path in forest.table.index if path != self.root]
+            nodes = [path for path in forest.paths if path != self.root]
             forest = forked_forest(
                 forest, news, self.root, self.root, self.world.now, further=nodes
             )
@@ -280,7 +278,7 @@ class Imagination:
         """
         root = normalised((*self.root, agent))
         forest = self._fold()
-        if forest is None or root not in forest.table.index:
+        if forest is None or root not in forest:
             raise PathError(f"{path_text(root)} is deeper than this imagination goes")
         return Imagination.of(
             forest, root, depth, self.world.now, self._grounds, self._speech_ticks

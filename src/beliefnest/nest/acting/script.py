@@ -23,7 +23,7 @@ def play_script(engine: Engine, on_progress: Progress | None = None) -> None:
     """
     recording = engine.recording
     script = recording.setting.script
-    programs = recording.journal.records.programs()
+    programs = recording.records.programs()
     played = steps_played(recording.journal, recording.controller(()), programs)
     for number, step in enumerate(script[played:], start=played):
         if on_progress is not None:

@@ -70,7 +70,7 @@ def element_of(
 
 
 def _inside(recording: Recording, place: Position | None) -> Position:
-    box = recording.setting.snapshot.box
+    box = recording.box
     if not (
         isinstance(place, tuple) and len(place) == 3 and all(isinstance(p, int) for p in place)
     ):
@@ -155,7 +155,7 @@ def _held_now(
     recording: Recording, path: Path, place: Place, element: Element
 ) -> dict[Path, _Held]:
     root, history = place.key.path, recording.history
-    cells = cells_of(element, history.context.box)
+    cells = cells_of(element, recording.box)
     held = {}
     if cells:
         (forest,) = history.steps(place.key, path, place.entries, place.entries, cells)
@@ -166,8 +166,8 @@ def _held_now(
         basis, current = _ground_of(recording, place, forest, node, element)
         block = None
         if not isinstance(element.where, str):
-            cell = cell_of(history.context.box, element.where)
-            block = history.context.block_name(forest.table.block(forest.table.index[node], cell))
+            cell = cell_of(recording.box, element.where)
+            block = recording.context.block_name(forest.block(node, cell))
         events = NodeView(forest, node).events()
         held[node] = _Held(value_in(forest, node, element), block, basis, current, events)
     return held
@@ -184,8 +184,8 @@ def _ground_of(
     if element.kind == "container":
         content = reading.containers.get(element.where)
         return (None, False) if content is None else (content.basis, content.current)
-    cell = cell_of(recording.history.context.box, element.where)
-    basis = forest.table.bases(forest.table.index[node], [cell])[cell]
+    cell = cell_of(recording.box, element.where)
+    basis = forest.bases(node, [cell])[cell]
     current = recording.history.current_blocks(place.key, node, place.entries, (cell,))
     return basis, cell in current
 
@@ -249,19 +249,13 @@ def _take(recording: Recording, trace: _Trace, step: Step, element: Element) -> 
         if trace.observed_at is None and not trace.was_known:
             return
         trace.since, trace.parent = forest.tick, outside
-        trace.stood = _feet(forest, trace.path)
+        trace.stood = forest.feet(trace.path[:-1], trace.path[-1])
     elif trace.missed is None and outside != trace.parent and trace.observed_at is not None:
         edited = _is_edit(recording, step.place, trace.path[:-1])
         events = NodeView(forest, trace.path[:-1]).events()
         acts = () if edited else _acts(events, forest.tick, element)
         missed = _missed(recording, trace.path, step, element, trace.parent, acts)
         trace.missed = replace(missed, edited=edited)
-
-
-def _feet(forest: Forest, path: Path) -> Point | None:
-    """Where the owner of a node stands in its parent node."""
-    version = forest.table.pose(forest.table.index[path[:-1]], forest.context.numbers[path[-1]])
-    return None if version < 0 else forest.poses.position(version)
 
 
 def _missed(
@@ -275,7 +269,7 @@ def _missed(
     """Why acts in the parent of a node, or how things are in it, did not reach the node."""
     forest = step.forest
     mine = NodeView(forest, path).events() if acts else ()
-    present = forest.table.is_present(forest.table.index[path])
+    present = forest.is_present(path)
     parent = NodeView(forest, path[:-1])
     return Missed(
         tick=forest.tick,
@@ -283,7 +277,7 @@ def _missed(
         after=value_in(forest, path[:-1], element),
         acts=acts,
         edited=False,
-        stood=_feet(forest, path),
+        stood=forest.feet(path[:-1], path[-1]),
         absence=None if present else _absence(recording, forest, path),
         sightings=_sightings(recording, parent, path[-1], element, acts) if present else (),
         saw_acts=bool(acts) and all(act in mine for act in acts),
@@ -298,7 +292,7 @@ def _told(recording: Recording, path: Path, step: Step, element: Element) -> Ite
     (entry,) = recording.journal.entries(step.place.key, number - 1, number)
     if not isinstance(entry, Frame):
         return
-    node = step.forest.table.index[path]
+    node = step.forest.node(path)
     for row, event in enumerate(entry.events):
         for index, claim in enumerate(claims_of(event)):
             is_here = claim.cell == element.where
@@ -316,13 +310,12 @@ def _is_edit(recording: Recording, place: Place, path: Path) -> bool:
 
 def _absence(recording: Recording, forest: Forest, path: Path) -> Absence:
     """Why the parent of a node does not know where the node's owner is."""
-    parent, table = path[:-1], forest.table
-    node, number = table.index[parent], forest.context.numbers[path[-1]]
-    last_seen = table.seen_at(node, number) if table.pose(node, number) >= 0 else None
-    if node == 0 or not table.is_present(node):
+    parent = path[:-1]
+    last_seen = forest.seen_at(parent, path[-1])
+    if forest.node(parent) == 0 or not forest.is_present(parent):
         return Absence(last_seen, None)
     outer = NodeView(forest, parent[:-1])
-    box = recording.history.context.box
+    box = recording.box
     return Absence(last_seen, sighting_of_agent(outer, box, parent[-1], path[-1]))
 
 
@@ -334,7 +327,7 @@ def _sightings(
     acts: Iterable[PerceivedEvent],
 ) -> tuple[Sighting, ...]:
     """The looks that would have shown a change: at who did it, and at the element."""
-    box = recording.history.context.box
+    box = recording.box
     if isinstance(element.where, str):
         return (sighting_of_agent(parent, box, viewer, element.where),)
     actors: list[str] = []

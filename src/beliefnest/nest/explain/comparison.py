@@ -144,7 +144,7 @@ def compare(
 ) -> list[Difference]:
     """`differences` of two nodes at a tick; None: now."""
     one, other = recording.reading(a, tick), recording.reading(b, tick)
-    context = recording.history.context
+    context = recording.context
     found = differences(one, other, context, unknown=unknown)
     return Differences(found, path_text(a), path_text(b))
 
@@ -167,7 +167,7 @@ def false_beliefs(
     """
     belief = recording.reading(path, tick)
     real = recording.reading(against, tick if against_tick is None else against_tick)
-    context = recording.history.context
+    context = recording.context
     found = falsehoods(real, belief, context)
     return Differences(found, path_text(against), path_text(path))
 

@@ -76,13 +76,12 @@ def steps_since(
 
 def value_in(forest: Forest, path: Path, element: Element) -> Value:
     """What a node of a forest holds of an element."""
-    node, context = forest.table.index[path], forest.context
     if isinstance(element.where, str):
-        version = forest.table.pose(node, context.numbers[element.where])
-        return None if version < 0 else forest.poses.position(version)
+        return forest.feet(path, element.where)
+    node, context = forest.node(path), forest.context
     cell = cell_of(context.box, element.where)
     if element.kind == "block":
-        return context.block_text(forest.table.block(node, cell))
+        return context.block_text(forest.block(path, cell))
     if cell not in forest.holdings.of(node).containers:
         return None
     content = forest.holdings.content(node, cell)
@@ -91,14 +90,11 @@ def value_in(forest: Forest, path: Path, element: Element) -> Value:
 
 def grounded_at(forest: Forest, path: Path, element: Element) -> int | None:
     """Tick of the perception that a node's value of an element rests on; None: no value."""
-    node, context = forest.table.index[path], forest.context
     if isinstance(element.where, str):
-        number = context.numbers[element.where]
-        known = forest.table.pose(node, number) >= 0
-        return forest.table.seen_at(node, number) if known else None
-    cell = cell_of(context.box, element.where)
+        return forest.seen_at(path, element.where)
+    node, cell = forest.node(path), cell_of(forest.context.box, element.where)
     if element.kind == "block":
-        basis = forest.table.bases(node, [cell])[cell]
+        basis = forest.bases(path, [cell])[cell]
         return None if basis is None else basis.observed_at
     if cell not in forest.holdings.of(node).containers:
         return None

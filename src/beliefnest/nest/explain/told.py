@@ -64,7 +64,7 @@ class ToldClaim:
     def hearers(self) -> tuple[str, ...]:
         """Who heard it, the speaker excepted, in order of names."""
         others = [name for name in self._recording.agents if name != self.speaker]
-        return tuple(name for name in others if self._is_heard((*self._key.path, name)))
+        return tuple(name for name in others if self._was_perceived((*self._key.path, name)))
 
     @cached_property
     def false(self) -> bool:
@@ -118,7 +118,7 @@ class ToldClaim:
             if self._recording.setting.perception.testimony == "none":
                 return Verdict.OFF
             forest = self._after(names)
-            return forest.verdicts[self._row, self._index][forest.table.index[names]]
+            return forest.verdicts[self._row, self._index][forest.node(names)]
 
     def _after(self, path: Path) -> Forest:
         """A forest with a node, just after the claim."""
@@ -126,12 +126,12 @@ class ToldClaim:
         *_, forest = steps
         return forest
 
-    def _is_heard(self, path: Path) -> bool:
+    def _was_perceived(self, path: Path) -> bool:
         with self._recording.turn:
             forest = self._after(path)
             first = forest.columns.events_until(self._entry)
             count = forest.count_of_events
-            heard = forest.hearing.of(forest.table.index[path], count)
+            heard = forest.hearing.of(forest.node(path), count)
             return bool(np.asarray(heard)[first + self._row])
 
     def _state(self, path: Path) -> State:

@@ -1,49 +1,37 @@
 """People in a nest whose real world goes on in real time: who is awaited, who is there."""
 
 import sys
-from collections.abc import Callable
-from typing import Protocol
 
 from beliefnest.bodies.realtime import RealtimeWorld
 from beliefnest.bodies.worlds import joined_of, realtime_of
 from beliefnest.errors import InputError, UnknownNameError, WorldError
-from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.script import Progress
 from beliefnest.nest.face.turns import in_turn
-from beliefnest.nest.past.recording import Recording
+from beliefnest.nest.face.waiting import Waiting
 
 __all__ = ["Joining"]
 
 _PATIENCE_S = 600.0
 
 
-class _Joined(Protocol):
-    _engine: Engine
-    _recording: Recording
-
-    def wait(self, until: Callable[[], bool] | None = None, timeout_s: float = 60.0) -> bool: ...
-    @property
-    def people(self) -> frozenset[str]: ...
-
-
-class Joining:
+class Joining(Waiting):
     """What a nest offers about people; a part of `Nest`."""
 
     @property
-    def address(self: _Joined) -> str | None:
+    def address(self) -> str | None:
         """Where a Minecraft client joins, `HOST:PORT`; None where people cannot."""
-        host = joined_of(self._engine.bodies.world)
+        host = joined_of(self._engine.world)
         return None if host is None else host.address
 
     @property
     @in_turn
-    def people(self: _Joined) -> frozenset[str]:
+    def people(self) -> frozenset[str]:
         """Names of the people who are there now."""
-        host = joined_of(self._engine.bodies.world)
+        host = joined_of(self._engine.world)
         return frozenset() if host is None else host.here()
 
     def wait_for_people(
-        self: _Joined, timeout_s: float = _PATIENCE_S, on_progress: Progress | None = None
+        self, timeout_s: float = _PATIENCE_S, on_progress: Progress | None = None
     ) -> None:
         """Wait until all people of the scenario have joined; time passes meanwhile.
 
@@ -55,7 +43,7 @@ class Joining:
             InputError: The time is below 0, or longer than a day.
             WorldError: Somebody did not come.
         """
-        host = joined_of(self._engine.bodies.world)
+        host = joined_of(self._engine.world)
         if host is None or not host.invited:
             return
         told: frozenset[str] | None = None
@@ -82,27 +70,27 @@ class Joining:
             )
 
     @in_turn
-    def take_over(self: _Joined, name: str) -> None:
+    def take_over(self, name: str) -> None:
         """Let programs act for a person, who is sent away if there, until `hand_back`.
 
         Raises:
             UnknownNameError: The scenario has no person of that name.
         """
-        host = _host_of_person(self, name)
+        host = self._host_of_person(name)
         host.invite(host.invited - {name})
 
     @in_turn
-    def hand_back(self: _Joined, name: str) -> None:
+    def hand_back(self, name: str) -> None:
         """Let a person who was taken over join again; until then the agent stands still.
 
         Raises:
             UnknownNameError: The scenario has no person of that name.
         """
-        host = _host_of_person(self, name)
+        host = self._host_of_person(name)
         host.invite(host.invited | {name})
 
     @in_turn
-    def pause(self: _Joined) -> None:
+    def pause(self) -> None:
         """Let the real world stand still until `go_on`.
 
         No tick passes, and nothing that people do or say is done; they are told. Beliefs can be
@@ -111,36 +99,36 @@ class Joining:
         Raises:
             WorldError: It is not in real time, or on a server elsewhere.
         """
-        _real_time_of(self).pause(paused=True)
+        self._real_time_world().pause(paused=True)
 
     @in_turn
-    def go_on(self: _Joined) -> None:
+    def go_on(self) -> None:
         """Let the real world go on after `pause`; nothing changes if it does already.
 
         Raises:
             WorldError: It is not in real time, or on a server elsewhere.
         """
-        _real_time_of(self).pause(paused=False)
+        self._real_time_world().pause(paused=False)
 
+    def _real_time_world(self) -> RealtimeWorld:
+        world = realtime_of(self._engine.world)
+        if world is None:
+            raise WorldError(
+                "this world is not in real time: no time passes between calls that could be paused"
+            )
+        return world
 
-def _real_time_of(nest: _Joined) -> RealtimeWorld:
-    host = realtime_of(nest._engine.bodies.world)
-    if host is None:
-        raise WorldError(
-            "this world is not in real time: no time passes between calls that could be paused"
-        )
-    return host
-
-
-def _host_of_person(nest: _Joined, name: str) -> RealtimeWorld:
-    people = nest._recording.setting.people
-    if name not in people:
-        known = ", ".join(sorted(people)) or "none"
-        raise UnknownNameError(f"there is no person {name!r} in this scenario; there are: {known}")
-    host = joined_of(nest._engine.bodies.world)
-    if host is None:
-        raise InputError(f"{name} is a person, and nobody can join this world")
-    return host
+    def _host_of_person(self, name: str) -> RealtimeWorld:
+        people = self._recording.setting.people
+        if name not in people:
+            known = ", ".join(sorted(people)) or "none"
+            raise UnknownNameError(
+                f"there is no person {name!r} in this scenario; there are: {known}"
+            )
+        host = joined_of(self._engine.world)
+        if host is None:
+            raise InputError(f"{name} is a person, and nobody can join this world")
+        return host
 
 
 def _names(people: frozenset[str]) -> str:

@@ -196,7 +196,7 @@ def _scenes(
         nodes = [_Node(recording, parse_path(path, recording.agents), tick) for path in paths]
         for name in sight or ():
             parse_path(path_text((name,)), recording.agents)
-        low, high = recording.setting.snapshot.box.low[1], recording.setting.snapshot.box.high[1]
+        low, high = recording.box.low[1], recording.box.high[1]
         if height is not None and not low <= height <= high:
             raise InputError(f"height {height} lies outside the box; give {low} to {high}")
         # One storey for all of them, so that they can be compared.

@@ -27,7 +27,6 @@ from beliefnest.nest.face.ticks import tick_of
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.face.viewing import Viewing
 from beliefnest.nest.face.visiting import Visiting
-from beliefnest.nest.face.waiting import Waiting
 from beliefnest.nest.past.over_time import each_tick
 from beliefnest.nest.past.setting import Setting
 from beliefnest.perception.options import Perception
@@ -41,7 +40,7 @@ from beliefnest.world.values import Position
 __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 
 
-class Nest(Looking, Viewing, Telling, Comparing, Waiting, Joining, Visiting):
+class Nest(Looking, Viewing, Telling, Comparing, Joining, Visiting):
     """The real world and every belief in it; each node is made on first use.
 
     `Nest(world)` wraps a `ScriptedWorld` and follows what happens in it; `Nest.open` opens a
@@ -218,17 +217,17 @@ class Nest(Looking, Viewing, Telling, Comparing, Waiting, Joining, Visiting):
     @in_turn
     def programs(self) -> Sequence[ProgramRecord]:
         """All programs that ran, on branches that are there, in order of their end."""
-        return self._recording.journal.records.programs()
+        return self._recording.records.programs()
 
     @in_turn
     def prompts(self) -> Sequence[PromptRecord]:
         """All requests to models that `Simulator.noting` kept, with what came of them."""
-        return self._recording.journal.records.prompts()
+        return self._recording.records.prompts()
 
     @in_turn
     def versions(self) -> Sequence[Mapping[str, str]]:
         """Program to version, when the run began and whenever it was resumed with others."""
-        return self._recording.journal.records.versions()
+        return self._recording.records.versions()
 
     def __getitem__(self, path: str) -> Simulator:
         """The simulator of a belief path; `/` is the real world.
@@ -302,7 +301,7 @@ class Nest(Looking, Viewing, Telling, Comparing, Waiting, Joining, Visiting):
         """
         self[path].child(agent)
         parsed = parse_path(path, self.agents)
-        if not parsed and is_real_time(self._engine.bodies.world):
+        if not parsed and is_real_time(self._engine.world):
             raise InputError(
                 "this real world goes on in real time, so that nothing can be tried out in it; "
                 "explore a belief, which is played in the embedded world"
@@ -328,7 +327,7 @@ class Nest(Looking, Viewing, Telling, Comparing, Waiting, Joining, Visiting):
     @in_turn
     def keep(self, name: str, value: bytes) -> None:
         """Keep bytes in the run under a name, in place of what was there."""
-        self._recording.journal.records.put_state(f"kept {name}", value)
+        self._recording.records.put_state(f"kept {name}", value)
 
     def each_tick(
         self, paths: Sequence[str], after: int, until: int

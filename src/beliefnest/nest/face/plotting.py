@@ -71,7 +71,7 @@ def plot_of(
             "an item a container that it is in or an agent that has it"
         )
     if item is not None:
-        recording.history.context.registry.item_stack(item)
+        recording.context.registry.item_stack(item)
     with recording.turn:
         if container is not None:
             return _figure(
@@ -89,14 +89,14 @@ def plot_of(
 
 
 def _check_inside(recording: Recording, place: Position) -> None:
-    box = recording.setting.snapshot.box
+    box = recording.box
     if place not in box:
         raise PositionError(f"position {place} is outside the box {box.low}..{box.high}")
 
 
 def _standing(recording: Recording, block: Position) -> Standing:
     _check_inside(recording, block)
-    context = recording.history.context
+    context = recording.context
     return Standing(block, context.box.index(block), context.block_text)
 
 

@@ -61,12 +61,12 @@ class Reader:
     def programs(self) -> Sequence[ProgramRecord]:
         """All programs that ran, in order of their end."""
         with self._recording.turn:
-            return tuple(self._recording.journal.records.programs())
+            return tuple(self._recording.records.programs())
 
     def prompts(self) -> Sequence[PromptRecord]:
         """All requests to models with what came of them, in order."""
         with self._recording.turn:
-            return tuple(self._recording.journal.records.prompts())
+            return tuple(self._recording.records.prompts())
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Sequence[Entry]:
         """Entries of a timeline, from number `start` to before `stop`."""
@@ -118,7 +118,7 @@ class Reader:
             reading = self._recording.on(key).reading(path, tick)
             if reading.agents[viewer].position is None:
                 return None
-            box = self.setting.snapshot.box
+            box = self._recording.box
             if isinstance(target, str):
                 return sighting_of_agent(reading, box, viewer, target)
             return sighting_of_block(reading, box, viewer, target)

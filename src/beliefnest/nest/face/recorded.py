@@ -80,7 +80,7 @@ class RecordedNest(Looking, Viewing, Telling, Comparing):
 
     def versions(self) -> Sequence[Mapping[str, str]]:
         """Program to version, when the run began and whenever it was resumed with others."""
-        return self._recording.journal.records.versions()
+        return self._recording.records.versions()
 
     def __getitem__(self, path: str) -> PastSimulator:
         """A simulator at the latest tick of its timeline.
@@ -148,7 +148,7 @@ class RecordedNest(Looking, Viewing, Telling, Comparing):
         Raises:
             PathError: The path is malformed or names an unknown agent.
         """
-        programs = tuple(self._recording.journal.records.programs())
+        programs = tuple(self._recording.records.programs())
         if path is None:
             return programs
         names = parse_path(path, self._recording.agents)
@@ -165,7 +165,7 @@ class RecordedNest(Looking, Viewing, Telling, Comparing):
         Raises:
             PathError: The path is malformed or names an unknown agent.
         """
-        prompts = tuple(self._recording.journal.records.prompts())
+        prompts = tuple(self._recording.records.prompts())
         if path is None:
             return prompts
         names = parse_path(path, self._recording.agents)

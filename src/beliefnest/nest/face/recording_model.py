@@ -87,7 +87,7 @@ class RecordingModel:
 
     def _note(self, prompt: PromptRecord) -> None:
         with self._recording.turn:
-            self._recording.journal.records.add_prompt(prompt)
+            self._recording.records.add_prompt(prompt)
 
 
 def _spent(prompt: PromptRecord, usage: "Usage") -> PromptRecord:

@@ -239,8 +239,8 @@ class Simulator(ShownSimulator):
             UnknownNameError: There is no such block or item.
             InputError: A block is no known sign, or a text does not fit on one.
         """
-        registry = self._recording.history.context.registry
-        box = self._recording.setting.snapshot.box
+        registry = self._recording.context.registry
+        box = self._recording.box
         for position in (*(blocks or {}), *(containers or {}), *(signs or {})):
             if position not in box:
                 raise PositionError(f"position {position} is outside the box {box.low}..{box.high}")
@@ -283,7 +283,7 @@ class Simulator(ShownSimulator):
             raise InputError(f"embody({stands!r}): give True, or False to end it")
         if not isinstance(unknown, str):
             raise InputError(f"unknown is {unknown!r}; give the name of a block")
-        embodying = self._engine.bodies.embodying
+        embodying = self._engine.embodying
         if stands:
             embodying.begin(self._path, unknown)
         else:

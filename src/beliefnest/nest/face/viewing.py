@@ -23,7 +23,7 @@ class Viewing(AtMoment):
     @in_turn
     def kept(self, name: str) -> bytes | None:
         """The bytes that `Nest.keep` kept last under a name; None if there are none."""
-        return self._recording.journal.records.state(f"kept {name}")
+        return self._recording.records.state(f"kept {name}")
 
     def view(self, depth: int = 2, height: int = 720) -> "PageView":
         """The page of the nest as it is when it is first shown, for a notebook's cell.

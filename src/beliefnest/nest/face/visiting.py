@@ -2,12 +2,11 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol, overload
+from typing import overload
 
 from beliefnest.errors import InputError
-from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.face.live import Live
 from beliefnest.nest.face.turns import in_turn
-from beliefnest.nest.past.recording import Recording
 from beliefnest.world.paths import path_text
 from beliefnest.world.values import Position
 
@@ -63,27 +62,22 @@ class Layout(Sequence[Standing]):
         )
 
 
-class _Embodied(Protocol):
-    _engine: Engine
-    _recording: Recording
-
-
-class Visiting:
+class Visiting(Live):
     """What a nest offers those who visit beliefs; a part of `Nest`."""
 
     @in_turn
-    def layout(self: _Embodied) -> Layout:
+    def layout(self) -> Layout:
         """Where the real world and all that `Simulator.embody` embodied stand in Minecraft.
 
         Raises:
             InputError: The real world is not in real time, so that nobody can go there.
         """
-        plots = self._engine.bodies.embodying.plots()
+        plots = self._engine.embodying.plots()
         if not plots:
             raise InputError(
                 "nothing stands where people could go: this world's time does not go on by itself"
             )
-        lags = self._engine.bodies.embodying.lags()
+        lags = self._engine.embodying.lags()
         return Layout(
             [
                 Standing(

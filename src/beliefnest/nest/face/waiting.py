@@ -1,13 +1,11 @@
 """Waiting for what happens in the real world, and hearing of what is said there."""
 
 from collections.abc import Callable
-from typing import Protocol
 
 from beliefnest.errors import InputError
-from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.frame_recorder import ChatListener
+from beliefnest.nest.face.live import Live
 from beliefnest.nest.face.turns import in_turn
-from beliefnest.nest.past.recording import Recording
 from beliefnest.world.values import TICKS_PER_SECOND
 
 __all__ = ["Waiting"]
@@ -15,17 +13,10 @@ __all__ = ["Waiting"]
 _LONGEST_S = 24 * 60 * 60
 
 
-class _Acting(Protocol):
-    _engine: Engine
-    _recording: Recording
-
-
-class Waiting:
+class Waiting(Live):
     """What a nest offers those who wait; a part of `Nest`."""
 
-    def wait(
-        self: "_Waits", until: Callable[[], bool] | None = None, timeout_s: float = 60.0
-    ) -> bool:
+    def wait(self, until: Callable[[], bool] | None = None, timeout_s: float = 60.0) -> bool:
         """Let time pass in the real world, tick by tick, and record what happens there.
 
         On a server time passes by itself: what has happened since the last call is recorded
@@ -52,7 +43,7 @@ class Waiting:
             self._pass(1)
         return True
 
-    def on_chat(self: _Acting, callback: ChatListener) -> None:
+    def on_chat(self, callback: ChatListener) -> None:
         """Let a function be called on what is said, or whispered, in the real world from now on.
 
         It is called with tick, speaker and text, in the thread and at the end of the call of the
@@ -68,14 +59,9 @@ class Waiting:
         self._engine.bodies.chat_listeners.append(callback)
 
     @in_turn
-    def _pass(self: _Acting, ticks: int) -> None:
+    def _pass(self, ticks: int) -> None:
         self._engine.step((), ticks)
 
     @in_turn
-    def _head(self: _Acting) -> int:
+    def _head(self) -> int:
         return self._recording.info(()).head
-
-
-class _Waits(Protocol):
-    def _pass(self, ticks: int) -> None: ...
-    def _head(self) -> int: ...

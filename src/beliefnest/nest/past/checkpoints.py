@@ -118,7 +118,7 @@ class Checkpoints:
     def keep_last(self, key: TimelineKey, forest: Forest) -> None:
         """Save the last forest of a timeline, unless it is as good as saved or soon folded."""
         kept = self._last(key, forest)
-        news = forest.position - kept.place > self._pace.lag or forest.table.count != kept.nodes
+        news = forest.position - kept.place > self._pace.lag or forest.count_of_nodes != kept.nodes
         if forest.position > self._pace.lag and news:
             self._save(key, forest)
 
@@ -135,16 +135,16 @@ class Checkpoints:
             body = saved(forest)
             # What was recorded is safe; without this one it is folded for longer, that is all.
             with suppress(StoreError):
-                name = self._name(beliefs=forest.table.count > 1)
+                name = self._name(beliefs=forest.has_beliefs)
                 self._journal.put_checkpoint(key, name, forest.position, body)
             self._note(key, forest, body)
 
     def _note(self, key: TimelineKey, forest: Forest, body: bytes) -> None:
-        count = forest.table.count
+        count = forest.count_of_nodes
         self._kept[key, count > 1] = _Kept(forest.position, len(body), count)
 
     def _last(self, key: TimelineKey, forest: Forest) -> _Kept:
-        return self._kept.get((key, forest.table.count > 1), _Kept())
+        return self._kept.get((key, forest.has_beliefs), _Kept())
 
     def _name(self, *, beliefs: bool) -> str:
         """Name of checkpoints with beliefs, or with nothing but the timeline's own simulator."""

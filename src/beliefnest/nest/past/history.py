@@ -70,14 +70,13 @@ class _Stretch:
         for number in sorted(n for n in self.edits if forest.position <= n < stop):
             forest.advance(number)
             edit = self.edits[number]
-            node = forest.table.index.get(edit.path)
-            if node is None:
+            if edit.path not in forest:
                 forest.skip(edit.tick)
             else:
                 known = forest.context.number
                 blocks = {cell_of(box, at): known(block) for at, block in edit.blocks.items()}
                 contents = {cell_of(box, place): items for place, items in edit.containers.items()}
-                forest.edit(node, blocks, contents, edit.tick)
+                forest.edit(forest.node(edit.path), blocks, contents, edit.tick)
         forest.advance(stop)
 
 
@@ -123,10 +122,10 @@ class History:
         It is the caller's own, and the same object each time. What blocks rest on is known
         in it for those of `extra`, for which the timeline is folded from its beginning.
         """
-        forest = self._walk(key, path, first, extra)
+        forest = self._folded(key, path, first, extra)
         yield forest
         for position in range(first + 1, last + 1):
-            self._advance(key, forest, position)
+            self.advance(key, forest, position)
             yield forest
 
     def walk(self, key: TimelineKey, paths: Sequence[Path]) -> Forest:
@@ -142,7 +141,7 @@ class History:
         first, *others = paths
         forest = self._begun(key, first)
         for path in others:
-            if path not in forest.table.index:
+            if path not in forest:
                 _adopt(forest, self._begun(key, path), key.path, path)
         return forest
 
@@ -152,7 +151,7 @@ class History:
         if position == self._journal.info(key).entries:
             self.expect(key, paths)
             head = self._head(key, paths[-1], position)
-            late = [path for path in paths if path not in head.table.index]
+            late = [path for path in paths if path not in head]
             if len(late) > 1:
                 other = self._together(key, late, position)
                 for path in late:
@@ -160,7 +159,7 @@ class History:
             return
         at_hand = [forest for other, forest in self._pasts if other == key]
         if not any(
-            forest.position == position and all(path in forest.table.index for path in paths)
+            forest.position == position and all(path in forest for path in paths)
             for forest in at_hand
         ):
             self._pasts = [(key, self._together(key, paths, position)), *self._pasts][:_PASTS]
@@ -168,12 +167,18 @@ class History:
     def _together(self, key: TimelineKey, paths: Sequence[Path], position: int) -> Forest:
         """A new forest of several nodes and their ancestors, after some entries of a timeline."""
         forest = self.walk(key, paths)
-        self._advance(key, forest, position)
+        self.advance(key, forest, position)
         return forest
 
     def advance(self, key: TimelineKey, forest: Forest, position: int) -> None:
-        """Take a forest of `walk` on to a number of entries of its timeline."""
-        self._advance(key, forest, position)
+        """Fold entries of a timeline into a forest, up to a number of them."""
+        if not forest.has_beliefs and position - forest.position > self._pace.lag:
+            self._leap(key, forest, position)
+        while forest.position < position:
+            stretch = self._stretch(key, forest.position, position)
+            if forest.columns is not stretch.columns:
+                forest.enter(stretch.columns)
+            stretch.fold(forest, min(position, stretch.columns.end))
 
     def note(self, key: TimelineKey) -> None:
         """Keep up with a timeline, so that who asks for a belief need not wait for long."""
@@ -189,7 +194,7 @@ class History:
         """
         below = [path for path in paths if path != key.path]
         head = self._heads.get(key) or self._saved(key, self._journal.info(key).entries)
-        if below and (head is None or head.table.count == 1):
+        if below and (head is None or not head.has_beliefs):
             head = self.walk(key, below)
         if head is not None:
             self._heads[key] = head
@@ -197,7 +202,7 @@ class History:
     def close(self) -> None:
         """Leave checkpoints at the heads of timelines, so that who resumes begins there."""
         for key, head in self._heads.items() if self._journal.writable else ():
-            self._advance(key, head, self._journal.info(key).entries)
+            self.advance(key, head, self._journal.info(key).entries)
             self._checkpoints.keep_last(key, head)
 
     def block_bases(
@@ -207,8 +212,8 @@ class History:
 
         It is not kept while folding, so the timeline is folded anew.
         """
-        forest = self._walk(key, path, position, cells)
-        return forest.table.bases(forest.table.index[path], cells)
+        forest = self._folded(key, path, position, cells)
+        return forest.bases(path, cells)
 
     def current_blocks(
         self, key: TimelineKey, path: Path, position: int, cells: Iterable[int]
@@ -220,8 +225,7 @@ class History:
             # What agents believed at the fork stays as it was until something happens.
             left = [cell for cell in cells if cell not in edited]
             return self.current_blocks(base.timeline, path, base.entries, left)
-        table = self._forest(key, path, position).table
-        return table.current_blocks(table.index[path], cells)
+        return self._forest(key, path, position).current_blocks(path, cells)
 
     def _edited_at_first(self, key: TimelineKey, path: Path, position: int) -> set[int] | None:
         """Cells of a node that were edited in some entries; None if it perceived anew in them.
@@ -273,17 +277,17 @@ class History:
         forest = saved or forest or self._begun(key, path)
         pasts = [past for past in self._pasts if past[1] is not forest]
         self._pasts = [(key, forest), *pasts][:_PASTS]
-        self._advance(key, forest, position)
+        self.advance(key, forest, position)
         return forest
 
     def _past(self, key: TimelineKey, path: Path, position: int) -> Forest | None:
         """The last forest at hand with a node that lies no later than a position."""
         found = None
         for other, forest in self._pasts:
-            if other == key and path in forest.table.index and forest.position <= position:
+            if other == key and path in forest and forest.position <= position:
                 # Only a forest without beliefs can leap.
                 near = position - forest.position <= self._pace.lag
-                fits = near or path != key.path or forest.table.count == 1
+                fits = near or path != key.path or not forest.has_beliefs
                 if fits and (found is None or forest.position > found.position):
                     found = forest
         return found
@@ -292,21 +296,21 @@ class History:
         head = known = self._heads.get(key)
         if head is None:
             head = self._saved(key, count)
-        if head is None or (head.table.count == 1 and path != key.path):
+        if head is None or (not head.has_beliefs and path != key.path):
             # Folded as the head it leaves checkpoints on the way, other than a late node.
             head = self._begun(key, path)
         if head is not known:
             self._heads[key] = head
         while head.position < count:
-            far = count if head.table.count == 1 else head.position + self._pace.every
-            self._advance(key, head, min(count, far))
+            far = count if not head.has_beliefs else head.position + self._pace.every
+            self.advance(key, head, min(count, far))
             # Where it was a long way, who asks for the past need not go it again.
             self._checkpoints.keep(key, head)
-        if path not in head.table.index:
-            _adopt(head, self._walk(key, path, count), key.path, path)
+        if path not in head:
+            _adopt(head, self._folded(key, path, count), key.path, path)
         return head
 
-    def _walk(
+    def _folded(
         self, key: TimelineKey, path: Path, position: int, extra: Sequence[int] = ()
     ) -> Forest:
         """A new forest of a node and its ancestors, after some entries of a timeline."""
@@ -315,7 +319,7 @@ class History:
         if not extra:
             forest = self._saved(key, position, path)
         forest = forest or self._begun(key, path, extra)
-        self._advance(key, forest, position)
+        self.advance(key, forest, position)
         return forest
 
     def _saved(
@@ -331,7 +335,7 @@ class History:
         if base is None:
             return self._initial(key, (path,), extra)
         source = (
-            self._walk(base.timeline, path, base.entries, extra)
+            self._folded(base.timeline, path, base.entries, extra)
             if extra
             else self._forest(base.timeline, path, base.entries)
         )
@@ -362,16 +366,6 @@ class History:
     def _before(self, base: ForkPoint | None, path: Path) -> Sequence[PerceivedEvent]:
         """What a node perceived before the timeline began that lies on a base."""
         return () if base is None else self.reading(base.timeline, path, base.entries).events()
-
-    def _advance(self, key: TimelineKey, forest: Forest, position: int) -> None:
-        """Fold entries of a timeline into a forest, up to a position."""
-        if forest.table.count == 1 and position - forest.position > self._pace.lag:
-            self._leap(key, forest, position)
-        while forest.position < position:
-            stretch = self._stretch(key, forest.position, position)
-            if forest.columns is not stretch.columns:
-                forest.enter(stretch.columns)
-            stretch.fold(forest, min(position, stretch.columns.end))
 
     def _leap(self, key: TimelineKey, forest: Forest, position: int) -> None:
         """Bring a forest without beliefs to a position, past entries that only tell of agents.
@@ -433,6 +427,6 @@ def _adopt(forest: Forest, other: Forest, own: Path, path: Path) -> None:
         path: The node.
     """
     chain = [path[:depth] for depth in range(len(own), len(path) + 1)]
-    missing = [node for node in chain if node not in forest.table.index]
+    missing = [node for node in chain if node not in forest]
     if missing:
         forest.adopt(other, missing)

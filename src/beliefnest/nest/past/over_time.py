@@ -43,8 +43,8 @@ def over_time(recording: Recording, path: tuple[str, ...]) -> Iterator[Moment]:
     Timelines come in order of creation, each with its own ticks: what lies before its first is
     part of the timeline that it goes on from.
     """
-    registry = recording.history.context.registry
-    box = recording.setting.snapshot.box
+    registry = recording.context.registry
+    box = recording.box
     for info in recording.journal.timelines():
         if path[: len(info.key.path)] != info.key.path:
             continue
@@ -88,7 +88,7 @@ def each_tick(
             for path in paths:
                 reading = NodeView(forest, path)
                 blocks = Blocks(recording.history, key, position, reading, recording.turn)
-                box = recording.setting.snapshot.box
+                box = recording.box
                 states[path] = LiveState(reading, blocks, box, forest.tick, recording.turn)
             yield forest.tick, states
 

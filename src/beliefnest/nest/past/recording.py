@@ -10,6 +10,7 @@ from copy import copy
 from threading import RLock
 from typing import Self
 
+from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import BranchError, StoreError, TickError
 from beliefnest.nest.past.history import History
@@ -18,9 +19,10 @@ from beliefnest.nest.past.setting_codec import decode_start
 from beliefnest.nest.past.views import Blocks, LiveState
 from beliefnest.prompts import Renderer
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
-from beliefnest.timeline.records import RunJournal
+from beliefnest.timeline.records import Records, RunJournal
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import path_text
+from beliefnest.world.values import Box
 
 __all__ = ["Recording", "read_recording"]
 
@@ -78,7 +80,22 @@ class Recording:
     @property
     def agents(self) -> tuple[str, ...]:
         """All agents, sorted."""
-        return self.history.context.agents
+        return self.context.agents
+
+    @property
+    def context(self) -> BeliefContext:
+        """What all nodes share."""
+        return self.history.context
+
+    @property
+    def box(self) -> Box:
+        """The part of space there is."""
+        return self.setting.snapshot.box
+
+    @property
+    def records(self) -> Records:
+        """What ran, with which results."""
+        return self.journal.records
 
     def on(self, key: TimelineKey) -> Self:
         """The same with a simulator on a timeline, and none below it on another."""
@@ -143,7 +160,7 @@ class Recording:
         """The view of a node's state on a timeline, after some of its entries, as of a tick."""
         reading = self.history.reading(key, path, entries)
         blocks = Blocks(self.history, key, entries, reading, self.turn)
-        return LiveState(reading, blocks, self.setting.snapshot.box, tick, self.turn)
+        return LiveState(reading, blocks, self.box, tick, self.turn)
 
     def close(self) -> None:
         """Leave checkpoints for who comes next, and close the journal."""

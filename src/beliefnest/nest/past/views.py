@@ -48,6 +48,7 @@ class Blocks:
     ) -> None:
         self._turn = turn
         self._history = history
+        self._context = history.context
         self._key = key
         self._position = position
         self._reading = reading
@@ -62,10 +63,10 @@ class Blocks:
 
     def __getitem__(self, position: Position) -> str | None:
         state = int(self.grid[self._index(position)])
-        return None if state < 0 else self._history.context.registry.text(state)
+        return None if state < 0 else self._context.registry.text(state)
 
     def __iter__(self) -> Iterator[Position]:
-        return self._history.context.box.positions()
+        return self._context.box.positions()
 
     def __len__(self) -> int:
         return int(self.grid.size)
@@ -79,13 +80,13 @@ class Blocks:
 
     def named(self, names: frozenset[str]) -> dict[Position, str]:
         """Known blocks of some names."""
-        registry, grid = self._history.context.registry, self.grid
+        registry, grid = self._context.registry, self.grid
         # One more, at the end, for what is unknown.
         wanted = np.zeros(registry.states + 1, dtype=np.bool_)
         for name in names:
             ids = registry.state_ids(name)
             wanted[ids.start : ids.stop] = True
-        x, y, z = self._history.context.box.low
+        x, y, z = self._context.box.low
         return {
             (x + i, y + j, z + k): registry.text(int(grid[i, j, k]))
             for i, j, k in np.argwhere(wanted[grid]).tolist()
@@ -93,8 +94,8 @@ class Blocks:
 
     def signs(self) -> dict[Position, str]:
         """Text of each known sign, in order of position; empty where nothing is written."""
-        texts, states = self._reading.signs, self._history.context.sign_states
-        x, y, z = self._history.context.box.low
+        texts, states = self._reading.signs, self._context.sign_states
+        x, y, z = self._context.box.low
         found = np.argwhere(np.isin(self.grid, states)).tolist()
         places = ((x + i, y + j, z + k) for i, j, k in found)
         return {place: texts.get(place, "") for place in places}
@@ -127,15 +128,15 @@ class Blocks:
 
         Who asks for a few will ask for all, and in a small box all cost little more than one.
         """
-        every = self._history.context.cells
+        every = self._context.cells
         return range(every) if len(known) >= _FEW or every <= _SMALL else [cell]
 
     def _cell(self, position: Position) -> int:
         self._index(position)
-        return cell_of(self._history.context.box, position)
+        return cell_of(self._context.box, position)
 
     def _index(self, position: Position) -> tuple[int, int, int]:
-        box = self._history.context.box
+        box = self._context.box
         if position not in box:
             raise PositionError(f"position {position} lies outside the box {box.low}..{box.high}")
         return box.index(position)

@@ -115,8 +115,7 @@ class TrackRecorder:
         self._onlooker = onlooker
         self._reader, self._book, self._fills = reader, book, fills
         self._forest = reader.walk(key, paths)
-        index = self._forest.table.index
-        self._numbers = [index[path] for path in paths]
+        self._numbers = [self._forest.node(path) for path in paths]
         agents = len(reader.agents)
         grids = self._forest.table.nodes().blocks[self._numbers]
         self.tracks = [
@@ -308,7 +307,7 @@ class TrackRecorder:
         everywhere = looks != last.looks
         last.looks = list(looks)
         changed = set()
-        for number in range(forest.table.count):
+        for number in range(forest.count_of_nodes):
             owned = dict(forest.holdings.of(number).inventories)
             around = forest.table.parent(number)
             if everywhere or around in changed or owned != last.owned.get(number):
