@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Block, EventKind, Items, Point, Position
 
 __all__ = [
@@ -121,7 +122,7 @@ class InitialBelief:
         agents: Agent name to believed feet position.
     """
 
-    path: tuple[str, ...]
+    path: BeliefPath
     containers: Mapping[Position, tuple[Items, bool]] = field(default_factory=dict)
     blocks: Mapping[Position, Block] = field(default_factory=dict)
     agents: Mapping[str, Point] = field(default_factory=dict)

@@ -19,11 +19,10 @@ from beliefnest.belief.node_table import NodeTable, SavedNode
 from beliefnest.belief.poses import PoseTable, SavedPoses
 from beliefnest.belief.protocols import EventHistory, Reader
 from beliefnest.belief.testimony import Testimony, Verdict
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Event, Items, Point, Sign
 
 __all__ = ["Forest", "ForestState", "NodeState"]
-
-Path = tuple[str, ...]
 
 _BATCH = 4096
 
@@ -149,7 +148,7 @@ class Forest:
         return self.table.poses
 
     @property
-    def paths(self) -> Collection[Path]:
+    def paths(self) -> Collection[BeliefPath]:
         """The nodes, each after its parent."""
         return self.table.index.keys()
 
@@ -163,36 +162,36 @@ class Forest:
         """Whether there are nodes below node 0."""
         return self.table.count > 1
 
-    def __contains__(self, path: Path) -> bool:
+    def __contains__(self, path: BeliefPath) -> bool:
         return path in self.table.index
 
-    def node(self, path: Path) -> int:
+    def node(self, path: BeliefPath) -> int:
         """Number of a node."""
         return self.table.index[path]
 
-    def block(self, path: Path, cell: int) -> int:
+    def block(self, path: BeliefPath, cell: int) -> int:
         """Number of the block that a node holds at a cell; -1: unknown."""
         return self.table.block(self.node(path), cell)
 
-    def bases(self, path: Path, cells: Sequence[int]) -> dict[int, Basis | None]:
+    def bases(self, path: BeliefPath, cells: Sequence[int]) -> dict[int, Basis | None]:
         """What the blocks of a node at some cells rest on; None where a block is unknown."""
         return self.table.bases(self.node(path), cells)
 
-    def current_blocks(self, path: Path, cells: Iterable[int]) -> set[int]:
+    def current_blocks(self, path: BeliefPath, cells: Iterable[int]) -> set[int]:
         """Those of some cells whose block in a node is backed by a perception in the last entry."""
         return self.table.current_blocks(self.node(path), cells)
 
-    def feet(self, path: Path, agent: str) -> Point | None:
+    def feet(self, path: BeliefPath, agent: str) -> Point | None:
         """Where a node holds an agent to stand; None: unknown."""
         pose = self.table.pose(self.node(path), self.context.numbers[agent])
         return None if pose < 0 else self.poses.position(pose)
 
-    def seen_at(self, path: Path, agent: str) -> int | None:
+    def seen_at(self, path: BeliefPath, agent: str) -> int | None:
         """Tick of what a node holds of an agent's pose; None: it is unknown."""
         node, number = self.node(path), self.context.numbers[agent]
         return None if self.table.pose(node, number) < 0 else self.table.seen_at(node, number)
 
-    def is_present(self, path: Path) -> bool:
+    def is_present(self, path: BeliefPath) -> bool:
         """Whether a node's owner is present in the parent node (semantics, section 5)."""
         return self.table.is_present(self.node(path))
 
@@ -247,7 +246,7 @@ class Forest:
         """Tell a reader before the forest goes on."""
         self._readers.add(reader)
 
-    def adopt(self, other: "Forest", paths: Sequence[Path]) -> None:
+    def adopt(self, other: "Forest", paths: Sequence[BeliefPath]) -> None:
         """Take over nodes of a forest that is as far on."""
         count = self.count_of_events
         self.table.track()

@@ -17,12 +17,10 @@ from beliefnest.belief.node_table import NodeTable
 from beliefnest.belief.poses import PoseTable
 from beliefnest.belief.protocols import EventHistory
 from beliefnest.world.frames import BlockGrid, Snapshot
-from beliefnest.world.paths import AND_BELOW
+from beliefnest.world.paths import AND_BELOW, BeliefPath
 from beliefnest.world.values import Position
 
 __all__ = ["forked_forest", "initial_forest"]
-
-Path = tuple[str, ...]
 
 
 def initial_forest(
@@ -31,7 +29,7 @@ def initial_forest(
     snapshot: Snapshot,
     static_blocks: frozenset[str | Position],
     initial: Sequence[InitialBelief],
-    paths: Sequence[Path],
+    paths: Sequence[BeliefPath],
     extra: Sequence[int] = (),
 ) -> Forest:
     """A forest of the real world, some nodes and those between, after the first perception.
@@ -71,7 +69,7 @@ def initial_forest(
     return forest
 
 
-def _merged(initial: Sequence[InitialBelief], node: Path) -> InitialBelief:
+def _merged(initial: Sequence[InitialBelief], node: BeliefPath) -> InitialBelief:
     """All that initial beliefs say of a node; the more is said of it alone, the more it counts."""
     known = [belief for belief in initial if _is_about(belief.path, node)]
     merged = InitialBelief(node)
@@ -90,7 +88,7 @@ def _precision(belief: InitialBelief) -> tuple[int, bool]:
     return len(belief.path) - (not is_exact), is_exact
 
 
-def _is_about(path: Path, node: Path) -> bool:
+def _is_about(path: BeliefPath, node: BeliefPath) -> bool:
     if path[-1:] == (AND_BELOW,):
         return node[: len(path) - 1] == path[:-1]
     return path == node
@@ -135,7 +133,7 @@ def _add_world(table: NodeTable, snapshot: Snapshot, blocks: BlockGrid) -> Holdi
 
 
 def _add_prior(
-    table: NodeTable, path: Path, prior: npt.NDArray[np.int32], mine: InitialBelief, tick: int
+    table: NodeTable, path: BeliefPath, prior: npt.NDArray[np.int32], mine: InitialBelief, tick: int
 ) -> Holdings:
     """Add a node with its priors; returns its holdings."""
     context = table.context
@@ -161,11 +159,11 @@ def _add_prior(
 def forked_forest(
     source: Forest,
     events: EventHistory,
-    root: Path,
-    path: Path,
+    root: BeliefPath,
+    path: BeliefPath,
     tick: int,
     extra: Sequence[int] = (),
-    further: Sequence[Path] = (),
+    further: Sequence[BeliefPath] = (),
 ) -> Forest:
     """A forest that begins with what nodes of another hold: `root`, `path` and those between.
 

@@ -14,11 +14,11 @@ from beliefnest.belief.entries import Basis
 from beliefnest.belief.poses import Condition, PoseTable
 from beliefnest.perception.codes import code_grid
 from beliefnest.world.frames import BlockGrid
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Point, Sign
 
 __all__ = ["NodeTable", "SavedNode"]
 
-Path = tuple[str, ...]
 Row = npt.NDArray[Any]
 
 _POSE_IDS = ("pose", "equipment", "eye", "tried", "met")
@@ -35,7 +35,7 @@ class SavedNode:
     `weighing` are those that are there if hearers weigh claims.
     """
 
-    path: Path
+    path: BeliefPath
     blocks: bytes
     pose: bytes
     equipment: bytes
@@ -67,7 +67,7 @@ class NodeTable:
         self.context = context
         self.poses = poses
         self.edited_cells: set[tuple[int, int]] = set()
-        self.index: dict[Path, int] = {}
+        self.index: dict[BeliefPath, int] = {}
         self.count = 0
         self._linked = 1
         known = set(context.tracked)
@@ -122,7 +122,7 @@ class NodeTable:
             )
         return self._nodes
 
-    def add(self, path: Path, parent: int) -> int:
+    def add(self, path: BeliefPath, parent: int) -> int:
         """A new node that knows nothing; `link` has to follow once its blocks are set."""
         node = self._grow()
         self.index[path] = node
@@ -184,7 +184,7 @@ class NodeTable:
         current, seen_at = self._rows["current"][: self.count], self._rows["seen_at"]
         seen_at[: self.count][current] = tick
 
-    def path(self, node: int) -> Path:
+    def path(self, node: int) -> BeliefPath:
         """Path of a node."""
         return next(path for path, number in self.index.items() if number == node)
 

@@ -12,11 +12,10 @@ from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, Perce
 from beliefnest.belief.forest import Forest
 from beliefnest.perception.sight import Geometry
 from beliefnest.world.frames import BlockGrid, Snapshot
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import EYE_HEIGHT, AgentState, DroppedItem, EventKind, Position
 
 __all__ = ["NodeView"]
-
-Path = tuple[str, ...]
 
 FULL = 20.0
 """Health and food of an agent of whom no more is known."""
@@ -31,7 +30,7 @@ class NodeView:
         count_of_events: How many events of the timeline lie before it.
     """
 
-    def __init__(self, forest: Forest, path: Path) -> None:
+    def __init__(self, forest: Forest, path: BeliefPath) -> None:
         self.path = path
         self.tick = forest.tick
         self._forest = forest

@@ -4,11 +4,10 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from beliefnest.belief.entries import PerceivedEvent
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Event
 
 __all__ = ["EventHistory", "Reader"]
-
-Path = tuple[str, ...]
 
 
 class EventHistory(Protocol):
@@ -17,7 +16,7 @@ class EventHistory(Protocol):
     def events(self, count: int) -> Sequence[tuple[int, Event]]:
         """The first events of the timeline, `count` of them or more, each with its tick."""
 
-    def before(self, path: Path) -> Sequence[PerceivedEvent]:
+    def before(self, path: BeliefPath) -> Sequence[PerceivedEvent]:
         """What a node perceived before the timeline began, oldest first."""
 
 

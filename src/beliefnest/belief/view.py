@@ -6,6 +6,7 @@ from typing import Protocol
 
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent
 from beliefnest.world.frames import BlockGrid
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Box, DroppedItem, Position
 
 __all__ = ["BlockView", "FixedState", "State"]
@@ -104,7 +105,7 @@ class State(Protocol):
 class FixedState:
     """A state whose parts are all at hand; attributes as those of `State`."""
 
-    path: tuple[str, ...]
+    path: BeliefPath
     tick: int
     box: Box
     blocks: BlockView

@@ -10,9 +10,9 @@ from beliefnest.cli.text import printable
 from beliefnest.nest.explain.told import ToldClaim
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.claims import Claim, ClaimKind
-from beliefnest.world.paths import parse_path, path_text
+from beliefnest.world.paths import parse_path, path_text, paths_below
 
-__all__ = ["claims_json", "claims_matrix", "claims_table", "paths_below"]
+__all__ = ["claims_json", "claims_matrix", "claims_table", "paths_of_beliefs"]
 
 
 def claims_json(claims: Sequence[ToldClaim], paths: Collection[str]) -> list[dict[str, object]]:
@@ -65,7 +65,7 @@ def claims_matrix(claims: Sequence[ToldClaim], paths: Sequence[str], scenario: S
     return table
 
 
-def paths_below(claims: Sequence[ToldClaim], agents: Sequence[str], depth: int) -> list[str]:
+def paths_of_beliefs(claims: Sequence[ToldClaim], agents: Sequence[str], depth: int) -> list[str]:
     """Every belief of the world in which claims were made, shallow ones first.
 
     Args:
@@ -73,12 +73,8 @@ def paths_below(claims: Sequence[ToldClaim], agents: Sequence[str], depth: int) 
         agents: Whose beliefs there are.
         depth: How many names its path has below that world, at most.
     """
-    last = [parse_path(claims[0].made_in, agents)]
-    found: list[str] = []
-    for _ in range(depth):
-        last = [(*path, name) for path in last for name in agents if path[-1:] != (name,)]
-        found += map(path_text, last)
-    return found
+    world = parse_path(claims[0].made_in, agents)
+    return [path_text(path) for path in paths_below(world, depth, agents)[1:]]
 
 
 def _begun() -> Table:

@@ -15,7 +15,7 @@ from rich.text import Text
 from beliefnest.belief.entries import Basis
 from beliefnest.belief.plain import state_json
 from beliefnest.belief.view import State
-from beliefnest.cli.claims import claims_json, claims_matrix, claims_table, paths_below
+from beliefnest.cli.claims import claims_json, claims_matrix, claims_table, paths_of_beliefs
 from beliefnest.cli.console import folded, stdout
 from beliefnest.cli.folder import store_in, stores_in
 from beliefnest.cli.pictures import container_name, place_text, titled
@@ -156,7 +156,7 @@ def _show_claims(options: ShowOptions, store: Path) -> None:
     with _opened(store) as (scenario, nest, _):
         simulator = _simulator(options, nest)
         claims = nest.at(simulator.tick).claims(options.path)
-        paths = paths_below(claims, nest.agents, options.claims) if claims else []
+        paths = paths_of_beliefs(claims, nest.agents, options.claims) if claims else []
         if options.as_json:
             sys.stdout.write(json.dumps(claims_json(claims, paths), indent=2) + "\n")
         elif claims:

@@ -20,7 +20,7 @@ from beliefnest.errors import InputError, PathError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.setting import Senses
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.world.paths import normalised, parse_path, path_text
+from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 
 __all__ = ["BeliefEnv", "BeliefSpace", "Options"]
 
@@ -295,7 +295,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
                 beliefs[path_text(path)] = self._belief(path, spoken=spoken)
         return {agent: self._belief((agent,), spoken=spoken) for agent in self.agents}, infos
 
-    def _belief(self, path: tuple[str, ...], *, spoken: bool) -> Any:
+    def _belief(self, path: BeliefPath, *, spoken: bool) -> Any:
         text = path_text(path)
         state = self.nest[text].state
         lines: Sequence[tuple[int, str, str]] = ()

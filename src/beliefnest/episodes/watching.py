@@ -7,7 +7,7 @@ from beliefnest.belief.view import State
 from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.goals import Progress, looking_at
-from beliefnest.world.paths import path_text
+from beliefnest.world.paths import BeliefPath, path_text
 
 __all__ = ["Watch"]
 
@@ -43,7 +43,7 @@ class Watch:
         return self.progress
 
     def _feed(self, tick: int, states: Any) -> None:
-        found: dict[tuple[str, ...], State] = {}
+        found: dict[BeliefPath, State] = {}
         for path in self._paths:
             held = states[path]
             found[tuple(name for name in path.split("/") if name)] = getattr(held, "state", held)

@@ -15,6 +15,7 @@ from beliefnest.belief.entries import (
 from beliefnest.belief.view import FixedState
 from beliefnest.errors import PathError, PositionError
 from beliefnest.world.frames import BlockGrid
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, EventKind, Position
 
@@ -125,7 +126,7 @@ def example_branch() -> ExampleBranch:
 
 
 def _state(
-    path: tuple[str, ...], events: tuple[PerceivedEvent, ...], visible: frozenset[Position]
+    path: BeliefPath, events: tuple[PerceivedEvent, ...], visible: frozenset[Position]
 ) -> FixedState:
     seen, opened = Basis(240, Source.SEEN), Basis(69, Source.WITNESSED)
     return FixedState(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Protocol
 
-from beliefnest.world.paths import path_text
+from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import Registry, parse_state
 from beliefnest.world.values import EYE_HEIGHT, Items, Point, Position
 
@@ -32,8 +32,6 @@ __all__ = [
     "looking_at",
 ]
 
-Path = tuple[str, ...]
-
 _NOWHERE = 80.0
 _REACH = 6.0
 """Blocks between eyes and the middle of what is held."""
@@ -55,7 +53,7 @@ class Facts(Protocol):
         """Block state text; None: unknown."""
 
 
-Look = Callable[[Path], Facts]
+Look = Callable[[BeliefPath], Facts]
 """The state at a belief path; `()` is what is taken for real."""
 
 
@@ -242,7 +240,7 @@ class Condition:
     """
 
     fact: Fact
-    path: Path = ()
+    path: BeliefPath = ()
 
     def holds(self, look: Look) -> bool:
         """Whether it is the case there."""
@@ -285,7 +283,7 @@ class Goal:
         return frozenset(wanted)
 
     @property
-    def paths(self) -> frozenset[Path]:
+    def paths(self) -> frozenset[BeliefPath]:
         """The simulators that it is about."""
         return frozenset(each.path for each in self.conditions)
 
@@ -362,7 +360,7 @@ class Progress:
         ]
 
 
-def looking_at(states: "Mapping[Path, State]") -> Look:
+def looking_at(states: "Mapping[BeliefPath, State]") -> Look:
     """Look at states by path."""
     return lambda path: StateFacts(states[path])
 

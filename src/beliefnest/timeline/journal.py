@@ -13,7 +13,7 @@ from typing import Protocol
 
 from beliefnest.errors import BranchError, InputError, TickError
 from beliefnest.world.frames import Frame
-from beliefnest.world.paths import path_text
+from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.values import AgentState, Block, Items, Position
 
 __all__ = [
@@ -52,7 +52,7 @@ class Edit:
     """
 
     tick: int
-    path: tuple[str, ...]
+    path: BeliefPath
     blocks: Mapping[Position, Block] = field(default_factory=dict)
     containers: Mapping[Position, Items] = field(default_factory=dict)
 
@@ -74,7 +74,7 @@ class EntryFilter(StrEnum):
 class TimelineKey:
     """One branch of one simulator; path is normalised, the real world's is empty."""
 
-    path: tuple[str, ...]
+    path: BeliefPath
     branch: str
 
 

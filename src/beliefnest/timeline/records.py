@@ -10,6 +10,7 @@ from beliefnest.errors import NotBegunError, StoreError
 from beliefnest.timeline import codec
 from beliefnest.timeline.database import Database, Row, checked, checksum
 from beliefnest.timeline.journal import FOLLOW, Journal, TimelineKey
+from beliefnest.world.paths import BeliefPath
 
 __all__ = [
     "ProgramRecord",
@@ -74,7 +75,7 @@ class ProgramRecord:
         past: What it had done when it was cut, from where it went on; unset if it began anew.
     """
 
-    path: tuple[str, ...]
+    path: BeliefPath
     branch: str
     agent: str
     code: str
@@ -116,7 +117,7 @@ class PromptRecord:
         detail: Further facts of the caller.
     """
 
-    path: tuple[str, ...]
+    path: BeliefPath
     timeline: TimelineKey
     tick: int
     model: str
@@ -145,15 +146,15 @@ _VERSIONS = list[dict[str, str]]
 _TABLES: Mapping[type, str] = {ProgramRecord: "program", PromptRecord: "prompt"}
 
 
-def path_to(path: tuple[str, ...]) -> str:
+def path_to(path: BeliefPath) -> str:
     """A belief path as a run file holds it: a JSON array."""
     return msgspec.json.encode(path).decode()
 
 
-def path_from(text: str) -> tuple[str, ...]:
+def path_from(text: str) -> BeliefPath:
     """The belief path of a column; StoreError if it holds none."""
     try:
-        return msgspec.json.decode(text, type=tuple[str, ...])
+        return msgspec.json.decode(text, type=BeliefPath)
     except msgspec.MsgspecError as fault:
         raise StoreError(f"{text!r} is no stored belief path: {fault}") from fault
 
@@ -204,13 +205,13 @@ class Records:
         found = self._database.sound_rows("name, value", where, (name,), what)
         return next((bytes(value) for _, value in found), None)
 
-    def select(self, path: tuple[str, ...], branch: str) -> None:
+    def select(self, path: BeliefPath, branch: str) -> None:
         """Note which branch a simulator is on."""
         with self._database.transaction():
             into = "INSERT OR REPLACE INTO selected"
             self._database.write(into, path=path_to(path), branch=branch)
 
-    def selected(self) -> dict[tuple[str, ...], str]:
+    def selected(self) -> dict[BeliefPath, str]:
         """The branch each simulator is on, of those `select` named, in order of paths."""
         in_order, what = "selected ORDER BY path", "the selected branches"
         found = self._database.sound_rows("path, branch", in_order, (), what)
@@ -238,7 +239,7 @@ class Records:
         """All requests to models, in order."""
         return self._all(PromptRecord)
 
-    def follow_rename(self, path: tuple[str, ...], branch: str, name: str) -> None:
+    def follow_rename(self, path: BeliefPath, branch: str, name: str) -> None:
         """Let all that names a branch name it anew; the caller opens the transaction."""
         if self.selected().get(path) == branch:
             self.select(path, name)
@@ -250,7 +251,7 @@ class Records:
                     (name, checksum(text, name, row[2]), number),
                 )
 
-    def forget_branch(self, path: tuple[str, ...], branch: str) -> None:
+    def forget_branch(self, path: BeliefPath, branch: str) -> None:
         """Remove what belongs to a deleted branch; the caller opens the transaction."""
         where = (path_to(path), branch)
         for table in ("selected", *_TABLES.values()):

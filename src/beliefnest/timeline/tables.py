@@ -13,7 +13,7 @@ import numpy as np
 from beliefnest.timeline.journal import Entry, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.world.frames import Frame, Snapshot
-from beliefnest.world.paths import path_text
+from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state
 from beliefnest.world.values import AgentState, Block, DroppedItem, Items, Position, Sign
@@ -53,7 +53,7 @@ class BeliefRow:
         blocks: Blocks that changed since the row before, as plain data.
     """
 
-    path: tuple[str, ...]
+    path: BeliefPath
     timeline: TimelineKey
     tick: int
     state: Mapping[str, Any]
@@ -309,7 +309,7 @@ def belief_row(row: BeliefRow) -> Row:
     return "beliefs", {**place, "state": dict(row.state), "blocks": dict(row.blocks)}
 
 
-def _on_timeline(path: tuple[str, ...], timeline: TimelineKey, tick: int) -> dict[str, Any]:
+def _on_timeline(path: BeliefPath, timeline: TimelineKey, tick: int) -> dict[str, Any]:
     return {
         "path": path_text(path),
         "timeline_path": path_text(timeline.path),

@@ -4,7 +4,18 @@ from collections.abc import Collection, Iterable
 
 from beliefnest.errors import PathError
 
-__all__ = ["AND_BELOW", "normalised", "parse_path", "parse_pattern", "path_text"]
+__all__ = [
+    "AND_BELOW",
+    "BeliefPath",
+    "normalised",
+    "parse_path",
+    "parse_pattern",
+    "path_text",
+    "paths_below",
+]
+
+BeliefPath = tuple[str, ...]
+"""Agent names, the outermost believer first; empty: the real world."""
 
 AND_BELOW = "**"
 """At the end of a path: the node and everything below it; alone: every belief."""
@@ -15,7 +26,7 @@ _DEEPEST = 50
 """Names in a path: each is a state of its own, computed with all before it."""
 
 
-def parse_path(text: str, agents: Collection[str]) -> tuple[str, ...]:
+def parse_path(text: str, agents: Collection[str]) -> BeliefPath:
     """Agent names of a path, normalised.
 
     Raises:
@@ -24,7 +35,7 @@ def parse_path(text: str, agents: Collection[str]) -> tuple[str, ...]:
     return _parsed(text, text, agents)
 
 
-def _parsed(text: str, written: str, agents: Collection[str]) -> tuple[str, ...]:
+def _parsed(text: str, written: str, agents: Collection[str]) -> BeliefPath:
     """Agent names of a path that is a part of what messages show."""
     if not isinstance(text, str) or not text.startswith("/"):
         raise PathError(f"{_short(written)} is no belief path; write '/' or '/agent/agent'")
@@ -40,7 +51,7 @@ def _parsed(text: str, written: str, agents: Collection[str]) -> tuple[str, ...]
     return normalised(names)
 
 
-def parse_pattern(text: str, agents: Collection[str]) -> tuple[str, ...]:
+def parse_pattern(text: str, agents: Collection[str]) -> BeliefPath:
     """A path that may end in `/**`, which then is the last of the names.
 
     Raises:
@@ -56,7 +67,7 @@ def parse_pattern(text: str, agents: Collection[str]) -> tuple[str, ...]:
     return (*_parsed(above or "/", text, agents), AND_BELOW)
 
 
-def normalised(names: Iterable[str]) -> tuple[str, ...]:
+def normalised(names: Iterable[str]) -> BeliefPath:
     """The path with equal neighbours collapsed: an agent knows its own beliefs.
 
     Raises:
@@ -75,6 +86,16 @@ def normalised(names: Iterable[str]) -> tuple[str, ...]:
 def path_text(path: Iterable[str]) -> str:
     """The text of a path."""
     return "/" + "/".join(path)
+
+
+def paths_below(root: BeliefPath, depth: int, agents: Iterable[str]) -> list[BeliefPath]:
+    """A path and all below it, down to `depth` more agents, shallow ones first."""
+    names = tuple(agents)
+    found = level = [root]
+    for _ in range(depth):
+        level = [(*path, name) for path in level for name in names if path[-1:] != (name,)]
+        found = found + level
+    return found
 
 
 def _short(text: object) -> str:

@@ -6,8 +6,9 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.viewer.page.poses import PoseBook
-from beliefnest.viewer.page.run import About, RunData, paths_below
+from beliefnest.viewer.page.run import About, RunData
 from beliefnest.viewer.page.tracks import CURRENT, PLACED, STALE, UNKNOWN, Track, TrackRecorder
+from beliefnest.world.paths import paths_below
 
 BOX = ((0, 0, 0), (12, 3, 8))
 CHESTS = [(3, 1, 3), (9, 1, 3)]
@@ -99,7 +100,7 @@ def things(nest: bn.Nest, path: str, tick: int) -> set[str]:
 
 
 def test_tracks_hold_what_states_hold_at_every_tick(story):
-    paths = paths_below(story.agents, (), 2)
+    paths = paths_below((), 2, story.agents)
     recorder, book = recorded(story, paths)
     for tick in range(0, story.tick + 1, 3):
         for track in recorder.tracks:
@@ -116,7 +117,7 @@ def test_tracks_hold_what_states_hold_at_every_tick(story):
 
 
 def test_tracks_tell_which_events_were_perceived(story):
-    recorder, _ = recorded(story, paths_below(story.agents, (), 2))
+    recorder, _ = recorded(story, paths_below((), 2, story.agents))
     key = recorder.key
     entries = story.reader.entries(key, 0, recorder.position)
     events = [(entry.tick, event.kind) for entry in entries for event in entry.events]

@@ -19,13 +19,11 @@ from beliefnest.scenarios.goals import (
     ItemsWith,
     LeversHeld,
 )
-from beliefnest.world.paths import normalised
+from beliefnest.world.paths import BeliefPath, normalised
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Point, Position
 
 __all__ = ["BeliefFacts", "MindFacts", "distance", "held", "is_visible", "name_of"]
-
-Path = tuple[str, ...]
 
 _PER_BLOCK = 0.01
 _UNKNOWN = 6.0
@@ -86,7 +84,7 @@ class BeliefFacts:
         path: Agents below its root.
     """
 
-    def __init__(self, mind: Imagination, path: Path) -> None:
+    def __init__(self, mind: Imagination, path: BeliefPath) -> None:
         self._mind = mind
         self._view = mind.view(path)
 

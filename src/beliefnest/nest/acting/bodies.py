@@ -20,11 +20,9 @@ from beliefnest.nest.past.body_state import note_internal_state, present
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.frames import Snapshot
-from beliefnest.world.paths import path_text
+from beliefnest.world.paths import BeliefPath, path_text
 
 __all__ = ["Bodies"]
-
-Path = tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,17 +63,17 @@ class Bodies:
         self._hearsay = None
         if reader is not None:
             self._hearsay = Hearsay(reader, recording.setting, recording.history)
-        self._embodied: dict[Path, _Embodied] = {}
-        self._bodiless: set[Path] = set()
+        self._embodied: dict[BeliefPath, _Embodied] = {}
+        self._bodiless: set[BeliefPath] = set()
 
-    def __contains__(self, path: Path) -> bool:
+    def __contains__(self, path: BeliefPath) -> bool:
         return path in self._embodied
 
     def lives(self) -> Lives:
         """The processes that one call on bodies may use up."""
         return Lives(self.forget_lost)
 
-    def of(self, path: Path) -> Body:
+    def of(self, path: BeliefPath) -> Body:
         """The body of a simulator in control mode, made if there is none yet.
 
         Raises:
@@ -112,11 +110,11 @@ class Bodies:
         for listener in self.chat_listeners:
             listener(tick, speaker, text)
 
-    def seed_of(self, path: Path) -> str:
+    def seed_of(self, path: BeliefPath) -> str:
         """Seed of a simulator's body."""
         return f"{self._recording.seed} {path_text(path)}"
 
-    def start(self, path: Path, moment: ForkPoint) -> Start:
+    def start(self, path: BeliefPath, moment: ForkPoint) -> Start:
         """What a simulator's body is filled with at a moment of its timeline or its parent's."""
         recording = self._recording
         return start_of(
@@ -131,7 +129,7 @@ class Bodies:
         """What a body on a timeline has to be like now."""
         return self.start(key.path, present(self._recording.journal, key)).snapshot
 
-    def give_up(self, path: Path) -> None:
+    def give_up(self, path: BeliefPath) -> None:
         """Close a simulator's body, if it has one."""
         embodied = self._embodied.pop(path, None)
         if embodied is not None:
@@ -166,7 +164,7 @@ class Bodies:
         self.rename(key)
 
     @contextmanager
-    def acting(self, path: Path) -> Iterator[Body]:
+    def acting(self, path: BeliefPath) -> Iterator[Body]:
         """A call on a body; what happens and what is noted is kept once it ends, as a whole."""
         body, recorder = self.of(path), self._embodied[path].recorder
         journal = self._recording.journal
@@ -181,14 +179,14 @@ class Bodies:
             recorder.batched = False
         recorder.keep_up()
 
-    def catch_up(self, path: Path) -> None:
+    def catch_up(self, path: BeliefPath) -> None:
         """Record what has happened in a body that goes on by itself since the last call on it."""
         embodied = self._embodied.get(path)
         if embodied is not None and embodied.body.goes_on:
             with self.acting(path) as body:
                 body.step(0)
 
-    def sense_of(self, path: Path, agent: str, past: Past | None = None) -> Sense:
+    def sense_of(self, path: BeliefPath, agent: str, past: Past | None = None) -> Sense:
         """What an agent of a simulator perceives or remembers, while programs run in its body.
 
         Beliefs are worked out from what has been recorded so far, as they always are, and follow
@@ -212,7 +210,9 @@ class Bodies:
         )
 
     @contextmanager
-    def changing(self, path: Path, unless: type[BaseException] | tuple[()] = ()) -> Iterator[None]:
+    def changing(
+        self, path: BeliefPath, unless: type[BaseException] | tuple[()] = ()
+    ) -> Iterator[None]:
         """What is recorded inside is kept as a whole.
 
         If it raises, nothing of it is kept, and the body is again as its timeline says.
@@ -235,7 +235,7 @@ class Bodies:
             self.restore(path)
             raise
 
-    def restore(self, path: Path) -> None:
+    def restore(self, path: BeliefPath) -> None:
         """Make a simulator's body, after a fault, what its timeline says."""
         self.forget_lost()
         key, embodied = self._recording.selected.get(path), self._embodied.get(path)
@@ -251,7 +251,7 @@ class Bodies:
             self.give_up(path)
 
     @contextmanager
-    def without(self, path: Path) -> Iterator[None]:
+    def without(self, path: BeliefPath) -> Iterator[None]:
         """Give a simulator's body up, and make none for a branch that is only selected."""
         self.give_up(path)
         self._bodiless.add(path)
@@ -261,7 +261,7 @@ class Bodies:
             self._bodiless.discard(path)
 
     @contextmanager
-    def speculated(self, path: Path, speculation: Speculation) -> Iterator[None]:
+    def speculated(self, path: BeliefPath, speculation: Speculation) -> Iterator[None]:
         """Let programs that have run already run as in this simulator's body."""
         recording = self._recording
         self.give_up(path)

@@ -18,15 +18,13 @@ from beliefnest.errors import InputError
 from beliefnest.nest.acting.placement import BodySpace
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.world.paths import path_text
+from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import AIR
 from beliefnest.world.values import AgentState, Position
 
 __all__ = ["Embodying"]
 
-Path = tuple[str, ...]
-
-_REALITY: Path = ()
+_REALITY: BeliefPath = ()
 
 
 @dataclass
@@ -59,14 +57,14 @@ class Embodying:
     def __init__(self, recording: Recording, world: World) -> None:
         self._recording = recording
         self._world = world
-        self._standing: dict[Path, _Standing] = {}
+        self._standing: dict[BeliefPath, _Standing] = {}
 
     @property
     def follows(self) -> bool:
         """Whether anything stands there."""
         return bool(self._standing)
 
-    def begin(self, path: Path, unknown: str) -> None:
+    def begin(self, path: BeliefPath, unknown: str) -> None:
         """Let a simulator stand there; see `Simulator.embody`."""
         state = self._recording.context.registry.state_id(unknown)
         if path == _REALITY:
@@ -76,7 +74,7 @@ class Embodying:
         if not world.shows_reality:
             self._show(world, _REALITY, AIR)
 
-    def end(self, path: Path) -> None:
+    def end(self, path: BeliefPath) -> None:
         """Let a simulator stand there no longer."""
         self._close(path)
         if self._standing.keys() == {_REALITY}:
@@ -101,7 +99,7 @@ class Embodying:
         for standing in self._standing.values():
             standing.when = None
 
-    def plots(self) -> Mapping[Path, Plot]:
+    def plots(self) -> Mapping[BeliefPath, Plot]:
         """Where reality and all that is embodied stand; nothing if reality stands nowhere."""
         world = realtime_of(self._world)
         if world is None:
@@ -110,14 +108,14 @@ class Embodying:
         reality = standing.pop(_REALITY, None) or self._plot(_REALITY, 0, world)
         return {_REALITY: reality, **standing}
 
-    def lags(self) -> Mapping[Path, int]:
+    def lags(self) -> Mapping[BeliefPath, int]:
         """By how many ticks changes were shown later than they happened, at most, by simulator."""
         if not self._standing:
             return {}
         lags = self._realtime().lags()
         return {path: lags.get(path_text(path), 0) for path in self._standing}
 
-    def _show(self, world: RealtimeWorld, path: Path, unknown: int) -> None:
+    def _show(self, world: RealtimeWorld, path: BeliefPath, unknown: int) -> None:
         before = self._standing.get(path)
         if before is not None:
             before.unknown, before.when = unknown, None
@@ -131,7 +129,9 @@ class Embodying:
                 del self._standing[path]
             raise
 
-    def _planned(self, world: RealtimeWorld, path: Path, number: int, unknown: int) -> _Standing:
+    def _planned(
+        self, world: RealtimeWorld, path: BeliefPath, number: int, unknown: int
+    ) -> _Standing:
         agents = self._recording.agents
         names: Mapping[str, str] = {name: name for name in agents}
         if number:
@@ -146,7 +146,7 @@ class Embodying:
             number += 1
         return number
 
-    def _plot(self, path: Path, number: int, world: RealtimeWorld) -> Plot:
+    def _plot(self, path: BeliefPath, number: int, world: RealtimeWorld) -> Plot:
         box = self._recording.box
         x, z = origin = origin_of(number, box, world.origin)
         stand = self._stand(self._recording.reading(path))
@@ -168,7 +168,7 @@ class Embodying:
         x, y, z = (math.floor(value) for value in middle)
         return x, y, z
 
-    def _shown(self, path: Path, standing: _Standing) -> tuple[Shown, int]:
+    def _shown(self, path: BeliefPath, standing: _Standing) -> tuple[Shown, int]:
         """What a simulator's state is to be shown as, and the tick of its latest change."""
         reading = self._recording.reading(path)
         blocks = reading.blocks
@@ -192,7 +192,7 @@ class Embodying:
         )
         return shown, reading.tick
 
-    def _close(self, path: Path) -> None:
+    def _close(self, path: BeliefPath) -> None:
         standing = self._standing.pop(path, None)
         if standing is not None and standing.exhibit is not None:
             standing.exhibit.close()

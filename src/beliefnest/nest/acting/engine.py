@@ -24,12 +24,10 @@ from beliefnest.nest.past.recording import Recording
 from beliefnest.nest.past.setting import Senses
 from beliefnest.timeline.journal import FOLLOW, Edit, ForkPoint, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import ProgramRecord
-from beliefnest.world.paths import path_text
+from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.values import Block, Items, Position
 
 __all__ = ["Engine"]
-
-Path = tuple[str, ...]
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -96,7 +94,7 @@ class Engine:
 
     @_shown
     @_surviving
-    def fork(self, path: Path, name: str, tick: int | None) -> None:
+    def fork(self, path: BeliefPath, name: str, tick: int | None) -> None:
         """Begin a branch at the current tick, or at a past one, and select it."""
         recording, journal = self.recording, self.recording.journal
         self.bodies.catch_up(recording.controller(path).path)
@@ -124,7 +122,7 @@ class Engine:
                 self.recording.records.select(key.path, key.branch)
 
     @_shown
-    def follow(self, path: Path) -> None:
+    def follow(self, path: BeliefPath) -> None:
         """Put a simulator into follow mode; its body is given up."""
         if path == ():
             raise BranchError(f"the real world follows nothing; {FOLLOW!r} is for beliefs")
@@ -161,14 +159,14 @@ class Engine:
             self.recording.history.forget(key)
 
     @_surviving
-    def body(self, path: Path) -> Body:
+    def body(self, path: BeliefPath) -> Body:
         """The body of a simulator in control mode; see `Bodies.of`."""
         return self.bodies.of(path)
 
     @_shown
     def run(
         self,
-        path: Path,
+        path: BeliefPath,
         programs: Mapping[str, str],
         timeout_ticks: int,
         step: int | None = None,
@@ -202,7 +200,7 @@ class Engine:
 
     def _run_once(
         self,
-        path: Path,
+        path: BeliefPath,
         programs: Mapping[str, str],
         timeout_ticks: int,
         step: int | None,
@@ -237,7 +235,7 @@ class Engine:
 
     def speculate(
         self,
-        path: Path,
+        path: BeliefPath,
         base: ForkPoint,
         jobs: Mapping[int, Mapping[str, str]],
         timeout_ticks: int,
@@ -266,7 +264,7 @@ class Engine:
 
     def run_speculated(
         self,
-        path: Path,
+        path: BeliefPath,
         programs: Mapping[str, str],
         timeout_ticks: int,
         speculation: Speculation,
@@ -277,7 +275,7 @@ class Engine:
 
     @_shown
     @_surviving
-    def step(self, path: Path, ticks: int) -> None:
+    def step(self, path: BeliefPath, ticks: int) -> None:
         """Let ticks pass in a body."""
         with self.bodies.acting(path) as body:
             body.step(ticks)
@@ -286,7 +284,7 @@ class Engine:
     @_surviving
     def edit(
         self,
-        path: Path,
+        path: BeliefPath,
         blocks: Mapping[Position, Block],
         containers: Mapping[Position, Items],
     ) -> None:

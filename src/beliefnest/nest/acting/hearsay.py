@@ -19,11 +19,10 @@ from beliefnest.world.claims import Claim, with_claims
 from beliefnest.world.doors import is_door
 from beliefnest.world.frames import Frame
 from beliefnest.world.nameable import Nameable
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Event, EventKind, Position
 
 __all__ = ["ClaimReader", "Hearsay", "has_unread", "recalled"]
-
-Path = tuple[str, ...]
 
 _SWITCHES = ("_button", "lever")
 
@@ -36,7 +35,7 @@ class ClaimReader(Protocol):
         """What is recorded beside the claims it finds."""
 
     def read(
-        self, path: Path, tick: int, text: str, speaker: str, nameable: Nameable
+        self, path: BeliefPath, tick: int, text: str, speaker: str, nameable: Nameable
     ) -> Iterable[Claim]:
         """What a text claims that was uttered in the simulator `path` at a tick."""
 

@@ -23,26 +23,14 @@ from beliefnest.bodies.scripted_skills import CALLS, SKILLS
 from beliefnest.errors import BeliefNestError, PathError
 from beliefnest.programs.calls import Call
 from beliefnest.world.frames import BlockGrid, Frame
-from beliefnest.world.paths import normalised, path_text
+from beliefnest.world.paths import BeliefPath, normalised, path_text, paths_below
 from beliefnest.world.registry import Registry
 from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.values import Event, Position
 
-__all__ = ["Imagination", "Performer", "nodes_below"]
-
-Path = tuple[str, ...]
+__all__ = ["Imagination", "Performer"]
 
 _MOST_GROUNDS = 64
-
-
-def nodes_below(root: Path, depth: int, agents: Sequence[str]) -> list[Path]:
-    """A node and all below it down to a depth, each after its parent."""
-    found = [root]
-    level = [root]
-    for _ in range(depth):
-        level = [(*path, agent) for path in level for agent in agents if path[-1:] != (agent,)]
-        found += level
-    return found
 
 
 @dataclass
@@ -55,7 +43,7 @@ class _News:
         """All events since then."""
         return self.happened
 
-    def before(self, path: Path) -> Sequence[PerceivedEvent]:
+    def before(self, path: BeliefPath) -> Sequence[PerceivedEvent]:
         """Nothing: what was heard before has had its effect."""
         return ()
 
@@ -105,7 +93,7 @@ class Imagination:
     def __init__(
         self,
         forest: Forest | None,
-        root: Path,
+        root: BeliefPath,
         unknown: "np.ndarray[tuple[int, int, int], np.dtype[np.bool_]]",
         world: ScriptedWorld,
         grounds: dict[bytes, Ground],
@@ -133,7 +121,7 @@ class Imagination:
     def of(
         cls,
         source: Forest,
-        root: Path,
+        root: BeliefPath,
         depth: int,
         tick: int,
         grounds: dict[bytes, Ground] | None = None,
@@ -149,7 +137,7 @@ class Imagination:
             grounds: As for the class.
             speech_ticks: As for the class; None: as many as it takes in the world.
         """
-        wanted = nodes_below(root, depth, source.context.agents)
+        wanted = paths_below(root, depth, source.context.agents)
         news = _News()
         forest = forked_forest(source, news, root, root, tick, further=wanted[1:])
         forest.see_now(tick)
@@ -180,12 +168,12 @@ class Imagination:
         x, y, z = (math.floor(value) for value in there.position)
         return self._standing().may_lead((x, y, z), InReach(place, REACH))
 
-    def knows(self, path: Path) -> bool:
+    def knows(self, path: BeliefPath) -> bool:
         """Whether beliefs are followed as deep as a path below the root."""
         whole = normalised((*self.root, *path))
         return whole == self.root or (self._forest is not None and whole in self._forest)
 
-    def view(self, path: Path = ()) -> NodeView:
+    def view(self, path: BeliefPath = ()) -> NodeView:
         """What a node holds; read it before time goes on.
 
         Args:
@@ -214,7 +202,7 @@ class Imagination:
         root = normalised((*self.root, agent))
         if forest is None or (depth and forest.context.options.testimony == "informed"):
             return None
-        nodes = nodes_below(root, depth, forest.context.agents)
+        nodes = paths_below(root, depth, forest.context.agents)
         return tuple(_print(NodeView(forest, node)) for node in nodes)
 
     def fork(self) -> "Imagination":

@@ -5,14 +5,13 @@ from collections.abc import Callable
 
 from beliefnest.belief.node_view import NodeView
 from beliefnest.bodies.protocol import Sensed
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import AgentState, EventKind, Point, Position
 
 __all__ = ["Sensing", "believer_of"]
 
-Path = tuple[str, ...]
 
-
-def believer_of(path: Path, agent: str) -> Path:
+def believer_of(path: BeliefPath, agent: str) -> BeliefPath:
     """The node that an agent of a simulator reads from.
 
     In its own belief that is the simulator itself: all there is is what it believes.

@@ -13,11 +13,10 @@ from beliefnest.nest.past.history import History
 from beliefnest.nest.past.placing import fork_of_belief
 from beliefnest.timeline.journal import ForkPoint, Journal
 from beliefnest.world.frames import BlockGrid, Frame, Snapshot
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import AgentState, Position
 
 __all__ = ["Start", "start_of"]
-
-Path = tuple[str, ...]
 
 _FLOOR = "barrier"
 """What stands in a body for a floor that is unknown and holds somebody up."""
@@ -38,7 +37,7 @@ class Start:
 
 
 def start_of(
-    journal: Journal, history: History, path: Path, moment: ForkPoint, *, has_physics: bool
+    journal: Journal, history: History, path: BeliefPath, moment: ForkPoint, *, has_physics: bool
 ) -> Start:
     """What a body of the node `path`, the timeline's own or one below it, begins with.
 

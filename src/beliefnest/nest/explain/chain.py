@@ -34,11 +34,10 @@ from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Edit
 from beliefnest.world.claims import ClaimKind, claims_of
 from beliefnest.world.frames import Frame
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Point, Position
 
 __all__ = ["element_of", "explain"]
-
-Path = tuple[str, ...]
 
 
 def element_of(
@@ -80,7 +79,9 @@ def _inside(recording: Recording, place: Position | None) -> Position:
     return place
 
 
-def explain(recording: Recording, path: Path, tick: int | None, element: Element) -> Explanation:
+def explain(
+    recording: Recording, path: BeliefPath, tick: int | None, element: Element
+) -> Explanation:
     """The chain of perceptions behind what a node holds of an element.
 
     Args:
@@ -102,7 +103,7 @@ def explain(recording: Recording, path: Path, tick: int | None, element: Element
 
 
 def _explained(
-    recording: Recording, path: Path, place: Place, tick: int, element: Element
+    recording: Recording, path: BeliefPath, place: Place, tick: int, element: Element
 ) -> Explanation:
     root = place.key.path
     paths = [path[:depth] for depth in range(len(root), len(path) + 1)]
@@ -135,7 +136,7 @@ class _Held:
 class _Trace:
     """What comes to light of one belief while the log is gone through."""
 
-    path: Path
+    path: BeliefPath
     held: _Held
     since: int | None = None
     stood: Point | None = None
@@ -152,8 +153,8 @@ class _Trace:
 
 
 def _held_now(
-    recording: Recording, path: Path, place: Place, element: Element
-) -> dict[Path, _Held]:
+    recording: Recording, path: BeliefPath, place: Place, element: Element
+) -> dict[BeliefPath, _Held]:
     root, history = place.key.path, recording.history
     cells = cells_of(element, recording.box)
     held = {}
@@ -174,7 +175,7 @@ def _held_now(
 
 
 def _ground_of(
-    recording: Recording, place: Place, forest: Forest, node: Path, element: Element
+    recording: Recording, place: Place, forest: Forest, node: BeliefPath, element: Element
 ) -> tuple[Basis | None, bool]:
     """What a node's value rests on, and whether it is current."""
     reading = NodeView(forest, node)
@@ -207,7 +208,7 @@ def _fact(recording: Recording, place: Place, held: _Held, element: Element) -> 
 
 def _follow(
     recording: Recording,
-    path: Path,
+    path: BeliefPath,
     place: Place,
     tick: int,
     element: Element,
@@ -260,7 +261,7 @@ def _take(recording: Recording, trace: _Trace, step: Step, element: Element) -> 
 
 def _missed(
     recording: Recording,
-    path: Path,
+    path: BeliefPath,
     step: Step,
     element: Element,
     before: Value,
@@ -284,7 +285,7 @@ def _missed(
     )
 
 
-def _told(recording: Recording, path: Path, step: Step, element: Element) -> Iterable[Told]:
+def _told(recording: Recording, path: BeliefPath, step: Step, element: Element) -> Iterable[Told]:
     """The claims of one entry by which a node may have moved something out of a container."""
     if element.kind != "container" or step.place.entries == 0:
         return
@@ -301,14 +302,14 @@ def _told(recording: Recording, path: Path, step: Step, element: Element) -> Ite
                 yield Told(entry.tick, str(event.actor), claim)
 
 
-def _is_edit(recording: Recording, place: Place, path: Path) -> bool:
+def _is_edit(recording: Recording, place: Place, path: BeliefPath) -> bool:
     if place.entries == 0:
         return False
     (entry,) = recording.journal.entries(place.key, place.entries - 1, place.entries)
     return isinstance(entry, Edit) and entry.path == path
 
 
-def _absence(recording: Recording, forest: Forest, path: Path) -> Absence:
+def _absence(recording: Recording, forest: Forest, path: BeliefPath) -> Absence:
     """Why the parent of a node does not know where the node's owner is."""
     parent = path[:-1]
     last_seen = forest.seen_at(parent, path[-1])

@@ -14,7 +14,7 @@ from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.parts import Contents
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.words import html_lines, html_table, items_words, place_words, point_words
-from beliefnest.world.paths import path_text
+from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.values import Point, Position
 
 __all__ = [
@@ -36,8 +36,6 @@ _MOST = 12
 
 _APART = 0.5
 """Blocks from which on somebody is elsewhere."""
-
-Path = tuple[str, ...]
 
 
 class Holds(Protocol):
@@ -140,7 +138,7 @@ def _what(difference: Difference) -> str:
 
 
 def compare(
-    recording: Recording, a: Path, b: Path, tick: int | None, *, unknown: bool
+    recording: Recording, a: BeliefPath, b: BeliefPath, tick: int | None, *, unknown: bool
 ) -> list[Difference]:
     """`differences` of two nodes at a tick; None: now."""
     one, other = recording.reading(a, tick), recording.reading(b, tick)
@@ -151,9 +149,9 @@ def compare(
 
 def false_beliefs(
     recording: Recording,
-    path: Path,
+    path: BeliefPath,
     tick: int | None,
-    against: Path = (),
+    against: BeliefPath = (),
     against_tick: int | None = None,
 ) -> list[Difference]:
     """`falsehoods` of a node at a tick; None: now.

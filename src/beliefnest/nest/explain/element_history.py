@@ -10,6 +10,7 @@ from beliefnest.nest.explain.parts import Contents, Element, Value
 from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import Edit, EntryFilter, Journal, TimelineKey
 from beliefnest.world.frames import Frame
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import block_words, plain_state
 from beliefnest.world.values import Box
@@ -25,8 +26,6 @@ __all__ = [
     "touches",
     "value_in",
 ]
-
-Path = tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +60,7 @@ def cells_of(element: Element, box: Box) -> Sequence[int]:
 
 
 def steps_since(
-    history: History, journal: Journal, path: Path, place: Place, tick: int, element: Element
+    history: History, journal: Journal, path: BeliefPath, place: Place, tick: int, element: Element
 ) -> Iterator[Step]:
     """The forest of a node after each entry from just before `tick` to a place."""
     info = journal.info(place.key)
@@ -74,7 +73,7 @@ def steps_since(
         yield Step(Place(place.key, forest.position), forest)
 
 
-def value_in(forest: Forest, path: Path, element: Element) -> Value:
+def value_in(forest: Forest, path: BeliefPath, element: Element) -> Value:
     """What a node of a forest holds of an element."""
     if isinstance(element.where, str):
         return forest.feet(path, element.where)
@@ -88,7 +87,7 @@ def value_in(forest: Forest, path: Path, element: Element) -> Value:
     return Contents(dict(content.items), content.complete)
 
 
-def grounded_at(forest: Forest, path: Path, element: Element) -> int | None:
+def grounded_at(forest: Forest, path: BeliefPath, element: Element) -> int | None:
     """Tick of the perception that a node's value of an element rests on; None: no value."""
     if isinstance(element.where, str):
         return forest.seen_at(path, element.where)

@@ -7,6 +7,7 @@ from typing import Literal
 
 from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.world.claims import Claim
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Point, Position
 
 __all__ = [
@@ -157,7 +158,7 @@ class Fact:
         forked_at: Tick at which the branch forked from another; None: it did not.
     """
 
-    path: tuple[str, ...]
+    path: BeliefPath
     branch: str
     value: Value
     block: str | None
@@ -188,7 +189,7 @@ class Level:
         told: Claims by which something went out of the container since the basis' tick.
     """
 
-    path: tuple[str, ...]
+    path: BeliefPath
     holder: str
     value: Value
     block: str | None

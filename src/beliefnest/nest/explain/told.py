@@ -16,12 +16,10 @@ from beliefnest.prompts.text import block_name, block_properties
 from beliefnest.timeline.journal import EntryFilter, TimelineKey
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
 from beliefnest.world.frames import Frame
-from beliefnest.world.paths import parse_path, path_text
+from beliefnest.world.paths import BeliefPath, parse_path, path_text
 from beliefnest.world.values import Event, Position
 
 __all__ = ["ToldClaim", "claims_told", "says_otherwise"]
-
-Path = tuple[str, ...]
 
 
 class ToldClaim:
@@ -120,13 +118,13 @@ class ToldClaim:
             forest = self._after(names)
             return forest.verdicts[self._row, self._index][forest.node(names)]
 
-    def _after(self, path: Path) -> Forest:
+    def _after(self, path: BeliefPath) -> Forest:
         """A forest with a node, just after the claim."""
         steps = self._recording.history.steps(self._key, path, self._entry, self._entry + 1)
         *_, forest = steps
         return forest
 
-    def _was_perceived(self, path: Path) -> bool:
+    def _was_perceived(self, path: BeliefPath) -> bool:
         with self._recording.turn:
             forest = self._after(path)
             first = forest.columns.events_until(self._entry)
@@ -134,12 +132,12 @@ class ToldClaim:
             heard = forest.hearing.of(forest.node(path), count)
             return bool(np.asarray(heard)[first + self._row])
 
-    def _state(self, path: Path) -> State:
+    def _state(self, path: BeliefPath) -> State:
         with self._recording.turn:
             return self._recording.state_after(self._key, path, self._entry + 1, self.tick)
 
 
-def claims_told(recording: Recording, path: Path, tick: int | None) -> list[ToldClaim]:
+def claims_told(recording: Recording, path: BeliefPath, tick: int | None) -> list[ToldClaim]:
     """All claims made in a simulator, oldest first.
 
     Args:
@@ -232,7 +230,7 @@ def _is_elsewhere(state: Held, claim: Claim) -> bool:
     return others or any(claim.item in agent.inventory for agent in state.agents.values())
 
 
-def _words(verdict: Verdict, path: Path, told: ToldClaim) -> str:
+def _words(verdict: Verdict, path: BeliefPath, told: ToldClaim) -> str:
     """A verdict in words, and the condition that decided it."""
     me, speaker, grace = path[-1], told.speaker, told.grace()
     outer = path[-2] if len(path) > 1 else None

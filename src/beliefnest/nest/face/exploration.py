@@ -15,6 +15,7 @@ from beliefnest.nest.face.simulator import Simulator, check_senses
 from beliefnest.nest.past.body_state import present
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.timeline.records import Senses
+from beliefnest.world.paths import BeliefPath
 
 __all__ = ["Attempt", "Exploration", "Score"]
 
@@ -66,7 +67,7 @@ class Exploration:
     """
 
     engine: Engine
-    path: tuple[str, ...]
+    path: BeliefPath
     agent: str
     programs: Sequence[str]
     score: Score

@@ -10,6 +10,7 @@ from beliefnest.nest.face.recording_model import RecordingModel
 from beliefnest.nest.past.recording import Recording
 from beliefnest.world.claims import Claim
 from beliefnest.world.nameable import ClaimsFrom, Nameable
+from beliefnest.world.paths import BeliefPath
 
 if TYPE_CHECKING:  # Models take long to import, and few nests have one.
     from beliefnest.llm.messages import Model
@@ -69,7 +70,7 @@ class _FunctionReader:
         self.name = str(getattr(hook, "__qualname__", type(hook).__qualname__))
 
     def read(
-        self, path: tuple[str, ...], tick: int, text: str, speaker: str, nameable: Nameable
+        self, path: BeliefPath, tick: int, text: str, speaker: str, nameable: Nameable
     ) -> Iterable[Claim]:
         found: object = self._hook(text, speaker, nameable)
         if isinstance(found, str) or not isinstance(found, Iterable):
@@ -89,7 +90,7 @@ class _ModelReader:
         self.name = hook.name
 
     def read(
-        self, path: tuple[str, ...], tick: int, text: str, speaker: str, nameable: Nameable
+        self, path: BeliefPath, tick: int, text: str, speaker: str, nameable: Nameable
     ) -> Iterable[Claim]:
         detail = {"claims_from": text, "speaker": speaker}
 

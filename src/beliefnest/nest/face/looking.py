@@ -15,12 +15,10 @@ from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.figure import Figure, figure_of
 from beliefnest.pictures.scene import Scene, Wrong, best_height, read_scene
 from beliefnest.pictures.words import place_words, state_words
-from beliefnest.world.paths import parse_path, path_text
+from beliefnest.world.paths import BeliefPath, parse_path, path_text
 from beliefnest.world.values import Position
 
 __all__ = ["Looking", "LookingAtOne", "wrong_things"]
-
-Path = tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +26,7 @@ class _Node:
     """A simulator at a tick; None: at the latest of its timeline."""
 
     recording: Recording
-    names: Path
+    names: BeliefPath
     tick: int | None
 
     @property
@@ -143,7 +141,7 @@ class Looking(AtMoment):
 class LookingAtOne(AtMoment):
     """Pictures of one simulator."""
 
-    _path: Path
+    _path: BeliefPath
 
     def figure(
         self,
@@ -204,7 +202,7 @@ def _scenes(
         return tuple(_scene(node, other, sight, level) for node in nodes)
 
 
-def _scene(node: _Node, against: Path, sight: Sequence[str] | None, height: int) -> Scene:
+def _scene(node: _Node, against: BeliefPath, sight: Sequence[str] | None, height: int) -> Scene:
     recording = node.recording
     setting = recording.setting
     key = recording.selected.get(node.names)
@@ -222,7 +220,7 @@ def _scene(node: _Node, against: Path, sight: Sequence[str] | None, height: int)
     )
 
 
-def _wrong(node: _Node, against: Path) -> list[Wrong]:
+def _wrong(node: _Node, against: BeliefPath) -> list[Wrong]:
     """What a simulator holds otherwise than another, at its tick or that one's latest."""
     if node.names == against:
         return []

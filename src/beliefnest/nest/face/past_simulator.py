@@ -19,7 +19,7 @@ from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
 from beliefnest.prompts import Template
-from beliefnest.world.paths import normalised, parse_path, path_text
+from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 from beliefnest.world.values import Point, Position
 
 __all__ = ["Past", "PastSimulator", "ShownSimulator"]
@@ -28,7 +28,7 @@ __all__ = ["Past", "PastSimulator", "ShownSimulator"]
 class ShownSimulator(LookingAtOne, ABC):
     """What a simulator shows of itself at one tick, now or in the past."""
 
-    def __init__(self, recording: Recording, path: tuple[str, ...]) -> None:
+    def __init__(self, recording: Recording, path: BeliefPath) -> None:
         self._recording = recording
         self._path = path
 
@@ -133,7 +133,7 @@ class ShownSimulator(LookingAtOne, ABC):
 class PastSimulator(ShownSimulator):
     """A simulator as it was at a past tick; read-only."""
 
-    def __init__(self, recording: Recording, path: tuple[str, ...], tick: int) -> None:
+    def __init__(self, recording: Recording, path: BeliefPath, tick: int) -> None:
         super().__init__(recording, path)
         self._tick = tick
 

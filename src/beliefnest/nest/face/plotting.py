@@ -22,12 +22,11 @@ from beliefnest.pictures.figure import Figure
 from beliefnest.pictures.plot import Act, Band, Row, Told, belief_plot
 from beliefnest.pictures.words import place_words
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.world.paths import parse_path, path_text
+from beliefnest.world.paths import BeliefPath, parse_path, path_text
 from beliefnest.world.values import EventKind, Position
 
 __all__ = ["Followed", "plot_of"]
 
-Path = tuple[str, ...]
 V = TypeVar("V")
 
 
@@ -168,7 +167,7 @@ def _said(recording: Recording, matter: Matter[V], end: int) -> list[Act]:
     return found
 
 
-def _told(recording: Recording, matter: Matter[V], path: Path, end: int) -> tuple[Told, ...]:
+def _told(recording: Recording, matter: Matter[V], path: BeliefPath, end: int) -> tuple[Told, ...]:
     """The claims about it that were heard by somebody else than their speaker in a simulator."""
     own, text = recording.controller(path).path, path_text(path)
     if not path or own == path or recording.setting.perception.testimony == "none":
@@ -180,7 +179,7 @@ def _told(recording: Recording, matter: Matter[V], path: Path, end: int) -> tupl
     )
 
 
-def _course(recording: Recording, path: Path, matter: Matter[V]) -> Course[V]:
+def _course(recording: Recording, path: BeliefPath, matter: Matter[V]) -> Course[V]:
     """The changes of what a simulator held, on its timeline and what that was forked from."""
     key = recording.controller(path)
     stretches = [(key, recording.journal.info(key).entries)]
@@ -199,7 +198,7 @@ def _course(recording: Recording, path: Path, matter: Matter[V]) -> Course[V]:
 
 
 def _stretch(
-    recording: Recording, key: TimelineKey, path: Path, stop: int
+    recording: Recording, key: TimelineKey, path: BeliefPath, stop: int
 ) -> Iterator[tuple[int, NodeView]]:
     """A simulator after each of the first entries of a timeline."""
     start = recording.journal.info(key).start

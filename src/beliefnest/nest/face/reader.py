@@ -15,11 +15,10 @@ from beliefnest.nest.past.recording import Recording
 from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.journal import Entry, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Position
 
 __all__ = ["Reader"]
-
-Path = tuple[str, ...]
 
 
 class Reader:
@@ -78,7 +77,7 @@ class Reader:
         with self._recording.turn:
             return self._recording.journal.entries_until(key, tick)
 
-    def walk(self, key: TimelineKey, paths: Sequence[Path]) -> Forest:
+    def walk(self, key: TimelineKey, paths: Sequence[BeliefPath]) -> Forest:
         """A forest with nodes of a timeline, at its beginning; `advance` takes it on."""
         with self._recording.turn:
             return self.history.walk(key, paths)
@@ -91,7 +90,7 @@ class Reader:
     def explain(
         self,
         key: TimelineKey,
-        path: Path,
+        path: BeliefPath,
         tick: int,
         *,
         container: Position | None = None,
@@ -111,7 +110,7 @@ class Reader:
             return explain(self._recording.on(key), path, tick, element)
 
     def look(
-        self, key: TimelineKey, path: Path, tick: int, viewer: str, target: str | Position
+        self, key: TimelineKey, path: BeliefPath, tick: int, viewer: str, target: str | Position
     ) -> Sighting | None:
         """The look of an agent at another or at a block, in a simulator; None: it is nowhere."""
         with self._recording.turn:
@@ -124,7 +123,7 @@ class Reader:
             return sighting_of_block(reading, box, viewer, target)
 
     def visible_blocks(
-        self, key: TimelineKey, path: Path, tick: int, viewer: str
+        self, key: TimelineKey, path: BeliefPath, tick: int, viewer: str
     ) -> npt.NDArray[np.bool_]:
         """Which blocks an agent sees from its pose in a simulator: bool, shape of the box."""
         with self._recording.turn:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from beliefnest.errors import ModelError
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.records import PromptRecord
+from beliefnest.world.paths import BeliefPath
 
 if TYPE_CHECKING:  # Models take long to import, and few nests have one.
     from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
@@ -31,7 +32,7 @@ class RecordingModel:
         self,
         model: "Model",
         recording: Recording,
-        path: tuple[str, ...],
+        path: BeliefPath,
         detail: Mapping[str, str],
         tick: int | None = None,
     ) -> None:

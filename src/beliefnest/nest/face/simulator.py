@@ -7,13 +7,14 @@ from beliefnest.bodies.protocol import Past, ProgramResult
 from beliefnest.bodies.scripted import ScriptedBody
 from beliefnest.errors import BranchError, InputError, PositionError, WorldError
 from beliefnest.nest.acting.engine import Engine
-from beliefnest.nest.acting.imagination import Imagination, nodes_below
+from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.nest.face.past_simulator import ShownSimulator
 from beliefnest.nest.face.recording_model import RecordingModel
 from beliefnest.nest.face.ticks import tick_of, whole
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.setting import Senses
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
+from beliefnest.world.paths import BeliefPath, paths_below
 from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.signs import plain_state, written
 from beliefnest.world.texts import is_well_formed
@@ -32,7 +33,7 @@ _LONGEST = 24 * 3600 * TICKS_PER_SECOND
 class Simulator(ShownSimulator):
     """The real world or a belief, live; `Nest[path]` gives one."""
 
-    def __init__(self, engine: Engine, path: tuple[str, ...]) -> None:
+    def __init__(self, engine: Engine, path: BeliefPath) -> None:
         super().__init__(engine.recording, path)
         self._engine = engine
 
@@ -305,7 +306,7 @@ class Simulator(ShownSimulator):
         if depth < 0:
             raise InputError(f"depth is {depth}; give 0 or more")
         info = self._recording.info(self._path)
-        for path in nodes_below(self._path, depth, self._recording.agents):
+        for path in paths_below(self._path, depth, self._recording.agents):
             forest = self._recording.history.shared(info.key, path, info.entries)
         speech = -(-forest.context.options.speech_ticks // pace)
         return Imagination.of(forest, self._path, depth, info.head, speech_ticks=speech)

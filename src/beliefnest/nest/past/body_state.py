@@ -9,10 +9,9 @@ from dataclasses import replace
 from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import ForkPoint, Journal, TimelineKey
 from beliefnest.world.frames import Snapshot
+from beliefnest.world.paths import BeliefPath
 
 __all__ = ["internal_state_at", "note_internal_state", "present", "snapshot_at"]
-
-Path = tuple[str, ...]
 
 
 def present(journal: Journal, key: TimelineKey) -> ForkPoint:
@@ -21,7 +20,9 @@ def present(journal: Journal, key: TimelineKey) -> ForkPoint:
     return ForkPoint(key, info.entries, info.head)
 
 
-def snapshot_at(journal: Journal, history: History, path: Path, moment: ForkPoint) -> Snapshot:
+def snapshot_at(
+    journal: Journal, history: History, path: BeliefPath, moment: ForkPoint
+) -> Snapshot:
     """What a body of the node `path`, the timeline's own or one below it, is filled with."""
     reading = history.reading(moment.timeline, path, moment.entries)
     own = path == moment.timeline.path

@@ -22,10 +22,9 @@ from beliefnest.nest.past.setting import Setting
 from beliefnest.nest.past.setting_codec import encode_start
 from beliefnest.timeline.journal import Journal, TimelineKey
 from beliefnest.version import VERSION
+from beliefnest.world.paths import BeliefPath
 
 __all__ = ["Checkpoints", "Pace"]
-
-Path = tuple[str, ...]
 
 _ROOMS = ("world", "perception", "belief", "nest/past")
 """Where the program is that decides what a forest holds."""
@@ -81,7 +80,7 @@ class Checkpoints:
         key: TimelineKey,
         position: int,
         events: EventHistory,
-        path: Path | None = None,
+        path: BeliefPath | None = None,
         after: int = 0,
     ) -> Forest | None:
         """The last saved forest of a timeline between two positions; None if there is none.

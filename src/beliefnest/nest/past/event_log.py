@@ -6,11 +6,10 @@ from beliefnest.belief.columns import Columns
 from beliefnest.belief.entries import PerceivedEvent
 from beliefnest.timeline.journal import EntryFilter, Journal, TimelineKey
 from beliefnest.world.frames import Frame
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Event
 
 __all__ = ["EventLog"]
-
-Path = tuple[str, ...]
 
 
 class EventLog:
@@ -26,12 +25,12 @@ class EventLog:
         self,
         journal: Journal,
         key: TimelineKey,
-        before: Callable[[Path], Sequence[PerceivedEvent]],
+        before: Callable[[BeliefPath], Sequence[PerceivedEvent]],
     ) -> None:
         self._journal = journal
         self._key = key
         self._work_out = before
-        self._before: dict[Path, Sequence[PerceivedEvent]] = {}
+        self._before: dict[BeliefPath, Sequence[PerceivedEvent]] = {}
         self._events: list[tuple[int, Event]] = []
         self._entries = 0
 
@@ -47,7 +46,7 @@ class EventLog:
             self._entries = stop
         return self._events
 
-    def before(self, path: Path) -> Sequence[PerceivedEvent]:
+    def before(self, path: BeliefPath) -> Sequence[PerceivedEvent]:
         """What a node perceived before the timeline began, oldest first."""
         if path not in self._before:
             self._before[path] = self._work_out(path)

@@ -8,17 +8,16 @@ from beliefnest.belief.forest import Forest, ForestState, NodeState
 from beliefnest.belief.protocols import EventHistory
 from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
+from beliefnest.world.paths import BeliefPath
 
 __all__ = ["restored", "saved"]
-
-Path = tuple[str, ...]
 
 _LEVEL = 1
 
 
 class _Saved(msgspec.Struct, forbid_unknown_fields=True):
     state: ForestState
-    nodes: list[tuple[Path, bytes]]
+    nodes: list[tuple[BeliefPath, bytes]]
 
 
 def saved(forest: Forest) -> bytes:
@@ -31,7 +30,7 @@ def saved(forest: Forest) -> bytes:
 
 
 def restored(
-    context: BeliefContext, events: EventHistory, data: bytes, path: Path | None = None
+    context: BeliefContext, events: EventHistory, data: bytes, path: BeliefPath | None = None
 ) -> Forest | None:
     """A forest from the bytes of `saved`, made in the same context.
 

@@ -24,11 +24,10 @@ from beliefnest.nest.past.setting import Setting
 from beliefnest.perception.sight import Sight
 from beliefnest.timeline.journal import Edit, Entry, EntryFilter, ForkPoint, Journal, TimelineKey
 from beliefnest.world.frames import Frame
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
 
 __all__ = ["History", "context_of"]
-
-Path = tuple[str, ...]
 
 _PASTS = 4
 _STRETCHES = 8
@@ -101,7 +100,7 @@ class History:
         self._heads: dict[TimelineKey, Forest] = {}
         self._pasts: list[tuple[TimelineKey, Forest]] = []
 
-    def reading(self, key: TimelineKey, path: Path, position: int | None = None) -> NodeView:
+    def reading(self, key: TimelineKey, path: BeliefPath, position: int | None = None) -> NodeView:
         """State of the node `path` after `position` entries of a timeline; None: at its head.
 
         `path` is the timeline's own simulator or a node below it that follows it.
@@ -110,12 +109,12 @@ class History:
             position = self._journal.info(key).entries
         return NodeView(self._forest(key, path, position), path)
 
-    def shared(self, key: TimelineKey, path: Path, position: int) -> Forest:
+    def shared(self, key: TimelineKey, path: BeliefPath, position: int) -> Forest:
         """The forest behind `reading`; it goes on with whoever asks next, so read it at once."""
         return self._forest(key, path, position)
 
     def steps(
-        self, key: TimelineKey, path: Path, first: int, last: int, extra: Sequence[int] = ()
+        self, key: TimelineKey, path: BeliefPath, first: int, last: int, extra: Sequence[int] = ()
     ) -> Iterator[Forest]:
         """One forest with a node, after `first` entries of a timeline, then one more, to `last`.
 
@@ -128,7 +127,7 @@ class History:
             self.advance(key, forest, position)
             yield forest
 
-    def walk(self, key: TimelineKey, paths: Sequence[Path]) -> Forest:
+    def walk(self, key: TimelineKey, paths: Sequence[BeliefPath]) -> Forest:
         """A forest with several nodes at a timeline's beginning; it is the caller's own.
 
         `advance` takes it on.
@@ -145,7 +144,7 @@ class History:
                 _adopt(forest, self._begun(key, path), key.path, path)
         return forest
 
-    def _have(self, fork: ForkPoint, paths: Sequence[Path]) -> None:
+    def _have(self, fork: ForkPoint, paths: Sequence[BeliefPath]) -> None:
         """Have several nodes at hand where a timeline forks: folded at once, not one by one."""
         key, position = fork.timeline, fork.entries
         if position == self._journal.info(key).entries:
@@ -164,7 +163,7 @@ class History:
         ):
             self._pasts = [(key, self._together(key, paths, position)), *self._pasts][:_PASTS]
 
-    def _together(self, key: TimelineKey, paths: Sequence[Path], position: int) -> Forest:
+    def _together(self, key: TimelineKey, paths: Sequence[BeliefPath], position: int) -> Forest:
         """A new forest of several nodes and their ancestors, after some entries of a timeline."""
         forest = self.walk(key, paths)
         self.advance(key, forest, position)
@@ -187,7 +186,7 @@ class History:
         if count - (0 if head is None else head.position) >= self._pace.lag:
             self._head(key, key.path, count)
 
-    def expect(self, key: TimelineKey, paths: Sequence[Path]) -> None:
+    def expect(self, key: TimelineKey, paths: Sequence[BeliefPath]) -> None:
         """Begin with several nodes at once that will be asked for at a timeline's head.
 
         One after the other, each is folded anew with all above it.
@@ -206,7 +205,7 @@ class History:
             self._checkpoints.keep_last(key, head)
 
     def block_bases(
-        self, key: TimelineKey, path: Path, position: int, cells: Sequence[int]
+        self, key: TimelineKey, path: BeliefPath, position: int, cells: Sequence[int]
     ) -> dict[int, Basis | None]:
         """What a node's blocks at some cells rest on; None where a block is unknown.
 
@@ -216,7 +215,7 @@ class History:
         return forest.bases(path, cells)
 
     def current_blocks(
-        self, key: TimelineKey, path: Path, position: int, cells: Iterable[int]
+        self, key: TimelineKey, path: BeliefPath, position: int, cells: Iterable[int]
     ) -> set[int]:
         """Those of some cells whose block a perception in the last of some entries backs."""
         base = self._journal.info(key).base
@@ -227,7 +226,9 @@ class History:
             return self.current_blocks(base.timeline, path, base.entries, left)
         return self._forest(key, path, position).current_blocks(path, cells)
 
-    def _edited_at_first(self, key: TimelineKey, path: Path, position: int) -> set[int] | None:
+    def _edited_at_first(
+        self, key: TimelineKey, path: BeliefPath, position: int
+    ) -> set[int] | None:
         """Cells of a node that were edited in some entries; None if it perceived anew in them.
 
         A node perceives when something happens, and when a simulator above it is edited (6).
@@ -266,7 +267,7 @@ class History:
             self._heads.clear()
             self._pasts.clear()
 
-    def _forest(self, key: TimelineKey, path: Path, position: int) -> Forest:
+    def _forest(self, key: TimelineKey, path: BeliefPath, position: int) -> Forest:
         """A forest with a node, after some entries of a timeline."""
         self._keep_up(key)
         if position == self._journal.info(key).entries:
@@ -280,7 +281,7 @@ class History:
         self.advance(key, forest, position)
         return forest
 
-    def _past(self, key: TimelineKey, path: Path, position: int) -> Forest | None:
+    def _past(self, key: TimelineKey, path: BeliefPath, position: int) -> Forest | None:
         """The last forest at hand with a node that lies no later than a position."""
         found = None
         for other, forest in self._pasts:
@@ -292,7 +293,7 @@ class History:
                     found = forest
         return found
 
-    def _head(self, key: TimelineKey, path: Path, count: int) -> Forest:
+    def _head(self, key: TimelineKey, path: BeliefPath, count: int) -> Forest:
         head = known = self._heads.get(key)
         if head is None:
             head = self._saved(key, count)
@@ -311,7 +312,7 @@ class History:
         return head
 
     def _folded(
-        self, key: TimelineKey, path: Path, position: int, extra: Sequence[int] = ()
+        self, key: TimelineKey, path: BeliefPath, position: int, extra: Sequence[int] = ()
     ) -> Forest:
         """A new forest of a node and its ancestors, after some entries of a timeline."""
         self._keep_up(key)
@@ -323,13 +324,13 @@ class History:
         return forest
 
     def _saved(
-        self, key: TimelineKey, position: int, path: Path | None = None, after: int = 0
+        self, key: TimelineKey, position: int, path: BeliefPath | None = None, after: int = 0
     ) -> Forest | None:
         """The last checkpoint that serves: `Checkpoints.before`."""
         found = self._checkpoints.before(key, position, self._log(key), path, after)
         return found if found is None or self._claimed.cells <= found.since else None
 
-    def _begun(self, key: TimelineKey, path: Path, extra: Sequence[int] = ()) -> Forest:
+    def _begun(self, key: TimelineKey, path: BeliefPath, extra: Sequence[int] = ()) -> Forest:
         """A forest of a node and its ancestors, at a timeline's beginning."""
         base = self._journal.info(key).base
         if base is None:
@@ -342,7 +343,7 @@ class History:
         return forked_forest(source, self._log(key), key.path, path, base.tick, extra)
 
     def _initial(
-        self, key: TimelineKey, paths: Sequence[Path], extra: Sequence[int] = ()
+        self, key: TimelineKey, paths: Sequence[BeliefPath], extra: Sequence[int] = ()
     ) -> Forest:
         """A forest of some nodes and their ancestors, where the real world begins."""
         setting = self._setting
@@ -363,7 +364,7 @@ class History:
             self._logs[key] = EventLog(self._journal, key, lambda path: self._before(base, path))
         return self._logs[key]
 
-    def _before(self, base: ForkPoint | None, path: Path) -> Sequence[PerceivedEvent]:
+    def _before(self, base: ForkPoint | None, path: BeliefPath) -> Sequence[PerceivedEvent]:
         """What a node perceived before the timeline began that lies on a base."""
         return () if base is None else self.reading(base.timeline, path, base.entries).events()
 
@@ -417,7 +418,7 @@ class History:
         )
 
 
-def _adopt(forest: Forest, other: Forest, own: Path, path: Path) -> None:
+def _adopt(forest: Forest, other: Forest, own: BeliefPath, path: BeliefPath) -> None:
     """Take a node and its ancestors over, as far as they are not there.
 
     Args:

@@ -11,12 +11,11 @@ from beliefnest.nest.past.recording import Recording
 from beliefnest.nest.past.views import Blocks, LiveState
 from beliefnest.timeline.journal import Journal, TimelineInfo, TimelineKey
 from beliefnest.world.frames import BlockGrid
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Position
 
 __all__ = ["Moment", "each_tick", "over_time"]
-
-Path = tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +36,7 @@ class Moment:
     blocks: Mapping[Position, str | None]
 
 
-def over_time(recording: Recording, path: tuple[str, ...]) -> Iterator[Moment]:
+def over_time(recording: Recording, path: BeliefPath) -> Iterator[Moment]:
     """The first tick of each timeline that a simulator has or can follow, and each with a change.
 
     Timelines come in order of creation, each with its own ticks: what lies before its first is
@@ -57,8 +56,8 @@ def over_time(recording: Recording, path: tuple[str, ...]) -> Iterator[Moment]:
 
 
 def each_tick(
-    recording: Recording, paths: Sequence[Path], after: int, until: int
-) -> Iterator[tuple[int, Mapping[Path, State]]]:
+    recording: Recording, paths: Sequence[BeliefPath], after: int, until: int
+) -> Iterator[tuple[int, Mapping[BeliefPath, State]]]:
     """Several simulators below the real world, at each tick at which something happened.
 
     Args:

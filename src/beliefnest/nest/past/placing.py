@@ -9,11 +9,10 @@ from collections.abc import Mapping
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint, Journal, TimelineInfo, TimelineKey
 from beliefnest.world.frames import Frame
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Point
 
 __all__ = ["fork_of_belief", "placed_in", "placing_frame"]
-
-Path = tuple[str, ...]
 
 
 def fork_of_belief(journal: Journal, key: TimelineKey) -> tuple[TimelineInfo, ForkPoint] | None:
@@ -33,7 +32,7 @@ def placing_frame(journal: Journal, info: TimelineInfo) -> Frame | None:
 
 
 def placed_in(
-    recording: Recording, path: Path, tick: int | None = None
+    recording: Recording, path: BeliefPath, tick: int | None = None
 ) -> Mapping[str, tuple[Point, Point]]:
     """Whom the body of a simulator had to move when it began: agent to from where, to where.
 

@@ -21,12 +21,10 @@ from beliefnest.prompts import Renderer
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import Records, RunJournal
 from beliefnest.timeline.store import SqliteJournal
-from beliefnest.world.paths import path_text
+from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.values import Box
 
 __all__ = ["Recording", "read_recording"]
-
-Path = tuple[str, ...]
 
 
 class Recording:
@@ -57,7 +55,7 @@ class Recording:
         self.seed = seed
         self.renderer = Renderer() if renderer is None else renderer
         self.history = History(journal, setting)
-        self.selected: dict[Path, TimelineKey] = {(): TimelineKey((), MAIN)}
+        self.selected: dict[BeliefPath, TimelineKey] = {(): TimelineKey((), MAIN)}
         self.turn = RLock()
 
     @classmethod
@@ -104,14 +102,14 @@ class Recording:
         other.selected = {**above, key.path: key}
         return other
 
-    def controller(self, path: Path) -> TimelineKey:
+    def controller(self, path: BeliefPath) -> TimelineKey:
         """The timeline of the nearest simulator in control mode, the node itself included."""
         for depth in range(len(path), -1, -1):
             if path[:depth] in self.selected:
                 return self.selected[path[:depth]]
         raise BranchError("the nest was not opened; use Nest.open or Nest(world)")
 
-    def info(self, path: Path) -> TimelineInfo:
+    def info(self, path: BeliefPath) -> TimelineInfo:
         """The timeline that a node's state comes from."""
         return self.journal.info(self.controller(path))
 
@@ -129,7 +127,7 @@ class Recording:
             info = self.journal.info(key)
         return key, self.journal.entries_until(key, tick)
 
-    def reading(self, path: Path, tick: int | None = None) -> NodeView:
+    def reading(self, path: BeliefPath, tick: int | None = None) -> NodeView:
         """A node's state now, or at a past tick of the timeline it is on.
 
         Raises:
@@ -138,7 +136,7 @@ class Recording:
         key, entries = self._when(path, tick)
         return self.history.reading(key, path, entries)
 
-    def state(self, path: Path, tick: int | None = None) -> LiveState:
+    def state(self, path: BeliefPath, tick: int | None = None) -> LiveState:
         """The view of a node's state now, or at a past tick; TickError as for `reading`."""
         if tick is None:
             info = self.info(path)
@@ -146,17 +144,17 @@ class Recording:
         key, entries = self._when(path, tick)
         return self.state_after(key, path, entries, tick)
 
-    def states(self, paths: Iterable[Path]) -> Mapping[Path, LiveState]:
+    def states(self, paths: Iterable[BeliefPath]) -> Mapping[BeliefPath, LiveState]:
         """The views of several nodes' states now, by path."""
         wanted = list(paths)
-        together: dict[TimelineKey, list[Path]] = {}
+        together: dict[TimelineKey, list[BeliefPath]] = {}
         for path in wanted:
             together.setdefault(self.controller(path), []).append(path)
         for key, nodes in together.items():
             self.history.expect(key, nodes)
         return {path: self.state(path) for path in wanted}
 
-    def state_after(self, key: TimelineKey, path: Path, entries: int, tick: int) -> LiveState:
+    def state_after(self, key: TimelineKey, path: BeliefPath, entries: int, tick: int) -> LiveState:
         """The view of a node's state on a timeline, after some of its entries, as of a tick."""
         reading = self.history.reading(key, path, entries)
         blocks = Blocks(self.history, key, entries, reading, self.turn)
@@ -171,7 +169,7 @@ class Recording:
         finally:
             self.journal.close()
 
-    def _when(self, path: Path, tick: int | None) -> tuple[TimelineKey, int]:
+    def _when(self, path: BeliefPath, tick: int | None) -> tuple[TimelineKey, int]:
         info = self.info(path)
         if tick is None:
             return info.key, info.entries

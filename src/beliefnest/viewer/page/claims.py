@@ -6,11 +6,10 @@ from beliefnest.belief.forest import Forest
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.told import says_otherwise
 from beliefnest.world.claims import Claim, claims_of
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Position
 
 __all__ = ["claims_at", "kind_of"]
-
-Path = tuple[str, ...]
 
 
 def claims_at(forest: Forest, first: int) -> Iterator[tuple[int, int, str, Claim]]:
@@ -31,7 +30,7 @@ def claims_at(forest: Forest, first: int) -> Iterator[tuple[int, int, str, Claim
             yield number, index, str(event.actor), claim
 
 
-def kind_of(forest: Forest, own: Path, speaker: str, claim: Claim) -> str:
+def kind_of(forest: Forest, own: BeliefPath, speaker: str, claim: Claim) -> str:
     """Whether a claim that was just made is `a lie` or `false`; empty: neither.
 
     Args:
@@ -57,7 +56,7 @@ class _Blocks:
 class _Held:
     """A node of a forest as claims are compared with it."""
 
-    def __init__(self, forest: Forest, path: Path) -> None:
+    def __init__(self, forest: Forest, path: BeliefPath) -> None:
         reading = NodeView(forest, path)
         self.agents, self.containers = reading.agents, reading.containers
         self.blocks = _Blocks(forest, reading)

@@ -17,12 +17,10 @@ from beliefnest.timeline.journal import TimelineInfo, TimelineKey
 from beliefnest.viewer.page.run import About, RunData
 from beliefnest.viewer.page.tracks import Onlooker
 from beliefnest.world.frames import Frame
-from beliefnest.world.paths import path_text
+from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.values import EventKind, Position
 
 __all__ = ["ahead", "explanation_of", "look_of", "name_of", "sight_of"]
-
-Path = tuple[str, ...]
 
 _DEEDS = frozenset(
     {
@@ -54,7 +52,7 @@ _NODES = 12
 
 
 def explanation_of(
-    reader: Reader, key: TimelineKey, path: Path, tick: int, thing: str
+    reader: Reader, key: TimelineKey, path: BeliefPath, tick: int, thing: str
 ) -> dict[str, Any]:
     """Why a node holds what it holds of a thing, in words.
 
@@ -85,7 +83,7 @@ def explanation_of(
 
 
 def look_of(
-    reader: Reader, key: TimelineKey, path: Path, tick: int, viewer: str, target: str
+    reader: Reader, key: TimelineKey, path: BeliefPath, tick: int, viewer: str, target: str
 ) -> list[Any] | None:
     """The look of an agent at a thing in a node: `[how it ended, distance, blocker]`.
 
@@ -105,7 +103,9 @@ def look_of(
     return _told(reader.look(key, path, tick, viewer, what))
 
 
-def sight_of(reader: Reader, key: TimelineKey, path: Path, tick: int, viewer: str) -> list[int]:
+def sight_of(
+    reader: Reader, key: TimelineKey, path: BeliefPath, tick: int, viewer: str
+) -> list[int]:
     """What an agent sees in a node: lengths of runs of cells, unseen first, then seen, ..."""
     return _runs(reader.visible_blocks(key, path, tick, viewer).ravel())
 
@@ -138,7 +138,7 @@ class _Views:
         self.looks: dict[str, list[Any]] = {}
         self.sights: dict[str, list[Any]] = {}
 
-    def onlooker(self, info: TimelineInfo, paths: Sequence[Path]) -> Onlooker:
+    def onlooker(self, info: TimelineInfo, paths: Sequence[BeliefPath]) -> Onlooker:
         """Who looks at some nodes of a timeline, at some ticks."""
         reader, some = self._reader, paths[:_NODES]
         room = _LOOKS // (len(some) * max(1, len(reader.agents)) ** 2)
@@ -210,7 +210,7 @@ def _add(rows: dict[str, list[Any]], name: str, tick: int, value: Any) -> None:
 
 
 def _explanations(
-    data: RunData, nodes: Sequence[tuple[TimelineInfo, Path]]
+    data: RunData, nodes: Sequence[tuple[TimelineInfo, BeliefPath]]
 ) -> dict[str, list[Any]]:
     reader, found = data.reader, {}
     wanted = sorted(nodes, key=lambda each: (each[1] not in data.about.paths, bool(each[0].base)))
@@ -260,7 +260,7 @@ def _runs(flags: npt.NDArray[np.bool_]) -> list[int]:
     return lengths
 
 
-def name_of(key: TimelineKey, path: Path) -> str:
+def name_of(key: TimelineKey, path: BeliefPath) -> str:
     """What the page calls a node of a timeline."""
     return " ".join((path_text(key.path), path_text(path), key.branch))
 

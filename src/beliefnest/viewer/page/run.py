@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from itertools import pairwise, product
 from typing import Any
 
 from beliefnest.nest.face.reader import Reader
@@ -15,13 +14,12 @@ from beliefnest.viewer.page.rows import StandRows, TrackRows, fresh_rows
 from beliefnest.viewer.page.tracks import Onlooker, TrackRecorder
 from beliefnest.viewer.page.words import event_text
 from beliefnest.world.frames import Frame
-from beliefnest.world.paths import path_text
+from beliefnest.world.paths import BeliefPath, path_text, paths_below
 from beliefnest.world.values import EventKind, Position
 
-__all__ = ["About", "RunData", "paths_below"]
+__all__ = ["About", "RunData"]
 
-Path = tuple[str, ...]
-Onlookers = Callable[[TimelineInfo, Sequence[Path]], Onlooker]
+Onlookers = Callable[[TimelineInfo, Sequence[BeliefPath]], Onlooker]
 
 _SPEECH = (EventKind.CHAT, EventKind.THINK)
 
@@ -47,21 +45,8 @@ class About:
     subtitle: str = ""
     description: str = ""
     labels: Mapping[Position, str] = field(default_factory=dict)
-    paths: tuple[Path, ...] = ()
+    paths: tuple[BeliefPath, ...] = ()
     episode: Callable[[], Mapping[str, Any] | None] = field(default=lambda: None)
-
-
-def paths_below(agents: Iterable[str], path: Path, depth: int) -> list[Path]:
-    """A path and all below it, down to `depth` more agents, shallow ones first."""
-    names = list(agents)
-    found = []
-    for length in range(depth + 1):
-        for more in product(names, repeat=length):
-            whole = (*path, *more)
-            new = whole[len(path) - 1 if path else 0 :]
-            if all(a != b for a, b in pairwise(new)):
-                found.append(whole)
-    return found
 
 
 @dataclass
@@ -71,7 +56,7 @@ class _Line:
     info: TimelineInfo
     book: PoseBook
     recorders: list[TrackRecorder]
-    tracks: dict[Path, TrackRows]
+    tracks: dict[BeliefPath, TrackRows]
     stands: list[StandRows]
     entries: int = 0
     claims: int = 0
@@ -126,7 +111,7 @@ class RunData:
             new["head"] = self._head()
         return new
 
-    def deepen(self, key: TimelineKey, path: Path) -> None:
+    def deepen(self, key: TimelineKey, path: BeliefPath) -> None:
         """Record one more node of a timeline from now on; the next update tells all of it."""
         line = self._lines[key]
         if path not in line.tracks:
@@ -134,7 +119,7 @@ class RunData:
             line.recorders.append(recorder)
             line.tracks[path] = TrackRows(recorder.tracks[0], self._palette)
 
-    def nodes(self) -> Iterable[tuple[TimelineInfo, Path]]:
+    def nodes(self) -> Iterable[tuple[TimelineInfo, BeliefPath]]:
         """All that is recorded: each timeline with each node of it, shallow ones first."""
         for line in self._lines.values():
             for path in line.tracks:
@@ -161,7 +146,7 @@ class RunData:
         book = PoseBook(len(self.reader.agents), info.start, base)
         own = info.key.path
         deep = max(1, self.depth - len(own))
-        paths = paths_below(self.reader.agents, own, deep if own else self.depth)
+        paths = paths_below(own, deep if own else self.depth, self.reader.agents)
         asked = [path for path in self.about.paths if path[: len(own)] == own]
         paths += [path for path in dict.fromkeys(asked) if path not in paths]
         onlooker = None if self._onlookers is None else self._onlookers(info, paths)

@@ -23,10 +23,9 @@ from beliefnest.viewer.page.claims import claims_at, kind_of
 from beliefnest.viewer.page.poses import Pose, PoseBook
 from beliefnest.viewer.page.wrong import WrongThings
 from beliefnest.world.claims import Claim
+from beliefnest.world.paths import BeliefPath
 
 __all__ = ["CURRENT", "PLACED", "STALE", "UNKNOWN", "Onlooker", "Track", "TrackRecorder"]
-
-Path = tuple[str, ...]
 
 UNKNOWN, CURRENT, STALE, PLACED = 0, 1, 2, 3
 """Agents: of unknown pose, as in the timeline's world now, as there at a past tick, elsewhere."""
@@ -58,7 +57,7 @@ class Track:
             decided]; of those that were heard, where claims change beliefs.
     """
 
-    path: Path
+    path: BeliefPath
     grid: npt.NDArray[np.int16]
     agents: list[list[Row]]
     holds: list[list[Row]]
@@ -104,7 +103,7 @@ class TrackRecorder:
         self,
         reader: Reader,
         key: TimelineKey,
-        paths: Sequence[Path],
+        paths: Sequence[BeliefPath],
         book: PoseBook,
         *,
         fills: bool = True,
