@@ -11,7 +11,7 @@ from beliefnest.llm.offline.model import OfflineModel
 from beliefnest.nest.face.nest import Nest
 from beliefnest.pictures.figure import figure_of
 from beliefnest.pictures.marks import Circle, Rectangle, Text
-from beliefnest.pictures.overview import Condition, overview
+from beliefnest.pictures.overview import ConditionPicture, overview
 from beliefnest.pictures.palette import Mark, agent_looks
 from beliefnest.pictures.scene import Scene
 from beliefnest.scenarios import Scenario
@@ -26,7 +26,7 @@ SIZES = (None, "one column", "two columns")
 @pytest.fixture(scope="module", params=BUILT_IN)
 def drawn(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, lent: Lent
-) -> Iterator[tuple[list[Condition], list[Scene]]]:
+) -> Iterator[tuple[list[ConditionPicture], list[Scene]]]:
     """The conditions of a scenario, and all beliefs that it names."""
     conditions, scenes = [], []
     with lent(0) as worlds:
@@ -45,7 +45,7 @@ def drawn(
 
 @pytest.mark.parametrize("size", SIZES)
 def test_nothing_overlaps_is_cut_off_or_empty(
-    drawn: tuple[list[Condition], list[Scene]], size: object
+    drawn: tuple[list[ConditionPicture], list[Scene]], size: object
 ) -> None:
     conditions, scenes = drawn
     figures = [overview(conditions, "title"), *(overview([each], "title") for each in conditions)]
@@ -59,7 +59,7 @@ def test_nothing_overlaps_is_cut_off_or_empty(
 
 
 def test_every_prediction_says_of_which_probe_it_is_and_maps_are_of_the_cards_tick(
-    drawn: tuple[list[Condition], list[Scene]],
+    drawn: tuple[list[ConditionPicture], list[Scene]],
 ) -> None:
     conditions, _ = drawn
     for condition in conditions:
@@ -71,7 +71,7 @@ def test_every_prediction_says_of_which_probe_it_is_and_maps_are_of_the_cards_ti
 
 
 def test_the_van_has_its_three_predictions_at_places_with_names(
-    drawn: tuple[list[Condition], list[Scene]],
+    drawn: tuple[list[ConditionPicture], list[Scene]],
 ) -> None:
     condition = drawn[0][0]
     if condition.title != "ice-cream-van, condition 1":
@@ -83,7 +83,7 @@ def test_the_van_has_its_three_predictions_at_places_with_names(
     assert condition.scene.places == (("A", (4, 1, 4)), ("B", (20, 1, 16)))
 
 
-def test_cards_mark_what_is_false(drawn: tuple[list[Condition], list[Scene]]) -> None:
+def test_cards_mark_what_is_false(drawn: tuple[list[ConditionPicture], list[Scene]]) -> None:
     conditions, all_scenes = drawn
     starts = [number for number, scene in enumerate(all_scenes) if scene.path == "/"]
     for condition, start in zip(conditions, starts, strict=True):
@@ -100,7 +100,7 @@ def test_cards_mark_what_is_false(drawn: tuple[list[Condition], list[Scene]]) ->
 
 
 def test_the_same_beliefs_and_probes_of_conditions_are_level(
-    drawn: tuple[list[Condition], list[Scene]],
+    drawn: tuple[list[ConditionPicture], list[Scene]],
 ) -> None:
     conditions, _ = drawn
     drawing = overview(conditions, "title").drawing(85.0 * len(conditions))

@@ -6,7 +6,7 @@ import pytest
 from tests.pictures.measuring import faults, texts
 
 import beliefnest as bn
-from beliefnest.pictures.plot import Act, Band, Row, Told, belief_plot
+from beliefnest.pictures.plot import Band, NotedAct, NotedClaim, PlotRow, belief_plot
 
 CHEST = (3, 1, 3)
 PLOT = "beliefnest.nest.face.plotting.belief_plot"
@@ -37,7 +37,7 @@ def nest() -> Iterator[bn.Nest]:
 def test_bands_begin_and_end_with_what_was_held_and_are_false_where_they_are(
     nest: bn.Nest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    drawn: list[tuple[list[Row], list[Act]]] = []
+    drawn: list[tuple[list[PlotRow], list[NotedAct]]] = []
     monkeypatch.setattr(PLOT, lambda rows, acts, _: drawn.append((rows, acts)))
     nest.plot_beliefs(CHEST, "diamond", ["/", "/sally", "/anne/sally"])
     ((rows, acts),) = drawn
@@ -47,17 +47,17 @@ def test_bands_begin_and_end_with_what_was_held_and_are_false_where_they_are(
         Band(7, 11, "no diamond", False),
     )
     held = (Band(0, 5, "", False), Band(5, 7, "1 diamond", False), Band(7, 11, "1 diamond", True))
-    assert rows[1] == Row("/sally", held)
+    assert rows[1] == PlotRow("/sally", held)
     assert [band.false for band in rows[2].bands][-1]
-    assert acts == [Act(5, "sally puts in"), Act(7, "anne takes out")]
+    assert acts == [NotedAct(5, "sally puts in"), NotedAct(7, "anne takes out")]
 
 
 @pytest.mark.parametrize("size", [None, "one column", 50])
 def test_nothing_collides_however_many_deeds_and_values(nest: bn.Nest, size: object) -> None:
     path = f"/{LONG[0]}/{LONG[1]}/{LONG[0]}"
     bands = tuple(Band(t, t + 3, f"{t % 7} oak_log", t % 2 == 0) for t in range(0, 90, 3))
-    acts = [Act(t, f"{LONG[t % 2]} takes out") for t in range(0, 90, 4)]
-    many = belief_plot([Row("/", bands), Row(path, bands)], acts, "What is believed " * 5)
+    acts = [NotedAct(t, f"{LONG[t % 2]} takes out") for t in range(0, 90, 4)]
+    many = belief_plot([PlotRow("/", bands), PlotRow(path, bands)], acts, "What is believed " * 5)
     plain = nest.plot_beliefs(CHEST, paths=["/", "/sally"])
     places = nest.plot_beliefs(agent="sally", paths=["/", "/anne", "/sally/anne"])
     for figure in (many, plain, places):
@@ -97,7 +97,7 @@ def test_wrong_questions_are_errors(nest: bn.Nest) -> None:
 def test_an_agents_place_is_followed_by_names_and_false_where_it_is(
     nest: bn.Nest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    drawn: list[list[Row]] = []
+    drawn: list[list[PlotRow]] = []
     monkeypatch.setattr(PLOT, lambda rows, *_: drawn.append(rows))
     nest.plot_beliefs(agent="sally", paths=["/", "/anne"])
     # Sally walks on behind the wall, in small steps, and comes to stand.
@@ -121,13 +121,13 @@ def test_an_agents_place_is_followed_by_names_and_false_where_it_is(
 
 
 def test_what_an_agent_has_is_followed(nest: bn.Nest, monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn: list[tuple[list[Row], list[Act]]] = []
+    drawn: list[tuple[list[PlotRow], list[NotedAct]]] = []
     monkeypatch.setattr(PLOT, lambda rows, acts, _: drawn.append((rows, acts)))
     nest.plot_beliefs(agent="anne", item="diamond", paths=["/", "/sally"])
     ((rows, acts),) = drawn
     assert rows[0].bands == (Band(0, 7, "no diamond", False), Band(7, 11, "1 diamond", False))
     assert rows[1].bands == (Band(0, 11, "", False),)
-    assert acts == [Act(7, "anne takes")]
+    assert acts == [NotedAct(7, "anne takes")]
 
 
 def test_doors_and_signs_are_no_containers() -> None:
@@ -151,7 +151,7 @@ def test_claims_stand_above_what_became_of_them_and_items_and_blocks_are_followe
     boxes = {left: {"diamond": 1}, right: {}}
     world = bn.ScriptedWorld(((0, 0, 0), (50, 3, 9)), blocks, agents, containers=boxes)
     perception = bn.Perception(max_visible_distance=12, testimony="informed", grace=5)
-    drawn: list[tuple[list[Row], list[Act]]] = []
+    drawn: list[tuple[list[PlotRow], list[NotedAct]]] = []
     with bn.Nest(world, perception) as nest:
         world.open("max", left)
         world.place_agent("max", (40.5, 0, 3.5))
@@ -168,16 +168,16 @@ def test_claims_stand_above_what_became_of_them_and_items_and_blocks_are_followe
         nest.plot_beliefs(**item)
         nest.plot_beliefs(block=door, paths=["/", "/max"])
     (rows, acts), (doors, said) = drawn
-    assert [row.told for row in rows] == [(), (Told(23, True),), (Told(23, False),), ()]
+    assert [row.told for row in rows] == [(), (NotedClaim(23, True),), (NotedClaim(23, False),), ()]
     assert [band.words for band in rows[0].bands] == ["in container (1, 0, 1)", "with sal"]
     assert [(band.words, band.false) for band in rows[1].bands[-2:]] == [
         ("in container (1, 0, 1)", False),
         ("in container (8, 0, 1)", True),
     ]
     assert acts == [
-        Act(23, "nora: diamond is in (8, 0, 1) (false)"),
-        Act(24, "sal takes"),
+        NotedAct(23, "nora: diamond is in (8, 0, 1) (false)"),
+        NotedAct(24, "sal takes"),
     ]
     assert [band.words for band in doors[1].bands] == ["oak door, shut", "oak door, open"]
-    assert doors[1].told == (Told(23, True),)
-    assert said == [Act(23, "nora: (4, 0, 7) is oak_door[open=true] (a lie)")]
+    assert doors[1].told == (NotedClaim(23, True),)
+    assert said == [NotedAct(23, "nora: (4, 0, 7) is oak_door[open=true] (a lie)")]

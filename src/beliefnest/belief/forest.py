@@ -17,7 +17,7 @@ from beliefnest.belief.hearing import Hearing
 from beliefnest.belief.holdings_table import HoldingsTable, RootFacts, SavedHoldings
 from beliefnest.belief.node_table import NodeTable, SavedNode
 from beliefnest.belief.poses import PoseTable, SavedPoses
-from beliefnest.belief.protocols import EventHistory, Reader
+from beliefnest.belief.protocols import EventHistory, StateReader
 from beliefnest.belief.testimony import Testimony, Verdict
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Event, Items, Point, Sign
@@ -93,7 +93,7 @@ class Forest:
         tracked = frozenset(table.tracked.tolist())
         self.since = tracked if since is None else tracked & since
         self.verdicts: Mapping[tuple[int, int], Sequence[Verdict]] = {}
-        self._readers: WeakSet[Reader] = WeakSet()
+        self._readers: WeakSet[StateReader] = WeakSet()
 
     def saved(self) -> tuple[ForestState, Iterator[NodeState]]:
         """The forest as plain data, having left its stretch: what the next entries need.
@@ -242,7 +242,7 @@ class Forest:
             tick, event = events[number]
             yield PerceivedEvent(tick, event.kind, event.actor, event.detail)
 
-    def read_by(self, reader: Reader) -> None:
+    def read_by(self, reader: StateReader) -> None:
         """Tell a reader before the forest goes on."""
         self._readers.add(reader)
 

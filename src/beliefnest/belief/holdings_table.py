@@ -134,19 +134,19 @@ class HoldingsTable:
             node = self._table.parent(node)
         known = self._holdings[node].inventories.get(agent)
         if node == 0:
-            pose, condition = self._table.pose(0, agent), self._table.condition_of(0, agent)
-            if condition is not None and (known is None or self._table.poses.is_recorded(pose)):
-                return condition.inventory, known is None
+            pose, details = self._table.pose(0, agent), self._table.details_of(0, agent)
+            if details is not None and (known is None or self._table.poses.is_recorded(pose)):
+                return details.inventory, known is None
         return self._holdings[node].inventories.get(agent, {}), False
 
     def vitals(self, node: int, agent: int) -> tuple[float | None, float | None]:
         """Health and food of an agent, which only the agent itself perceives."""
         while node > 0 and self._table.owner(node) == agent:
             node = self._table.parent(node)
-        condition = self._table.condition_of(0, agent) if node == 0 else None
-        if condition is None or not self._table.poses.is_recorded(self._table.pose(0, agent)):
+        details = self._table.details_of(0, agent) if node == 0 else None
+        if details is None or not self._table.poses.is_recorded(self._table.pose(0, agent)):
             return self.root.vitals.get(agent, (None, None)) if node == 0 else (None, None)
-        return condition.health, condition.food
+        return details.health, details.food
 
     def needs_looks(self) -> bool:
         """Whether there is something to be looked at that is no block and no agent."""

@@ -11,7 +11,7 @@ from beliefnest.belief import kernel, seeing
 from beliefnest.belief.arrays import UNKNOWN, Nodes
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis
-from beliefnest.belief.poses import Condition, PoseTable
+from beliefnest.belief.poses import PoseDetails, PoseTable
 from beliefnest.perception.codes import code_grid
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
@@ -349,10 +349,10 @@ class NodeTable:
         """Id of the pose with an agent's believed equipment; -1: unknown."""
         return int(self._rows["equipment"][node, agent])
 
-    def condition_of(self, node: int, agent: int) -> Condition | None:
+    def details_of(self, node: int, agent: int) -> PoseDetails | None:
         """What goes with an agent's believed pose; None if it is unknown or nobody was seen."""
         pose = self.pose(node, agent)
-        return None if pose < 0 else self.poses.condition(pose)
+        return None if pose < 0 else self.poses.details(pose)
 
     def seen_at(self, node: int, agent: int) -> int:
         """Tick that an agent's believed pose rests on."""

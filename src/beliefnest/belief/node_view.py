@@ -143,7 +143,7 @@ class NodeView:
         table, poses = forest.table, forest.table.poses
         inventory, complete = forest.holdings.inventory(node, number)
         dressed = table.equipment(node, number)
-        seen = poses.condition(dressed) if dressed >= 0 else None
+        seen = poses.details(dressed) if dressed >= 0 else None
         health, food = forest.holdings.vitals(node, number)
         pose = table.pose(node, number)
         if pose < 0:
@@ -152,7 +152,7 @@ class NodeView:
                 inventory=inventory,
                 inventory_complete=complete,
             )
-        posed = poses.condition(pose)
+        posed = poses.details(pose)
         yaw, pitch = poses.angles(pose)
         return AgentBelief(
             position=poses.position(pose),
@@ -174,7 +174,7 @@ class NodeView:
         if poses.speaker(pose) >= 0:
             speaker = self._forest.context.agents[poses.speaker(pose)]
             return Basis(tick, Source.HEARD, EventKind.CHAT, speaker)
-        return Basis(tick, Source.PRIOR if poses.condition(pose) is None else Source.SEEN)
+        return Basis(tick, Source.PRIOR if poses.details(pose) is None else Source.SEEN)
 
 
 def _with_equipment(agent: AgentBelief) -> dict[str, int]:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from beliefnest.belief.arrays import NOBODY, Ints, Poses
 from beliefnest.world.values import AgentState, Items, Point
 
-__all__ = ["Condition", "Growing", "PoseTable", "SavedPoses"]
+__all__ = ["Growing", "PoseDetails", "PoseTable", "SavedPoses"]
 
 
 class Growing:
@@ -50,7 +50,7 @@ class Growing:
 
 
 @dataclass(frozen=True, slots=True)
-class Condition:
+class PoseDetails:
     """What goes with a pose: footing, equipment, and what only the agent itself perceives.
 
     Attributes as those of `AgentState`.
@@ -69,12 +69,12 @@ class PoseTable:
     def __init__(self) -> None:
         self._feet = Growing(np.float64, 3)
         self._angles = Growing(np.float64, 2)
-        self._conditions = Growing(np.int32)
+        self._details = Growing(np.int32)
         self._recorded = Growing(np.bool_)
         self._heard = Growing(np.int32)
         # In the order of `SavedPoses`.
-        self._columns = (self._feet, self._angles, self._conditions, self._recorded, self._heard)
-        self._table: list[Condition | None] = [None]
+        self._columns = (self._feet, self._angles, self._details, self._recorded, self._heard)
+        self._table: list[PoseDetails | None] = [None]
         self._last: dict[str, int] = {}
 
     def __len__(self) -> int:
@@ -82,12 +82,12 @@ class PoseTable:
 
     def add(self, name: str, agent: AgentState) -> int:
         """Id of a new pose of an agent, which the timeline itself recorded."""
-        condition = Condition(
+        details = PoseDetails(
             agent.on_ground, agent.equipment, agent.inventory, agent.health, agent.food
         )
         last = self._last.get(name, 0)
-        if self._table[last] != condition:
-            self._table.append(condition)
+        if self._table[last] != details:
+            self._table.append(details)
             last = self._last[name] = len(self._table) - 1
         return self._append(agent.position, agent.yaw, agent.pitch, last, recorded=True)
 
@@ -105,14 +105,14 @@ class PoseTable:
         """
         table = {0: 0}
         first = len(self)
-        feet, angles, conditions, was_recorded, heard = (
+        feet, angles, details, was_recorded, heard = (
             column.view()[numbers] for column in other._columns
         )
-        for number in np.unique(conditions).tolist():
+        for number in np.unique(details).tolist():
             if number not in table:
                 table[number] = len(self._table)
                 self._table.append(other._table[number])
-        renumbered = [table[number] for number in conditions.tolist()]
+        renumbered = [table[number] for number in details.tolist()]
         taken: Sequence[Iterable[Any]] = (feet, angles, renumbered, was_recorded & recorded, heard)
         for column, rows in zip(self._columns, taken, strict=True):
             column.extend(rows)
@@ -128,9 +128,9 @@ class PoseTable:
         yaw, pitch = self._angles.view()[pose].tolist()
         return yaw, pitch
 
-    def condition(self, pose: int) -> Condition | None:
+    def details(self, pose: int) -> PoseDetails | None:
         """What goes with a pose; None for a pose that nobody was seen in."""
-        return self._table[int(self._conditions.view()[pose])]
+        return self._table[int(self._details.view()[pose])]
 
     def is_recorded(self, pose: int) -> bool:
         """Whether the timeline recorded a pose, so that it is not only believed since a fork."""
@@ -146,16 +146,16 @@ class PoseTable:
 
     def saved(self) -> "SavedPoses":
         """The table as plain data."""
-        feet, angles, conditions, recorded, heard = (
+        feet, angles, details, recorded, heard = (
             column.view().tobytes() for column in self._columns
         )
-        return SavedPoses(feet, angles, conditions, recorded, heard, self._table)
+        return SavedPoses(feet, angles, details, recorded, heard, self._table)
 
     @classmethod
     def restored(cls, saved: "SavedPoses") -> "PoseTable":
         """The table that was saved."""
         restored = cls()
-        bodies = (saved.feet, saved.angles, saved.conditions, saved.recorded, saved.heard)
+        bodies = (saved.feet, saved.angles, saved.details, saved.recorded, saved.heard)
         for column, body in zip(restored._columns, bodies, strict=True):
             column.extend_by(body)
         restored._table = list(saved.table)
@@ -166,14 +166,14 @@ class PoseTable:
         position: Point,
         yaw: float,
         pitch: float,
-        condition: int,
+        details: int,
         speaker: int = NOBODY,
         *,
         recorded: bool,
     ) -> int:
         self._feet.append(position)
         self._angles.append((yaw, pitch))
-        self._conditions.append(condition)
+        self._details.append(details)
         self._recorded.append(recorded)
         self._heard.append(speaker)
         return len(self._feet) - 1
@@ -181,11 +181,11 @@ class PoseTable:
 
 @dataclass(frozen=True, slots=True)
 class SavedPoses:
-    """A pose table as plain data: its columns as native bytes, and the conditions."""
+    """A pose table as plain data: its columns as native bytes, and the details."""
 
     feet: bytes
     angles: bytes
-    conditions: bytes
+    details: bytes
     recorded: bytes
     heard: bytes
-    table: list[Condition | None]
+    table: list[PoseDetails | None]

@@ -7,7 +7,7 @@ from beliefnest.belief.entries import PerceivedEvent
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Event
 
-__all__ = ["EventHistory", "Reader"]
+__all__ = ["EventHistory", "StateReader"]
 
 
 class EventHistory(Protocol):
@@ -20,7 +20,7 @@ class EventHistory(Protocol):
         """What a node perceived before the timeline began, oldest first."""
 
 
-class Reader(Protocol):
+class StateReader(Protocol):
     """Somebody who read a state and may read more of it."""
 
     def keep(self) -> None:

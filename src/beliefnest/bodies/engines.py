@@ -15,7 +15,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-__all__ = ["MEMORY_BYTES", "Engine", "Engines", "leaves_nothing"]
+__all__ = ["MEMORY_BYTES", "Engines", "JavaScriptEngine", "leaves_nothing"]
 
 MEMORY_BYTES = 64 << 20
 """What a program may take."""
@@ -46,7 +46,7 @@ def leaves_nothing(code: str, skills: Collection[str]) -> bool:
     return _END.fullmatch(code, at) is not None
 
 
-class Engine:
+class JavaScriptEngine:
     """An engine of JavaScript, and what a program finds in scope.
 
     Args:
@@ -88,27 +88,27 @@ class Engines:
     """Engines that programs had which leave nothing behind, kept for the next of them."""
 
     def __init__(self) -> None:
-        self._free: list[Engine] = []
+        self._free: list[JavaScriptEngine] = []
 
-    def take(self, username: str, skills: Collection[str]) -> Engine:
+    def take(self, username: str, skills: Collection[str]) -> JavaScriptEngine:
         """An engine for an agent's program that leaves nothing behind, and draws no numbers."""
         try:
             engine = self._free.pop()
         except IndexError:
             engine = None
         if engine is None or engine.skills != frozenset(skills):
-            return Engine(username, skills, "")
+            return JavaScriptEngine(username, skills, "")
         engine.call("again", username)
         return engine
 
-    def give_back(self, engine: Engine) -> None:
+    def give_back(self, engine: JavaScriptEngine) -> None:
         """Take back the engine of such a program, which has ended."""
         self._free.append(engine)
 
 
 @cache
 def _text() -> str:
-    """A function of what `Engine` gives it, as JSON, that gives what calls a part of the prelude.
+    """What calls a part of the prelude: a function of what `JavaScriptEngine` gives it, as JSON.
 
     The engine's own clock goes: it tells how long this machine takes. No function is in brackets:
     those that open with one are read twice, to see whether an arrow comes after them.

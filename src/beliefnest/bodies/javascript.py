@@ -9,7 +9,7 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-from beliefnest.bodies.engines import MEMORY_BYTES, Engine, Engines, leaves_nothing
+from beliefnest.bodies.engines import MEMORY_BYTES, Engines, JavaScriptEngine, leaves_nothing
 from beliefnest.bodies.protocol import Fault
 
 __all__ = ["JavaScriptProgram"]
@@ -42,7 +42,7 @@ class JavaScriptProgram:
         if self._leaves_nothing:
             self._engine = engines.take(username, skills)
         else:
-            self._engine = Engine(username, skills, seed)
+            self._engine = JavaScriptEngine(username, skills, seed)
         self._call = self._engine.call
         self._fault: Fault | None = None
         self._blocks: str | None = None

@@ -15,7 +15,7 @@ __all__ = [
     "Body",
     "Called",
     "Fault",
-    "Past",
+    "ProgramPast",
     "ProgramResult",
     "RunRules",
     "Sense",
@@ -126,7 +126,7 @@ class Called:
 
 
 @dataclass(frozen=True, slots=True)
-class Past:
+class ProgramPast:
     """What a program had done when it was cut, from where it goes on.
 
     Its text is run again, and the calls that were over give what they gave, without being done
@@ -269,7 +269,7 @@ class RunRules:
 
     speech_ticks: int = 0
     remembers: bool = False
-    past: Mapping[str, Past] = field(default_factory=dict)
+    past: Mapping[str, ProgramPast] = field(default_factory=dict)
 
 
 AS_USUAL = RunRules()

@@ -7,7 +7,7 @@ from typing import Any
 from beliefnest.cli.pictures import container_name, place_text, titled
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.expected import Arrives, Holds, Opens, Stands
-from beliefnest.scenarios.judging import Verdict
+from beliefnest.scenarios.judging import Judgement
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.viewer.page.words import event_text, is_lid
@@ -57,7 +57,7 @@ def _happened(probe: ProbeOutcome, labels: Mapping[Position, str]) -> list[str]:
     return [*lines, f"the program {ended}, after {probe.result.ticks} ticks", *answered]
 
 
-def _judged(outcome: ProbeOutcome, judged: Verdict, scenario: Scenario) -> str:
+def _judged(outcome: ProbeOutcome, judged: Judgement, scenario: Scenario) -> str:
     """Why the outcome counts as it does."""
     agent, expect = titled(outcome.probe.agent), judged.expected
     verdict = "as expected" if judged.ok else "not as expected"

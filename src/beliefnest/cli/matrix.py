@@ -11,11 +11,11 @@ from rich.table import Table
 from beliefnest.cli.report import cost_text
 from beliefnest.scenarios.scoring import wilson_interval
 
-__all__ = ["Score", "score_runs", "score_table", "scores_json"]
+__all__ = ["ConditionScore", "score_runs", "score_table", "scores_json"]
 
 
 @dataclass(frozen=True, slots=True)
-class Score:
+class ConditionScore:
     """What came of all repeats of one condition with one model.
 
     Attributes:
@@ -46,7 +46,7 @@ class Score:
 
 def score_runs(
     runs: Sequence[Mapping[str, Any]], failures: Sequence[Mapping[str, Any]]
-) -> list[Score]:
+) -> list[ConditionScore]:
     """The scores of runs as they are reported, in order of condition, then as they come."""
     keys = list(dict.fromkeys((each["condition"], each["model"]) for each in (*runs, *failures)))
     keys.sort(key=lambda key: -1 if key[0] is None else key[0])
@@ -63,10 +63,10 @@ def score_runs(
 
 def _score(
     condition: int | None, model: str, runs: Sequence[Mapping[str, Any]], failed: int
-) -> Score:
+) -> ConditionScore:
     used = [run["usage"] for run in runs]
     costs = [usage["cost"] for usage in used]
-    return Score(
+    return ConditionScore(
         condition=condition,
         model=model,
         passed=sum(run["ok"] for run in runs),
@@ -78,7 +78,7 @@ def _score(
     )
 
 
-def scores_json(scores: Sequence[Score]) -> list[dict[str, object]]:
+def scores_json(scores: Sequence[ConditionScore]) -> list[dict[str, object]]:
     """Scores for the report."""
     return [
         {
@@ -97,7 +97,7 @@ def scores_json(scores: Sequence[Score]) -> list[dict[str, object]]:
     ]
 
 
-def score_table(name: str, scores: Sequence[Score]) -> Table:
+def score_table(name: str, scores: Sequence[ConditionScore]) -> Table:
     """One row for each condition and model."""
     table = Table(title=name, title_justify="left", box=box.SIMPLE_HEAVY)
     table.add_column("condition", justify="right")

@@ -8,7 +8,7 @@ from beliefnest.belief.view import State
 from beliefnest.nest.explain.comparison import false_things
 from beliefnest.nest.face.looking import wrong_things
 from beliefnest.nest.face.nest import Nest
-from beliefnest.pictures.overview import Card, Condition, Note
+from beliefnest.pictures.overview import Card, ConditionPicture, Note
 from beliefnest.pictures.palette import Mark, age_text
 from beliefnest.pictures.scene import Scene, Wrong, best_height, read_stores
 from beliefnest.scenarios.expected import Arrives, Hears, Stands
@@ -26,7 +26,7 @@ _NEAR = 3.0
 """Blocks from a place with a name within which somebody is said to be there."""
 
 
-def read_condition(nest: Nest, journal: Journal, outcome: Outcome) -> Condition:
+def read_condition(nest: Nest, journal: Journal, outcome: Outcome) -> ConditionPicture:
     """The picture of a condition when its script has ended, from a nest that is still open.
 
     Args:
@@ -43,7 +43,7 @@ def read_condition(nest: Nest, journal: Journal, outcome: Outcome) -> Condition:
     (scene,) = nest.scenes("/", tick, sight=viewers)
     cards = [_state_card(state, outcome) for state in (outcome.reality, *outcome.beliefs.values())]
     cards += [_prediction_card(probe, scenario) for probe in outcome.probes]
-    return Condition(
+    return ConditionPicture(
         title=title,
         about=scenario.condition_description or scenario.description,
         scene=_with_ghosts(scene, outcome, viewers),

@@ -7,11 +7,11 @@ from pathlib import Path
 
 from beliefnest.scenarios.scenario import Scenario
 
-__all__ = ["Cell", "plan_cells"]
+__all__ = ["RunCell", "plan_run_cells"]
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
+class RunCell:
     """One scenario under one condition with one model, once.
 
     Attributes:
@@ -37,13 +37,13 @@ class Cell:
         return ", ".join(parts)
 
 
-def plan_cells(
+def plan_run_cells(
     scenarios: Sequence[Scenario], models: Sequence[str], repeat: int, seed: int
-) -> list[Cell]:
+) -> list[RunCell]:
     """All cells in the order in which they are run; a single round lies flat in its folder."""
     flat = len(models) == 1 and repeat == 1
     return [
-        Cell(
+        RunCell(
             scenario=scenario,
             model=model,
             seed=seed + number,

@@ -13,7 +13,7 @@ from beliefnest.bodies.listening import is_hosted
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.cli.folder import stores_in
 from beliefnest.errors import InputError
-from beliefnest.nest.acting.replay import Replayed, replay
+from beliefnest.nest.acting.replay import ReplayedTimeline, replay
 from beliefnest.nest.past.setting_codec import decode_start
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import path_text
@@ -46,7 +46,9 @@ def replay_runs(run: Path, *, as_json: bool) -> int:
     return 0 if same else 1
 
 
-def _replayed(store: Path, worlds: dict[int, Worlds], ended: ExitStack) -> Iterator[Replayed]:
+def _replayed(
+    store: Path, worlds: dict[int, Worlds], ended: ExitStack
+) -> Iterator[ReplayedTimeline]:
     with SqliteJournal.read(store) as journal, journal.unchanging():
         run = journal.records.run()
         setting, name = decode_start(run.setting)
@@ -71,7 +73,7 @@ def _replayed(store: Path, worlds: dict[int, Worlds], ended: ExitStack) -> Itera
             world.close()
 
 
-def _row(store: Path, replayed: Replayed) -> dict[str, object]:
+def _row(store: Path, replayed: ReplayedTimeline) -> dict[str, object]:
     found = replayed.difference
     return {
         "store": str(store),

@@ -20,20 +20,20 @@ from beliefnest.cli.console import folded, progress_on, stdout
 from beliefnest.cli.folder import ConditionFolder, RunFolder, kept_scenario_file
 from beliefnest.cli.matrix import score_runs, score_table, scores_json
 from beliefnest.cli.pictures import read_condition
-from beliefnest.cli.plan import Cell, plan_cells
+from beliefnest.cli.plan import RunCell, plan_run_cells
 from beliefnest.cli.report import failure_lines, outcome_json, outcome_table, report_json
 from beliefnest.cli.run_report import report_html
 from beliefnest.cli.text import printable
 from beliefnest.cli.visits import check_visits, visited
 from beliefnest.errors import InputError, ModelError, NotBegunError, ScenarioError
 from beliefnest.llm.asking import NoUsableProgramError
-from beliefnest.llm.budget import Budget, RunLimits
+from beliefnest.llm.budget import RunLimits, RunSpending
 from beliefnest.llm.cache import CacheMode
 from beliefnest.llm.hearsay import claims_from_model
 from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.llm.resolve import Connection, open_model, resolve_model
 from beliefnest.nest.face.nest import Nest
-from beliefnest.pictures.overview import Condition, overview
+from beliefnest.pictures.overview import ConditionPicture, overview
 from beliefnest.scenarios.outcome import Outcome
 from beliefnest.scenarios.running import Asking, run_scenario
 from beliefnest.scenarios.scenario import Scenario
@@ -141,7 +141,7 @@ def run_scenarios(options: RunOptions) -> int:
     )
     folder = RunFolder.open(options.out, datetime.now(), settings, whole)
     run = _Run(options, folder)
-    cells = plan_cells(scenarios, options.models, options.repeat, options.seed)
+    cells = plan_run_cells(scenarios, options.models, options.repeat, options.seed)
     status: Status = "failed"
     try:
         with Worlds(options.seed) as worlds:
@@ -171,7 +171,7 @@ class _Run:
     def __init__(self, options: RunOptions, folder: RunFolder) -> None:
         self._options = options
         self.folder = folder
-        self.budget = Budget(options.asking.limits)
+        self.budget = RunSpending(options.asking.limits)
         connection = Connection(
             budget=self.budget,
             cache=options.asking.answers or folder.answers,
@@ -182,11 +182,11 @@ class _Run:
             name: open_model(name, os.environ, connection) for name in options.named_models
         }
         self.outcomes: list[Outcome] = []
-        self.pictures: list[Condition] = []
+        self.pictures: list[ConditionPicture] = []
         self.results: list[dict[str, Any]] = []
         self.failures: list[dict[str, object]] = []
 
-    def do(self, cell: Cell, worlds: Worlds) -> None:
+    def do(self, cell: RunCell, worlds: Worlds) -> None:
         """Run a cell, unless an earlier part of the run has; keep what came of it."""
         place = self.folder.cell(cell.folder)
         known = place.result()
@@ -265,13 +265,13 @@ def _check_numbers(options: RunOptions) -> None:
 
 
 def _run(
-    cell: Cell,
+    cell: RunCell,
     place: ConditionFolder,
     model: Model,
     claims_from: ClaimsFrom | None,
     options: RunOptions,
     worlds: Worlds,
-) -> tuple[Outcome, Condition]:
+) -> tuple[Outcome, ConditionPicture]:
     scenario = cell.scenario
     asking = Asking(options.asking.attempts, Sampling(options.asking.temperature, cell.seed))
     started = time.perf_counter()
@@ -307,7 +307,7 @@ def _page(
     report: Mapping[str, object],
     options: RunOptions,
     scenario: Scenario,
-    cells: Sequence[Cell],
+    cells: Sequence[RunCell],
     folder: RunFolder,
 ) -> str:
     """The page of the run, with the versions that the first of its stores keeps."""
@@ -339,7 +339,7 @@ def _failures_text(failures: Sequence[Mapping[str, object]], total: int, folder:
 
 
 def _print(
-    run: _Run, cells: Sequence[Cell], report: Mapping[str, object], *, as_json: bool
+    run: _Run, cells: Sequence[RunCell], report: Mapping[str, object], *, as_json: bool
 ) -> None:
     console = stdout()
     with console.capture() as captured:
@@ -371,13 +371,13 @@ def _unread(results: Sequence[Mapping[str, Any]]) -> list[str]:
     ]
 
 
-def _table(run: _Run, cells: Sequence[Cell], console: Console) -> Table:
+def _table(run: _Run, cells: Sequence[RunCell], console: Console) -> Table:
     """Of one round what was found in each condition, of several how often it was as expected."""
     if _is_one_round(run, cells):
         return outcome_table(run.outcomes, console)
     return score_table(cells[0].scenario.name, score_runs(run.results, run.failures))
 
 
-def _is_one_round(run: _Run, cells: Sequence[Cell]) -> bool:
+def _is_one_round(run: _Run, cells: Sequence[RunCell]) -> bool:
     flat = len(cells[0].folder.parts) == 1
     return flat and bool(run.outcomes) and len(run.outcomes) == len(cells)

@@ -20,7 +20,7 @@ from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.viewer.page.static import check_depth
-from beliefnest.viewer.serving.host import Host, Opened
+from beliefnest.viewer.serving.host import Host, OpenRun
 
 if TYPE_CHECKING:
     from starlette.applications import Starlette
@@ -152,11 +152,11 @@ def _stores(folder: Path) -> Sequence[Path]:
     return (folder,) if folder.is_file() else sorted(folder.rglob(STORE))
 
 
-def _open(store: Path) -> Opened:
+def _open(store: Path) -> OpenRun:
     journal = SqliteJournal.read(store)
     try:
         nest = RecordedNest.of(journal)
-        return Opened(nest.reader, about_run(journal, nest), journal.close)
+        return OpenRun(nest.reader, about_run(journal, nest), journal.close)
     except BaseException:
         journal.close()
         raise

@@ -19,7 +19,7 @@ from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.scenarios.stories.data import StoryItems, read_items
 from beliefnest.scenarios.stories.own import read_own
 from beliefnest.scenarios.stories.suite import (
-    Judged,
+    JudgedAnswer,
     Score,
     answer_story,
     score,
@@ -107,8 +107,8 @@ def parse_rows(text: str) -> frozenset[int]:
     return frozenset(rows)
 
 
-def _answer(stories: Sequence[StoryItems], options: SuiteOptions) -> list[Judged]:
-    judged: list[Judged] = []
+def _answer(stories: Sequence[StoryItems], options: SuiteOptions) -> list[JudgedAnswer]:
+    judged: list[JudgedAnswer] = []
     reader = _reader(options)
     step = max(1, len(stories) // _REPORTS)
     with progress_on(f"{options.name} ({options.world})") as on_progress:
@@ -133,18 +133,18 @@ def _reader(options: SuiteOptions) -> "ClaimsFromModel | None":
     return claims_from_model(model, Sampling(seed=options.seed))
 
 
-def _needs_first(judged: Sequence[Judged]) -> dict[int, Score]:
+def _needs_first(judged: Sequence[JudgedAnswer]) -> dict[int, Score]:
     scores = scores_by_order(judged, lambda each: each.needs_first)
     return {order: found for order, found in scores.items() if order > 0}
 
 
-def _telling(judged: Sequence[Judged], *, tells: bool) -> list[Judged]:
+def _telling(judged: Sequence[JudgedAnswer], *, tells: bool) -> list[JudgedAnswer]:
     """Those whose stories have claims in them, or those whose stories have none."""
     return [each for each in judged if each.tells is tells]
 
 
 def _report(
-    options: SuiteOptions, stories: int, judged: Sequence[Judged], seconds: float
+    options: SuiteOptions, stories: int, judged: Sequence[JudgedAnswer], seconds: float
 ) -> dict[str, object]:
     return {
         "suite": options.name,
@@ -174,7 +174,7 @@ def _score_json(found: Score) -> dict[str, object]:
     return {"questions": found.questions, "right": found.right, "accuracy": found.accuracy}
 
 
-def _miss_json(judged: Judged) -> dict[str, object]:
+def _miss_json(judged: JudgedAnswer) -> dict[str, object]:
     return {
         "row": judged.item.row,
         "order": judged.item.question.order,
@@ -188,7 +188,9 @@ def _miss_json(judged: Judged) -> dict[str, object]:
     }
 
 
-def _print(options: SuiteOptions, stories: Sequence[StoryItems], judged: Sequence[Judged]) -> None:
+def _print(
+    options: SuiteOptions, stories: Sequence[StoryItems], judged: Sequence[JudgedAnswer]
+) -> None:
     title = f"{options.name}: {len(stories)} stories in the {options.world} world"
     table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAVY)
     table.add_column("claims")

@@ -18,7 +18,7 @@ from beliefnest.world.paths import path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, EventKind, Position
 
-__all__ = ["Acting", "Deed", "ProgramActing", "SkillActing", "Step"]
+__all__ = ["Acting", "Deed", "JointStep", "ProgramActing", "SkillActing"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class Deed:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class JointStep:
     """What happened in a joint step.
 
     Attributes:
@@ -50,7 +50,7 @@ class Step:
 class Acting(Protocol):
     """Brings about what agents do together."""
 
-    def act(self, actions: Mapping[str, Call | str]) -> Step:
+    def act(self, actions: Mapping[str, Call | str]) -> JointStep:
         """Begin the actions, and let time pass."""
 
 
@@ -68,7 +68,7 @@ class ProgramActing:
         self._timeout_ticks = timeout_ticks
         self._senses = senses
 
-    def act(self, actions: Mapping[str, Call | str]) -> Step:
+    def act(self, actions: Mapping[str, Call | str]) -> JointStep:
         """Run what is no empty program; one tick passes if there is none.
 
         Raises:
@@ -81,13 +81,13 @@ class ProgramActing:
         programs = {agent: code for agent, code in codes.items() if code.strip()}
         if not programs:
             self._real.step(1)
-            return Step({agent: Deed() for agent in actions}, spoken=False)
+            return JointStep({agent: Deed() for agent in actions}, spoken=False)
         results = self._real.run_all(programs, self._timeout_ticks, self._senses)
         errors = {agent: str(each.error or "") for agent, each in results.items()}
         spoken = any(
             event.kind is EventKind.CHAT for each in results.values() for event in each.events
         )
-        return Step({agent: Deed(errors.get(agent, "")) for agent in actions}, spoken)
+        return JointStep({agent: Deed(errors.get(agent, "")) for agent in actions}, spoken)
 
 
 class SkillActing:
@@ -114,7 +114,7 @@ class SkillActing:
         self._grounds: dict[str, tuple[BlockGrid, Ground]] = {}
         world.listen(self._hear)
 
-    def act(self, actions: Mapping[str, Call | str]) -> Step:
+    def act(self, actions: Mapping[str, Call | str]) -> JointStep:
         """Begin the actions, and let at least one tick pass."""
         self._spoken = False
         errors: dict[str, str] = {}
@@ -136,7 +136,7 @@ class SkillActing:
                 errors[agent] = f"it did not end within {self._timeout_ticks} ticks"
             self._doing.clear()
         deeds = {agent: Deed(errors.get(agent, ""), busy=agent in self._doing) for agent in actions}
-        return Step(deeds, self._spoken)
+        return JointStep(deeds, self._spoken)
 
     def _begin(self, agent: str, call: Call, errors: dict[str, str]) -> None:
         skill = SKILLS.get(call.skill) or CALLS[call.skill]

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from beliefnest.env.layout import Layout, Phrases
+from beliefnest.env.layout import ObservationLayout, Phrases
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.programs.calls import Call
 from beliefnest.world.values import Position
@@ -53,7 +53,7 @@ class Calls:
         parts: Part of an action to how many values it has; `position` has three numbers.
     """
 
-    def __init__(self, layout: Layout, phrases: Phrases) -> None:
+    def __init__(self, layout: ObservationLayout, phrases: Phrases) -> None:
         self._layout = layout
         self._phrases = phrases
         sizes: dict[str, int] = {part: len(getattr(layout, kind)) for part, kind in _KINDS.items()}

@@ -15,7 +15,7 @@ from beliefnest.belief.view import State
 from beliefnest.bodies.worlds import Worlds, check_world
 from beliefnest.env.acting import Acting, Deed, ProgramActing, SkillActing
 from beliefnest.env.actions import MOST_ITEMS, Call, Calls
-from beliefnest.env.layout import Layout, Phrases
+from beliefnest.env.layout import ObservationLayout, Phrases
 from beliefnest.errors import InputError, PathError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.setting import Senses
@@ -114,7 +114,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
     def __init__(self, scenario: Scenario, options: Options) -> None:
         self._scenario, self._options = scenario, options
-        self.layout = Layout.of(scenario.setting, options.said, options.items)
+        self.layout = ObservationLayout.of(scenario.setting, options.said, options.items)
         self._calls = Calls(self.layout, options.said)
         self.skills = self._calls.skills
         self.possible_agents = sorted(options.agents or self.layout.agents)

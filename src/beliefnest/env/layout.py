@@ -16,7 +16,7 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign
 from beliefnest.world.values import Box, Position
 
-__all__ = ["Arrays", "Layout", "Phrases"]
+__all__ = ["Arrays", "ObservationLayout", "Phrases"]
 
 Arrays = dict[str, npt.NDArray[Any]]
 """An observation, or a belief, as arrays by name."""
@@ -26,7 +26,7 @@ Phrases = Mapping[str, Sequence[Claim]]
 
 
 @dataclass(frozen=True)
-class Layout:
+class ObservationLayout:
     """The fixed order of what arrays tell of.
 
     Attributes:
@@ -48,7 +48,9 @@ class Layout:
     phrases: tuple[str, ...]
 
     @classmethod
-    def of(cls, setting: Setting, phrases: Phrases, items: Sequence[str] = ()) -> "Layout":
+    def of(
+        cls, setting: Setting, phrases: Phrases, items: Sequence[str] = ()
+    ) -> "ObservationLayout":
         """The layout of what a scenario starts from.
 
         Args:

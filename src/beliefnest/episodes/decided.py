@@ -6,7 +6,7 @@ from typing import Literal
 
 import msgspec
 
-from beliefnest.bodies.protocol import Past
+from beliefnest.bodies.protocol import ProgramPast
 
 __all__ = [
     "Decision",
@@ -90,7 +90,7 @@ class Part(msgspec.Struct, frozen=True):
 
     decisions: dict[str, Decision]
     ended: dict[str, Ended] = {}
-    cut: dict[str, Past] = {}
+    cut: dict[str, ProgramPast] = {}
     began: int | None = None
 
 

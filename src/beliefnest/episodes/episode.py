@@ -11,19 +11,19 @@ from beliefnest.episodes.choosing import check_resumable, chosen, name_of
 from beliefnest.episodes.decided import Part, Spent, latest_end, programs_of, spent_in
 from beliefnest.episodes.helping import Help, help_in
 from beliefnest.episodes.measures import Measures, false_beliefs, measured
-from beliefnest.episodes.moment import Moment
 from beliefnest.episodes.people import check_repeats, people_in, played_by_people, world_of_people
 from beliefnest.episodes.playing import look_around, play_part, play_part_with_people
 from beliefnest.episodes.record import (
     Branch,
     Budget,
-    Start,
+    EpisodeStart,
     branch_of,
     keep_begins,
     keep_branch,
     keep_start,
     kept_in,
 )
+from beliefnest.episodes.round_start import RoundStart
 from beliefnest.episodes.rounds import Asker, replayed, slots_of
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.view import AgentView, Brief, Policy
@@ -35,7 +35,7 @@ from beliefnest.scenarios.goals import Progress
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.paths import path_text
 
-__all__ = ["Budget", "Episode", "Moment"]
+__all__ = ["Budget", "Episode", "RoundStart"]
 
 _ON_FOOT = 5
 """Ticks that Minecraft's players take for a block, 4.3 blocks a second, rounded up."""
@@ -381,7 +381,7 @@ class Episode:
             programs_of(self._parts, agent),
         )
 
-    def at(self, round: int) -> "Moment[Self]":
+    def at(self, round: int) -> "RoundStart[Self]":
         """The beginning of a round that was played.
 
         Raises:
@@ -389,10 +389,10 @@ class Episode:
         """
         if round not in range(len(self._parts) // len(self._slots) + 1):
             raise InputError(f"round {round!r} was not played; there are {self.rounds}")
-        return Moment(self, round)
+        return RoundStart(self, round)
 
     def forked(self, round: int, policies: Mapping[str, "str | Policy"]) -> Self:
-        """See `Moment.fork`."""
+        """See `RoundStart.fork`."""
         nest = self.nest
         beginnings = [*self.beginnings, nest.tick]
         tick = beginnings[round] if self._people else self._start + round * self._brief.whole_round
@@ -434,7 +434,8 @@ class Episode:
                 plain, task_seed = self.task.plain(), self.task.seed
                 begun = nest.tick
                 keep_start(
-                    nest, Start(plain, self.seed, task_seed, self._world, begun, self._budget)
+                    nest,
+                    EpisodeStart(plain, self.seed, task_seed, self._world, begun, self._budget),
                 )
                 self._take(nest, nest["/"].branch, begun, [])
                 self._keep()

@@ -6,7 +6,7 @@ from dataclasses import replace
 import msgspec
 
 from beliefnest.bodies.listening import is_hosted
-from beliefnest.bodies.protocol import Past, ProgramResult
+from beliefnest.bodies.protocol import ProgramPast, ProgramResult
 from beliefnest.bodies.worlds import world_name
 from beliefnest.episodes.policies.simple import Person
 from beliefnest.episodes.task import Task
@@ -102,7 +102,7 @@ class RealRound:
         self.began = self.cut = nest.tick
 
     def run(
-        self, programs: Mapping[str, str], past: Mapping[str, Past]
+        self, programs: Mapping[str, str], past: Mapping[str, ProgramPast]
     ) -> Mapping[str, ProgramResult]:
         """Let it be played up to its end."""
         nest = self._nest

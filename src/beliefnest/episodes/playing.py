@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
-from beliefnest.bodies.protocol import Past, ProgramResult
+from beliefnest.bodies.protocol import ProgramPast, ProgramResult
 from beliefnest.episodes.decided import Ended, Part
 from beliefnest.episodes.people import RealRound
 from beliefnest.episodes.record import cut_in, ended_as
@@ -75,7 +75,7 @@ def look_around(nest: Nest) -> None:
     nest["/"].edit()
 
 
-def _programs(parts: Sequence[Part]) -> tuple[dict[str, str], dict[str, Past]]:
+def _programs(parts: Sequence[Part]) -> tuple[dict[str, str], dict[str, ProgramPast]]:
     """The programs of the last part by agent, and what those that go on had done before."""
     decisions = parts[-1].decisions
     programs = {agent: d.program for agent, d in decisions.items() if d.program}

@@ -5,15 +5,15 @@ from typing import Any, Protocol
 
 import msgspec
 
-from beliefnest.bodies.protocol import NO_WAY, Fault, Past, ProgramResult
+from beliefnest.bodies.protocol import NO_WAY, Fault, ProgramPast, ProgramResult
 from beliefnest.episodes.decided import Decision, Ended, Part, Spent
 from beliefnest.errors import BranchError, InputError, NotBegunError, StoreError
 
 __all__ = [
     "Branch",
     "Budget",
+    "EpisodeStart",
     "Keeps",
-    "Start",
     "branch_of",
     "cut_in",
     "ended_as",
@@ -72,7 +72,7 @@ class Budget(msgspec.Struct, frozen=True, omit_defaults=True):
         )
 
 
-class Start(msgspec.Struct, frozen=True):
+class EpisodeStart(msgspec.Struct, frozen=True):
     """What a run keeps of its episode at the beginning."""
 
     task: dict[str, Any]
@@ -106,7 +106,7 @@ def keep_begins(nest: Writes) -> None:
     nest.keep(_BEGINS, b"")
 
 
-def keep_start(nest: Writes, start: Start) -> None:
+def keep_start(nest: Writes, start: EpisodeStart) -> None:
     """Keep what an episode begins with."""
     nest.keep(_START, msgspec.json.encode(start))
 
@@ -148,10 +148,10 @@ def holds_episode(nest: Keeps) -> bool:
 def cut_in(
     results: Mapping[str, ProgramResult],
     ended: Mapping[str, Ended],
-    past: Mapping[str, Past],
+    past: Mapping[str, ProgramPast],
     began: int,
     until: int,
-) -> dict[str, Past]:
+) -> dict[str, ProgramPast]:
     """What programs had done that were cut, by agent.
 
     Args:
@@ -162,13 +162,13 @@ def cut_in(
         until: The tick at which it was over.
     """
     return {
-        agent: Past(past[agent].tick if agent in past else began, result.calls, until)
+        agent: ProgramPast(past[agent].tick if agent in past else began, result.calls, until)
         for agent, result in results.items()
         if ended[agent].how == "cut"
     }
 
 
-def kept_in(nest: Keeps) -> tuple[Start, dict[str, Branch]]:
+def kept_in(nest: Keeps) -> tuple[EpisodeStart, dict[str, Branch]]:
     """What a run's episode began with, and its branches by name.
 
     Raises:
@@ -182,7 +182,7 @@ def kept_in(nest: Keeps) -> tuple[Start, dict[str, Branch]]:
         raise StoreError("there is no episode in this run: it was made by another command")
     try:
         return (
-            msgspec.json.decode(kept, type=Start),
+            msgspec.json.decode(kept, type=EpisodeStart),
             msgspec.json.decode(decided, type=dict[str, Branch]),
         )
     except msgspec.MsgspecError as fault:

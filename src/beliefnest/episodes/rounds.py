@@ -11,14 +11,14 @@ from beliefnest.episodes.view import GO_ON, AgentView, Policy
 from beliefnest.errors import InputError
 from beliefnest.world.texts import is_well_formed
 
-__all__ = ["Asker", "Replayed", "replayed", "slots_of"]
+__all__ = ["Asker", "ReplayedPolicy", "replayed", "slots_of"]
 
 _LONGEST = 100_000
 """Characters of a program."""
 
 
 @dataclass(frozen=True)
-class Replayed:
+class ReplayedPolicy:
     """Decides what was decided before, round by round."""
 
     decisions: Sequence[Decision]
@@ -31,7 +31,7 @@ class Replayed:
 def replayed(parts: Sequence[Part], agents: Iterable[str]) -> dict[str, Policy]:
     """Policies of agents that decide what was decided before."""
     return {
-        agent: Replayed([part.decisions[agent] for part in parts if agent in part.decisions])
+        agent: ReplayedPolicy([part.decisions[agent] for part in parts if agent in part.decisions])
         for agent in agents
     }
 
@@ -64,7 +64,7 @@ class Asker:
         """The program of a round; who does not give one in time gives none."""
         agent = view.agent
         policy = self._policies[agent]
-        if isinstance(policy, Replayed):
+        if isinstance(policy, ReplayedPolicy):
             return policy.decisions[view.round]
         if self._patience_s is None:
             return _decided(policy, view)

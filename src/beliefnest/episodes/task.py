@@ -11,7 +11,7 @@ import msgspec
 from beliefnest.episodes.form import TaskForm
 from beliefnest.episodes.tasks import builtin_tasks, generated
 from beliefnest.errors import BeliefNestError, InputError, ScenarioError, UnknownNameError
-from beliefnest.scenarios.document import Document, Node, plain
+from beliefnest.scenarios.document import Document, YamlNode, plain
 from beliefnest.scenarios.goals import Goal
 from beliefnest.scenarios.loading import builtin_names, condition_number, read_document
 from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, goal_of
@@ -243,8 +243,8 @@ def _check_by_line(document: Document) -> None:
     if not isinstance(scenario.value, dict):
         raise document.fault(("scenario",), "is not a mapping of keys to values")
     rules = {key: node for key, node in keys.items() if key not in _NO_RULES}
-    episode = Node(rules, document.root.line)
-    whole = Node({**scenario.value, "episode": episode}, document.root.line)
+    episode = YamlNode(rules, document.root.line)
+    whole = YamlNode({**scenario.value, "episode": episode}, document.root.line)
     Scenario.varied(replace(document, root=whole), None)
 
 

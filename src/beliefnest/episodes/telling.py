@@ -8,7 +8,7 @@ import msgspec
 
 from beliefnest.episodes.decided import Part
 from beliefnest.episodes.form import TaskForm
-from beliefnest.episodes.record import Branch, Keeps, Start, holds_episode, kept_in
+from beliefnest.episodes.record import Branch, EpisodeStart, Keeps, holds_episode, kept_in
 from beliefnest.errors import StoreError
 
 __all__ = ["goal_rows", "round_rows", "told_episode"]
@@ -67,7 +67,7 @@ def goal_rows(told: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
             yield {"branch": name, "condition": condition, "tick": tick}
 
 
-def _branch(form: TaskForm, start: Start, branch: Branch) -> dict[str, Any]:
+def _branch(form: TaskForm, start: EpisodeStart, branch: Branch) -> dict[str, Any]:
     parts_of_round = len(branch.policies) if form.play == "turns" else 1
     return {
         "policies": branch.policies,

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from beliefnest.episodes.task import Task
     from beliefnest.llm.messages import Model
 
-__all__ = ["GO_ON", "AgentView", "Brief", "Policy", "Told"]
+__all__ = ["GO_ON", "AgentView", "Brief", "Policy", "RoundFacts"]
 
 GO_ON = "go on"
 """What a policy returns in place of a program to let its last one, which was cut, go on."""
@@ -172,9 +172,9 @@ class AgentView:
         """The text of a prompt template, filled from its belief.
 
         Args:
-            template: Its text. `branch` is the belief, `view` what else is known (`Told`), and
-                `about` has, by text such as `bob` or `bob/anne`, what others are believed to
-                believe; the filters take these as they take `branch`.
+            template: Its text. `branch` is the belief, `view` what else is known
+                (`RoundFacts`), and `about` has, by text such as `bob` or `bob/anne`, what others
+                are believed to believe; the filters take these as they take `branch`.
             depth: How deep `about` goes.
             variables: Further variables.
 
@@ -191,7 +191,7 @@ class AgentView:
                 if name != (path[-1] if path else self._own.owner)
             ]
             about |= {"/".join(path): simulator for path, simulator in level}
-        return self._own.render(template, view=Told.of(self), about=about, **variables)
+        return self._own.render(template, view=RoundFacts.of(self), about=about, **variables)
 
     def noting(self, model: "Model") -> "Model":
         """A model whose conversation is kept in the run."""
@@ -199,7 +199,7 @@ class AgentView:
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class RoundFacts:
     """What templates are told besides the belief.
 
     Attributes:
@@ -223,7 +223,7 @@ class Told:
     last: Ended
 
     @classmethod
-    def of(cls, view: AgentView) -> "Told":
+    def of(cls, view: AgentView) -> "RoundFacts":
         """What a view tells."""
         brief = view.brief
         return cls(

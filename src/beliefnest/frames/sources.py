@@ -10,7 +10,7 @@ from beliefnest.errors import InputError
 from beliefnest.files import read_regular_text
 from beliefnest.studies.result import StudyResult
 
-__all__ = ["Recorded", "Source", "cells_of", "study_of"]
+__all__ = ["RecordedCell", "Source", "cells_of", "study_of"]
 
 Source = str | Path | StudyResult
 """A run file, the folder of a run, the folder of a study, or a study's result."""
@@ -20,7 +20,7 @@ _REPORT = "run.json"
 
 
 @dataclass(frozen=True)
-class Recorded:
+class RecordedCell:
     """One cell: a scenario under one condition, played once.
 
     Attributes:
@@ -42,7 +42,7 @@ def study_of(source: Source) -> StudyResult | None:
     return StudyResult.read(source) if (Path(source) / "cells").is_dir() else None
 
 
-def cells_of(source: Source) -> Iterator[Recorded]:
+def cells_of(source: Source) -> Iterator[RecordedCell]:
     """The cells of a source, in order.
 
     Raises:
@@ -54,7 +54,7 @@ def cells_of(source: Source) -> Iterator[Recorded]:
         return
     path = Path(source) if not isinstance(source, StudyResult) else source.folder.path
     if path.is_file():
-        yield Recorded(path.stem, {}, path)
+        yield RecordedCell(path.stem, {}, path)
         return
     report = _report(path)
     known = {Path(run["run_dir"]).absolute(): run for run in report.get("runs", [])}
@@ -65,10 +65,10 @@ def cells_of(source: Source) -> Iterator[Recorded]:
         relative = file.parent.relative_to(path).as_posix()
         about = known.get(file.parent.absolute(), {})
         named = {"scenario": report.get("scenario"), **about} if about else {}
-        yield Recorded(relative, named, file)
+        yield RecordedCell(relative, named, file)
 
 
-def _cells_of_study(study: StudyResult) -> Iterator[Recorded]:
+def _cells_of_study(study: StudyResult) -> Iterator[RecordedCell]:
     folder = study.folder
     for planned in study.plan["cells"]:
         found = folder.cell(planned["name"])
@@ -77,7 +77,7 @@ def _cells_of_study(study: StudyResult) -> Iterator[Recorded]:
         run = found.get("run", "")
         file = folder.path / run if run else None
         about = {**planned["key"], "seed": planned["seed"], **found}
-        yield Recorded(planned["name"], about, file)
+        yield RecordedCell(planned["name"], about, file)
 
 
 def _report(path: Path) -> dict[str, Any]:

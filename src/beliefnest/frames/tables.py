@@ -9,7 +9,7 @@ from beliefnest.belief.plain import belief_json
 from beliefnest.episodes.measures import Measures
 from beliefnest.episodes.telling import round_rows, told_episode
 from beliefnest.errors import InputError, MissingExtraError
-from beliefnest.frames.sources import Recorded, Source, cells_of, study_of
+from beliefnest.frames.sources import RecordedCell, Source, cells_of, study_of
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.result import StudyResult
@@ -145,7 +145,7 @@ def beliefs_df(source: Source, paths: Sequence[str]) -> "pandas.DataFrame":
     )
 
 
-def _cell_row(recorded: Recorded) -> Row:
+def _cell_row(recorded: RecordedCell) -> Row:
     about = recorded.about
     probes = about.get("probes", [])
     usages = [probe["usage"] for probe in probes]

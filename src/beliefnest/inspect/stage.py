@@ -17,7 +17,7 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.variation import Variation
 from beliefnest.world.values import Position
 
-__all__ = ["Judged", "Stage", "requests_of"]
+__all__ = ["JudgedOutcome", "Stage", "requests_of"]
 
 _ONCE = Asking(attempts=1, keeps_unanswered=True)
 
@@ -34,7 +34,7 @@ def requests_of(scenario: Scenario) -> list[Probe]:
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedOutcome:
     """An answer that was judged.
 
     Attributes:
@@ -81,7 +81,7 @@ class Stage:
         self._run(sample, listener)
         return listener.asked[0]
 
-    def judged(self, sample: Mapping[str, Any], answer: str) -> Judged:
+    def judged(self, sample: Mapping[str, Any], answer: str) -> JudgedOutcome:
         """What an answer comes to: its program is run in the belief, or its words are judged.
 
         Raises:
@@ -89,7 +89,7 @@ class Stage:
         """
         return self._run(sample, _Listener(answer))
 
-    def _run(self, sample: Mapping[str, Any], listener: _Listener) -> Judged:
+    def _run(self, sample: Mapping[str, Any], listener: _Listener) -> JudgedOutcome:
         variation, number = Variation(sample["variation"]), sample["request"]
         scenario = Scenario.varied(
             read_document(sample["scenario"]),
@@ -104,7 +104,7 @@ class Stage:
         ):
             nest.play()
             outcome = run_probe(nest, number, probe, listener, seed, _ONCE)
-            return Judged(outcome, tuple(_grounds(nest, probe)))
+            return JudgedOutcome(outcome, tuple(_grounds(nest, probe)))
 
 
 def _grounds(nest: Nest, probe: Probe) -> list[str]:

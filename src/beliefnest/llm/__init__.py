@@ -8,7 +8,7 @@ from beliefnest.llm.asking import (
     Round,
     ask_for_program,
 )
-from beliefnest.llm.budget import Budget, RunLimits
+from beliefnest.llm.budget import RunLimits, RunSpending
 from beliefnest.llm.cache import CacheMode
 from beliefnest.llm.clock import Clock, SystemClock
 from beliefnest.llm.extract import NoProgramError, extract_program
@@ -21,7 +21,6 @@ from beliefnest.llm.retrying import RetryPolicy
 __all__ = [
     "Answer",
     "AnswerLimits",
-    "Budget",
     "CacheMode",
     "Check",
     "ClaimsFromModel",
@@ -36,6 +35,7 @@ __all__ = [
     "RetryPolicy",
     "Round",
     "RunLimits",
+    "RunSpending",
     "Sampling",
     "SystemClock",
     "Usage",

@@ -7,7 +7,7 @@ from beliefnest.errors import InputError, ModelError
 from beliefnest.llm.failures import UnusableAnswerError
 from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 
-__all__ = ["Budget", "MeteredModel", "RunLimits"]
+__all__ = ["MeteredModel", "RunLimits", "RunSpending"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class RunLimits:
 
 
 @dataclass
-class Budget:
+class RunSpending:
     """What a run has spent so far, over all its models.
 
     Attributes:
@@ -69,7 +69,7 @@ class MeteredModel:
     """A model whose answers are counted against a budget; asked only while some is left."""
 
     model: Model
-    budget: Budget
+    budget: RunSpending
 
     @property
     def name(self) -> str:

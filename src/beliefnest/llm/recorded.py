@@ -13,7 +13,7 @@ from beliefnest.llm.exchange import Exchange, decode_exchange, encode_exchange
 from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
 
-__all__ = ["RecordingModel", "ReplayModel", "ScriptedModel", "load_replay", "load_script"]
+__all__ = ["FileRecordingModel", "ReplayModel", "ScriptedModel", "load_replay", "load_script"]
 
 _Question = tuple[Message, ...]
 
@@ -74,7 +74,7 @@ class ReplayModel:
 
 
 @dataclass(frozen=True)
-class RecordingModel:
+class FileRecordingModel:
     """A model whose exchanges are appended to a file, one JSON object a line."""
 
     model: Model
@@ -116,7 +116,7 @@ def load_script(name: str, path: Path) -> ScriptedModel:
 
 
 def load_replay(name: str, path: Path) -> ReplayModel:
-    """A replaying model from the file that a `RecordingModel` wrote.
+    """A replaying model from the file that a `FileRecordingModel` wrote.
 
     Raises:
         ModelError: The file cannot be read, or a line is not an exchange.

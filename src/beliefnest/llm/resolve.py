@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from beliefnest.errors import InputError, UnknownNameError
-from beliefnest.llm.budget import Budget, MeteredModel
+from beliefnest.llm.budget import MeteredModel, RunSpending
 from beliefnest.llm.cache import CachedModel, CacheMode
 from beliefnest.llm.clock import Clock, SystemClock
 from beliefnest.llm.messages import Model
 from beliefnest.llm.offline import OfflineModel
 from beliefnest.llm.providers import PROVIDERS, endpoint
-from beliefnest.llm.recorded import RecordingModel, load_replay, load_script
+from beliefnest.llm.recorded import FileRecordingModel, load_replay, load_script
 from beliefnest.llm.remote import AnswerLimits, RemoteModel
 from beliefnest.llm.retrying import RetryingModel, RetryPolicy
 
@@ -33,7 +33,7 @@ class Connection:
         clock: Time for limits and pauses.
     """
 
-    budget: Budget = field(default_factory=Budget)
+    budget: RunSpending = field(default_factory=RunSpending)
     answer_limits: AnswerLimits = field(default_factory=AnswerLimits)
     retries: RetryPolicy = field(default_factory=RetryPolicy)
     cache: Path | None = None
@@ -110,7 +110,7 @@ def open_model(name: str, environment: Mapping[str, str], connection: Connection
         if connection.cache is not None and connection.cache_mode != "off":
             model = CachedModel(model, connection.cache, connection.cache_mode)
     if connection.record is not None:
-        model = RecordingModel(model, connection.record)
+        model = FileRecordingModel(model, connection.record)
     return model
 
 

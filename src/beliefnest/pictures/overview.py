@@ -13,7 +13,7 @@ from beliefnest.pictures.panel import Block, paragraph
 from beliefnest.pictures.plan import draw_plan
 from beliefnest.pictures.scene import Scene, Store
 
-__all__ = ["Card", "Condition", "Note", "overview"]
+__all__ = ["Card", "ConditionPicture", "Note", "overview"]
 
 _GAP = 12.0
 _LEAST = 148.0
@@ -59,7 +59,7 @@ class Card:
 
 
 @dataclass(frozen=True)
-class Condition:
+class ConditionPicture:
     """One condition of a run.
 
     Attributes:
@@ -79,7 +79,7 @@ class Condition:
     story: tuple[str, ...] = ()
 
 
-def overview(conditions: Sequence[Condition], title: str) -> Figure:
+def overview(conditions: Sequence[ConditionPicture], title: str) -> Figure:
     """The figure of a run; conditions stand side by side, and the same beliefs are level."""
     count = len(conditions)
     width = 180.0 if count == 1 else min(85.0 * count, 255.0)
@@ -99,7 +99,7 @@ class _Page:
         self.kinds |= block.kinds
 
 
-def _draw(conditions: Sequence[Condition], title: str, width: float) -> Drawing:
+def _draw(conditions: Sequence[ConditionPicture], title: str, width: float) -> Drawing:
     page = _Page(agent_looks(conditions[0].scene.agents), [], set())
     inner = width - 2 * MARGIN
     head = Block(bottom=MARGIN)
@@ -119,7 +119,9 @@ def _draw(conditions: Sequence[Condition], title: str, width: float) -> Drawing:
     return Drawing(width, legend.bottom + MARGIN, tuple(page.marks), title)
 
 
-def _row(page: _Page, row: Sequence[Condition], top: float, inner: float, columns: int) -> float:
+def _row(
+    page: _Page, row: Sequence[ConditionPicture], top: float, inner: float, columns: int
+) -> float:
     """Conditions side by side; returns where they end."""
     wide = (inner - _GAP * (columns - 1)) / columns
     lefts = [MARGIN + number * (wide + _GAP) for number in range(len(row))]
@@ -171,7 +173,7 @@ def _named(cards: Sequence[Card]) -> dict[tuple[object, ...], Card]:
     return found
 
 
-def _beside(page: _Page, condition: Condition, at: XY, inner: float) -> float:
+def _beside(page: _Page, condition: ConditionPicture, at: XY, inner: float) -> float:
     """One condition, its cards to the right of the plan; returns where it ends."""
     left, top = at
     head = _head(condition, at, inner)
@@ -194,7 +196,7 @@ def _beside(page: _Page, condition: Condition, at: XY, inner: float) -> float:
     return max(bottom, story.bottom, top)
 
 
-def _head(condition: Condition, at: XY, width: float) -> Block:
+def _head(condition: ConditionPicture, at: XY, width: float) -> Block:
     block = Block(bottom=at[1])
     paragraph(block, condition.title, at[0], width, TEXT_SIZE * 1.2, bold=True)
     paragraph(block, condition.about, at[0], width, TEXT_SIZE, QUIET)

@@ -9,7 +9,7 @@ from beliefnest.pictures.marks import XY, Text
 from beliefnest.pictures.marks import Mark as Drawn
 from beliefnest.pictures.palette import INK, MARKS, QUIET, AgentLook, Mark, age_text, mix, told_text
 from beliefnest.pictures.plan import draw_plan
-from beliefnest.pictures.scene import Device, Person, Scene, Store
+from beliefnest.pictures.scene import Device, DrawnAgent, Scene, Store
 
 __all__ = ["Block", "belief_words", "draw_panel", "draw_title", "paragraph"]
 
@@ -201,7 +201,7 @@ def _false_line(block: Block, text: str, left: float, right: float, size: float)
 
 def _lost_line(
     block: Block,
-    lost: list[Person],
+    lost: list[DrawnAgent],
     looks: Mapping[str, AgentLook],
     left: float,
     width: float,

@@ -13,10 +13,10 @@ from beliefnest.pictures.marks import XY, Bounds, Lines, Polygon, Rectangle, Tex
 from beliefnest.pictures.marks import Mark as Drawn
 from beliefnest.pictures.palette import INK, MARKS, PAPER, QUIET, AgentLook, Mark, age_text, mix
 from beliefnest.pictures.room import Room
-from beliefnest.pictures.scene import DEVICES, Cell, Device, Person, Scene, Store
+from beliefnest.pictures.scene import DEVICES, Device, DrawnAgent, PlanColumn, Scene, Store
 from beliefnest.world.registry import Registry
 
-__all__ = ["Plan", "draw_plan", "hatching"]
+__all__ = ["DrawnPlan", "draw_plan", "hatching"]
 
 _NOWHERE = "#dfdbd2"
 _GROUND = "#f0ece3"
@@ -60,7 +60,7 @@ _STORES = ("chest", "barrel", "furnace", "smoker")
 
 
 @dataclass
-class Plan:
+class DrawnPlan:
     """A plan that was drawn.
 
     Attributes:
@@ -83,7 +83,7 @@ def draw_plan(
     width: float,
     size: float,
     trails: Mapping[str, tuple[XY, ...]] | None = None,
-) -> Plan:
+) -> DrawnPlan:
     """The plan of a scene.
 
     Args:
@@ -105,7 +105,7 @@ def draw_plan(
     sheet.things()
     sheet.names()
     edge = Rectangle(left, at[1], cell * across, cell * down, None, mix(INK, PAPER, 0.6), 0.5)
-    return Plan([*sheet.marks, edge], at[1] + cell * down, sheet.unnamed, sheet.kinds)
+    return DrawnPlan([*sheet.marks, edge], at[1] + cell * down, sheet.unnamed, sheet.kinds)
 
 
 def hatching(bounds: Bounds, number: int, step: float = _HATCH) -> tuple[tuple[XY, XY], ...]:
@@ -178,7 +178,7 @@ class _Sheet:
                         yield start, k, i - start
                     start = i
 
-    def _cells(self) -> Iterator[tuple[int, int, Cell]]:
+    def _cells(self) -> Iterator[tuple[int, int, PlanColumn]]:
         for i, row in enumerate(self._scene.cells):
             for k, cell in enumerate(row):
                 yield i, k, cell
@@ -352,7 +352,7 @@ class _Sheet:
         around = size * (1.3 if store.mark is Mark.FALSE else 1)
         self._label(spot, around, ((_with_height(store.label, store.above), False),))
 
-    def _person(self, person: Person) -> None:
+    def _person(self, person: DrawnAgent) -> None:
         if person.position is None:
             return
         radius = max(self._cell * 0.5, _SMALLEST)
@@ -440,7 +440,7 @@ def _device_kind(name: str) -> str:
     return next(kind for kind in DEVICES if kind in name).lstrip("_")
 
 
-def _ground_colour(cell: Cell) -> str:
+def _ground_colour(cell: PlanColumn) -> str:
     if cell.ground is None or cell.ground == "air":
         return _NOWHERE
     return mix(_GROUND, _colour(cell.ground, _GROUND), 0.5)

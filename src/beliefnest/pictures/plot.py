@@ -13,7 +13,7 @@ from beliefnest.pictures.palette import AGENT_COLOURS, INK, MARKS, PAPER, QUIET,
 from beliefnest.pictures.panel import Block, paragraph
 from beliefnest.pictures.plan import hatching
 
-__all__ = ["Act", "Band", "Row", "Told", "belief_plot"]
+__all__ = ["Band", "NotedAct", "NotedClaim", "PlotRow", "belief_plot"]
 
 _HIGH = 15.0
 _STEP = 21.0
@@ -41,7 +41,7 @@ class Band:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class PlotRow:
     """What one simulator held.
 
     Attributes:
@@ -52,11 +52,11 @@ class Row:
 
     path: str
     bands: tuple[Band, ...]
-    told: tuple["Told", ...] = ()
+    told: tuple["NotedClaim", ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class NotedClaim:
     """A claim that was heard.
 
     Attributes:
@@ -69,7 +69,7 @@ class Told:
 
 
 @dataclass(frozen=True, slots=True)
-class Act:
+class NotedAct:
     """A deed that mattered.
 
     Attributes:
@@ -81,12 +81,12 @@ class Act:
     words: str
 
 
-def belief_plot(rows: Sequence[Row], acts: Sequence[Act], title: str) -> Figure:
+def belief_plot(rows: Sequence[PlotRow], acts: Sequence[NotedAct], title: str) -> Figure:
     """The figure of beliefs over time."""
     return Figure(lambda width: _draw(rows, acts, title, width), 174.0, title)
 
 
-def _draw(rows: Sequence[Row], acts: Sequence[Act], title: str, width: float) -> Drawing:
+def _draw(rows: Sequence[PlotRow], acts: Sequence[NotedAct], title: str, width: float) -> Drawing:
     head = Block(bottom=MARGIN)
     paragraph(head, title, MARGIN, width - 2 * MARGIN, TEXT_SIZE * 1.2, bold=True)
     # Names stand beside their rows if they leave most of the width to them, else above.
@@ -128,7 +128,7 @@ def _draw(rows: Sequence[Row], acts: Sequence[Act], title: str, width: float) ->
 class _Chart:
     """From ticks to places, from values to colours."""
 
-    def __init__(self, rows: Sequence[Row], span: XY) -> None:
+    def __init__(self, rows: Sequence[PlotRow], span: XY) -> None:
         self.start = min(row.bands[0].start for row in rows)
         self.end = max(self.start + 1, *(row.bands[-1].end for row in rows))
         self._span = span
@@ -147,7 +147,7 @@ class _Chart:
         return low + (high - low) * (tick - self.start) / (self.end - self.start)
 
 
-def _acts(chart: _Chart, acts: Sequence[Act], top: float, marks: list[Drawn]) -> float:
+def _acts(chart: _Chart, acts: Sequence[NotedAct], top: float, marks: list[Drawn]) -> float:
     """The words of deeds, each in the first line in which it touches no other."""
     ends: list[float] = []
     low, high = chart.x(chart.start), chart.x(chart.end)
@@ -163,7 +163,7 @@ def _acts(chart: _Chart, acts: Sequence[Act], top: float, marks: list[Drawn]) ->
     return top + len(ends) * _ACT * 1.3 + 3
 
 
-def _bands(chart: _Chart, row: Row, top: float) -> list[Drawn]:
+def _bands(chart: _Chart, row: PlotRow, top: float) -> list[Drawn]:
     marks: list[Drawn] = []
     for band in row.bands:
         x0, x1 = chart.x(band.start), chart.x(band.end)
@@ -184,7 +184,7 @@ def _bands(chart: _Chart, row: Row, top: float) -> list[Drawn]:
     return marks
 
 
-def _told(chart: _Chart, row: Row, top: float) -> list[Drawn]:
+def _told(chart: _Chart, row: PlotRow, top: float) -> list[Drawn]:
     """A balloon above the row for each claim that was heard."""
     marks: list[Drawn] = []
     for each in row.told:

@@ -20,13 +20,13 @@ from beliefnest.world.values import Items, Point, Position
 
 __all__ = [
     "DEVICES",
-    "Cell",
+    "AgentSight",
     "Device",
+    "Drawable",
+    "DrawnAgent",
     "Labels",
-    "Person",
+    "PlanColumn",
     "Scene",
-    "Shown",
-    "Sight",
     "Store",
     "Wrong",
     "best_height",
@@ -50,7 +50,7 @@ _WIDEST = 40
 _EDGE = 4
 
 
-class Shown(Protocol):
+class Drawable(Protocol):
     """A simulator at one tick."""
 
     @property
@@ -83,7 +83,7 @@ class Wrong:
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
+class PlanColumn:
     """One column of the plan.
 
     Attributes:
@@ -163,7 +163,7 @@ class Store:
 
 
 @dataclass(frozen=True, slots=True)
-class Person:
+class DrawnAgent:
     """An agent.
 
     Attributes:
@@ -194,7 +194,7 @@ class Person:
 
 
 @dataclass(frozen=True)
-class Sight:
+class AgentSight:
     """What an agent sees in the simulator.
 
     Attributes:
@@ -233,13 +233,13 @@ class Scene:
     agents: tuple[str, ...]
     low: tuple[int, int]
     height: int
-    cells: tuple[tuple[Cell, ...], ...]
+    cells: tuple[tuple[PlanColumn, ...], ...]
     stores: tuple[Store, ...]
     devices: tuple[Device, ...]
     items: tuple[tuple[str, Point], ...]
     places: tuple[tuple[str, Position], ...]
-    people: tuple[Person, ...]
-    sights: tuple[Sight, ...]
+    people: tuple[DrawnAgent, ...]
+    sights: tuple[AgentSight, ...]
     wrong: int
     against: str
     note: str = ""
@@ -266,7 +266,7 @@ def best_height(states: Iterable[State]) -> int:
 
 
 def read_scene(
-    shown: Shown,
+    shown: Drawable,
     *,
     wrong: Collection[Wrong] = (),
     against: str = "/",
@@ -320,7 +320,7 @@ def read_scene(
             for name, agent in sorted(state.agents.items())
         ),
         sights=tuple(
-            Sight(name, shown.visible_blocks(name)[cut[0], layer, cut[1]]) for name in sight
+            AgentSight(name, shown.visible_blocks(name)[cut[0], layer, cut[1]]) for name in sight
         ),
         wrong=len(wrong),
         against=against,
@@ -351,12 +351,12 @@ def _window(
     )
 
 
-def _cell(state: State, at: Position, wrong: Mapping[Position | str, Wrong]) -> Cell:
+def _cell(state: State, at: Position, wrong: Mapping[Position | str, Wrong]) -> PlanColumn:
     x, y, z = at
     below = (x, y - 1, z)
     ground = state.blocks[below] if y > state.box.low[1] else None
     container = at in state.containers
-    return Cell(ground, state.blocks[at], not container and (at in wrong or below in wrong))
+    return PlanColumn(ground, state.blocks[at], not container and (at in wrong or below in wrong))
 
 
 def read_stores(
@@ -408,7 +408,7 @@ def _store_mark(held: ContainerBelief, *, false: bool) -> Mark:
 
 def _person(
     name: str, agent: AgentBelief, tick: int, level: int, wrong: Mapping[Position | str, Wrong]
-) -> Person:
+) -> DrawnAgent:
     false = wrong.get(name)
     mark = Mark.CURRENT if agent.current else Mark.STALE
     age = 0
@@ -419,7 +419,7 @@ def _person(
     if false is not None and agent.position is not None:
         mark = Mark.FALSE
     above = 0 if agent.position is None else math.floor(agent.position[1] + 1e-6) - level
-    return Person(
+    return DrawnAgent(
         name=name,
         position=agent.position,
         yaw=agent.yaw,
@@ -436,7 +436,7 @@ _ON = ("open", "powered", "lit")
 
 
 def _devices(
-    cells: Sequence[Sequence[Cell]],
+    cells: Sequence[Sequence[PlanColumn]],
     low: Position,
     known: State,
     wrong: Mapping[Position | str, Wrong],

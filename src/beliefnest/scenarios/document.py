@@ -1,6 +1,6 @@
 """Scenario documents: what is written in a file, and on which line.
 
-A `Node` is a value together with its line, so that a fault in merged and checked content
+A `YamlNode` is a value together with its line, so that a fault in merged and checked content
 can still be reported where it was written.
 """
 
@@ -13,7 +13,7 @@ from typing import Any
 from beliefnest.errors import BeliefNestError, MissingExtraError, ScenarioError
 from beliefnest.scenarios.format import LABELLED
 
-__all__ = ["MAX_DEPTH", "Document", "KeyPath", "Node", "merged", "plain", "under", "wrapped"]
+__all__ = ["MAX_DEPTH", "Document", "KeyPath", "YamlNode", "merged", "plain", "under", "wrapped"]
 
 MAX_DEPTH = 40
 """Lists and mappings inside each other."""
@@ -23,7 +23,7 @@ KeyPath = tuple[str | int, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Node:
+class YamlNode:
     """A value of a document.
 
     Attributes:
@@ -48,7 +48,7 @@ class Document:
     """
 
     source: str
-    root: Node
+    root: YamlNode
     folder: Path
     text: str = ""
     templates: Mapping[str, str] = field(default_factory=dict)
@@ -85,16 +85,16 @@ def _key_text(path: KeyPath) -> str:
     return f"{text.removeprefix('.')}: " if text else ""
 
 
-def _child(node: Node, key: str | int) -> Node | None:
+def _child(node: YamlNode, key: str | int) -> YamlNode | None:
     if isinstance(node.value, dict):
         child = node.value.get(key)
-        return child if isinstance(child, Node) else None
+        return child if isinstance(child, YamlNode) else None
     if isinstance(node.value, list) and isinstance(key, int) and key < len(node.value):
         return node.value[key]  # type: ignore[no-any-return]  # lists hold nodes
     return None
 
 
-def plain(node: Node) -> object:
+def plain(node: YamlNode) -> object:
     """The value of a node without lines."""
     if isinstance(node.value, dict):
         return {key: plain(child) for key, child in node.value.items()}
@@ -103,7 +103,7 @@ def plain(node: Node) -> object:
     return node.value
 
 
-def wrapped(value: object, depth: int = 0) -> Node:
+def wrapped(value: object, depth: int = 0) -> YamlNode:
     """A document built in code, which has no lines.
 
     Raises:
@@ -112,10 +112,10 @@ def wrapped(value: object, depth: int = 0) -> Node:
     if depth > MAX_DEPTH:
         raise ScenarioError(f"the scenario is nested more than {MAX_DEPTH} deep")
     if isinstance(value, Mapping):
-        return Node({key: wrapped(child, depth + 1) for key, child in value.items()})
+        return YamlNode({key: wrapped(child, depth + 1) for key, child in value.items()})
     if isinstance(value, list | tuple):
-        return Node([wrapped(child, depth + 1) for child in value])
-    return Node(value)
+        return YamlNode([wrapped(child, depth + 1) for child in value])
+    return YamlNode(value)
 
 
 def merged(document: Document, condition: int) -> Document:
@@ -128,7 +128,7 @@ def merged(document: Document, condition: int) -> Document:
         ScenarioError: There is no such condition, or no entry of a label.
     """
     base = dict(document.root.value)
-    conditions = base.pop("conditions", Node({})).value
+    conditions = base.pop("conditions", YamlNode({})).value
     if condition not in conditions:
         known = ", ".join(str(number) for number in conditions)
         raise ScenarioError(
@@ -138,12 +138,12 @@ def merged(document: Document, condition: int) -> Document:
     # The description of a condition says what is special about it, not what the scenario is.
     written = conditions[condition]
     kept = {key: node for key, node in written.value.items() if key != "description"}
-    override = Node(kept, written.line)
+    override = YamlNode(kept, written.line)
     for key in LABELLED:
         change = override.value.get(key)
         if change is not None and isinstance(change.value, dict) and key in base:
             _check_labels(document, ("conditions", condition, key), base[key], change)
-    root = _merge(Node(base, document.root.line), override)
+    root = _merge(YamlNode(base, document.root.line), override)
     return replace(document, root=root)
 
 
@@ -158,10 +158,10 @@ def under(document: Document, condition: int | None, keys: Iterable[str]) -> Doc
     root = dict(document.root.value)
     for key in written.value.keys() & set(keys):
         root[key] = _merge(root[key], written.value[key]) if key in root else written.value[key]
-    return replace(document, root=Node(root, document.root.line))
+    return replace(document, root=YamlNode(root, document.root.line))
 
 
-def _check_labels(document: Document, path: KeyPath, entries: Node, change: Node) -> None:
+def _check_labels(document: Document, path: KeyPath, entries: YamlNode, change: YamlNode) -> None:
     labels = [_label(entry) for entry in entries.value]
     for label in change.value:
         if labels.count(label) != 1:
@@ -172,20 +172,20 @@ def _check_labels(document: Document, path: KeyPath, entries: Node, change: Node
             )
 
 
-def _label(entry: Node) -> object:
+def _label(entry: YamlNode) -> object:
     label = entry.value.get("label") if isinstance(entry.value, dict) else None
-    return label.value if isinstance(label, Node) else None
+    return label.value if isinstance(label, YamlNode) else None
 
 
-def _merge(base: Node, over: Node) -> Node:
+def _merge(base: YamlNode, over: YamlNode) -> YamlNode:
     if isinstance(base.value, dict) and isinstance(over.value, dict):
         value = dict(base.value)
         for key, child in over.value.items():
             value[key] = _merge(value[key], child) if key in value else child
-        return Node(value, over.line)
+        return YamlNode(value, over.line)
     if isinstance(base.value, list) and isinstance(over.value, dict):
         changes = over.value
-        return Node(
+        return YamlNode(
             [
                 _merge(entry, changes[_label(entry)]) if _label(entry) in changes else entry
                 for entry in base.value

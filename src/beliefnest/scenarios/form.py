@@ -6,7 +6,7 @@ import re
 import msgspec
 
 from beliefnest.errors import ScenarioError
-from beliefnest.scenarios.document import Document, KeyPath, Node, plain
+from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain
 from beliefnest.scenarios.format import ScenarioFile
 from beliefnest.scenarios.schema import allowed_keys, allowed_values
 from beliefnest.world.texts import is_well_formed
@@ -35,7 +35,7 @@ def check_form(document: Document) -> ScenarioFile:
     return msgspec.convert(plain(document.root), ScenarioFile)
 
 
-def _check_texts(document: Document, node: Node, path: KeyPath) -> None:
+def _check_texts(document: Document, node: YamlNode, path: KeyPath) -> None:
     """Refuse texts that cannot be stored."""
     if isinstance(node.value, dict):
         for key, child in node.value.items():
@@ -49,7 +49,7 @@ def _check_texts(document: Document, node: Node, path: KeyPath) -> None:
         raise document.fault(path, "has half a character in it; write whole ones")
 
 
-def _error_of(root: Node) -> str:
+def _error_of(root: YamlNode) -> str:
     try:
         msgspec.convert(plain(root), ScenarioFile)
     except msgspec.ValidationError as error:
@@ -75,7 +75,7 @@ def _fault(document: Document, error: str) -> ScenarioError:
     return document.fault(path, what + _found(document.root, path, what) + _allowed(path, what))
 
 
-def _found(root: Node, path: KeyPath, what: str) -> str:
+def _found(root: YamlNode, path: KeyPath, what: str) -> str:
     """What stands there, where the fault does not say so."""
     value = _node_at(root, list(path)).value
     is_short = isinstance(value, float | None) or (
@@ -103,7 +103,7 @@ def _hint(name: str, path: KeyPath) -> str:
     return f"; did you mean {close[0]!r}?" if close else f"; keys are {', '.join(allowed)}"
 
 
-def _locate(root: Node, steps: list[dict[str, str | None]], error: str) -> KeyPath:
+def _locate(root: YamlNode, steps: list[dict[str, str | None]], error: str) -> KeyPath:
     """The place of a fault that msgspec names with `[...]` for the keys of mappings.
 
     For each `[...]` the mapping is cut down to one entry at a time; the entry that still
@@ -125,17 +125,17 @@ def _locate(root: Node, steps: list[dict[str, str | None]], error: str) -> KeyPa
     return tuple(path)
 
 
-def _node_at(root: Node, path: list[str | int]) -> Node:
+def _node_at(root: YamlNode, path: list[str | int]) -> YamlNode:
     for key in path:
         root = root.value[key]
     return root
 
 
-def _with_only(node: Node, path: list[str | int], key: str | int) -> Node:
+def _with_only(node: YamlNode, path: list[str | int], key: str | int) -> YamlNode:
     """The document with the mapping at a path cut down to one key."""
     if not path:
-        return Node({key: node.value[key]}, node.line)
+        return YamlNode({key: node.value[key]}, node.line)
     head, *rest = path
     value = node.value.copy()
     value[head] = _with_only(value[head], rest, key)
-    return Node(value, node.line)
+    return YamlNode(value, node.line)

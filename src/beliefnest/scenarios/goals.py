@@ -18,10 +18,10 @@ __all__ = [
     "AgentAt",
     "BlockIs",
     "BlocksAlike",
-    "Condition",
     "Fact",
-    "Facts",
     "Goal",
+    "GoalCondition",
+    "GoalFacts",
     "ItemsIn",
     "ItemsWith",
     "LeversHeld",
@@ -37,7 +37,7 @@ _REACH = 6.0
 """Blocks between eyes and the middle of what is held."""
 
 
-class Facts(Protocol):
+class GoalFacts(Protocol):
     """What conditions ask of a state: the real one, a believed or an imagined one."""
 
     def items_in(self, place: Position) -> Items:
@@ -53,7 +53,7 @@ class Facts(Protocol):
         """Block state text; None: unknown."""
 
 
-Look = Callable[[BeliefPath], Facts]
+Look = Callable[[BeliefPath], GoalFacts]
 """The state at a belief path; `()` is what is taken for real."""
 
 
@@ -89,7 +89,7 @@ class ItemsIn:
     item: str
     count: int = 1
 
-    def holds(self, facts: Facts) -> bool:
+    def holds(self, facts: GoalFacts) -> bool:
         """Whether it does."""
         return facts.items_in(self.place).get(self.item, 0) >= self.count
 
@@ -105,7 +105,7 @@ class ItemsWith:
     item: str
     count: int = 1
 
-    def holds(self, facts: Facts) -> bool:
+    def holds(self, facts: GoalFacts) -> bool:
         """Whether it has."""
         return facts.items_of(self.agent).get(self.item, 0) >= self.count
 
@@ -121,7 +121,7 @@ class AgentAt:
     place: Position
     within: float = 1.0
 
-    def holds(self, facts: Facts) -> bool:
+    def holds(self, facts: GoalFacts) -> bool:
         """Whether it stands there."""
         feet = facts.feet_of(self.agent)
         return feet is not None and self.distance(feet) <= self.within
@@ -147,7 +147,7 @@ class BlockIs:
     place: Position
     state: str
 
-    def holds(self, facts: Facts) -> bool:
+    def holds(self, facts: GoalFacts) -> bool:
         """Whether it is."""
         there = facts.block(self.place)
         return there is not None and agrees(there, self.state)
@@ -170,12 +170,12 @@ class BlocksAlike:
     model: Position
     property: str = ""
 
-    def holds(self, facts: Facts) -> bool:
+    def holds(self, facts: GoalFacts) -> bool:
         """Whether they agree."""
         wanted = self.wanted(facts)
         return wanted is not None and wanted == self._of(facts.block(self.place))
 
-    def wanted(self, facts: Facts) -> str | None:
+    def wanted(self, facts: GoalFacts) -> str | None:
         """What the model has: the property's value, or the whole block; None: unknown."""
         return self._of(facts.block(self.model))
 
@@ -198,11 +198,11 @@ class LeversHeld:
     agents: tuple[str, ...]
     sites: tuple[tuple[Position, ...], ...]
 
-    def holds(self, facts: Facts) -> bool:
+    def holds(self, facts: GoalFacts) -> bool:
         """Whether they are."""
         return any(self.missing(facts, site) == (0, 0.0) for site in self.known(facts))
 
-    def known(self, facts: Facts) -> list[tuple[Position, ...]]:
+    def known(self, facts: GoalFacts) -> list[tuple[Position, ...]]:
         """The sites whose levers are known."""
         return [
             site
@@ -210,7 +210,7 @@ class LeversHeld:
             if all(_is_named(facts.block(place), "lever") for place in site)
         ]
 
-    def missing(self, facts: Facts, site: tuple[Position, ...]) -> tuple[int, float]:
+    def missing(self, facts: GoalFacts, site: tuple[Position, ...]) -> tuple[int, float]:
         """How many levers of a site are off, and how far off their holders are, in blocks."""
         is_off = sum(_property(facts.block(place), "powered") != "true" for place in site)
         far = min(
@@ -231,7 +231,7 @@ Fact = ItemsIn | ItemsWith | AgentAt | LeversHeld | BlockIs | BlocksAlike
 
 
 @dataclass(frozen=True, slots=True)
-class Condition:
+class GoalCondition:
     """A fact that is to be the case somewhere.
 
     Attributes:
@@ -262,13 +262,13 @@ class Goal:
         ticks: Most ticks until then, from where the first round begins; None: any number.
     """
 
-    reach: tuple[Condition, ...] = ()
-    never: tuple[Condition, ...] = ()
+    reach: tuple[GoalCondition, ...] = ()
+    never: tuple[GoalCondition, ...] = ()
     messages: int | None = None
     ticks: int | None = None
 
     @property
-    def conditions(self) -> tuple[Condition, ...]:
+    def conditions(self) -> tuple[GoalCondition, ...]:
         """All of them."""
         return (*self.reach, *self.never)
 
@@ -278,7 +278,7 @@ class Goal:
         return not (mine <= theirs or theirs <= mine)
 
     @property
-    def _wanted(self) -> frozenset[tuple[bool, Condition]]:
+    def _wanted(self) -> frozenset[tuple[bool, GoalCondition]]:
         wanted = [(True, each) for each in self.reach] + [(False, each) for each in self.never]
         return frozenset(wanted)
 

@@ -33,7 +33,7 @@ from beliefnest.world.values import Event, EventKind, Items, Point, Position
 
 __all__ = [
     "OUTCOMES",
-    "Verdict",
+    "Judgement",
     "answer_verdict",
     "found_instead",
     "opened_by",
@@ -53,7 +53,7 @@ the world or the judging function failed; nothing is known.
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class Judgement:
     """Whether one thing that was expected of a probe came out.
 
     Attributes:
@@ -78,7 +78,7 @@ def opened_by(agent: str, events: Iterable[Event]) -> tuple[Position, ...]:
     )
 
 
-def verdict_of(expected: Tells, trial: Trial) -> Verdict:
+def verdict_of(expected: Tells, trial: Trial) -> Judgement:
     """Whether a program did what was expected."""
     by_deed = False
     match expected:
@@ -112,7 +112,7 @@ def verdict_of(expected: Tells, trial: Trial) -> Verdict:
     return _verdict(expected, ok, found, by_deed=by_deed)
 
 
-def outcome_of(verdicts: Sequence[Verdict], result: ProgramResult | None) -> str:
+def outcome_of(verdicts: Sequence[Judgement], result: ProgramResult | None) -> str:
     """What a probe came to, all in all; one of `OUTCOMES`.
 
     Args:
@@ -131,10 +131,10 @@ def outcome_of(verdicts: Sequence[Verdict], result: ProgramResult | None) -> str
     return "wrong" if failed else "ok"
 
 
-def answer_verdict(expected: Answers, answer: str | None) -> Verdict:
+def answer_verdict(expected: Answers, answer: str | None) -> Judgement:
     """Whether a question was answered rightly; None: it was not answered."""
     if answer is None:
-        return Verdict(expected, ok=False, why_not="gave no answer", outcome="no_answer")
+        return Judgement(expected, ok=False, why_not="gave no answer", outcome="no_answer")
     if expected.options:
         ok = answer in expected.right
     else:
@@ -202,13 +202,13 @@ def places_of(items: Items, state: State) -> tuple[Position, ...]:
     )
 
 
-def _verdict(expected: Expected, ok: bool, found: str, *, by_deed: bool = False) -> Verdict:
+def _verdict(expected: Expected, ok: bool, found: str, *, by_deed: bool = False) -> Judgement:
     if ok:
-        return Verdict(expected, ok=True, outcome="ok")
-    return Verdict(expected, ok=False, why_not=found, outcome="wrong" if by_deed else None)
+        return Judgement(expected, ok=True, outcome="ok")
+    return Judgement(expected, ok=False, why_not=found, outcome="wrong" if by_deed else None)
 
 
-def _judged(expected: Judge, trial: Trial) -> Verdict:
+def _judged(expected: Judge, trial: Trial) -> Judgement:
     try:
         answer: object = expected.function(trial)
     except Exception as error:  # noqa: BLE001  # a user's function may raise anything; it is told
@@ -217,7 +217,7 @@ def _judged(expected: Judge, trial: Trial) -> Verdict:
     else:
         said = f"{expected.name} returned {answer!r}; it returns True, False or a text"
     if not isinstance(answer, bool | str):
-        return Verdict(expected, ok=False, why_not=said, outcome="error")
+        return Judgement(expected, ok=False, why_not=said, outcome="error")
     said = answer if isinstance(answer, str) else f"{expected.name} says no"
     return _verdict(expected, answer is True, said)
 

@@ -9,7 +9,7 @@ from typing import Any
 from beliefnest.errors import ScenarioError, UnknownNameError
 from beliefnest.scenarios.build import build_scenario
 from beliefnest.scenarios.content import ScenarioContent
-from beliefnest.scenarios.document import Document, Node, merged, wrapped
+from beliefnest.scenarios.document import Document, YamlNode, merged, wrapped
 from beliefnest.scenarios.form import check_form
 from beliefnest.scenarios.parameters import text_of, with_parameters
 from beliefnest.scenarios.reading import parse_yaml, read_yaml
@@ -143,6 +143,6 @@ def scenario_in(
             for number, other in written.conditions.items()
         }
         chosen = change(chosen)
-        told = Node({**chosen.root.value, "conditions": wrapped(about)})
+        told = YamlNode({**chosen.root.value, "conditions": wrapped(about)})
         chosen = replace(chosen, text=text_of(told))
     return build_scenario(chosen, check_form(chosen), condition, written.conditions)

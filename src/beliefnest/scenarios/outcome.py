@@ -9,7 +9,7 @@ from beliefnest.errors import InputError
 from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.content import Probe
 from beliefnest.scenarios.expected import Expectation
-from beliefnest.scenarios.judging import Verdict
+from beliefnest.scenarios.judging import Judgement
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.trial import Trial
 from beliefnest.world.paths import parse_path, path_text
@@ -58,7 +58,7 @@ class ProbeOutcome:
     """
 
     probe: Probe
-    verdicts: tuple[Verdict, ...]
+    verdicts: tuple[Judgement, ...]
     outcome: str
     usage: Usage
     prompt: str = ""

@@ -15,7 +15,7 @@ from typing import Any
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.scenarios.document import Document, KeyPath, Node, plain, under, wrapped
+from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain, under, wrapped
 from beliefnest.scenarios.expressions import evaluate, names_in
 from beliefnest.scenarios.format import ParameterEntry
 
@@ -65,7 +65,7 @@ def declared_in(document: Document, condition: int | None = None) -> dict[str, P
     return {name: _declared(document, name, entry) for name, entry in node.value.items()}
 
 
-def _declared(document: Document, name: object, entry: Node) -> ParameterEntry:
+def _declared(document: Document, name: object, entry: YamlNode) -> ParameterEntry:
     path = ("parameters", str(name))
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise document.fault(path, "is no name; use letters, digits and _")
@@ -147,7 +147,7 @@ def with_parameters(
     return replace(document, root=root)
 
 
-def _without_declarations(root: Node) -> Node:
+def _without_declarations(root: YamlNode) -> YamlNode:
     kept = {key: node for key, node in root.value.items() if key not in _KEYS}
     conditions = kept.get("conditions")
     if conditions is not None and isinstance(conditions.value, dict):
@@ -155,8 +155,8 @@ def _without_declarations(root: Node) -> Node:
             number: _without_declarations(each) if isinstance(each.value, dict) else each
             for number, each in conditions.value.items()
         }
-        kept["conditions"] = Node(others, conditions.line)
-    return Node(kept, root.line)
+        kept["conditions"] = YamlNode(others, conditions.line)
+    return YamlNode(kept, root.line)
 
 
 class _Filling:
@@ -166,21 +166,21 @@ class _Filling:
         self._document = document
         self._values = values
 
-    def node(self, node: Node, path: KeyPath) -> Node:
+    def node(self, node: YamlNode, path: KeyPath) -> YamlNode:
         if isinstance(node.value, dict):
             filled = {}
             for key, child in node.value.items():
                 name = self._text(key, path) if isinstance(key, str) else key
                 filled[name] = self.node(child, (*path, key))
-            return Node(filled, node.line)
+            return YamlNode(filled, node.line)
         if isinstance(node.value, list):
             parts = [self.node(child, (*path, n)) for n, child in enumerate(node.value)]
-            return Node(parts, node.line)
+            return YamlNode(parts, node.line)
         if not isinstance(node.value, str) or "${" not in node.value:
             return node
         whole = _HOLE.fullmatch(node.value)
         if whole is None:
-            return Node(self._text(node.value, path), node.line)
+            return YamlNode(self._text(node.value, path), node.line)
         found = self._found(whole, path)
         return node if found is None else _on_line(wrapped(found[0]), node.line)
 
@@ -208,12 +208,12 @@ class _Filling:
         raise AssertionError("unreachable")
 
 
-def _on_line(node: Node, line: int) -> Node:
+def _on_line(node: YamlNode, line: int) -> YamlNode:
     if isinstance(node.value, dict):
-        return Node({key: _on_line(child, line) for key, child in node.value.items()}, line)
+        return YamlNode({key: _on_line(child, line) for key, child in node.value.items()}, line)
     if isinstance(node.value, list):
-        return Node([_on_line(child, line) for child in node.value], line)
-    return Node(node.value, line)
+        return YamlNode([_on_line(child, line) for child in node.value], line)
+    return YamlNode(node.value, line)
 
 
 def _written(value: object) -> str:
@@ -223,7 +223,7 @@ def _written(value: object) -> str:
     return value if isinstance(value, str) else json.dumps(value)
 
 
-def text_of(root: Node) -> str:
+def text_of(root: YamlNode) -> str:
     """A document's content as YAML, one line for each entry at its top."""
     value = plain(root)
     assert isinstance(value, Mapping)  # the root of a document is one

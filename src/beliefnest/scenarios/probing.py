@@ -13,7 +13,7 @@ from beliefnest.prompts.rendering import LAST_ERROR
 from beliefnest.scenarios.content import Probe
 from beliefnest.scenarios.expected import Answers
 from beliefnest.scenarios.judging import (
-    Verdict,
+    Judgement,
     answer_verdict,
     opened_by,
     outcome_of,
@@ -48,7 +48,7 @@ class _Programs:
 
     attempts: tuple[Round, ...]
     trial: Trial | None
-    verdicts: tuple[Verdict, ...]
+    verdicts: tuple[Judgement, ...]
     fault: str = ""
 
 
@@ -125,7 +125,7 @@ def _ask_for_program(
             if not asking.keeps_unanswered:
                 raise
             told = tuple(
-                Verdict(each, ok=False, why_not="there is no program", outcome="no_answer")
+                Judgement(each, ok=False, why_not="there is no program", outcome="no_answer")
                 for each in probe.expect
                 if not isinstance(each, Answers)
             )
@@ -164,7 +164,7 @@ class _Trials:
         self._simulator = nest[probe.acts_in]
         self._probe = probe
         self._name = name
-        self.done: list[tuple[Trial, tuple[Verdict, ...]]] = []
+        self.done: list[tuple[Trial, tuple[Judgement, ...]]] = []
 
     def complaint(self, program: str) -> str | None:
         """Run a program; why it does not work, for the model to read.

@@ -15,7 +15,7 @@ from ruamel.yaml.nodes import MappingNode, ScalarNode
 
 from beliefnest.errors import ScenarioError
 from beliefnest.files import decode_json, read_regular_text
-from beliefnest.scenarios.document import MAX_DEPTH, Document, KeyPath, Node
+from beliefnest.scenarios.document import MAX_DEPTH, Document, KeyPath, YamlNode
 
 __all__ = ["parse_yaml", "read_yaml", "template_text", "templates_file"]
 
@@ -167,7 +167,7 @@ class _Conversion:
         self._source = source
         self._values = 0
 
-    def node(self, value: object, line: int, depth: int) -> Node:
+    def node(self, value: object, line: int, depth: int) -> YamlNode:
         self._values += 1
         if self._values > _MAX_VALUES or depth > MAX_DEPTH:
             raise ScenarioError(f"{self._source}:{line}: {_TOO_MUCH}")
@@ -177,7 +177,7 @@ class _Conversion:
                 if not isinstance(_scalar(key), str | int | float | None):
                     place = f"{self._source}:{_line(lines, key, line)}"
                     raise ScenarioError(f"{place}: {_NO_KEY}")
-            return Node(
+            return YamlNode(
                 {
                     _scalar(key): self.node(child, _line(lines, key, line), depth + 1)
                     for key, child in value.items()
@@ -186,14 +186,14 @@ class _Conversion:
             )
         if isinstance(value, CommentedSeq):
             lines = value.lc.data or {}
-            return Node(
+            return YamlNode(
                 [
                     self.node(child, _line(lines, index, line), depth + 1)
                     for index, child in enumerate(value)
                 ],
                 line,
             )
-        return Node(_scalar(value), line)
+        return YamlNode(_scalar(value), line)
 
 
 def _line(lines: Mapping[object, list[int]], key: object, default: int) -> int:

@@ -10,9 +10,9 @@ from beliefnest.scenarios.goals import (
     AgentAt,
     BlockIs,
     BlocksAlike,
-    Condition,
     Fact,
     Goal,
+    GoalCondition,
     ItemsIn,
     ItemsWith,
     LeversHeld,
@@ -156,7 +156,7 @@ def check_condition(entry: ConditionEntry, agents: Collection[str], box: Box) ->
             )
 
 
-def _conditions_of(entry: ConditionEntry, agents: Collection[str]) -> list[Condition]:
+def _conditions_of(entry: ConditionEntry, agents: Collection[str]) -> list[GoalCondition]:
     """The conditions that an entry describes, one for each thing it names.
 
     Raises:
@@ -176,7 +176,7 @@ def _conditions_of(entry: ConditionEntry, agents: Collection[str]) -> list[Condi
             f"the condition {plain} makes no sense; give container and items, agent and items, "
             "agent and at, agents and sites, block and state, or block and like"
         )
-    return [Condition(fact, path) for fact in facts]
+    return [GoalCondition(fact, path) for fact in facts]
 
 
 def _facts(entry: ConditionEntry) -> list[Fact]:

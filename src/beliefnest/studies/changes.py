@@ -13,7 +13,7 @@ from beliefnest.studies.scene import Kind
 from beliefnest.studies.symmetry import Placing
 from beliefnest.world.registry import Registry
 
-__all__ = ["Moved", "Renamed"]
+__all__ = ["MovedBySymmetry", "Renamed"]
 
 _NUMBER = r"-?\d+(?:\.\d+)?"
 _TRIPLE = re.compile(rf"\(\s*({_NUMBER}),\s*({_NUMBER}),\s*({_NUMBER})\s*\)")
@@ -21,7 +21,7 @@ _DIRECTIONAL = re.compile(r"\b(north|south|east|west|left|right)\b", re.IGNORECA
 
 
 @dataclass(frozen=True, slots=True)
-class Moved:
+class MovedBySymmetry:
     """Everything where a symmetry puts it.
 
     Attributes:

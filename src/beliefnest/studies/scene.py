@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 from beliefnest.errors import BeliefNestError, InputError, MissingExtraError
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
-from beliefnest.scenarios.document import Document, KeyPath, Node, plain, wrapped
+from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain, wrapped
 from beliefnest.scenarios.reading import template_text
 
 __all__ = ["Kind", "SceneChange", "changed_scene"]
@@ -215,22 +215,22 @@ def _templates(document: Document, change: SceneChange) -> Iterator[tuple[str, s
             continue
         path = ("probes", number, "template")
         text = template_text(document, path, named.value)
-        yield named.value, str(_leaf(document, Node(text), "template", path, change).value)
+        yield named.value, str(_leaf(document, YamlNode(text), "template", path, change).value)
 
 
 def _changed(
-    document: Document, node: Node, shape: Any, path: KeyPath, change: SceneChange
-) -> Node:
+    document: Document, node: YamlNode, shape: Any, path: KeyPath, change: SceneChange
+) -> YamlNode:
     if node.value is None or shape == "keep" or (path == ("conditions",)):
         return node
     if isinstance(shape, str):
-        return Node(_leaf(document, node, shape, path, change).value, node.line)
+        return YamlNode(_leaf(document, node, shape, path, change).value, node.line)
     if isinstance(shape, _Each) and isinstance(node.value, list):
         parts = [
             _changed(document, child, shape.shape, (*path, number), change)
             for number, child in enumerate(node.value)
         ]
-        return Node(parts, node.line)
+        return YamlNode(parts, node.line)
     if isinstance(shape, _Each):
         return _changed(document, node, shape.shape, path, change)
     if not isinstance(node.value, dict):
@@ -247,14 +247,16 @@ def _changed(
         else:
             raise document.fault((*path, key), "is not known to be the same in another scene")
         inner[name] = _changed(document, child, part, (*path, key), change)
-    return Node(inner, node.line)
+    return YamlNode(inner, node.line)
 
 
 def _key(document: Document, key: str, kind: Kind, path: KeyPath, change: SceneChange) -> str:
-    return str(_leaf(document, Node(key), kind, path, change).value)
+    return str(_leaf(document, YamlNode(key), kind, path, change).value)
 
 
-def _leaf(document: Document, node: Node, kind: Kind, path: KeyPath, change: SceneChange) -> Node:
+def _leaf(
+    document: Document, node: YamlNode, kind: Kind, path: KeyPath, change: SceneChange
+) -> YamlNode:
     try:
         return wrapped(change.value(kind, plain(node)))
     except InputError as error:

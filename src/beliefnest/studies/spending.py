@@ -6,7 +6,7 @@ from pathlib import Path
 
 from filelock import FileLock
 
-from beliefnest.llm.budget import Budget, RunLimits
+from beliefnest.llm.budget import RunLimits, RunSpending
 from beliefnest.llm.messages import Usage
 from beliefnest.studies.store import append_line
 
@@ -14,7 +14,7 @@ __all__ = ["SharedBudget", "spent_in"]
 
 
 @dataclass
-class SharedBudget(Budget):
+class SharedBudget(RunSpending):
     """A budget that workers share by a file: each answer is a line in it.
 
     Requests under way at the same moment are all let through, as none of them has been counted

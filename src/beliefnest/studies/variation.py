@@ -9,7 +9,7 @@ from typing import Any
 
 from beliefnest.errors import InputError
 from beliefnest.scenarios.document import Document, plain
-from beliefnest.studies.changes import Moved, Renamed
+from beliefnest.studies.changes import MovedBySymmetry, Renamed
 from beliefnest.studies.scene import Kind, SceneChange, changed_scene
 from beliefnest.studies.symmetry import SYMMETRIES, Placing, symmetry_named
 from beliefnest.world.registry import Registry
@@ -82,7 +82,7 @@ class Variation:
         agents, items = self._names("agents"), self._names("items")
         changes: list[SceneChange] = [Renamed(agents, items)] if agents or items else []
         if symmetry != SYMMETRIES[0]:
-            changes.append(Moved(Placing(symmetry, _box(document)), Registry.load()))
+            changes.append(MovedBySymmetry(Placing(symmetry, _box(document)), Registry.load()))
         return changes
 
     def _names(self, kind: str) -> Mapping[str, str]:

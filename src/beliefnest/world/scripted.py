@@ -30,8 +30,8 @@ from beliefnest.world.limits import (
 )
 from beliefnest.world.registry import AIR
 from beliefnest.world.scripted_parts import (
-    Facts,
     Pending,
+    WorldFacts,
     checked_equipment,
     checked_name,
     checked_utterance,
@@ -159,7 +159,7 @@ class ScriptedWorld(ScriptedState):
         if snapshot.box != self._box:
             raise WorldError(f"a snapshot of {snapshot.box} does not fit into {self._box}")
         self._tick = snapshot.tick
-        self._facts = Facts(
+        self._facts = WorldFacts(
             snapshot.blocks.copy(),
             {place: dict(items) for place, items in snapshot.containers.items()},
             dict(snapshot.agents),

@@ -22,8 +22,8 @@ from beliefnest.world.values import (
 )
 
 __all__ = [
-    "Facts",
     "Pending",
+    "WorldFacts",
     "checked_box",
     "checked_equipment",
     "checked_name",
@@ -36,7 +36,7 @@ __all__ = [
 
 
 @dataclass
-class Facts:
+class WorldFacts:
     """What is the case; copied before a tick so that a failed one leaves no trace."""
 
     blocks: BlockGrid
@@ -47,9 +47,9 @@ class Facts:
     pressed: dict[Position, int] = field(default_factory=dict)
     """Buttons that come out again, each with the tick at which it does."""
 
-    def copied(self) -> "Facts":
+    def copied(self) -> "WorldFacts":
         """The same facts; a tick that changes blocks changes a copy of them."""
-        return Facts(
+        return WorldFacts(
             self.blocks,
             dict(self.containers),
             dict(self.agents),
@@ -75,7 +75,7 @@ def pressed_from(state: bytes, tick: int) -> dict[Position, int]:
 class Pending:
     """What the tick being made changes."""
 
-    def __init__(self, facts: Facts) -> None:
+    def __init__(self, facts: WorldFacts) -> None:
         self.saved = facts.copied()
         self.changed = False
         self.blocks: dict[Position, Block] = {}

@@ -10,7 +10,7 @@ from beliefnest.errors import BeliefNestError, InputError, WorldError
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.limits import items_fault
 from beliefnest.world.registry import AIR, Registry
-from beliefnest.world.scripted_parts import Facts, Pending, checked_box, sum_of, whole_position
+from beliefnest.world.scripted_parts import Pending, WorldFacts, checked_box, sum_of, whole_position
 from beliefnest.world.signs import written
 from beliefnest.world.values import (
     AgentState,
@@ -41,7 +41,7 @@ class ScriptedState:
         self._registry = Registry.load()
         self._box = checked_box(box)
         self._handed_out = False
-        self._facts = Facts(np.zeros(self._box.shape, dtype=np.int32), {}, {}, {})
+        self._facts = WorldFacts(np.zeros(self._box.shape, dtype=np.int32), {}, {}, {})
 
     @property
     def box(self) -> Box:

@@ -12,7 +12,7 @@ from itertools import pairwise, product
 
 import numpy as np
 
-from beliefnest.cli.bench.figures import Figure
+from beliefnest.cli.bench.figures import Metric
 from beliefnest.errors import BodyError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.perception.options import Perception
@@ -36,19 +36,19 @@ _CLAIMS = 40
 _LATE = 100_000
 
 
-def measure() -> Sequence[Figure]:
+def measure() -> Sequence[Metric]:
     """All figures of the beliefs, one after the other."""
     return [*_visible_sets(), *_crowd(8, 3), *_crowd(16, 2), _claims(), *_late(), _memory()]
 
 
-def _visible_sets() -> list[Figure]:
+def _visible_sets() -> list[Metric]:
     figures = []
     for percent, goal in ((2, 2.0), (15, 4.0), (40, 4.0)):
         milliseconds = _look(_random_geometry((41, 20, 41), percent), (20.3, 10.62, 20.7))
         name = f"visible set, 41x20x41, {percent} % solid"
-        figures.append(Figure(name, milliseconds, "ms", goal))
+        figures.append(Metric(name, milliseconds, "ms", goal))
     room = _look(_random_geometry((23, 4, 23), 2), (11.3, 2.62, 11.7))
-    return [*figures, Figure("visible set, 23x4x23, 2 % solid", room, "ms", 0.2)]
+    return [*figures, Metric("visible set, 23x4x23, 2 % solid", room, "ms", 0.2)]
 
 
 def _random_geometry(shape: tuple[int, int, int], percent: int) -> Geometry:
@@ -135,7 +135,7 @@ class _Crowd:
         self.world.place_agent(name, self._feet[name], self._yaws[name])
 
 
-def _crowd(agents: int, depth: int) -> list[Figure]:
+def _crowd(agents: int, depth: int) -> list[Metric]:
     crowd = _Crowd(agents)
     paths = crowd.nodes(depth)
     for path in paths:
@@ -152,13 +152,13 @@ def _crowd(agents: int, depth: int) -> list[Figure]:
     title = f"{len(paths)} nodes, {agents} agents walking, a door moving"
     spent.sort()
     return [
-        Figure(f"tick of {title}", statistics.median(spent), "ms", 10.0),
-        Figure(f"95th percentile of {title}", spent[int(0.95 * len(spent))], "ms", 25.0),
-        Figure(f"node of {len(paths)} asked for with nothing changed", quiet * 1e3, "us", 50.0),
+        Metric(f"tick of {title}", statistics.median(spent), "ms", 10.0),
+        Metric(f"95th percentile of {title}", spent[int(0.95 * len(spent))], "ms", 25.0),
+        Metric(f"node of {len(paths)} asked for with nothing changed", quiet * 1e3, "us", 50.0),
     ]
 
 
-def _claims() -> Figure:
+def _claims() -> Metric:
     """A tick in which somebody claims something that everybody hears and weighs."""
     crowd = _Crowd(8, Perception(testimony="informed", grace=0))
     paths = crowd.nodes(3)
@@ -174,10 +174,10 @@ def _claims() -> Figure:
             crowd.nest[path].state  # noqa: B018 - what is measured
         spent.append((time.perf_counter() - started) * 1e3)
     title = f"tick with a claim heard by 8 agents, {len(paths)} nodes"
-    return Figure(title, statistics.median(spent[_CLAIMS // 4 :]), "ms", 10.0)
+    return Metric(title, statistics.median(spent[_CLAIMS // 4 :]), "ms", 10.0)
 
 
-def _late() -> list[Figure]:
+def _late() -> list[Metric]:
     crowd = _Crowd(8)
     for _ in range(_LATE):
         crowd.walk_one()
@@ -189,18 +189,18 @@ def _late() -> list[Figure]:
     first = time.perf_counter() - started
     again = _median(lambda: crowd.nest[path].state.agents["agent3"], 31)
     return [
-        Figure(f"depth-3 node asked for after {_LATE} ticks", first, "s", 1.0),
-        Figure("the same node again", again, "ms", 1.0),
+        Metric(f"depth-3 node asked for after {_LATE} ticks", first, "s", 1.0),
+        Metric("the same node again", again, "ms", 1.0),
     ]
 
 
-def _memory() -> Figure:
+def _memory() -> Metric:
     """Peak memory of a process of its own that does `keep_up`."""
     code = f"from {__name__} import keep_up; print(keep_up())"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise BodyError(f"a process that keeps nodes up to date failed: {done.stderr.strip()}")
-    return Figure(f"peak memory, 456 nodes over {_LATE} ticks", float(done.stdout), "MB", 300.0)
+    return Metric(f"peak memory, 456 nodes over {_LATE} ticks", float(done.stdout), "MB", 300.0)
 
 
 def keep_up() -> float:

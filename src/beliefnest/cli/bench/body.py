@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from beliefnest.cli.bench.figures import Figure, median_seconds
+from beliefnest.cli.bench.figures import Metric, median_seconds
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario
 
@@ -11,7 +11,7 @@ __all__ = ["measure"]
 _RUNS = 20
 
 
-def measure() -> Sequence[Figure]:
+def measure() -> Sequence[Metric]:
     """Fork of `/observer` with three agents: control mode, region, blocks, chests, bots."""
     scenario = Scenario.load("sally-anne")
     numbers = iter(range(_RUNS + 1))
@@ -25,5 +25,5 @@ def measure() -> Sequence[Figure]:
 
         fork()
         return [
-            Figure("a body for a belief with three agents", median_seconds(fork, _RUNS), "s", 0.3)
+            Metric("a body for a belief with three agents", median_seconds(fork, _RUNS), "s", 0.3)
         ]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from rich import box
 from rich.table import Table
 
-from beliefnest.cli.bench.figures import Figure
+from beliefnest.cli.bench.figures import Metric
 from beliefnest.cli.bench.registry import checked, measure
 from beliefnest.cli.console import folded, progress_on, stdout
 
@@ -24,7 +24,7 @@ def run_benches(names: Sequence[str], *, as_json: bool) -> int:
     Raises:
         UnknownNameError: There is no bench of a name.
     """
-    figures: dict[str, Sequence[Figure]] = {}
+    figures: dict[str, Sequence[Metric]] = {}
     chosen = checked(names)
     with progress_on("bench") as on_progress:
         for number, name in enumerate(chosen):
@@ -38,7 +38,7 @@ def run_benches(names: Sequence[str], *, as_json: bool) -> int:
     return 1 if any(figure.ok is False for found in figures.values() for figure in found) else 0
 
 
-def _json(figure: Figure) -> dict[str, object]:
+def _json(figure: Metric) -> dict[str, object]:
     return {
         "name": figure.name,
         "value": figure.value,
@@ -49,7 +49,7 @@ def _json(figure: Figure) -> dict[str, object]:
     }
 
 
-def _table(figures: dict[str, Sequence[Figure]]) -> Table:
+def _table(figures: dict[str, Sequence[Metric]]) -> Table:
     table = Table(box=box.SIMPLE_HEAVY)
     for heading in ("bench", "figure"):
         table.add_column(heading)

@@ -3,7 +3,7 @@
 import time
 
 from beliefnest.bodies.worlds import Worlds
-from beliefnest.cli.bench.figures import Figure
+from beliefnest.cli.bench.figures import Metric
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, said
 from beliefnest.episodes.policies.search import Bounds, Planner
@@ -27,7 +27,7 @@ await waitTicks(bot, 200)
 """
 
 
-def measure() -> list[Figure]:
+def measure() -> list[Metric]:
     """A round of four agents, branches of an order-1 search, each task at its order."""
     return [
         _round(),
@@ -37,7 +37,7 @@ def measure() -> list[Figure]:
     ]
 
 
-def _round() -> Figure:
+def _round() -> Metric:
     """Programs of 100 ticks of four agents that read percepts, and everybody's belief after it."""
     hall = {
         "name": "round",
@@ -58,10 +58,10 @@ def _round() -> Figure:
         seconds = time.perf_counter() - started
         assert len(beliefs) == 4
     faster = _TICKS / TICKS_PER_SECOND / seconds
-    return Figure("round of 4 agents, 100 ticks, scripted", faster, "x", 100.0, at_least=True)
+    return Metric("round of 4 agents, 100 ticks, scripted", faster, "x", 100.0, at_least=True)
 
 
-def _branches() -> Figure:
+def _branches() -> Metric:
     task = Task.load("tell-what-is-needed", agents=3)
     with Episode(task) as episode:
         view = episode.view("nora")
@@ -72,10 +72,10 @@ def _branches() -> Figure:
         planner.plan(view.imagine(1), "nora", 1, view.ticks_left, Bounds())
         seconds = time.perf_counter() - started
     rate = planner.tried / seconds
-    return Figure("branches, order 1, 3 agents", rate, "1/s", 200.0, at_least=True)
+    return Metric("branches, order 1, 3 agents", rate, "1/s", 200.0, at_least=True)
 
 
-def _branches_in_minecraft() -> Figure:
+def _branches_in_minecraft() -> Metric:
     """What a planner of order 1 would try next, each on a branch of its agent's belief, in bodies.
 
     The agent's own programs alone run there; the planner itself imagines a scripted world.
@@ -104,14 +104,14 @@ def _branches_in_minecraft() -> Figure:
 
         tried("first")
         rate = tried("again")
-    return Figure("branches in Minecraft, order 1, 3 agents", rate, "1/s", 20.0, at_least=True)
+    return Metric("branches in Minecraft, order 1, 3 agents", rate, "1/s", 20.0, at_least=True)
 
 
-def _solved(name: str) -> Figure:
+def _solved(name: str) -> Metric:
     task = Task.load(name)
     started = time.perf_counter()
     with Episode(task) as episode:
         solved = episode.play().success
     seconds = time.perf_counter() - started
     unit = "s" if solved else "s, not solved"
-    return Figure(f"{name} at order {task.order}", seconds, unit, 60.0)
+    return Metric(f"{name} at order {task.order}", seconds, unit, 60.0)

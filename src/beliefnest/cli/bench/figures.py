@@ -5,11 +5,11 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-__all__ = ["Figure", "median_seconds"]
+__all__ = ["Metric", "median_seconds"]
 
 
 @dataclass(frozen=True, slots=True)
-class Figure:
+class Metric:
     """One measured figure.
 
     Attributes:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from beliefnest.bodies.address import ServerAddress
 from beliefnest.bodies.minecraft import MinecraftWorld
-from beliefnest.cli.bench.figures import Figure, median_seconds
+from beliefnest.cli.bench.figures import Metric, median_seconds
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.frames import Snapshot
@@ -32,13 +32,13 @@ while (true) {{
 """
 
 
-def measure() -> Sequence[Figure]:
+def measure() -> Sequence[Metric]:
     """Beliefs during a run in real time; on a server, if one is named, a body and many bots."""
     named = os.environ.get(_SERVER)
     return [*_beliefs(), *([] if named is None else _server(named))]
 
 
-def _beliefs() -> Sequence[Figure]:
+def _beliefs() -> Sequence[Metric]:
     """Three agents walk, all beliefs down to depth 3 are followed, and three are embodied."""
     scenario = Scenario.load("sally-anne", 1)
     agents = sorted(scenario.setting.snapshot.agents)
@@ -66,13 +66,13 @@ def _beliefs() -> Sequence[Figure]:
         per_tick = 1000 * (time.process_time() - used) / ticks
         lag = max(each.lag for each in nest.layout())
     return [
-        Figure(
+        Metric(
             f"a tick of {len(paths)} beliefs, {_EMBODIED} of them embodied", per_tick, "ms", 5.0
         ),
-        Figure(
+        Metric(
             "ticks that a run of 10 s is late, its call included", _late(seconds, ticks), "", 2.0
         ),
-        Figure(f"a change is seen in {_EMBODIED} embodied beliefs after", lag, "ticks", 4.0),
+        Metric(f"a change is seen in {_EMBODIED} embodied beliefs after", lag, "ticks", 4.0),
     ]
 
 
@@ -80,7 +80,7 @@ def _late(seconds: float, ticks: int) -> float:
     return max(0.0, seconds * TICKS_PER_SECOND - ticks)
 
 
-def _server(named: str) -> Sequence[Figure]:
+def _server(named: str) -> Sequence[Metric]:
     """A verified body of Sally-Anne's box, and the processor time of many bots."""
     world = MinecraftWorld.start(ServerAddress.parse(named), 0)
     snapshot = Scenario.load("sally-anne", 1).setting.snapshot
@@ -90,9 +90,9 @@ def _server(named: str) -> Sequence[Figure]:
     finally:
         world.close()
     return [
-        Figure("a verified body of Sally-Anne's box, made and put back", seconds, "s", 3.0),
-        Figure(f"processors that {_BOTS} bots take", share, "", 1.0),
-        Figure(f"of {_BOTS} bots lost in {_WATCHED_S} s", missing, "", 0.0),
+        Metric("a verified body of Sally-Anne's box, made and put back", seconds, "s", 3.0),
+        Metric(f"processors that {_BOTS} bots take", share, "", 1.0),
+        Metric(f"of {_BOTS} bots lost in {_WATCHED_S} s", missing, "", 0.0),
     ]
 
 

@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from beliefnest.cli.bench.figures import Figure
+from beliefnest.cli.bench.figures import Metric
 from beliefnest.env import parallel_env
 
 __all__ = ["measure"]
@@ -17,7 +17,7 @@ Act = Callable[[Any, str, bool], Any]
 """Given the environment, an agent and whether it is busy, what it does."""
 
 
-def measure() -> Sequence[Figure]:
+def measure() -> Sequence[Metric]:
     """Agents that walk to one place after the other, and agents that do anything each tick."""
     chance = random.Random(0)
 
@@ -31,8 +31,8 @@ def measure() -> Sequence[Figure]:
         return env.action_space(agent).sample()
 
     return [
-        Figure("joint steps, 3 agents that walk", _rate(walk), "1/s", 500.0, at_least=True),
-        Figure("joint steps, 3 agents that act at random", _rate(anything), "1/s"),
+        Metric("joint steps, 3 agents that walk", _rate(walk), "1/s", 500.0, at_least=True),
+        Metric("joint steps, 3 agents that act at random", _rate(anything), "1/s"),
     ]
 
 

@@ -4,7 +4,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from beliefnest.cli.bench.figures import Figure, median_seconds
+from beliefnest.cli.bench.figures import Metric, median_seconds
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario
 
@@ -15,7 +15,7 @@ _CHEST = (-2, -51, -4)
 _TIMES = 9
 
 
-def measure() -> Sequence[Figure]:
+def measure() -> Sequence[Metric]:
     """Figures of the first condition of Sally-Anne, made and written."""
     with (
         tempfile.TemporaryDirectory() as folder,
@@ -33,9 +33,9 @@ def measure() -> Sequence[Figure]:
             lambda: nest.plot_beliefs(_CHEST, "diamond", _PATHS)._repr_html_(), _TIMES
         )
         return [
-            Figure("a figure of four simulators, SVG", saved("svg"), "ms", 300.0),
-            Figure("a figure of four simulators, PDF", saved("pdf"), "ms", 300.0),
-            Figure("a figure of four simulators, PNG", saved("png"), "ms", 300.0),
-            Figure("what a notebook shows of a nest", shown, "ms", 50.0),
-            Figure("a plot of four beliefs over time", plot * 1000, "ms"),
+            Metric("a figure of four simulators, SVG", saved("svg"), "ms", 300.0),
+            Metric("a figure of four simulators, PDF", saved("pdf"), "ms", 300.0),
+            Metric("a figure of four simulators, PNG", saved("png"), "ms", 300.0),
+            Metric("what a notebook shows of a nest", shown, "ms", 50.0),
+            Metric("a plot of four beliefs over time", plot * 1000, "ms"),
         ]

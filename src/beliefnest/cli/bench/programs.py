@@ -10,7 +10,7 @@ from pathlib import Path
 
 from beliefnest.bodies.node_files import node_command
 from beliefnest.cli.bench import restore
-from beliefnest.cli.bench.figures import Figure, median_seconds
+from beliefnest.cli.bench.figures import Metric, median_seconds
 from beliefnest.errors import BodyError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.setting import Senses
@@ -31,23 +31,23 @@ _PILLARS = range(-18, 19, 9)
 _CORNERS = ((15, 15), (-15, 10), (-10, -17), (17, -12))
 
 
-def measure() -> Sequence[Figure]:
+def measure() -> Sequence[Metric]:
     """All figures of programs, as users run them: `Nest.open`, `Simulator.run` and `run_all`."""
     walks = [_walk(4, 100.0), _walk(16, 20.0), _walk(4, None, "percepts")]
     return [_empty(), *_containment(), *walks, *restore.measure()]
 
 
-def _empty() -> Figure:
+def _empty() -> Metric:
     """From the call to the result, recorded in a run file."""
     with (
         tempfile.TemporaryDirectory() as folder,
         Nest.open(_hall(1), store=Path(folder) / "run.bn") as nest,
     ):
         spent = median_seconds(lambda: nest["/"].run("agent0", ""), _RUNS)
-    return Figure("empty program, from call to result", spent * 1e3, "ms", 15.0)
+    return Metric("empty program, from call to result", spent * 1e3, "ms", 15.0)
 
 
-def _containment() -> Sequence[Figure]:
+def _containment() -> Sequence[Metric]:
     """What the sandbox adds to a walk of four legs, beside the same calls of skills without one.
 
     Inside Node, walks by turns, the median over pairs; then as a part of what a user waits for,
@@ -63,8 +63,8 @@ def _containment() -> Sequence[Figure]:
     whole = _call() * 1e3
     walk = "added by the sandbox to a walk of four legs"
     return [
-        Figure(f"{walk}, from call to result", added / (whole - added) * 100, "%", 10.0),
-        Figure(f"{walk}, bots and server alone", inside * 100, "%"),
+        Metric(f"{walk}, from call to result", added / (whole - added) * 100, "%", 10.0),
+        Metric(f"{walk}, bots and server alone", inside * 100, "%"),
     ]
 
 
@@ -80,7 +80,7 @@ def _call() -> float:
         return median_seconds(lambda: _speed(nest, programs), _PAIRS)
 
 
-def _walk(agents: int, target: float | None, senses: Senses = "world") -> Figure:
+def _walk(agents: int, target: float | None, senses: Senses = "world") -> Metric:
     """Everybody walks around the hall, recorded in a run file; the median of some rounds."""
     programs = {f"agent{number}": _round(number) for number in range(agents)}
     with (
@@ -91,7 +91,7 @@ def _walk(agents: int, target: float | None, senses: Senses = "world") -> Figure
         ratios = [_speed(nest, programs, senses) for _ in range(1 + _WALKS)][1:]
     what = "" if senses == "world" else f" by their {senses}"
     name = f"{agents} agents walking{what}, Minecraft seconds per second"
-    return Figure(name, statistics.median(ratios), "x", target, at_least=True)
+    return Metric(name, statistics.median(ratios), "x", target, at_least=True)
 
 
 def _speed(nest: Nest, programs: dict[str, str], senses: Senses = "world") -> float:

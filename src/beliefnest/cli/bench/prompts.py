@@ -8,7 +8,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from beliefnest.cli.bench.figures import Figure, median_seconds
+from beliefnest.cli.bench.figures import Metric, median_seconds
 from beliefnest.errors import BodyError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.perception.options import Perception
@@ -25,7 +25,7 @@ _SIZE = 20
 _AGENTS = ("anne", "bob", "sally", "tom")
 
 
-def measure() -> Sequence[Figure]:
+def measure() -> Sequence[Metric]:
     """Renders after a long run of everybody walking, and one whole experiment."""
     nest = _walked(_TICKS)
     template = built_in_template("paper")
@@ -37,9 +37,9 @@ def measure() -> Sequence[Figure]:
     new = time.perf_counter() - started
     _ice_cream_van()
     return [
-        Figure(f"depth 2 after {_TICKS:,} ticks", known * 1000, "ms", 20.0),
-        Figure("depth 3, a path nobody asked for before", new * 1000, "ms", 300.0),
-        Figure(
+        Metric(f"depth 2 after {_TICKS:,} ticks", known * 1000, "ms", 20.0),
+        Metric("depth 3, a path nobody asked for before", new * 1000, "ms", 300.0),
+        Metric(
             "ice cream van, process start included", median_seconds(_ice_cream_van, _RUNS), "s", 8.0
         ),
     ]

@@ -3,7 +3,7 @@
 import importlib
 from collections.abc import Mapping, Sequence
 
-from beliefnest.cli.bench.figures import Figure
+from beliefnest.cli.bench.figures import Metric
 from beliefnest.errors import UnknownNameError
 
 __all__ = ["BENCHES", "checked", "measure"]
@@ -44,7 +44,7 @@ def checked(names: Sequence[str]) -> Sequence[str]:
     return names or [name for name in BENCHES if name not in NEEDING_MORE]
 
 
-def measure(name: str) -> Sequence[Figure]:
+def measure(name: str) -> Sequence[Metric]:
     """Run a bench that there is."""
-    figures: Sequence[Figure] = importlib.import_module(BENCHES[name]).measure()
+    figures: Sequence[Metric] = importlib.import_module(BENCHES[name]).measure()
     return figures

@@ -5,7 +5,7 @@ import signal
 from collections.abc import Sequence
 
 from beliefnest.bodies.embedded import EmbeddedWorld
-from beliefnest.cli.bench.figures import Figure, median_seconds
+from beliefnest.cli.bench.figures import Metric, median_seconds
 from beliefnest.errors import BodyError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.face.opening import Start, begun
@@ -18,7 +18,7 @@ _PATHS: Sequence[tuple[str, ...]] = ((), ("ann",), ("ann", "bob"))
 _AGENTS = ("ann", "bob", "cleo")
 
 
-def measure() -> Sequence[Figure]:
+def measure() -> Sequence[Metric]:
     """From the kill until all bodies have gone on by a tick."""
     world = EmbeddedWorld.start(0)
     engine = begun(Start.of(_room(), "embedded", 0), world, None)
@@ -33,7 +33,7 @@ def measure() -> Sequence[Figure]:
         spent = median_seconds(restore, _RUNS)
     finally:
         engine.close()
-    return [Figure("restore after a kill of Node, 3 bodies with 3 agents each", spent, "s", 3.0)]
+    return [Metric("restore after a kill of Node, 3 bodies with 3 agents each", spent, "s", 3.0)]
 
 
 def _go_apart(engine: Engine) -> None:

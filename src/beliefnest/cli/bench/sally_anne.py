@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from beliefnest.bodies.worlds import Worlds
-from beliefnest.cli.bench.figures import Figure, median_seconds
+from beliefnest.cli.bench.figures import Metric, median_seconds
 from beliefnest.errors import BodyError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario
@@ -20,12 +20,12 @@ __all__ = ["measure"]
 _RUNS = 5
 
 
-def measure() -> Sequence[Figure]:
+def measure() -> Sequence[Metric]:
     """All conditions as a user runs them, and Minecraft time against wall time."""
     _whole()
     return [
-        Figure("all conditions, process start included", median_seconds(_whole, _RUNS), "s", 8.0),
-        Figure("Minecraft seconds per second of the script", _speed(), "x", 50.0, at_least=True),
+        Metric("all conditions, process start included", median_seconds(_whole, _RUNS), "s", 8.0),
+        Metric("Minecraft seconds per second of the script", _speed(), "x", 50.0, at_least=True),
     ]
 
 

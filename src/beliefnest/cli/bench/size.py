@@ -4,16 +4,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import beliefnest
-from beliefnest.cli.bench.figures import Figure
+from beliefnest.cli.bench.figures import Metric
 
 __all__ = ["measure"]
 
 _NOT_INSTALLED = frozenset({"node_modules", "__pycache__"})
 
 
-def measure() -> Sequence[Figure]:
+def measure() -> Sequence[Metric]:
     """Size of the installed package without its dependencies."""
     folder = Path(beliefnest.__file__).parent
     files = (path for path in folder.rglob("*") if path.is_file())
     size = sum(path.stat().st_size for path in files if not _NOT_INSTALLED & {*path.parts})
-    return [Figure("installed package without dependencies", size / 1e6, "MB", 30.0)]
+    return [Metric("installed package without dependencies", size / 1e6, "MB", 30.0)]

@@ -5,7 +5,7 @@ import sys
 from collections.abc import Sequence
 
 from beliefnest.bodies.embedded import EmbeddedWorld
-from beliefnest.cli.bench.figures import Figure, median_seconds
+from beliefnest.cli.bench.figures import Metric, median_seconds
 from beliefnest.errors import BodyError
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.frames import Frame
@@ -21,13 +21,13 @@ with beliefnest.Nest.open(scenario):
 """
 
 
-def measure() -> Sequence[Figure]:
+def measure() -> Sequence[Metric]:
     """Start-up of Python alone and with the world, and the memory of Node."""
     _python("import beliefnest")
     return [
-        Figure("python -c 'import beliefnest'", _median("import beliefnest"), "s"),
-        Figure("from start to an open embedded world", _median(_START), "s", 2.0),
-        Figure("memory of Node after the script", _memory(), "MB", 300.0),
+        Metric("python -c 'import beliefnest'", _median("import beliefnest"), "s"),
+        Metric("from start to an open embedded world", _median(_START), "s", 2.0),
+        Metric("memory of Node after the script", _memory(), "MB", 300.0),
     ]
 
 

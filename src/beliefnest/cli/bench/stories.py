@@ -4,7 +4,7 @@ import random
 import time
 from collections.abc import Iterator, Sequence
 
-from beliefnest.cli.bench.figures import Figure
+from beliefnest.cli.bench.figures import Metric
 from beliefnest.scenarios.stories import PlayedStory, Question, read_story
 
 __all__ = ["measure"]
@@ -14,7 +14,7 @@ _CAST = ("Ada", "Ben", "Cleo", "Dan", "Eve")
 _BOXES = ("tin", "jar", "trunk", "shelf")
 
 
-def measure() -> Sequence[Figure]:
+def measure() -> Sequence[Metric]:
     """Stories of one to three chapters, read, played and answered."""
     chance = random.Random(0)
     texts = [_story(chance, 1 + number % 3) for number in range(_STORIES)]
@@ -23,7 +23,7 @@ def measure() -> Sequence[Figure]:
     for text in texts:
         _answer(text, chance)
     seconds = time.perf_counter() - started
-    return [Figure("stories, orders 0 to 4", _STORIES / seconds, "1/s", 50.0, at_least=True)]
+    return [Metric("stories, orders 0 to 4", _STORIES / seconds, "1/s", 50.0, at_least=True)]
 
 
 def _story(chance: random.Random, chapters: int) -> str:

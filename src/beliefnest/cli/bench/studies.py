@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from beliefnest.cli.bench.figures import Figure
+from beliefnest.cli.bench.figures import Metric
 from beliefnest.errors import BodyError
 from beliefnest.studies.running import StudyProgress
 from beliefnest.studies.study import Study
@@ -33,7 +33,7 @@ class _Run:
     rate: float
 
 
-def measure() -> Sequence[Figure]:
+def measure() -> Sequence[Metric]:
     """Two hundred variations of Sally-Anne with the offline model.
 
     What is `once started` begins when all processes play: each takes some seconds of a core to
@@ -52,15 +52,15 @@ def measure() -> Sequence[Figure]:
     scripted.plan()
     alone = _run(scripted, 1)
     return [
-        Figure("cells a second, two jobs", _VARIATIONS / two.whole, "1/s", 8.0, at_least=True),
-        Figure("two jobs against one, once started", two.rate / one.rate, "x", 1.8, at_least=True),
-        Figure(
+        Metric("cells a second, two jobs", _VARIATIONS / two.whole, "1/s", 8.0, at_least=True),
+        Metric("two jobs against one, once started", two.rate / one.rate, "x", 1.8, at_least=True),
+        Metric(
             "two jobs against one on one core", two.rate / confined.rate, "x", 1.8, at_least=True
         ),
-        Figure("two jobs against one, start counted", one.whole / two.whole, "x"),
-        Figure("Dask's local cluster, once started", two.rate / dask.rate, "x", 1.2),
-        Figure("Dask's local cluster, start counted", dask.whole / two.whole, "x"),
-        Figure("cells a second, scripted", _VARIATIONS / alone.whole, "1/s", 100.0, at_least=True),
+        Metric("two jobs against one, start counted", one.whole / two.whole, "x"),
+        Metric("Dask's local cluster, once started", two.rate / dask.rate, "x", 1.2),
+        Metric("Dask's local cluster, start counted", dask.whole / two.whole, "x"),
+        Metric("cells a second, scripted", _VARIATIONS / alone.whole, "1/s", 100.0, at_least=True),
     ]
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from beliefnest.belief.view import State
-from beliefnest.cli.bench.figures import Figure, median_seconds
+from beliefnest.cli.bench.figures import Metric, median_seconds
 from beliefnest.errors import StoreError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.history import History
@@ -52,7 +52,7 @@ _DEEP = "/agent0/agent1"
 _SINGLES = TimelineKey((), "single")
 
 
-def measure() -> Sequence[Figure]:
+def measure() -> Sequence[Metric]:
     """A million ticks of eight agents that walk, recorded and then used.
 
     They walk in an open field that everybody knows. What is recorded goes to the journal a
@@ -66,34 +66,34 @@ def measure() -> Sequence[Figure]:
         size = path.stat().st_size / 1e6
         with SqliteJournal.open(path) as journal:
             figures = [
-                Figure(
+                Metric(
                     "ticks recorded, in batches", recorded.alone, "1/s", 20_000.0, at_least=True
                 ),
-                Figure("the same, following two beliefs", recorded.followed, "1/s"),
-                Figure("memory that the last 9/10 of them take", recorded.memory, "MB"),
-                Figure("ticks recorded, one at a time", _one_by_one(journal, walk), "1/s"),
-                Figure("file of 10^6 ticks", size, "MB", 400.0),
-                Figure("fork after 10^6 ticks", _fork(journal) * 1e3, "ms", 1.0),
-                Figure("entries of a past tick of 10^6", _read(journal, walk) * 1e3, "ms", 20.0),
-                Figure("opening a file of 10^6 ticks", _open(path) * 1e3, "ms"),
+                Metric("the same, following two beliefs", recorded.followed, "1/s"),
+                Metric("memory that the last 9/10 of them take", recorded.memory, "MB"),
+                Metric("ticks recorded, one at a time", _one_by_one(journal, walk), "1/s"),
+                Metric("file of 10^6 ticks", size, "MB", 400.0),
+                Metric("fork after 10^6 ticks", _fork(journal) * 1e3, "ms", 1.0),
+                Metric("entries of a past tick of 10^6", _read(journal, walk) * 1e3, "ms", 20.0),
+                Metric("opening a file of 10^6 ticks", _open(path) * 1e3, "ms"),
             ]
         figures += [
-            Figure("reality at a past tick of 10^6", _look_back(path, "/") * 1e3, "ms", 20.0),
-            Figure("a belief then, two deep", _look_back(path, _DEEP) * 1e3, "ms"),
-            Figure("resume of 10^6 ticks, to reality's state", _resume(path, "/"), "s", 2.0),
-            Figure("resume of 10^6 ticks, to a belief two deep", _resume(path, _DEEP), "s", 2.0),
+            Metric("reality at a past tick of 10^6", _look_back(path, "/") * 1e3, "ms", 20.0),
+            Metric("a belief then, two deep", _look_back(path, _DEEP) * 1e3, "ms"),
+            Metric("resume of 10^6 ticks, to reality's state", _resume(path, "/"), "s", 2.0),
+            Metric("resume of 10^6 ticks, to a belief two deep", _resume(path, _DEEP), "s", 2.0),
         ]
         _drop_checkpoints(path)
         figures += [
-            Figure(
+            Metric(
                 "reality at a past tick, no checkpoint", _look_back(path, "/") * 1e3, "ms", 20.0
             ),
-            Figure("resume to reality's state, no checkpoint", _resume(path, "/"), "s", 2.0),
+            Metric("resume to reality's state, no checkpoint", _resume(path, "/"), "s", 2.0),
         ]
         switched = _switch(Path(folder) / "switched.bn")
         return [
             *figures,
-            Figure("switch of a body, 20 blocks, 3 agents", switched * 1e3, "ms", 150.0),
+            Metric("switch of a body, 20 blocks, 3 agents", switched * 1e3, "ms", 150.0),
         ]
 
 

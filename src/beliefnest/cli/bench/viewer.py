@@ -12,7 +12,7 @@ from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING
 
-from beliefnest.cli.bench.figures import Figure
+from beliefnest.cli.bench.figures import Metric
 from beliefnest.cli.page import PageOptions, write_page
 from beliefnest.errors import BodyError, InputError
 from beliefnest.nest.face.nest import Nest
@@ -58,7 +58,7 @@ new MutationObserver(note).observe(slider, {attributes: true})
 """
 
 
-def measure() -> Sequence[Figure]:
+def measure() -> Sequence[Metric]:
     """All figures of the page.
 
     Raises:
@@ -82,13 +82,13 @@ def measure() -> Sequence[Figure]:
             rate = browser.ask(_SCRUB, _PICTURES, _TICKS)
             late = _late(place, browser)
         return [
-            Figure("Sally-Anne as one page", story.stat().st_size / 1e6, "MB", 1.5),
-            Figure("its first picture", first, "s", 2.0),
-            Figure(
+            Metric("Sally-Anne as one page", story.stat().st_size / 1e6, "MB", 1.5),
+            Metric("its first picture", first, "s", 2.0),
+            Metric(
                 f"{_TICKS} ticks, {_AGENTS} agents, depth 2", long.stat().st_size / 1e6, "MB", 10
             ),
-            Figure("scrubbing there", rate, "pictures/s", 15.0, at_least=True),
-            Figure("a change until it is on the live page", late, "ms", 100.0),
+            Metric("scrubbing there", rate, "pictures/s", 15.0, at_least=True),
+            Metric("a change until it is on the live page", late, "ms", 100.0),
         ]
 
 

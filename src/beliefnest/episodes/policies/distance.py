@@ -12,9 +12,9 @@ from beliefnest.scenarios.goals import (
     AgentAt,
     BlockIs,
     BlocksAlike,
-    Condition,
     Fact,
     Goal,
+    GoalCondition,
     ItemsIn,
     ItemsWith,
     LeversHeld,
@@ -107,12 +107,12 @@ class BeliefFacts:
         return None if state < 0 else Registry.load().text(state)
 
 
-def is_visible(condition: Condition, mind: Imagination) -> bool:
+def is_visible(condition: GoalCondition, mind: Imagination) -> bool:
     """Whether a mind reaches as deep as a condition."""
     return mind.knows(condition.path)
 
 
-def held(condition: Condition, mind: Imagination) -> bool:
+def held(condition: GoalCondition, mind: Imagination) -> bool:
     """Whether a condition that is visible holds in a mind."""
     if normalised((*mind.root, *condition.path)) == mind.root:
         return condition.fact.holds(MindFacts(mind))
@@ -125,7 +125,7 @@ def distance(goal: Goal, mind: Imagination) -> float:
     return sum(_off(each, mind, facts) for each in goal.reach)
 
 
-def _off(condition: Condition, mind: Imagination, facts: MindFacts) -> float:
+def _off(condition: GoalCondition, mind: Imagination, facts: MindFacts) -> float:
     if condition.path:
         # Whoever does not look that deep cannot tell, and takes it for open whatever is done.
         return 0.0 if is_visible(condition, mind) and held(condition, mind) else 1.0

@@ -23,7 +23,7 @@ from beliefnest.programs.calls import Call, program_of
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.values import Position
 
-__all__ = ["Bounds", "Omniscient", "Plan", "Planner", "Search"]
+__all__ = ["Bounds", "FoundPlan", "Omniscient", "Planner", "Search"]
 
 Score = tuple[float, ...]
 """Compared from left to right; less is better."""
@@ -53,7 +53,7 @@ class Bounds:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class FoundPlan:
     """What a planner came to.
 
     Attributes:
@@ -131,7 +131,9 @@ class Planner:
         self.tried = 0
         self.guesses: dict[tuple[object, ...], tuple[Call, ...]] = {}
 
-    def plan(self, mind: Imagination, agent: str, order: int, ticks: int, bounds: Bounds) -> Plan:
+    def plan(
+        self, mind: Imagination, agent: str, order: int, ticks: int, bounds: Bounds
+    ) -> FoundPlan:
         """The best course that is found; of equals the first and shortest.
 
         Args:
@@ -167,7 +169,7 @@ class _Planning:
         self._speaks = agent in brief.talk and order > 0
         self._doubted: frozenset[Position] = frozenset()
 
-    def best(self, mind: Imagination) -> Plan:
+    def best(self, mind: Imagination) -> FoundPlan:
         if self._order and self._opponents:
             # Who reckons with what others are after does not take their word.
             mind, self._doubted = mind.doubting(self._opponents)
@@ -189,8 +191,8 @@ class _Planning:
             if beam[0].score < best.score:
                 best = beam[0]
         if not best.calls and best.score[0] == _OPEN:
-            return Plan(self._exploring(mind), best.score)
-        return Plan(best.calls, best.score)
+            return FoundPlan(self._exploring(mind), best.score)
+        return FoundPlan(best.calls, best.score)
 
     def _imagined(self, mind: Imagination) -> list[str]:
         """The others whose doing is reckoned with."""

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from beliefnest.bodies.protocol import Body, Past, Sense, World
+from beliefnest.bodies.protocol import Body, ProgramPast, Sense, World
 from beliefnest.errors import BodyError, BranchError, WorldError
 from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.nest.acting.frame_recorder import ChatListener, FrameRecorder
@@ -15,7 +15,7 @@ from beliefnest.nest.acting.hearsay import ClaimReader, Hearsay
 from beliefnest.nest.acting.lives import Lives
 from beliefnest.nest.acting.sensing import Sensing, believer_of
 from beliefnest.nest.acting.speculation import SpeculatedBody, Speculation
-from beliefnest.nest.acting.starting import Start, start_of
+from beliefnest.nest.acting.starting import BodyStart, start_of
 from beliefnest.nest.past.body_state import note_internal_state, present
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
@@ -26,7 +26,7 @@ __all__ = ["Bodies"]
 
 
 @dataclass(frozen=True, slots=True)
-class _Embodied:
+class _RecordedBody:
     """A body and what records its frames."""
 
     body: Body
@@ -63,7 +63,7 @@ class Bodies:
         self._hearsay = None
         if reader is not None:
             self._hearsay = Hearsay(reader, recording.setting, recording.history)
-        self._embodied: dict[BeliefPath, _Embodied] = {}
+        self._embodied: dict[BeliefPath, _RecordedBody] = {}
         self._bodiless: set[BeliefPath] = set()
 
     def __contains__(self, path: BeliefPath) -> bool:
@@ -94,7 +94,7 @@ class Bodies:
         """Make the body of a simulator."""
         recorder = self._recorder(key)
         body = self.world.open_body(path_text(key.path), self.seed_of(key.path), snapshot, recorder)
-        self._embodied[key.path] = _Embodied(body, recorder)
+        self._embodied[key.path] = _RecordedBody(body, recorder)
         self._recording.records.add_versions(self.world.versions)
 
     def _recorder(self, key: TimelineKey) -> FrameRecorder:
@@ -114,7 +114,7 @@ class Bodies:
         """Seed of a simulator's body."""
         return f"{self._recording.seed} {path_text(path)}"
 
-    def start(self, path: BeliefPath, moment: ForkPoint) -> Start:
+    def start(self, path: BeliefPath, moment: ForkPoint) -> BodyStart:
         """What a simulator's body is filled with at a moment of its timeline or its parent's."""
         recording = self._recording
         return start_of(
@@ -186,7 +186,7 @@ class Bodies:
             with self.acting(path) as body:
                 body.step(0)
 
-    def sense_of(self, path: BeliefPath, agent: str, past: Past | None = None) -> Sense:
+    def sense_of(self, path: BeliefPath, agent: str, past: ProgramPast | None = None) -> Sense:
         """What an agent of a simulator perceives or remembers, while programs run in its body.
 
         Beliefs are worked out from what has been recorded so far, as they always are, and follow
@@ -266,7 +266,7 @@ class Bodies:
         recording = self._recording
         self.give_up(path)
         recorder = self._recorder(recording.selected[path])
-        self._embodied[path] = _Embodied(SpeculatedBody(speculation, recorder), recorder)
+        self._embodied[path] = _RecordedBody(SpeculatedBody(speculation, recorder), recorder)
         try:
             yield
         finally:

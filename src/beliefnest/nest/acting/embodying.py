@@ -28,7 +28,7 @@ _REALITY: BeliefPath = ()
 
 
 @dataclass
-class _Standing:
+class _Embodied:
     """A simulator that is shown.
 
     Attributes:
@@ -57,7 +57,7 @@ class Embodying:
     def __init__(self, recording: Recording, world: World) -> None:
         self._recording = recording
         self._world = world
-        self._standing: dict[BeliefPath, _Standing] = {}
+        self._standing: dict[BeliefPath, _Embodied] = {}
 
     @property
     def follows(self) -> bool:
@@ -131,13 +131,13 @@ class Embodying:
 
     def _planned(
         self, world: RealtimeWorld, path: BeliefPath, number: int, unknown: int
-    ) -> _Standing:
+    ) -> _Embodied:
         agents = self._recording.agents
         names: Mapping[str, str] = {name: name for name in agents}
         if number:
             others = [name for each in self._standing.values() for name in each.names.values()]
             names = display_names(agents, number, {*agents, *others, *world.players})
-        return _Standing(self._plot(path, number, world), names, unknown)
+        return _Embodied(self._plot(path, number, world), names, unknown)
 
     def _free_number(self, world: RealtimeWorld) -> int:
         taken = {standing.plot.origin for standing in self._standing.values()}
@@ -168,7 +168,7 @@ class Embodying:
         x, y, z = (math.floor(value) for value in middle)
         return x, y, z
 
-    def _shown(self, path: BeliefPath, standing: _Standing) -> tuple[Shown, int]:
+    def _shown(self, path: BeliefPath, standing: _Embodied) -> tuple[Shown, int]:
         """What a simulator's state is to be shown as, and the tick of its latest change."""
         reading = self._recording.reading(path)
         blocks = reading.blocks

@@ -11,7 +11,15 @@ from dataclasses import replace
 from functools import wraps
 from typing import Concatenate, ParamSpec, Self, TypeVar
 
-from beliefnest.bodies.protocol import KILLED, Body, Fault, Past, ProgramResult, RunRules, World
+from beliefnest.bodies.protocol import (
+    KILLED,
+    Body,
+    Fault,
+    ProgramPast,
+    ProgramResult,
+    RunRules,
+    World,
+)
 from beliefnest.errors import BodyLostError, BranchError, TickError
 from beliefnest.nest.acting.bodies import Bodies
 from beliefnest.nest.acting.embodying import Embodying
@@ -171,7 +179,7 @@ class Engine:
         timeout_ticks: int,
         step: int | None = None,
         senses: Senses = "world",
-        past: Mapping[str, Past] | None = None,
+        past: Mapping[str, ProgramPast] | None = None,
     ) -> Mapping[str, ProgramResult]:
         """Run programs in a body, record what happens, and note them with their results.
 

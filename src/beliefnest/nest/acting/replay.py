@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
-from beliefnest.bodies.protocol import Body, Past, RunRules, Sense, World
+from beliefnest.bodies.protocol import Body, ProgramPast, RunRules, Sense, World
 from beliefnest.nest.acting.going_on import decoded_past
 from beliefnest.nest.acting.hearsay import recalled
 from beliefnest.nest.acting.sensing import Sensing, believer_of
@@ -19,11 +19,11 @@ from beliefnest.timeline.records import ProgramRecord, Senses
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import path_text
 
-__all__ = ["Replayed", "replay"]
+__all__ = ["ReplayedTimeline", "replay"]
 
 
 @dataclass(frozen=True, slots=True)
-class Replayed:
+class ReplayedTimeline:
     """What became of one timeline when it was run again.
 
     Attributes:
@@ -38,7 +38,7 @@ class Replayed:
 
 
 @dataclass(frozen=True, slots=True)
-class _Call:
+class _RecordedCall:
     """Programs that ran together: at a tick, after some entries of the timeline, for some ticks."""
 
     tick: int
@@ -47,7 +47,7 @@ class _Call:
     timeout_ticks: int
     senses: Senses
     ticks: int
-    past: Mapping[str, Past]
+    past: Mapping[str, ProgramPast]
 
     def made(self, entry: Entry) -> bool:
         """Whether an entry lies in its time."""
@@ -55,7 +55,7 @@ class _Call:
 
 
 @dataclass(frozen=True, slots=True)
-class _Recorded:
+class _RecordedTimeline:
     """One timeline as it was recorded."""
 
     journal: Journal
@@ -68,13 +68,13 @@ class _Recorded:
         path, physics = self.info.key.path, world.has_physics
         return start_of(self.journal, self.history, path, moment, has_physics=physics).snapshot
 
-    def senses(self, call: _Call, body: Body) -> Mapping[str, Sense]:
+    def senses(self, call: _RecordedCall, body: Body) -> Mapping[str, Sense]:
         """What its agents knew when, as recorded: what differs by then is told anyway."""
         if call.senses == "world":
             return {}
         return {agent: self._sense(call, body, agent) for agent in call.programs}
 
-    def _sense(self, call: _Call, body: Body, agent: str) -> Sense:
+    def _sense(self, call: _RecordedCall, body: Body, agent: str) -> Sense:
         key, believer = self.info.key, believer_of(self.info.key.path, agent)
 
         def entries() -> int:
@@ -104,7 +104,7 @@ def replay(
     programs: Sequence[ProgramRecord],
     world: World,
     seed: int,
-) -> Iterator[Replayed]:
+) -> Iterator[ReplayedTimeline]:
     """Run every timeline of a run again, in order of creation.
 
     Each begins in the state that was recorded for its first tick, so that one that differs does not
@@ -128,26 +128,28 @@ def replay(
         ]
         entries = list(journal.entries(info.key, 0, info.entries))
         calls = [_call(list(group)) for _, group in groupby(mine, key=lambda p: p.group)]
-        found = _run_again(world, _Recorded(journal, history, info), entries, calls, seed, rules)
-        yield Replayed(info.key, len(mine), first_difference(entries, found))
+        found = _run_again(
+            world, _RecordedTimeline(journal, history, info), entries, calls, seed, rules
+        )
+        yield ReplayedTimeline(info.key, len(mine), first_difference(entries, found))
 
 
-def _call(group: Sequence[ProgramRecord]) -> _Call:
+def _call(group: Sequence[ProgramRecord]) -> _RecordedCall:
     first = group[0]
     programs = {program.agent: program.code for program in group}
     ticks = max(program.ticks for program in group)
     known = {program.agent: decoded_past(program.past) for program in group}
     past = {agent: each for agent, each in known.items() if each is not None}
-    return _Call(
+    return _RecordedCall(
         first.tick, first.entries, programs, first.timeout_ticks, first.senses, ticks, past
     )
 
 
 def _run_again(
     world: World,
-    recorded: _Recorded,
+    recorded: _RecordedTimeline,
     entries: Sequence[Entry],
-    calls: Sequence[_Call],
+    calls: Sequence[_RecordedCall],
     seed: int,
     rules: RunRules,
 ) -> list[Entry]:
@@ -173,11 +175,11 @@ def _run_again(
             if isinstance(entry, Edit)
             or not (world.has_physics or any(call.made(entry) for call in calls))
         ]
-        acts: list[tuple[int, int, Entry | _Call]] = [(e.tick, n, e) for n, e in told]
+        acts: list[tuple[int, int, Entry | _RecordedCall]] = [(e.tick, n, e) for n, e in told]
         acts += [(call.tick, call.entries, call) for call in calls]
         for tick, number, act in sorted(acts, key=lambda each: each[:2]):
             recorded.wait_until(body, tick)
-            if isinstance(act, _Call):
+            if isinstance(act, _RecordedCall):
                 going_on = replace(rules, remembers=bool(act.past), past=act.past)
                 body.run(act.programs, act.timeout_ticks, recorded.senses(act, body), going_on)
                 continue

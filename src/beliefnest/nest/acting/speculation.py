@@ -138,7 +138,7 @@ def speculate(
     stopped = Event()
 
     def work(world: World) -> None:
-        with closing(_Place(world, start, stopped)) as place:
+        with closing(_Workplace(world, start, stopped)) as place:
             while not stopped.is_set():
                 try:
                     number = waiting.get_nowait()
@@ -161,7 +161,7 @@ def speculate(
     return speculations
 
 
-class _Place:
+class _Workplace:
     """Where one job after the other is run in a world, in a body that begins each as the first."""
 
     def __init__(self, world: World, start: SpeculationStart, stopped: Event) -> None:

@@ -16,14 +16,14 @@ from beliefnest.world.frames import BlockGrid, Frame, Snapshot
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import AgentState, Position
 
-__all__ = ["Start", "start_of"]
+__all__ = ["BodyStart", "start_of"]
 
 _FLOOR = "barrier"
 """What stands in a body for a floor that is unknown and holds somebody up."""
 
 
 @dataclass(frozen=True, slots=True)
-class Start:
+class BodyStart:
     """What a body begins with, and what is to be recorded of that.
 
     Attributes:
@@ -38,7 +38,7 @@ class Start:
 
 def start_of(
     journal: Journal, history: History, path: BeliefPath, moment: ForkPoint, *, has_physics: bool
-) -> Start:
+) -> BodyStart:
     """What a body of the node `path`, the timeline's own or one below it, begins with.
 
     Args:
@@ -50,24 +50,24 @@ def start_of(
     """
     snapshot = snapshot_at(journal, history, path, moment)
     if not has_physics:
-        return Start(snapshot)
+        return BodyStart(snapshot)
     if moment.timeline.path != path:
         return _begun(snapshot, history.reading(moment.timeline, path, moment.entries), history)
     fork = fork_of_belief(journal, moment.timeline)
     if fork is None:
-        return Start(snapshot)
+        return BodyStart(snapshot)
     # Floors stay where they were when the body began, for as long as nothing is known of them.
     blocks = history.reading(moment.timeline, path, moment.entries).blocks
     if not (blocks < 0).any():
-        return Start(snapshot)
+        return BodyStart(snapshot)
     _, base = fork
     believed = history.reading(base.timeline, path, base.entries)
     begun = _begun(believed.snapshot(), believed, history).snapshot.agents
     space = BodySpace(history.context.registry, snapshot.box, believed.blocks)
-    return Start(_floored(snapshot, blocks, unknown_floors(space, begun), history))
+    return BodyStart(_floored(snapshot, blocks, unknown_floors(space, begun), history))
 
 
-def _begun(snapshot: Snapshot, believed: NodeView, history: History) -> Start:
+def _begun(snapshot: Snapshot, believed: NodeView, history: History) -> BodyStart:
     """A body of a belief, with agents where they can be and unknown floors that hold them."""
     space = BodySpace(history.context.registry, snapshot.box, believed.blocks)
     seen_at = {}
@@ -80,7 +80,7 @@ def _begun(snapshot: Snapshot, believed: NodeView, history: History) -> Start:
     agents: dict[str, AgentState] = {**snapshot.agents, **moved}
     floors = unknown_floors(space, agents)
     filled = _floored(replace(snapshot, agents=agents), believed.blocks, floors, history)
-    return Start(filled, Frame(snapshot.tick, agents=moved) if moved else None)
+    return BodyStart(filled, Frame(snapshot.tick, agents=moved) if moved else None)
 
 
 def _floored(

@@ -9,8 +9,8 @@ from beliefnest.belief.forest import Forest
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError, PathError, PositionError
 from beliefnest.nest.explain.element_history import (
-    Place,
-    Step,
+    LogPlace,
+    LogStep,
     cells_of,
     grounded_at,
     last_change,
@@ -23,10 +23,10 @@ from beliefnest.nest.explain.parts import (
     Absence,
     Element,
     Fact,
+    HeardClaim,
     Level,
     Missed,
     Sighting,
-    Told,
     Value,
 )
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
@@ -95,26 +95,26 @@ def explain(
     """
     info = recording.info(path)
     if tick is None:
-        place = Place(info.key, info.entries)
+        place = LogPlace(info.key, info.entries)
     else:
         recording.reading(path, tick)
-        place = Place(*recording.place_of(info.key, tick))
+        place = LogPlace(*recording.place_of(info.key, tick))
     return _explained(recording, path, place, info.head if tick is None else tick, element)
 
 
 def _explained(
-    recording: Recording, path: BeliefPath, place: Place, tick: int, element: Element
+    recording: Recording, path: BeliefPath, place: LogPlace, tick: int, element: Element
 ) -> Explanation:
     root = place.key.path
     paths = [path[:depth] for depth in range(len(root), len(path) + 1)]
     now = _held_now(recording, path, place, element)
     fact = _fact(recording, place, now[root], element)
-    traces = [_Trace(node, now[node]) for node in paths[1:]]
+    traces = [_Finding(node, now[node]) for node in paths[1:]]
     _follow(recording, path, place, tick, element, traces)
     before = None
     base = recording.journal.info(place.key).base
     if base is not None and fact.since is None:
-        earlier = Place(base.timeline, base.entries)
+        earlier = LogPlace(base.timeline, base.entries)
         before = _explained(recording, root, earlier, base.tick, element)
     weighed = recording.setting.perception.testimony == "informed"
     levels = tuple(replace(_level(trace, element), weighed=weighed) for trace in traces)
@@ -122,7 +122,7 @@ def _explained(
 
 
 @dataclass(frozen=True)
-class _Held:
+class _HeldNow:
     """What a node holds of an element when it is explained, read as users read it."""
 
     value: Value
@@ -133,18 +133,18 @@ class _Held:
 
 
 @dataclass
-class _Trace:
+class _Finding:
     """What comes to light of one belief while the log is gone through."""
 
     path: BeliefPath
-    held: _Held
+    held: _HeldNow
     since: int | None = None
     stood: Point | None = None
     parent: Value = None
     was_known: bool = False
     missed: Missed | None = None
     value: Value = None
-    told: list[Told] = field(default_factory=list)
+    told: list[HeardClaim] = field(default_factory=list)
 
     @property
     def observed_at(self) -> int | None:
@@ -153,8 +153,8 @@ class _Trace:
 
 
 def _held_now(
-    recording: Recording, path: BeliefPath, place: Place, element: Element
-) -> dict[BeliefPath, _Held]:
+    recording: Recording, path: BeliefPath, place: LogPlace, element: Element
+) -> dict[BeliefPath, _HeldNow]:
     root, history = place.key.path, recording.history
     cells = cells_of(element, recording.box)
     held = {}
@@ -170,12 +170,12 @@ def _held_now(
             cell = cell_of(recording.box, element.where)
             block = recording.context.block_name(forest.block(node, cell))
         events = NodeView(forest, node).events()
-        held[node] = _Held(value_in(forest, node, element), block, basis, current, events)
+        held[node] = _HeldNow(value_in(forest, node, element), block, basis, current, events)
     return held
 
 
 def _ground_of(
-    recording: Recording, place: Place, forest: Forest, node: BeliefPath, element: Element
+    recording: Recording, place: LogPlace, forest: Forest, node: BeliefPath, element: Element
 ) -> tuple[Basis | None, bool]:
     """What a node's value rests on, and whether it is current."""
     reading = NodeView(forest, node)
@@ -191,7 +191,7 @@ def _ground_of(
     return basis, cell in current
 
 
-def _fact(recording: Recording, place: Place, held: _Held, element: Element) -> Fact:
+def _fact(recording: Recording, place: LogPlace, held: _HeldNow, element: Element) -> Fact:
     change = last_change(recording.history, recording.journal, place, element)
     base = recording.journal.info(place.key).base
     return Fact(
@@ -209,10 +209,10 @@ def _fact(recording: Recording, place: Place, held: _Held, element: Element) -> 
 def _follow(
     recording: Recording,
     path: BeliefPath,
-    place: Place,
+    place: LogPlace,
     tick: int,
     element: Element,
-    traces: list[_Trace],
+    traces: list[_Finding],
 ) -> None:
     """Go through the log from the oldest basis on, and note in each trace what happened."""
     if not traces:
@@ -234,7 +234,7 @@ def _follow(
                 trace.missed = replace(missed, tick=tick)
 
 
-def _take(recording: Recording, trace: _Trace, step: Step, element: Element) -> None:
+def _take(recording: Recording, trace: _Finding, step: LogStep, element: Element) -> None:
     """Note what one entry means for one belief."""
     forest = step.forest
     outside = value_in(forest, trace.path[:-1], element)
@@ -262,7 +262,7 @@ def _take(recording: Recording, trace: _Trace, step: Step, element: Element) -> 
 def _missed(
     recording: Recording,
     path: BeliefPath,
-    step: Step,
+    step: LogStep,
     element: Element,
     before: Value,
     acts: tuple[PerceivedEvent, ...],
@@ -285,7 +285,9 @@ def _missed(
     )
 
 
-def _told(recording: Recording, path: BeliefPath, step: Step, element: Element) -> Iterable[Told]:
+def _told(
+    recording: Recording, path: BeliefPath, step: LogStep, element: Element
+) -> Iterable[HeardClaim]:
     """The claims of one entry by which a node may have moved something out of a container."""
     if element.kind != "container" or step.place.entries == 0:
         return
@@ -299,10 +301,10 @@ def _told(recording: Recording, path: BeliefPath, step: Step, element: Element) 
             is_here = claim.cell == element.where
             takes = claim.kind is (ClaimKind.ABSENT if is_here else ClaimKind.LOCATED)
             if takes and step.forest.verdicts[row, index][node].believed:
-                yield Told(entry.tick, str(event.actor), claim)
+                yield HeardClaim(entry.tick, str(event.actor), claim)
 
 
-def _is_edit(recording: Recording, place: Place, path: BeliefPath) -> bool:
+def _is_edit(recording: Recording, place: LogPlace, path: BeliefPath) -> bool:
     if place.entries == 0:
         return False
     (entry,) = recording.journal.entries(place.key, place.entries - 1, place.entries)
@@ -346,7 +348,7 @@ def _acts(
     return tuple(event for event in events if event.tick == tick and touches(element, event))
 
 
-def _level(trace: _Trace, element: Element) -> Level:
+def _level(trace: _Finding, element: Element) -> Level:
     held = trace.held
     at = trace.observed_at
     return Level(

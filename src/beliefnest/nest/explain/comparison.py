@@ -38,7 +38,7 @@ _APART = 0.5
 """Blocks from which on somebody is elsewhere."""
 
 
-class Holds(Protocol):
+class BelievedThings(Protocol):
     """What is held of containers and agents."""
 
     @property
@@ -199,7 +199,7 @@ def falsehoods(real: NodeView, belief: NodeView, context: BeliefContext) -> Iter
     yield from false_things(real, belief)
 
 
-def false_things(real: Holds, belief: Holds) -> Iterator[Difference]:
+def false_things(real: BelievedThings, belief: BelievedThings) -> Iterator[Difference]:
     """`falsehoods` of containers, agents' places and inventories."""
     return (found for found in _different_things(real, belief) if _is_false(found))
 
@@ -249,7 +249,7 @@ def _different_blocks(a: NodeView, b: NodeView, context: BeliefContext) -> Itera
         yield Difference("block", (x + i, y + j, z + k), *texts)
 
 
-def _different_things(a: Holds, b: Holds) -> Iterator[Difference]:
+def _different_things(a: BelievedThings, b: BelievedThings) -> Iterator[Difference]:
     for place in sorted(a.containers.keys() | b.containers.keys()):
         there = (reading.containers.get(place) for reading in (a, b))
         held = [None if c is None else Contents(dict(c.items), c.complete) for c in there]

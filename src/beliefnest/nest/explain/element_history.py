@@ -17,8 +17,8 @@ from beliefnest.world.values import Box
 
 __all__ = [
     "Change",
-    "Place",
-    "Step",
+    "LogPlace",
+    "LogStep",
     "cells_of",
     "grounded_at",
     "last_change",
@@ -29,7 +29,7 @@ __all__ = [
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class LogPlace:
     """A place in the log: after the first `entries` entries of a timeline."""
 
     key: TimelineKey
@@ -45,10 +45,10 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class LogStep:
     """A forest after one more entry of a timeline."""
 
-    place: Place
+    place: LogPlace
     forest: Forest
 
 
@@ -60,17 +60,22 @@ def cells_of(element: Element, box: Box) -> Sequence[int]:
 
 
 def steps_since(
-    history: History, journal: Journal, path: BeliefPath, place: Place, tick: int, element: Element
-) -> Iterator[Step]:
+    history: History,
+    journal: Journal,
+    path: BeliefPath,
+    place: LogPlace,
+    tick: int,
+    element: Element,
+) -> Iterator[LogStep]:
     """The forest of a node after each entry from just before `tick` to a place."""
     info = journal.info(place.key)
     if info.base is not None and tick <= info.start:
-        base = Place(info.base.timeline, info.base.entries)
+        base = LogPlace(info.base.timeline, info.base.entries)
         yield from steps_since(history, journal, path, base, tick, element)
     first = min(journal.entries_until(place.key, tick - 1), place.entries)
     cells = cells_of(element, history.context.box)
     for forest in history.steps(place.key, path, first, place.entries, cells):
-        yield Step(Place(place.key, forest.position), forest)
+        yield LogStep(LogPlace(place.key, forest.position), forest)
 
 
 def value_in(forest: Forest, path: BeliefPath, element: Element) -> Value:
@@ -106,7 +111,7 @@ def touches(element: Element, event: PerceivedEvent) -> bool:
 
 
 def last_change(
-    history: History, journal: Journal, place: Place, element: Element
+    history: History, journal: Journal, place: LogPlace, element: Element
 ) -> Change | None:
     """The last change of an element in the world of a timeline, on that timeline."""
     path = place.key.path

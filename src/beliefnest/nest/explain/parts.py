@@ -15,10 +15,10 @@ __all__ = [
     "Contents",
     "Element",
     "Fact",
+    "HeardClaim",
     "Level",
     "Missed",
     "Sighting",
-    "Told",
     "Value",
     "View",
 ]
@@ -129,7 +129,7 @@ class Missed:
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class HeardClaim:
     """A claim by which something went out of a container, as it is believed.
 
     Attributes:
@@ -200,4 +200,4 @@ class Level:
     stood: Point | None
     missed: Missed | None
     weighed: bool = False
-    told: tuple[Told, ...] = ()
+    told: tuple[HeardClaim, ...] = ()

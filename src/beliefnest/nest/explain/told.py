@@ -173,7 +173,7 @@ class Texts(Protocol):
         """The block at a position; None: unknown."""
 
 
-class Held(Protocol):
+class BelievedState(Protocol):
     """What of a state a claim can contradict."""
 
     @property
@@ -189,7 +189,7 @@ class Held(Protocol):
         """Believed blocks."""
 
 
-def says_otherwise(state: Held, claim: Claim) -> bool:
+def says_otherwise(state: BelievedState, claim: Claim) -> bool:
     """Whether a state contradicts a claim; what it does not know it does not contradict."""
     match claim.kind:
         case ClaimKind.POSITION:
@@ -216,7 +216,7 @@ def _is_other_block(block: str | None, stated: str) -> bool:
     return not same or any(held.get(name) != value for name, value in told.items())
 
 
-def _is_elsewhere(state: Held, claim: Claim) -> bool:
+def _is_elsewhere(state: BelievedState, claim: Claim) -> bool:
     """Whether an item is known to be missing in the container, or believed to be elsewhere."""
     content = state.containers.get(claim.cell)
     if content is not None and claim.item in content.items:

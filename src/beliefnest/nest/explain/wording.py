@@ -8,10 +8,10 @@ from beliefnest.nest.explain.parts import (
     Contents,
     Element,
     Fact,
+    HeardClaim,
     Level,
     Missed,
     Sighting,
-    Told,
     Value,
     View,
 )
@@ -121,7 +121,7 @@ def _heard(level: Level, basis: Basis) -> str:
     return f"{text}; {holder} could not have looked" if level.weighed else text
 
 
-def _told_text(level: Level, told: Told) -> str:
+def _told_text(level: Level, told: HeardClaim) -> str:
     """Who told the holder what."""
     holder, speaker = level.holder, told.speaker
     said = f"{holder} said" if speaker == holder else f"{speaker} told {holder}"

@@ -17,9 +17,9 @@ from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.timeline.records import Senses
 from beliefnest.world.paths import BeliefPath
 
-__all__ = ["Attempt", "Exploration", "Score"]
+__all__ = ["Attempt", "Exploration", "ScoreFunction"]
 
-Score = Callable[[Simulator, ProgramResult], float]
+ScoreFunction = Callable[[Simulator, ProgramResult], float]
 """Says how good it is what a program led to; takes the simulator as the program left it."""
 
 _WORTH_SECONDS = 4.0
@@ -70,7 +70,7 @@ class Exploration:
     path: BeliefPath
     agent: str
     programs: Sequence[str]
-    score: Score
+    score: ScoreFunction
     timeout_ticks: int
     name: str
     processes: int | None

@@ -16,7 +16,7 @@ from beliefnest.pictures.words import items_words, place_words, told_apart
 from beliefnest.world.claims import Claim, ClaimKind
 from beliefnest.world.values import EventKind, Items, Point, Position
 
-__all__ = ["Carried", "Contained", "Course", "Matter", "Owned", "Standing", "Whereabouts"]
+__all__ = ["BlockAt", "Carried", "Contained", "Course", "Matter", "Owned", "Whereabouts"]
 
 V = TypeVar("V")
 Course = list[tuple[int, V | None]]
@@ -172,7 +172,7 @@ class Carried:
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
+class BlockAt:
     """Which block is at a place: a door that is open or shut, a sign and what it says.
 
     Attributes:

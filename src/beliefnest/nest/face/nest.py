@@ -15,10 +15,10 @@ from beliefnest.errors import InputError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.script import Progress, play_script
 from beliefnest.nest.face.comparing import Comparing
-from beliefnest.nest.face.exploration import Attempt, Exploration, Score
+from beliefnest.nest.face.exploration import Attempt, Exploration, ScoreFunction
 from beliefnest.nest.face.joining import Joining
 from beliefnest.nest.face.looking import Looking
-from beliefnest.nest.face.opening import HasSetting, Start, begun, resumed
+from beliefnest.nest.face.opening import HasSetting, RunStart, begun, resumed
 from beliefnest.nest.face.past_simulator import Past
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.face.simulator import Simulator
@@ -76,7 +76,7 @@ class Nest(Looking, Viewing, Telling, Comparing, Joining, Visiting):
             static_blocks=frozenset(static_blocks),
             initial_beliefs=tuple(initial_beliefs),
         )
-        start = Start(setting, "scripted", 0)
+        start = RunStart(setting, "scripted", 0)
         self._hold(begun(start, ScriptedBodies(world), store, claims_from))
 
     @classmethod
@@ -117,7 +117,7 @@ class Nest(Looking, Viewing, Telling, Comparing, Joining, Visiting):
             StoreError: The store exists already, or cannot be written.
         """
         world = world_name(world, realtime=realtime, listen=listen)
-        start = Start.of(scenario, world, seed)
+        start = RunStart.of(scenario, world, seed)
         opened = open_world(world, seed, limits) if worlds is None else worlds.lend(world)
         try:
             return cls._of(begun(start, opened, store, claims_from, renderer))
@@ -264,7 +264,7 @@ class Nest(Looking, Viewing, Telling, Comparing, Joining, Visiting):
         path: str,
         agent: str,
         programs: Sequence[str],
-        score: Score,
+        score: ScoreFunction,
         timeout_ticks: int = 1200,
         name: str = "plan",
         processes: int | None = None,

@@ -23,7 +23,7 @@ from beliefnest.timeline.records import RunJournal, RunRecord
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.nameable import ClaimsFrom
 
-__all__ = ["HasSetting", "Start", "begun", "resumed"]
+__all__ = ["HasSetting", "RunStart", "begun", "resumed"]
 
 
 class HasSetting(Protocol):
@@ -47,7 +47,7 @@ class HasSetting(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Start:
+class RunStart:
     """What a run is started with.
 
     Attributes:
@@ -97,7 +97,7 @@ class Start:
 
 
 def begun(
-    start: Start,
+    start: RunStart,
     world: World,
     store: str | Path | None,
     claims_from: ClaimsFrom | None = None,

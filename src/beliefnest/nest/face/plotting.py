@@ -9,17 +9,17 @@ from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError, PositionError
 from beliefnest.nest.explain.told import claims_told
 from beliefnest.nest.face.matters import (
+    BlockAt,
     Carried,
     Contained,
     Course,
     Matter,
     Owned,
-    Standing,
     Whereabouts,
 )
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.figure import Figure
-from beliefnest.pictures.plot import Act, Band, Row, Told, belief_plot
+from beliefnest.pictures.plot import Band, NotedAct, NotedClaim, PlotRow, belief_plot
 from beliefnest.pictures.words import place_words
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.paths import BeliefPath, parse_path, path_text
@@ -93,10 +93,10 @@ def _check_inside(recording: Recording, place: Position) -> None:
         raise PositionError(f"position {place} is outside the box {box.low}..{box.high}")
 
 
-def _standing(recording: Recording, block: Position) -> Standing:
+def _standing(recording: Recording, block: Position) -> BlockAt:
     _check_inside(recording, block)
     context = recording.context
-    return Standing(block, context.box.index(block), context.block_text)
+    return BlockAt(block, context.box.index(block), context.block_text)
 
 
 def _contained(recording: Recording, container: Position, item: str | None) -> Contained:
@@ -144,7 +144,7 @@ def _figure(
     end = max(ends.values())
     acts = [*_acts(recording, matter, end), *_said(recording, matter, end)]
     rows = [
-        Row(
+        PlotRow(
             path_text(path),
             _bands(matter, courses[path], real, ends[path] + 1),
             _told(recording, matter, path, ends[path]),
@@ -154,7 +154,7 @@ def _figure(
     return belief_plot(rows, sorted(acts, key=lambda act: act.tick), matter.title)
 
 
-def _said(recording: Recording, matter: Matter[V], end: int) -> list[Act]:
+def _said(recording: Recording, matter: Matter[V], end: int) -> list[NotedAct]:
     """Who claimed what of it in the real world, and whether that was false, or a lie."""
     names = _names(recording)
     found = []
@@ -163,17 +163,19 @@ def _said(recording: Recording, matter: Matter[V], end: int) -> list[Act]:
             where = names.get(told.claim.cell)
             said = str(told.claim) if where is None else told.claim.about(where)
             kind = " (a lie)" if told.lie else " (false)" if told.false else ""
-            found.append(Act(told.tick, f"{told.speaker}: {said}{kind}"))
+            found.append(NotedAct(told.tick, f"{told.speaker}: {said}{kind}"))
     return found
 
 
-def _told(recording: Recording, matter: Matter[V], path: BeliefPath, end: int) -> tuple[Told, ...]:
+def _told(
+    recording: Recording, matter: Matter[V], path: BeliefPath, end: int
+) -> tuple[NotedClaim, ...]:
     """The claims about it that were heard by somebody else than their speaker in a simulator."""
     own, text = recording.controller(path).path, path_text(path)
     if not path or own == path or recording.setting.perception.testimony == "none":
         return ()
     return tuple(
-        Told(told.tick, told.taken_up(text))
+        NotedClaim(told.tick, told.taken_up(text))
         for told in claims_told(recording, own, end)
         if matter.is_claimed(told.claim) and told.is_heard(text) and told.condition(text) != "4"
     )
@@ -230,7 +232,7 @@ def _number(course: Course[V], tick: int) -> int:
     return max(0, bisect_right([start for start, _ in course], tick) - 1)
 
 
-def _acts(recording: Recording, matter: Matter[V], end: int) -> list[Act]:
+def _acts(recording: Recording, matter: Matter[V], end: int) -> list[NotedAct]:
     """Who did what that mattered in the real world."""
     found: dict[tuple[int, str | None], str] = {}
     for event in recording.reading(()).events():
@@ -241,4 +243,6 @@ def _acts(recording: Recording, matter: Matter[V], end: int) -> list[Act]:
         key = (event.tick, event.actor)
         if event.kind is not EventKind.OPEN_CONTAINER or key not in found:
             found[key] = deed
-    return [Act(tick, f"{actor or 'somebody'} {deed}") for (tick, actor), deed in found.items()]
+    return [
+        NotedAct(tick, f"{actor or 'somebody'} {deed}") for (tick, actor), deed in found.items()
+    ]

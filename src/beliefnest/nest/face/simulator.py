@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Literal
 
-from beliefnest.bodies.protocol import Past, ProgramResult
+from beliefnest.bodies.protocol import ProgramPast, ProgramResult
 from beliefnest.bodies.scripted import ScriptedBody
 from beliefnest.errors import BranchError, InputError, PositionError, WorldError
 from beliefnest.nest.acting.engine import Engine
@@ -167,7 +167,7 @@ class Simulator(ShownSimulator):
         programs: Mapping[str, str],
         timeout_ticks: int = 1200,
         senses: Senses = "world",
-        past: Mapping[str, Past] | None = None,
+        past: Mapping[str, ProgramPast] | None = None,
     ) -> Mapping[str, ProgramResult]:
         """Run programs of several agents at the same time, tick by tick together.
 

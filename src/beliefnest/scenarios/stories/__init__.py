@@ -5,16 +5,16 @@ the text.
 """
 
 from beliefnest.scenarios.stories.plan import FloorPlan, lay_out
-from beliefnest.scenarios.stories.playing import Answer, PlayedStory
+from beliefnest.scenarios.stories.playing import PlayedStory, StoryAnswer
 from beliefnest.scenarios.stories.questions import Question, parse_question
 from beliefnest.scenarios.stories.story import Story, read_story
 
 __all__ = [
-    "Answer",
     "FloorPlan",
     "PlayedStory",
     "Question",
     "Story",
+    "StoryAnswer",
     "lay_out",
     "parse_question",
     "read_story",

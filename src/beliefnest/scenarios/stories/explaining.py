@@ -1,7 +1,7 @@
 """Why the nest answers as it does, as lines of text."""
 
 from beliefnest.belief.entries import Basis
-from beliefnest.scenarios.stories.playing import Answer, PlayedStory
+from beliefnest.scenarios.stories.playing import PlayedStory, StoryAnswer
 from beliefnest.scenarios.stories.questions import Question
 from beliefnest.scenarios.stories.story import Place
 from beliefnest.world.signs import sign_words
@@ -10,7 +10,7 @@ __all__ = ["explain_answer"]
 
 
 def explain_answer(
-    played: PlayedStory, question: Question, answer: Answer, expected: str | None
+    played: PlayedStory, question: Question, answer: StoryAnswer, expected: str | None
 ) -> tuple[str, ...]:
     """What each simulator on the way to the belief asked for holds, since when, and why.
 
@@ -37,7 +37,7 @@ def explain_answer(
 
 
 def _block(
-    played: PlayedStory, question: Question, answer: Answer, expected: str | None
+    played: PlayedStory, question: Question, answer: StoryAnswer, expected: str | None
 ) -> tuple[str, ...]:
     """Of a door or a sign."""
     if question.door is not None:
@@ -56,7 +56,7 @@ def _saying(text: str | None) -> str:
 
 
 def _perceptions(
-    played: PlayedStory, question: Question, answer: Answer, expected: str | None
+    played: PlayedStory, question: Question, answer: StoryAnswer, expected: str | None
 ) -> list[str]:
     """The nest's own account of the containers answered and expected."""
     room = played.story.things[question.thing].room
@@ -75,7 +75,7 @@ def _perceptions(
     return lines
 
 
-def _holds(played: PlayedStory, found: Answer) -> str:
+def _holds(played: PlayedStory, found: StoryAnswer) -> str:
     if found.place is None or found.basis is None:
         return f"{found.path} holds the {found.thing} in no container at tick {found.tick}"
     return (

@@ -26,7 +26,7 @@ from beliefnest.scenarios.stories.story import (
 if TYPE_CHECKING:  # Models take long to import, and few stories are read by one.
     from beliefnest.llm.hearsay import ClaimsFromModel
 
-__all__ = ["Answer", "Knowing", "PlayedStory"]
+__all__ = ["Knowing", "PlayedStory", "StoryAnswer"]
 
 _TIMEOUT_TICKS = 2400
 _TICKS_PER_BLOCK = 8
@@ -34,7 +34,7 @@ _TICKS_PER_BLOCK = 8
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class StoryAnswer:
     """Where a simulator of the nest holds a thing.
 
     Attributes:
@@ -160,7 +160,7 @@ class PlayedStory:
     ) -> None:
         self.nest.close()
 
-    def answer(self, question: Question) -> Answer:
+    def answer(self, question: Question) -> StoryAnswer:
         """What the nest says.
 
         Raises:
@@ -183,7 +183,7 @@ class PlayedStory:
             return self.nest.at(self.plan.snapshot.tick)[question.path]
         return self.nest[question.path]
 
-    def answer_all(self, questions: Iterable[Question]) -> tuple[Answer, ...]:
+    def answer_all(self, questions: Iterable[Question]) -> tuple[StoryAnswer, ...]:
         """What the nest says to several questions, in their order.
 
         Raises:
@@ -200,24 +200,24 @@ class PlayedStory:
             return None
         return next((n for n, end in enumerate(self.line_ends) if tick <= end), None)
 
-    def _door(self, simulator: Simulator | PastSimulator, room: str) -> Answer:
+    def _door(self, simulator: Simulator | PastSimulator, room: str) -> StoryAnswer:
         block = simulator.state.blocks[self.plan.doors[room]]
         is_open = None if block is None else "open=true" in block
-        return Answer(simulator.path, simulator.tick, "", None, None, is_open)
+        return StoryAnswer(simulator.path, simulator.tick, "", None, None, is_open)
 
-    def _sign(self, simulator: Simulator | PastSimulator, room: str) -> Answer:
+    def _sign(self, simulator: Simulator | PastSimulator, room: str) -> StoryAnswer:
         says = simulator.state.signs.get(self.plan.signs[room])
-        return Answer(simulator.path, simulator.tick, "", None, None, says=says)
+        return StoryAnswer(simulator.path, simulator.tick, "", None, None, says=says)
 
-    def _find(self, simulator: Simulator | PastSimulator, thing: str) -> Answer:
+    def _find(self, simulator: Simulator | PastSimulator, thing: str) -> StoryAnswer:
         item = self.plan.items[thing]
         containers = simulator.state.containers
         holding = [p for p, held in sorted(containers.items()) if held.items.get(item)]
         if not holding:
-            return Answer(simulator.path, simulator.tick, thing, None, None)
+            return StoryAnswer(simulator.path, simulator.tick, thing, None, None)
         latest = max(holding, key=lambda position: containers[position].basis.observed_at)
         place, basis = self.plan.place_at(latest), containers[latest].basis
-        return Answer(simulator.path, simulator.tick, thing, place, basis)
+        return StoryAnswer(simulator.path, simulator.tick, thing, place, basis)
 
 
 def _deepest_first(path: str) -> tuple[int, str]:

@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 from beliefnest.scenarios.stories.checking import data_fault
 from beliefnest.scenarios.stories.data import Item, StoryItems
 from beliefnest.scenarios.stories.explaining import explain_answer
-from beliefnest.scenarios.stories.playing import Answer, PlayedStory
+from beliefnest.scenarios.stories.playing import PlayedStory, StoryAnswer
 
-__all__ = ["Judged", "Score", "answer_story", "score", "scores_by_order"]
+__all__ = ["JudgedAnswer", "Score", "answer_story", "score", "scores_by_order"]
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class JudgedAnswer:
     """A question that was answered.
 
     Attributes:
@@ -28,7 +28,7 @@ class Judged:
     """
 
     item: Item
-    answer: Answer
+    answer: StoryAnswer
     needs_first: bool
     tells: bool = False
     data_fault: str | None = None
@@ -59,7 +59,9 @@ class Score:
         return self.right / self.questions if self.questions else None
 
 
-def answer_story(asked: StoryItems, world: str = "scripted", seed: int = 0) -> tuple[Judged, ...]:
+def answer_story(
+    asked: StoryItems, world: str = "scripted", seed: int = 0
+) -> tuple[JudgedAnswer, ...]:
     """Play a story once and answer all its questions from one nest.
 
     Raises:
@@ -80,7 +82,7 @@ def answer_story(asked: StoryItems, world: str = "scripted", seed: int = 0) -> t
         for item, answer in zip(asked.items, answers, strict=False):
             other = without.get(item.question)
             needs_first = other is not None and other.text != item.expected
-            each = Judged(item, answer, needs_first, asked.story.tells)
+            each = JudgedAnswer(item, answer, needs_first, asked.story.tells)
             if not each.ok:
                 fault = data_fault(asked.story, item.question, item.expected)
                 why = explain_answer(played, item.question, answer, item.expected)
@@ -89,14 +91,14 @@ def answer_story(asked: StoryItems, world: str = "scripted", seed: int = 0) -> t
     return tuple(judged)
 
 
-def score(judged: Iterable[Judged]) -> Score:
+def score(judged: Iterable[JudgedAnswer]) -> Score:
     """The score of some answers."""
     verdicts = [each.ok for each in judged]
     return Score(len(verdicts), sum(verdicts))
 
 
 def scores_by_order(
-    judged: Sequence[Judged], of: Callable[[Judged], bool] = lambda _: True
+    judged: Sequence[JudgedAnswer], of: Callable[[JudgedAnswer], bool] = lambda _: True
 ) -> dict[int, Score]:
     """The score of each order that is asked for, among those answers that `of` selects."""
     orders = sorted({each.item.question.order for each in judged})

@@ -249,7 +249,7 @@ class TrackRecorder:
         number = self._numbers[at]
         pose_id, seen = table.pose(number, agent), table.seen_at(number, agent)
         pose: Pose = (*poses.position(pose_id), *poses.angles(pose_id))
-        as_seen = poses.condition(pose_id) is not None and poses.speaker(pose_id) < 0
+        as_seen = poses.details(pose_id) is not None and poses.speaker(pose_id) < 0
         if not current and as_seen and self._book.at(agent, seen) == pose:
             return [tick, STALE, seen]
         name = self._reader.agents[agent]
@@ -301,7 +301,7 @@ class TrackRecorder:
     def _owners(self) -> set[int]:
         """Numbers of the nodes in which possessions of agents may have changed."""
         forest, last = self._forest, self._last
-        looks = [forest.table.condition_of(0, agent) for agent in range(len(last.looks))]
+        looks = [forest.table.details_of(0, agent) for agent in range(len(last.looks))]
         # An agent's own possessions are what the simulator around holds of them.
         everywhere = looks != last.looks
         last.looks = list(looks)

@@ -13,13 +13,13 @@ from beliefnest.viewer.page.reasons import explanation_of, look_of, sight_of
 from beliefnest.viewer.page.run import About, RunData
 from beliefnest.world.paths import parse_path, path_text
 
-__all__ = ["Host", "Opened"]
+__all__ = ["Host", "OpenRun"]
 
 Path_ = tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Opened:
+class OpenRun:
     """A run that is open for reading.
 
     Attributes:
@@ -48,11 +48,11 @@ class Host:
     """
 
     find: Callable[[], Sequence[Path]]
-    open: Callable[[Path], Opened]
+    open: Callable[[Path], OpenRun]
     depth: int = 2
     told: list[tuple[int, dict[str, Any]]] = field(default_factory=list)
     _files: list[Path] = field(default_factory=list)
-    _opened: list[Opened] = field(default_factory=list)
+    _opened: list[OpenRun] = field(default_factory=list)
     _data: list[RunData] = field(default_factory=list)
     _turn: RLock = field(default_factory=RLock)
 

@@ -5,21 +5,21 @@ from typing import Generic, Protocol, Self, TypeVar
 
 from beliefnest.episodes.view import Policy
 
-__all__ = ["Moment"]
+__all__ = ["RoundStart"]
 
 
 class Branchable(Protocol):
     """What a moment needs of its episode."""
 
     def forked(self, round: int, policies: Mapping[str, "str | Policy"]) -> Self:
-        """See `Moment.fork`."""
+        """See `RoundStart.fork`."""
         ...
 
 
 Played = TypeVar("Played", bound=Branchable)
 
 
-class Moment(Generic[Played]):
+class RoundStart(Generic[Played]):
     """The beginning of a round of an episode.
 
     Attributes:
