@@ -10,10 +10,10 @@ import pytest
 
 from beliefnest.errors import ModelError
 from beliefnest.llm import (
-    Budget,
     Connection,
     Message,
     RunLimits,
+    RunSpending,
     Sampling,
     Usage,
     open_model,
@@ -50,7 +50,7 @@ class Priced:
 )
 def test_a_run_may_not_spend_more_than_its_limits(limits, message):
     priced = Priced(Usage(1, 100, 50, 0.75))
-    metered = MeteredModel(priced, Budget(limits))
+    metered = MeteredModel(priced, RunSpending(limits))
     for _ in range(3):
         metered.answer(ASK, Sampling())
     with pytest.raises(ModelError, match=message):
@@ -60,7 +60,7 @@ def test_a_run_may_not_spend_more_than_its_limits(limits, message):
 
 def test_limits_are_on_by_default():
     for usage in (Usage(1, 2_000_000, 0, None), Usage(1, 1, 1, 6.0)):
-        metered = MeteredModel(Priced(usage), Budget())
+        metered = MeteredModel(Priced(usage), RunSpending())
         metered.answer(ASK, Sampling())
         with pytest.raises(ModelError, match="raise the limit"):
             metered.answer(ASK, Sampling())
@@ -68,7 +68,7 @@ def test_limits_are_on_by_default():
 
 def test_an_answer_that_cannot_be_used_is_paid_all_the_same(fake, clock):
     fake.will(fake.refuses, fake.floods)
-    budget = Budget()
+    budget = RunSpending()
     asked = cached(fake, clock, None, budget=budget)
     for _ in range(2):
         with pytest.raises(ModelError):
@@ -91,7 +91,7 @@ def cached(fake, clock, folder, mode="read", **options):
 def test_a_run_is_repeated_from_its_cache_without_the_model(fake, clock, tmp_path):
     fake.will(fake.says("one();"), fake.fails(500))
     first = cached(fake, clock, tmp_path / "cache").answer(ASK, Sampling(seed=1))
-    budget = Budget(RunLimits(tokens=0))
+    budget = RunSpending(RunLimits(tokens=0))
     again = cached(fake, clock, tmp_path / "cache", budget=budget).answer(ASK, Sampling(seed=1))
     assert again == dataclasses.replace(first, cached=True)
     assert len(fake.requests) == 1

@@ -8,9 +8,9 @@ import pytest
 import beliefnest as bn
 from beliefnest.llm import (
     AnswerLimits,
-    Budget,
     Connection,
     RunLimits,
+    RunSpending,
     claims_from_model,
     open_model,
 )
@@ -49,7 +49,7 @@ def believed(nest):
 
 def test_a_claim_is_found_and_the_request_noted_with_what_it_took(fake, clock):
     fake.will(fake.says(f"```json\n{answer(IN_CHEST)}\n```"))
-    budget = Budget(RunLimits())
+    budget = RunSpending(RunLimits())
     with told_of(fake, clock, budget=budget) as nest:
         assert believed(nest) == {"diamond": 1}
         (told,) = nest.claims()
