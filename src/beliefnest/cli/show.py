@@ -22,8 +22,8 @@ from beliefnest.cli.pictures import container_name, place_text, titled
 from beliefnest.cli.report import placed_lines
 from beliefnest.cli.text import printable
 from beliefnest.errors import BranchError, InputError, TickError
-from beliefnest.nest.face.past_simulator import PastSimulator
 from beliefnest.nest.face.recorded import RecordedNest
+from beliefnest.nest.face.shown import PastSimulator
 from beliefnest.pictures.animation import check_animated, save_animation
 from beliefnest.pictures.figure import figure_of
 from beliefnest.pictures.scene import Scene

@@ -8,7 +8,7 @@ from beliefnest.belief.view import FixedState, State
 from beliefnest.episodes.decided import Ended
 from beliefnest.errors import PathError
 from beliefnest.nest.acting.imagination import Imagination
-from beliefnest.nest.face.past_simulator import ShownSimulator
+from beliefnest.nest.face.shown import ShownSimulator
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.values import Position
 

@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 from beliefnest.belief.entries import InitialBelief
@@ -14,24 +13,20 @@ from beliefnest.bodies.worlds import Worlds, is_real_time, open_world, world_nam
 from beliefnest.errors import InputError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.script import Progress, play_script
-from beliefnest.nest.face.comparing import Comparing
 from beliefnest.nest.face.exploration import Attempt, Exploration, ScoreFunction
 from beliefnest.nest.face.joining import Joining
-from beliefnest.nest.face.looking import Looking
 from beliefnest.nest.face.opening import HasSetting, RunStart, begun, resumed
-from beliefnest.nest.face.past_simulator import Past
 from beliefnest.nest.face.recorded import RecordedNest
+from beliefnest.nest.face.shown import Past
 from beliefnest.nest.face.simulator import Simulator
-from beliefnest.nest.face.telling import Telling
 from beliefnest.nest.face.ticks import tick_of
 from beliefnest.nest.face.turns import in_turn
-from beliefnest.nest.face.viewing import Viewing
 from beliefnest.nest.face.visiting import Visiting
 from beliefnest.nest.past.over_time import each_tick
 from beliefnest.nest.past.setting import Setting
 from beliefnest.perception.options import Perception
 from beliefnest.prompts import Renderer
-from beliefnest.timeline.records import ProgramRecord, PromptRecord, Senses
+from beliefnest.timeline.records import Senses
 from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.world.paths import parse_path
 from beliefnest.world.scripted import ScriptedWorld
@@ -40,7 +35,7 @@ from beliefnest.world.values import Position
 __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 
 
-class Nest(Looking, Viewing, Telling, Comparing, Joining, Visiting):
+class Nest(Joining, Visiting):
     """The real world and every belief in it; each node is made on first use.
 
     `Nest(world)` wraps a `ScriptedWorld` and follows what happens in it; `Nest.open` opens a
@@ -169,31 +164,15 @@ class Nest(Looking, Viewing, Telling, Comparing, Joining, Visiting):
         self._engine = engine
         self._recording = engine.recording
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
-
     @in_turn
     def close(self) -> None:
         """End the world and close the store."""
         self._engine.close()
 
     @property
-    def setting(self) -> Setting:
-        """What the nest started from."""
-        return self._recording.setting
-
-    @property
-    def seed(self) -> int:
-        """Drives every random number."""
-        return self._recording.seed
+    def tick(self) -> int:
+        """The real world's latest tick."""
+        return self._recording.info(()).head
 
     @property
     def scripted_world(self) -> ScriptedWorld:
@@ -203,31 +182,6 @@ class Nest(Looking, Viewing, Telling, Comparing, Joining, Visiting):
             WorldError: The real world is a Minecraft one.
         """
         return self["/"].scripted
-
-    @property
-    def agents(self) -> tuple[str, ...]:
-        """Names of all agents, sorted."""
-        return self._recording.agents
-
-    @property
-    def tick(self) -> int:
-        """The real world's latest tick."""
-        return self._recording.info(()).head
-
-    @in_turn
-    def programs(self) -> Sequence[ProgramRecord]:
-        """All programs that ran, on branches that are there, in order of their end."""
-        return self._recording.records.programs()
-
-    @in_turn
-    def prompts(self) -> Sequence[PromptRecord]:
-        """All requests to models that `Simulator.noting` kept, with what came of them."""
-        return self._recording.records.prompts()
-
-    @in_turn
-    def versions(self) -> Sequence[Mapping[str, str]]:
-        """Program to version, when the run began and whenever it was resumed with others."""
-        return self._recording.records.versions()
 
     def __getitem__(self, path: str) -> Simulator:
         """The simulator of a belief path; `/` is the real world.

@@ -1,26 +1,23 @@
 """A recorded run, read-only: any simulator of it, on any branch, at any tick."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Self
 
-from beliefnest.nest.face.comparing import Comparing
-from beliefnest.nest.face.looking import Looking
-from beliefnest.nest.face.past_simulator import Past, PastSimulator
-from beliefnest.nest.face.telling import Telling
-from beliefnest.nest.face.viewing import Viewing
+from beliefnest.nest.face.base import NestBase
+from beliefnest.nest.face.shown import Past, PastSimulator
 from beliefnest.nest.past.over_time import Moment, over_time
 from beliefnest.nest.past.recording import Recording, read_recording
 from beliefnest.nest.past.setting import Setting
-from beliefnest.timeline.journal import FOLLOW, TimelineKey, lineage
-from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunJournal
+from beliefnest.timeline.journal import FOLLOW, TimelineKey
+from beliefnest.timeline.records import RunJournal
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import parse_path
 
 __all__ = ["RecordedNest"]
 
 
-class RecordedNest(Looking, Viewing, Telling, Comparing):
+class RecordedNest(NestBase):
     """Simulators of a run as they were; nothing in it can act.
 
     Args:
@@ -58,29 +55,9 @@ class RecordedNest(Looking, Viewing, Telling, Comparing):
         nest._recording, _ = read_recording(journal)
         return nest
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
     def close(self) -> None:
         """Close the run file."""
         self._recording.close()
-
-    @property
-    def setting(self) -> Setting:
-        """What the run started from."""
-        return self._recording.setting
-
-    @property
-    def agents(self) -> tuple[str, ...]:
-        """Names of all agents, sorted."""
-        return self._recording.agents
-
-    def versions(self) -> Sequence[Mapping[str, str]]:
-        """Program to version, when the run began and whenever it was resumed with others."""
-        return self._recording.records.versions()
 
     def __getitem__(self, path: str) -> PastSimulator:
         """A simulator at the latest tick of its timeline.
@@ -137,40 +114,6 @@ class RecordedNest(Looking, Viewing, Telling, Comparing):
     def branches(self) -> tuple[TimelineKey, ...]:
         """All timelines there are, in order of creation."""
         return tuple(info.key for info in self._recording.journal.timelines())
-
-    def programs(self, path: str | None = None) -> tuple[ProgramRecord, ...]:
-        """Programs that ran, in order of their end.
-
-        Args:
-            path: Those that ran in this simulator on the branch it is on: in follow mode there are
-                none, and those that ran before the fork belong to another branch. None: all.
-
-        Raises:
-            PathError: The path is malformed or names an unknown agent.
-        """
-        programs = tuple(self._recording.records.programs())
-        if path is None:
-            return programs
-        names = parse_path(path, self._recording.agents)
-        key = self._recording.selected.get(names)
-        return tuple(p for p in programs if TimelineKey(p.path, p.branch) == key)
-
-    def prompts(self, path: str | None = None) -> tuple[PromptRecord, ...]:
-        """Requests to models with what came of them, in order.
-
-        Args:
-            path: Those made from this simulator, in the past of the branch it is on or follows;
-                None: all.
-
-        Raises:
-            PathError: The path is malformed or names an unknown agent.
-        """
-        prompts = tuple(self._recording.records.prompts())
-        if path is None:
-            return prompts
-        names = parse_path(path, self._recording.agents)
-        until = dict(lineage(self._recording.journal, self._recording.controller(names)))
-        return tuple(p for p in prompts if p.path == names and p.tick <= until.get(p.timeline, -1))
 
     def at(self, tick: int) -> Past:
         """All simulators at a tick.

@@ -8,8 +8,8 @@ from beliefnest.bodies.scripted import ScriptedBody
 from beliefnest.errors import BranchError, InputError, PositionError, WorldError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.imagination import Imagination
-from beliefnest.nest.face.past_simulator import ShownSimulator
 from beliefnest.nest.face.recording_model import RecordingModel
+from beliefnest.nest.face.shown import ShownSimulator
 from beliefnest.nest.face.ticks import tick_of, whole
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.setting import Senses

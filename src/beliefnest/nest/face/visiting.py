@@ -1,11 +1,10 @@
 """Where a nest's simulators stand in Minecraft, for people who visit them."""
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import overload
 
 from beliefnest.errors import InputError
-from beliefnest.nest.face.live import Live
+from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.face.base import NestBase
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.world.paths import path_text
 from beliefnest.world.values import Position
@@ -35,24 +34,10 @@ class Standing:
     lag: int = 0
 
 
-class Layout(Sequence[Standing]):
+class Layout(tuple[Standing, ...]):
     """Where all simulators stand that do; as a text, one line for each."""
 
-    def __init__(self, standing: Sequence[Standing]) -> None:
-        self._standing = tuple(standing)
-
-    def __len__(self) -> int:
-        return len(self._standing)
-
-    @overload
-    def __getitem__(self, index: int) -> Standing: ...
-    @overload
-    def __getitem__(self, index: slice) -> Sequence[Standing]: ...
-    def __getitem__(self, index: int | slice) -> Standing | Sequence[Standing]:
-        return self._standing[index]
-
-    def __iter__(self) -> Iterator[Standing]:
-        return iter(self._standing)
+    __slots__ = ()
 
     def __repr__(self) -> str:
         width = max(len(each.path) for each in self)
@@ -62,8 +47,10 @@ class Layout(Sequence[Standing]):
         )
 
 
-class Visiting(Live):
+class Visiting(NestBase):
     """What a nest offers those who visit beliefs; a part of `Nest`."""
+
+    _engine: Engine
 
     @in_turn
     def layout(self) -> Layout:
@@ -79,16 +66,14 @@ class Visiting(Live):
             )
         lags = self._engine.embodying.lags()
         return Layout(
-            [
-                Standing(
-                    path_text(path),
-                    *plot.corners,
-                    plot.origin,
-                    "/tp {} {} {}".format(*plot.stand),
-                    lags.get(path, 0),
-                )
-                for path, plot in plots.items()
-            ]
+            Standing(
+                path_text(path),
+                *plot.corners,
+                plot.origin,
+                "/tp {} {} {}".format(*plot.stand),
+                lags.get(path, 0),
+            )
+            for path, plot in plots.items()
         )
 
 

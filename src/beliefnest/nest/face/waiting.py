@@ -3,8 +3,9 @@
 from collections.abc import Callable
 
 from beliefnest.errors import InputError
+from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.frame_recorder import ChatListener
-from beliefnest.nest.face.live import Live
+from beliefnest.nest.face.base import NestBase
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.world.values import TICKS_PER_SECOND
 
@@ -13,8 +14,10 @@ __all__ = ["Waiting"]
 _LONGEST_S = 24 * 60 * 60
 
 
-class Waiting(Live):
+class Waiting(NestBase):
     """What a nest offers those who wait; a part of `Nest`."""
+
+    _engine: Engine
 
     def wait(self, until: Callable[[], bool] | None = None, timeout_s: float = 60.0) -> bool:
         """Let time pass in the real world, tick by tick, and record what happens there.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Self
 from beliefnest.belief.entries import Basis
 from beliefnest.errors import InputError, ProgramError
 from beliefnest.nest.face.nest import Nest
-from beliefnest.nest.face.past_simulator import PastSimulator
+from beliefnest.nest.face.shown import PastSimulator
 from beliefnest.nest.face.simulator import Simulator
 from beliefnest.nest.past.setting import Setting
 from beliefnest.perception.options import ContainerMode, Perception, Testimony

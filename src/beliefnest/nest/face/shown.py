@@ -1,0 +1,398 @@
+"""What simulators and nests show of themselves, now or in the past; nothing here acts."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.view import State
+from beliefnest.errors import BeliefNestError, InputError, PathError
+from beliefnest.nest.explain.chain import element_of, explain
+from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs, value_words
+from beliefnest.nest.explain.explanation import Explanation
+from beliefnest.nest.explain.told import ToldClaim, claims_told
+from beliefnest.nest.face.plotting import Followed, plot_of
+from beliefnest.nest.face.turns import in_turn
+from beliefnest.nest.past.placing import placed_in
+from beliefnest.nest.past.recording import Recording
+from beliefnest.pictures.figure import Figure, figure_of
+from beliefnest.pictures.scene import Scene, Wrong, best_height, read_scene
+from beliefnest.pictures.words import place_words, state_words
+from beliefnest.prompts import Template
+from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
+from beliefnest.world.values import Point, Position
+
+__all__ = ["Past", "PastSimulator", "ShownNest", "ShownSimulator", "wrong_things"]
+
+
+class ShownSimulator(ABC):
+    """What a simulator shows of itself, at one tick or at the latest of its timeline."""
+
+    _tick: int | None = None
+
+    def __init__(self, recording: Recording, path: BeliefPath) -> None:
+        self._recording = recording
+        self._path = path
+
+    @property
+    def path(self) -> str:
+        """The normalised belief path, as text."""
+        return path_text(self._path)
+
+    @property
+    def owner(self) -> str | None:
+        """The agent whose belief this is; None in the real world."""
+        return self._path[-1] if self._path else None
+
+    @property
+    def labels(self) -> Mapping[Position, str]:
+        """What containers are called and look as if they held, where prompts may say so."""
+        return self._recording.setting.prompt_labels
+
+    @property
+    def tick(self) -> int:
+        """The tick it shows; in the present the latest of the timeline it is on."""
+        return self._recording.info(self._path).head if self._tick is None else self._tick
+
+    @property
+    @in_turn
+    def state(self) -> State:
+        """What the simulator holds, read-only."""
+        return self._recording.state(self._path, self._tick)
+
+    def render(self, template: Template | Path | str, **variables: object) -> str:
+        """The text of a prompt template, filled from this simulator.
+
+        Args:
+            template: A Jinja2 template: its text, or the path of its file.
+            variables: Further variables of the template, as `task`.
+
+        Raises:
+            TemplateError: The template is wrong; the message names its line.
+        """
+        with self._recording.turn:
+            return self._recording.renderer.render(template, self, variables)
+
+    @in_turn
+    def explain(
+        self,
+        *,
+        container: Position | None = None,
+        agent: str | None = None,
+        block: Position | None = None,
+    ) -> Explanation:
+        """The chain of perceptions behind what it holds of one thing; `str()` puts it in words.
+
+        Args:
+            container: Position of a container, whose contents are explained.
+            agent: Name of an agent, whose place is explained.
+            block: Position of a block.
+
+        Raises:
+            InputError: None of the three was given, or several were.
+            PathError: There is no such agent.
+            PositionError: The position is outside the box.
+        """
+        element = element_of(self._recording, container, agent, block)
+        return explain(self._recording, self._path, self._tick, element)
+
+    @property
+    @in_turn
+    def placed(self) -> Mapping[str, tuple[Point, Point]]:
+        """Whom its body had to move when it began: agent to (from where, to where), feet in blocks.
+
+        A belief may be impossible: somebody in a doorway that is now believed shut, two in one
+        place. Its body begins with them at the nearest place where they can stand; the belief is
+        left as it is. Empty in follow mode and where nobody had to be moved.
+        """
+        return placed_in(self._recording, self._path, self._tick)
+
+    @abstractmethod
+    def child(self, agent: str) -> Self:
+        """The simulator of what `agent` believes in this one."""
+
+    @in_turn
+    def visible_blocks(self, agent: str) -> npt.NDArray[np.bool_]:
+        """Which blocks an agent sees from its pose in this simulator.
+
+        Returns:
+            bool, shape of the box; all false where the agent's pose is unknown.
+
+        Raises:
+            PathError: There is no such agent.
+        """
+        self._child_path(agent)
+        return self._recording.reading(self._path, self._tick).visible_from(agent)
+
+    def figure(
+        self,
+        against: str | None = None,
+        *,
+        sight: Sequence[str] | None = None,
+        height: int | None = None,
+    ) -> Figure:
+        """The simulator, drawn from what it holds itself; as `Nest.figure`."""
+        with self._recording.turn:
+            return figure_of(_scenes([self], against, sight, height))
+
+    def __repr__(self) -> str:
+        recording = self._recording
+        try:
+            with recording.turn:
+                key = recording.selected.get(self._path)
+                state = self.state
+                wrong = [_named(each, recording) for each in _wrong(self, ())]
+                words = state_words(state)
+        except BeliefNestError as error:
+            # As for a nest.
+            return f"<simulator {self.path}: {error}>"
+        mode = "follow mode" if key is None else f"branch {key.branch}"
+        false = f"; false: {', '.join(wrong)}" if wrong else ""
+        return f"<simulator {self.path}, {mode}, tick {state.tick}: {words}{false}>"
+
+    def _repr_html_(self) -> str:
+        return self.figure()._repr_html_()
+
+    def _child_path(self, agent: str) -> BeliefPath:
+        agents = self._recording.agents
+        if agent not in agents:
+            raise PathError(f"no agent {agent!r}; there are {', '.join(agents)}")
+        return normalised((*self._path, agent))
+
+
+class PastSimulator(ShownSimulator):
+    """A simulator as it was at a past tick, or is now (None); read-only."""
+
+    def __init__(self, recording: Recording, path: BeliefPath, tick: int | None) -> None:
+        super().__init__(recording, path)
+        self._tick = tick
+
+    def child(self, agent: str) -> "PastSimulator":
+        """The simulator of what `agent` believed in this one."""
+        return PastSimulator(self._recording, self._child_path(agent), self._tick)
+
+
+class ShownNest:
+    """What a nest shows: live, recorded, or as it was at a past tick."""
+
+    _recording: Recording
+    _tick: int | None = None
+
+    def figure(
+        self,
+        paths: str | Sequence[str] = "/",
+        tick: int | None = None,
+        against: str | None = None,
+        *,
+        sight: Sequence[str] | None = None,
+        height: int | None = None,
+    ) -> Figure:
+        """Simulators side by side, each drawn from what it holds itself.
+
+        Args:
+            paths: Belief paths; one can stand alone.
+            tick: When; None: the latest tick.
+            against: The path that they are compared with, to mark what is false; None: reality.
+            sight: Agents whose sight is shown in each; None: that of the belief's owner.
+            height: The storey, y of what stands on its floor; None: that of most containers, or
+                of most agents.
+
+        Raises:
+            PathError: A path is malformed or names an unknown agent.
+            TickError: The tick is in the future or before the start.
+            InputError: There is no path, or the height lies outside the box.
+        """
+        return figure_of(self.scenes(paths, tick, against, sight=sight, height=height))
+
+    def scenes(
+        self,
+        paths: str | Sequence[str] = "/",
+        tick: int | None = None,
+        against: str | None = None,
+        *,
+        sight: Sequence[str] | None = None,
+        height: int | None = None,
+    ) -> tuple[Scene, ...]:
+        """What `figure` draws, as values; arguments and errors are the same."""
+        wanted = [paths] if isinstance(paths, str) else list(paths)
+        then = self._tick if tick is None else tick
+        recording = self._recording
+        with recording.turn:
+            names = [parse_path(path, recording.agents) for path in wanted]
+            shown = [PastSimulator(recording, path, then) for path in names]
+            return _scenes(shown, against, sight, height)
+
+    def plot_beliefs(
+        self,
+        container: Position | None = None,
+        item: str | None = None,
+        paths: Sequence[str] = ("/",),
+        *,
+        agent: str | None = None,
+        block: Position | None = None,
+    ) -> Figure:
+        """What simulators held of a thing over time: a row for each, a band for each value.
+
+        Bands are marked where they are false; above stand the deeds of the real world that
+        mattered, and what was claimed of it. Claims that were heard have a balloon above each
+        row, struck out where they were not believed. Followed are a container's contents, an
+        item wherever it is, a block, an agent's place, or with `agent` and `item`, how much of
+        it the agent has with it.
+
+        Args:
+            container: Where the container is.
+            item: The item to follow, alone in all containers and with all agents; None: all that
+                is in the container, or the agent's place.
+            paths: Belief paths.
+            agent: The agent to follow, in place of a container.
+            block: Where the block is that is followed, in place of a container.
+
+        Raises:
+            PathError: A path is malformed or names an unknown agent, or there is no such agent.
+            PositionError: The container or block lies outside the box.
+            InputError: There is no path, not one thing to follow, or never was a container there.
+            UnknownNameError: There is no such item.
+        """
+        followed = Followed(container, item, agent, block)
+        return plot_of(self._recording, followed, paths, self._tick)
+
+    @in_turn
+    def compare(self, a: str, b: str, *, unknown: bool = True) -> list[Difference]:
+        """Where two simulators differ: blocks, containers, agents' poses, inventories.
+
+        Args:
+            a: Belief path of one.
+            b: Belief path of the other.
+            unknown: Whether to tell of what is unknown, or not there, in one of them.
+
+        Raises:
+            PathError: A path is malformed or names an unknown agent.
+            TickError: The tick that is looked at is in the future or before the start.
+        """
+        recording = self._recording
+        one, other = parse_path(a, recording.agents), parse_path(b, recording.agents)
+        return compare(recording, one, other, self._tick, unknown=unknown)
+
+    @in_turn
+    def false_beliefs(self, path: str) -> list[Difference]:
+        """What a simulator holds otherwise than reality (`a`) does; unknown is not false.
+
+        Contents are false if they claim items that are not there, or claim to be complete
+        and miss some; an agent's place from half a block on, wherever its head has turned to.
+
+        Raises:
+            PathError: The path is malformed or names an unknown agent.
+            TickError: The tick that is looked at is in the future or before the start.
+        """
+        names = parse_path(path, self._recording.agents)
+        return false_beliefs(self._recording, names, self._tick)
+
+    @in_turn
+    def claims(self, path: str = "/") -> list[ToldClaim]:
+        """Every claim that was made in a simulator, oldest first.
+
+        Each tells its tick, text, speaker, hearers, whether it was false and whether a lie, and
+        of any belief whether it was taken up there, and why.
+
+        Args:
+            path: The simulator; what is claimed in a simulator in control mode is told there.
+
+        Raises:
+            PathError: The path is malformed or names an unknown agent.
+        """
+        names = parse_path(path, self._recording.agents)
+        return claims_told(self._recording, names, self._tick)
+
+    def __repr__(self) -> str:
+        recording = self._recording
+        try:
+            with recording.turn:
+                state = recording.state((), self._tick)
+                branches = len(recording.journal.timelines())
+                words = state_words(state)
+        except BeliefNestError as error:
+            # Whoever prints a closed nest, or a tick that is not there, wants no further fault.
+            return f"<nest of {recording.setting.name}: {error}>"
+        shown = f"<nest of {recording.setting.name} at tick {state.tick}"
+        return f"{shown}, {branches} timeline{'s' * (branches > 1)}: {words}>"
+
+    def _repr_html_(self) -> str:
+        return self.figure()._repr_html_()
+
+
+class Past(ShownNest):
+    """All simulators at one past tick."""
+
+    def __init__(self, recording: Recording, tick: int) -> None:
+        self._recording = recording
+        self._tick = tick
+
+    def __getitem__(self, path: str) -> PastSimulator:
+        """The simulator of a belief path as it was."""
+        return PastSimulator(self._recording, parse_path(path, self._recording.agents), self._tick)
+
+
+def _scenes(
+    shown: Sequence[ShownSimulator],
+    against: str | None,
+    sight: Sequence[str] | None,
+    height: int | None,
+) -> tuple[Scene, ...]:
+    if not shown:
+        raise InputError("a figure of no simulator is empty; give a belief path")
+    recording = shown[0]._recording
+    other = parse_path("/" if against is None else against, recording.agents)
+    for name in sight or ():
+        parse_path(path_text((name,)), recording.agents)
+    low, high = recording.box.low[1], recording.box.high[1]
+    if height is not None and not low <= height <= high:
+        raise InputError(f"height {height} lies outside the box; give {low} to {high}")
+    # One storey for all of them, so that they can be compared.
+    level = best_height([each.state for each in shown]) if height is None else height
+    return tuple(_scene(each, other, sight, level) for each in shown)
+
+
+def _scene(
+    shown: ShownSimulator, against: BeliefPath, sight: Sequence[str] | None, height: int
+) -> Scene:
+    recording, names = shown._recording, shown._path
+    setting, key = recording.setting, recording.selected.get(names)
+    # Who is not there at this tick looks from a remembered place: nobody can tell what it sees.
+    own = [name for name in names[-1:] if shown.state.agents[name].current]
+    return read_scene(
+        shown,
+        wrong=_wrong(shown, against),
+        against=path_text(against),
+        labels=setting.labels,
+        places=setting.places,
+        sight=own if sight is None else sight,
+        height=height,
+        note=f"branch {key.branch}" if key is not None and names else "",
+    )
+
+
+def _wrong(shown: ShownSimulator, against: BeliefPath) -> list[Wrong]:
+    """What a simulator holds otherwise than another, at its tick or that one's latest."""
+    recording, tick = shown._recording, shown._tick
+    if shown._path == against:
+        return []
+    then = None if tick is None else min(tick, recording.info(against).head)
+    return wrong_things(false_beliefs(recording, shown._path, tick, against, then))
+
+
+def wrong_things(found: Iterable[Difference]) -> list[Wrong]:
+    """Differences (`a` is taken for true) as drawings know them."""
+    return [
+        Wrong(each.where, value_words(each.b), value_words(each.a), each.kind == "inventory")
+        for each in found
+    ]
+
+
+def _named(wrong: Wrong, recording: Recording) -> str:
+    """What is false, by the name that people have for it."""
+    if isinstance(wrong.where, str):
+        return f"what {wrong.where} has" if wrong.is_owned else f"where {wrong.where} is"
+    return recording.setting.labels.get(wrong.where, place_words(wrong.where))
