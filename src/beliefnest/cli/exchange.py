@@ -54,7 +54,7 @@ def export_run(options: ExportOptions) -> None:
     store = store_in(options.run)
     # The run may go on meanwhile: all tables are of one moment.
     with SqliteJournal.read(store) as journal, journal.unchanging():
-        nest = RecordedNest.of(journal)
+        nest = RecordedNest(journal)
         for path in options.paths:
             parse_path(path, nest.agents)
         counts = export(

@@ -60,7 +60,7 @@ def write_page(options: PageOptions) -> None:
         for store in stores_in(options.run):
             journal = stack.enter_context(SqliteJournal.read(store))
             stack.enter_context(journal.unchanging())
-            nest = RecordedNest.of(journal)
+            nest = RecordedNest(journal)
             runs.append((nest.reader, about_run(journal, nest, [options.path])))
             _check_tick(options, nest, store)
         first: dict[str, object] = {"tick": options.tick}

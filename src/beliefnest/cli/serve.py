@@ -155,7 +155,7 @@ def _stores(folder: Path) -> Sequence[Path]:
 def _open(store: Path) -> OpenRun:
     journal = SqliteJournal.read(store)
     try:
-        nest = RecordedNest.of(journal)
+        nest = RecordedNest(journal)
         return OpenRun(nest.reader, about_run(journal, nest), journal.close)
     except BaseException:
         journal.close()

@@ -249,7 +249,7 @@ def _template(wanted: Path | None, kept: Mapping[str, str]) -> Template:
 @contextmanager
 def _opened(store: Path) -> Iterator[tuple[Scenario, RecordedNest, SqliteJournal]]:
     with SqliteJournal.read(store) as journal, journal.unchanging():
-        nest = RecordedNest.of(journal)
+        nest = RecordedNest(journal)
         yield _scenario(journal, nest), nest, journal
 
 

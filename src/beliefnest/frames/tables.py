@@ -207,12 +207,12 @@ def _events(journal: SqliteJournal) -> Iterator[Row]:
 
 
 def _rounds(journal: SqliteJournal) -> Iterator[Row]:
-    told = told_episode(RecordedNest.of(journal))
+    told = told_episode(RecordedNest(journal))
     return iter(()) if told is None else round_rows(told)
 
 
 def _claims(journal: SqliteJournal, paths: Sequence[str] | None) -> Iterator[Row]:
-    nest = RecordedNest.of(journal)
+    nest = RecordedNest(journal)
     asked = [path_text((name,)) for name in nest.agents] if paths is None else paths
     for number, told in enumerate(nest.claims(), start=1):
         for path in asked:
@@ -236,7 +236,7 @@ def _claim(plain: Mapping[str, Any]) -> Row:
 
 
 def _beliefs(journal: SqliteJournal, paths: Sequence[str]) -> Iterator[Row]:
-    nest = RecordedNest.of(journal)
+    nest = RecordedNest(journal)
     for path in paths:
         for moment in nest.over_time(path):
             state: Any = belief_json(moment.state)

@@ -4,7 +4,6 @@ import math
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +12,7 @@ from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, Sourc
 from beliefnest.belief.view import State
 from beliefnest.pictures.palette import Mark
 from beliefnest.pictures.words import told_apart
+from beliefnest.world.paths import path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import sign_words
 from beliefnest.world.texts import on_one_line
@@ -22,7 +22,6 @@ __all__ = [
     "DEVICES",
     "AgentSight",
     "Device",
-    "Drawable",
     "DrawnAgent",
     "Labels",
     "PlanColumn",
@@ -48,21 +47,6 @@ _NEAR = 2
 _WIDEST = 40
 """A plan of more blocks is cut to those around what stands in it."""
 _EDGE = 4
-
-
-class Drawable(Protocol):
-    """A simulator at one tick."""
-
-    @property
-    def path(self) -> str:
-        """The belief path."""
-
-    @property
-    def state(self) -> State:
-        """What it holds."""
-
-    def visible_blocks(self, agent: str) -> npt.NDArray[np.bool_]:
-        """Which blocks an agent sees in it, shape of the box."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,29 +250,28 @@ def best_height(states: Iterable[State]) -> int:
 
 
 def read_scene(
-    shown: Drawable,
+    state: State,
     *,
     wrong: Collection[Wrong] = (),
     against: str = "/",
     labels: Labels | None = None,
     places: Mapping[str, Position] | None = None,
-    sight: Sequence[str] = (),
+    sight: Mapping[str, npt.NDArray[np.bool_]] | None = None,
     height: int | None = None,
     note: str = "",
 ) -> Scene:
     """The scene of a simulator.
 
     Args:
-        shown: The simulator at a tick.
+        state: What it holds at a tick.
         wrong: What it holds otherwise than `against` does.
         against: The path it is compared with.
         labels: What people call containers.
         places: What people call other places.
-        sight: Agents whose sight is shown.
+        sight: Which blocks agents see whose sight is shown, shape of the box.
         height: The storey, y of what stands on its floor; None: that of most things.
         note: Further words for the title.
     """
-    state = shown.state
     level = best_height([state]) if height is None else height
     level = min(max(level, state.box.low[1]), state.box.high[1])
     window = _window(state, places or {})
@@ -305,7 +288,7 @@ def read_scene(
         for x in range(x0, x1 + 1)
     )
     return Scene(
-        path=shown.path,
+        path=path_text(state.path),
         tick=state.tick,
         agents=tuple(sorted(state.agents)),
         low=(x0, z0),
@@ -320,7 +303,7 @@ def read_scene(
             for name, agent in sorted(state.agents.items())
         ),
         sights=tuple(
-            AgentSight(name, shown.visible_blocks(name)[cut[0], layer, cut[1]]) for name in sight
+            AgentSight(name, seen[cut[0], layer, cut[1]]) for name, seen in (sight or {}).items()
         ),
         wrong=len(wrong),
         against=against,

@@ -11,6 +11,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, NamedTuple
 
+from beliefnest.errors import PositionError
+
 __all__ = [
     "AGENT_SAMPLE_HEIGHTS",
     "BODY_CENTRE_HEIGHT",
@@ -75,6 +77,11 @@ class Box:
     def __contains__(self, position: Position) -> bool:
         (x0, y0, z0), (x, y, z), (x1, y1, z1) = self.low, position, self.high
         return x0 <= x <= x1 and y0 <= y <= y1 and z0 <= z <= z1
+
+    def check(self, position: Position) -> None:
+        """Raise PositionError for a position outside the box."""
+        if position not in self:
+            raise PositionError(f"position {position} is outside the box {self.low}..{self.high}")
 
     def index(self, position: Position) -> tuple[int, int, int]:
         """Index of a position in a dense array of shape `shape`."""

@@ -8,7 +8,7 @@ from beliefnest.bodies.embedded import EmbeddedWorld
 from beliefnest.cli.bench.figures import Metric, median_seconds
 from beliefnest.errors import BodyError
 from beliefnest.nest.acting.engine import Engine
-from beliefnest.nest.face.opening import RunStart, begun
+from beliefnest.nest.face.opening import begun
 from beliefnest.scenarios.scenario import Scenario
 
 __all__ = ["measure"]
@@ -21,7 +21,7 @@ _AGENTS = ("ann", "bob", "cleo")
 def measure() -> Sequence[Metric]:
     """From the kill until all bodies have gone on by a tick."""
     world = EmbeddedWorld.start(0)
-    engine = begun(RunStart.of(_room(), "embedded", 0), world, None)
+    engine = begun(_room(), world, "embedded", 0)
     try:
         _go_apart(engine)
 

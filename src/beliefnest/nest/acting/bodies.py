@@ -36,12 +36,6 @@ class _RecordedBody:
 class Bodies:
     """The bodies of simulators in control mode, by path.
 
-    Args:
-        recording: What they are filled from and recorded in.
-        world: Where they live.
-        embodying: What people who visit beliefs are shown; it follows the real world.
-        reader: Who reads claims out of what is said in them; None: nobody.
-
     Attributes:
         world: Where they live.
         others: Further worlds of the kind, for programs that run at the same time.

@@ -47,12 +47,7 @@ class _Embodied:
 
 
 class Embodying:
-    """What stands in Minecraft of a nest's beliefs.
-
-    Args:
-        recording: What they hold.
-        world: Where reality is.
-    """
+    """What stands in Minecraft of a nest's beliefs."""
 
     def __init__(self, recording: Recording, world: World) -> None:
         self._recording = recording

@@ -7,9 +7,11 @@ but for programs, which end as `killed`.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import wraps
 from typing import Concatenate, ParamSpec, Self, TypeVar
+
+import msgspec
 
 from beliefnest.bodies.protocol import (
     KILLED,
@@ -23,7 +25,6 @@ from beliefnest.bodies.protocol import (
 from beliefnest.errors import BodyLostError, BranchError, TickError
 from beliefnest.nest.acting.bodies import Bodies
 from beliefnest.nest.acting.embodying import Embodying
-from beliefnest.nest.acting.going_on import encoded_past
 from beliefnest.nest.acting.hearsay import ClaimReader
 from beliefnest.nest.acting.speculation import Speculation, SpeculationStart, speculate
 from beliefnest.nest.past.body_state import internal_state_at, note_internal_state, present
@@ -65,6 +66,17 @@ def _shown(
         return result
 
     return visible
+
+
+@dataclass(frozen=True, slots=True)
+class _Request:
+    """Programs that are to run together; fields as the arguments of `Engine.run`."""
+
+    programs: Mapping[str, str]
+    timeout_ticks: int
+    step: int | None
+    senses: Senses
+    rules: RunRules
 
 
 class Engine:
@@ -197,35 +209,27 @@ class Engine:
                 do not tell what a later one would have to know.
         """
         rules = self._rules if past is None else replace(self._rules, remembers=True, past=past)
+        request = _Request(programs, timeout_ticks, step, senses, rules)
         lives = self.bodies.lives()
         while True:
-            results = lives.call(
-                lambda: self._run_once(path, programs, timeout_ticks, step, senses, rules)
-            )
+            results = lives.call(lambda: self._run_once(path, request))
             killed = any(result.killed for result in results.values())
             if not killed or step is None or not lives.spend():
                 return results
 
-    def _run_once(
-        self,
-        path: BeliefPath,
-        programs: Mapping[str, str],
-        timeout_ticks: int,
-        step: int | None,
-        senses: Senses,
-        rules: RunRules,
-    ) -> Mapping[str, ProgramResult]:
+    def _run_once(self, path: BeliefPath, request: _Request) -> Mapping[str, ProgramResult]:
         self.bodies.of(path)
         self.bodies.catch_up(path)
+        programs, rules = request.programs, request.rules
         limited = {}
-        if senses == "percepts":
+        if request.senses == "percepts":
             past = rules.past
             limited = {a: self.bodies.sense_of(path, a, past.get(a)) for a in programs}
         before = self.recording.info(path)
         try:
             with self.bodies.acting(path) as body:
-                results = body.run(programs, timeout_ticks, limited, rules)
-                self._note(before, programs, results, timeout_ticks, step, senses, rules)
+                results = body.run(programs, request.timeout_ticks, limited, rules)
+                self._note(before, request, results)
             if placed := placed_in(self.recording, path):
                 results = {name: replace(each, placed=placed) for name, each in results.items()}
         except BodyLostError as lost:
@@ -236,9 +240,7 @@ class Engine:
             fault = Fault(message, KILLED)
             results = {agent: ProgramResult(agent, False, fault, 0) for agent in programs}
             with self.recording.journal.together():
-                self._note(
-                    before, programs, results, timeout_ticks, step, senses, rules, kept=False
-                )
+                self._note(before, request, results, kept=False)
         return results
 
     def speculate(
@@ -251,15 +253,7 @@ class Engine:
     ) -> Mapping[int, Speculation]:
         """Run programs as if in a simulator's body, each job in one of its own, unrecorded.
 
-        Args:
-            path: The simulator.
-            base: Where each of them begins.
-            jobs: Programs by agent, by the caller's number.
-            timeout_ticks: Ticks after which they are stopped.
-            processes: How many jobs run at the same time.
-
-        Returns:
-            What became of each, by number; those for which no body could be made are left out.
+        All begin at `base`; so many `processes` run at the same time. See `speculate`.
         """
         start = SpeculationStart(
             f"{path_text(path)} ahead",
@@ -321,12 +315,8 @@ class Engine:
     def _note(
         self,
         before: TimelineInfo,
-        programs: Mapping[str, str],
+        request: _Request,
         results: Mapping[str, ProgramResult],
-        timeout_ticks: int,
-        step: int | None,
-        senses: Senses,
-        rules: RunRules,
         *,
         kept: bool = True,
     ) -> None:
@@ -334,12 +324,13 @@ class Engine:
         records = self.recording.records
         group = records.next_group()
         for agent, result in results.items():
+            past = request.rules.past.get(agent)
             records.add_program(
                 ProgramRecord(
                     path=before.key.path,
                     branch=before.key.branch,
                     agent=agent,
-                    code=programs[agent],
+                    code=request.programs[agent],
                     tick=before.head,
                     ok=result.ok,
                     error=None if result.error is None else str(result.error),
@@ -349,10 +340,10 @@ class Engine:
                     log=result.log,
                     unfinished=tuple(map(str, result.unfinished)),
                     entries=before.entries,
-                    timeout_ticks=timeout_ticks,
-                    step=step,
+                    timeout_ticks=request.timeout_ticks,
+                    step=request.step,
                     kept=kept,
-                    senses=senses,
-                    past=encoded_past(rules.past.get(agent)),
+                    senses=request.senses,
+                    past=msgspec.UNSET if past is None else msgspec.json.encode(past),
                 )
             )

@@ -1,8 +1,8 @@
 """The recorder of one body: appends its frames to the timeline that the body is on."""
 
 from collections.abc import Callable, Iterator
-from typing import Protocol
 
+from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.nest.acting.hearsay import Hearsay, has_unread
 from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import Journal, TimelineKey
@@ -20,17 +20,6 @@ ChatListener = Callable[[int, str, str], None]
 _BATCH = 256
 
 
-class Follower(Protocol):
-    """What is kept up to date with what is recorded."""
-
-    @property
-    def follows(self) -> bool:
-        """Whether there is anything to keep up to date."""
-
-    def keep_up(self) -> None:
-        """Bring it up to date."""
-
-
 class FrameRecorder:
     """Takes a body's frames and appends them to the timeline it is on.
 
@@ -42,8 +31,8 @@ class FrameRecorder:
         key: The timeline.
         hearsay: Completes frames in which something is said; None: they are recorded as they are.
         on_chat: Is called with what was said, once it is recorded; None: nobody is.
-        follower: What is to be kept up to date with every frame, also while a call is under way;
-            None: nothing is.
+        follower: What people are shown, kept up to date with every frame, also while a call is
+            under way; None: nothing is.
     """
 
     def __init__(
@@ -53,7 +42,7 @@ class FrameRecorder:
         key: TimelineKey,
         hearsay: Hearsay | None = None,
         on_chat: ChatListener | None = None,
-        follower: Follower | None = None,
+        follower: Embodying | None = None,
     ) -> None:
         self.key = key
         self._follower = follower

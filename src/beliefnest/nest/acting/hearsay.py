@@ -41,13 +41,7 @@ class ClaimReader(Protocol):
 
 
 class Hearsay:
-    """Completes the frames of a nest.
-
-    Args:
-        reader: Who reads the texts.
-        setting: What the nest started from.
-        history: What it has become.
-    """
+    """Completes the frames of a nest."""
 
     def __init__(self, reader: ClaimReader, setting: Setting, history: History) -> None:
         self._reader = reader

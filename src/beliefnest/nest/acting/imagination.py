@@ -183,10 +183,7 @@ class Imagination:
             PathError: Beliefs are not followed that deep.
         """
         whole = normalised((*self.root, *path))
-        forest = self._fold()
-        if forest is None or whole not in forest:
-            raise PathError(f"{path_text(whole)} is deeper than this imagination goes")
-        return NodeView(forest, whole)
+        return NodeView(self._with(whole), whole)
 
     def print_of(self, agent: str, depth: int) -> tuple[object, ...] | None:
         """What a plan of an agent in it could depend on; equal ones lead to equal plans.
@@ -213,6 +210,13 @@ class Imagination:
             forest = forked_forest(
                 forest, news, self.root, self.root, self.world.now, further=nodes
             )
+        return self._again(forest, news)
+
+    def bare(self) -> "Imagination":
+        """A fork in which beliefs are not followed: only what the believer takes for real."""
+        return self._again(None, _News())
+
+    def _again(self, forest: Forest | None, news: _News) -> "Imagination":
         made = Imagination(
             forest,
             self.root,
@@ -220,20 +224,6 @@ class Imagination:
             self.world.again(),
             self._grounds,
             news,
-            self._speech_ticks,
-        )
-        made.happened += self.happened
-        return made
-
-    def bare(self) -> "Imagination":
-        """A fork in which beliefs are not followed: only what the believer takes for real."""
-        made = Imagination(
-            None,
-            self.root,
-            self._unknown,
-            self.world.again(),
-            self._grounds,
-            _News(),
             self._speech_ticks,
         )
         made.happened += self.happened
@@ -265,11 +255,8 @@ class Imagination:
             PathError: Beliefs are not followed that deep.
         """
         root = normalised((*self.root, agent))
-        forest = self._fold()
-        if forest is None or root not in forest:
-            raise PathError(f"{path_text(root)} is deeper than this imagination goes")
         return Imagination.of(
-            forest, root, depth, self.world.now, self._grounds, self._speech_ticks
+            self._with(root), root, depth, self.world.now, self._grounds, self._speech_ticks
         )
 
     def play(
@@ -345,6 +332,13 @@ class Imagination:
         if self._columns is not None:
             self._columns.extend([frame])
             self._news.happened += events
+
+    def _with(self, path: BeliefPath) -> Forest:
+        """The forest as of now, which has to hold a node."""
+        forest = self._fold()
+        if forest is None or path not in forest.table.index:
+            raise PathError(f"{path_text(path)} is deeper than this imagination goes")
+        return forest
 
     def _fold(self) -> Forest | None:
         forest, columns = self._forest, self._columns

@@ -4,8 +4,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
+import msgspec
+
 from beliefnest.bodies.protocol import Body, ProgramPast, RunRules, Sense, World
-from beliefnest.nest.acting.going_on import decoded_past
 from beliefnest.nest.acting.hearsay import recalled
 from beliefnest.nest.acting.sensing import Sensing, believer_of
 from beliefnest.nest.acting.starting import start_of
@@ -109,13 +110,7 @@ def replay(
 
     Each begins in the state that was recorded for its first tick, so that one that differs does not
     make those based on it differ. What a user told a scripted world is told again as recorded.
-
-    Args:
-        setting: What the run started from.
-        journal: Its timelines.
-        programs: Its programs.
-        world: A fresh world of the kind it ran in.
-        seed: Its seed.
+    `world` is a fresh one of the kind that the run was in.
 
     Raises:
         BodyError: The Minecraft side died.
@@ -138,8 +133,11 @@ def _call(group: Sequence[ProgramRecord]) -> _RecordedCall:
     first = group[0]
     programs = {program.agent: program.code for program in group}
     ticks = max(program.ticks for program in group)
-    known = {program.agent: decoded_past(program.past) for program in group}
-    past = {agent: each for agent, each in known.items() if each is not None}
+    past = {
+        program.agent: msgspec.json.decode(program.past, type=ProgramPast)
+        for program in group
+        if program.past is not msgspec.UNSET
+    }
     return _RecordedCall(
         first.tick, first.entries, programs, first.timeout_ticks, first.senses, ticks, past
     )

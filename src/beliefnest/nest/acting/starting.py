@@ -8,7 +8,7 @@ import numpy as np
 from beliefnest.belief.entries import Source
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.acting.placement import BodySpace, moved_agents, placed, unknown_floors
-from beliefnest.nest.past.body_state import snapshot_at
+from beliefnest.nest.past.body_state import internal_state_at
 from beliefnest.nest.past.history import History
 from beliefnest.nest.past.placing import fork_of_belief
 from beliefnest.timeline.journal import ForkPoint, Journal
@@ -48,16 +48,19 @@ def start_of(
         moment: Of a timeline; if it is not the node's own, the node is about to be forked.
         has_physics: Whether agents in the body stand, fall and are stopped by blocks.
     """
-    snapshot = snapshot_at(journal, history, path, moment)
+    reading = history.reading(moment.timeline, path, moment.entries)
+    is_own = moment.timeline.path == path
+    state = internal_state_at(journal, moment) if is_own else b""
+    snapshot = replace(reading.snapshot(), tick=moment.tick, internal_state=state)
     if not has_physics:
         return BodyStart(snapshot)
-    if moment.timeline.path != path:
-        return _begun(snapshot, history.reading(moment.timeline, path, moment.entries), history)
+    if not is_own:
+        return _begun(snapshot, reading, history)
     fork = fork_of_belief(journal, moment.timeline)
     if fork is None:
         return BodyStart(snapshot)
     # Floors stay where they were when the body began, for as long as nothing is known of them.
-    blocks = history.reading(moment.timeline, path, moment.entries).blocks
+    blocks = reading.blocks
     if not (blocks < 0).any():
         return BodyStart(snapshot)
     _, base = fork

@@ -7,7 +7,7 @@ from beliefnest.belief.columns import cell_of
 from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.node_view import NodeView
-from beliefnest.errors import InputError, PathError, PositionError
+from beliefnest.errors import InputError, PathError
 from beliefnest.nest.explain.element_history import (
     LogPlace,
     LogStep,
@@ -31,7 +31,7 @@ from beliefnest.nest.explain.parts import (
 )
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
 from beliefnest.nest.past.recording import Recording
-from beliefnest.timeline.journal import Edit
+from beliefnest.timeline.journal import Edit, Entry
 from beliefnest.world.claims import ClaimKind, claims_of
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath
@@ -46,13 +46,7 @@ def element_of(
     agent: str | None,
     block: Position | None,
 ) -> Element:
-    """The one element that is asked for.
-
-    Raises:
-        InputError: None was given, or several were.
-        PathError: There is no such agent.
-        PositionError: The position is outside the box.
-    """
+    """The one element that is asked for; errors as those of `ShownSimulator.explain`."""
     given = [name for name in (container, agent, block) if name is not None]
     if len(given) != 1:
         raise InputError(
@@ -69,26 +63,18 @@ def element_of(
 
 
 def _inside(recording: Recording, place: Position | None) -> Position:
-    box = recording.box
     if not (
         isinstance(place, tuple) and len(place) == 3 and all(isinstance(p, int) for p in place)
     ):
         raise InputError(f"{place!r} is no block position; give a tuple of three whole numbers")
-    if place not in box:
-        raise PositionError(f"position {place} is outside the box {box.low}..{box.high}")
+    recording.box.check(place)
     return place
 
 
 def explain(
     recording: Recording, path: BeliefPath, tick: int | None, element: Element
 ) -> Explanation:
-    """The chain of perceptions behind what a node holds of an element.
-
-    Args:
-        recording: The nest's.
-        path: The node.
-        tick: A past tick of the timeline it is on; None: now.
-        element: What to explain.
+    """The chain of perceptions behind what a node holds of an element at a tick; None: now.
 
     Raises:
         TickError: The tick is in the future, or before the start of everything.
@@ -201,7 +187,7 @@ def _fact(recording: Recording, place: LogPlace, held: _HeldNow, element: Elemen
         block=held.block,
         since=None if change is None else change.tick,
         acts=() if change is None else _acts(held.events, change.tick, element),
-        edited=change is not None and change.edited,
+        edited=isinstance(change, Edit),
         forked_at=None if base is None else base.tick,
     )
 
@@ -252,7 +238,8 @@ def _take(recording: Recording, trace: _Finding, step: LogStep, element: Element
         trace.since, trace.parent = forest.tick, outside
         trace.stood = forest.feet(trace.path[:-1], trace.path[-1])
     elif trace.missed is None and outside != trace.parent and trace.observed_at is not None:
-        edited = _is_edit(recording, step.place, trace.path[:-1])
+        entry = _entry(recording, step.place)
+        edited = isinstance(entry, Edit) and entry.path == trace.path[:-1]
         events = NodeView(forest, trace.path[:-1]).events()
         acts = () if edited else _acts(events, forest.tick, element)
         missed = _missed(recording, trace.path, step, element, trace.parent, acts)
@@ -289,10 +276,7 @@ def _told(
     recording: Recording, path: BeliefPath, step: LogStep, element: Element
 ) -> Iterable[HeardClaim]:
     """The claims of one entry by which a node may have moved something out of a container."""
-    if element.kind != "container" or step.place.entries == 0:
-        return
-    number = step.place.entries
-    (entry,) = recording.journal.entries(step.place.key, number - 1, number)
+    entry = _entry(recording, step.place) if element.kind == "container" else None
     if not isinstance(entry, Frame):
         return
     node = step.forest.node(path)
@@ -304,11 +288,11 @@ def _told(
                 yield HeardClaim(entry.tick, str(event.actor), claim)
 
 
-def _is_edit(recording: Recording, place: LogPlace, path: BeliefPath) -> bool:
+def _entry(recording: Recording, place: LogPlace) -> Entry | None:
+    """The entry just before a place; None at the beginning of a timeline."""
     if place.entries == 0:
-        return False
-    (entry,) = recording.journal.entries(place.key, place.entries - 1, place.entries)
-    return isinstance(entry, Edit) and entry.path == path
+        return None
+    return next(recording.journal.entries(place.key, place.entries - 1, place.entries))
 
 
 def _absence(recording: Recording, forest: Forest, path: BeliefPath) -> Absence:

@@ -24,10 +24,8 @@ __all__ = [
     "are_elsewhere",
     "are_false",
     "compare",
-    "differences",
     "false_beliefs",
     "false_things",
-    "falsehoods",
     "value_words",
 ]
 
@@ -140,11 +138,15 @@ def _what(difference: Difference) -> str:
 def compare(
     recording: Recording, a: BeliefPath, b: BeliefPath, tick: int | None, *, unknown: bool
 ) -> list[Difference]:
-    """`differences` of two nodes at a tick; None: now."""
+    """Where two nodes differ at a tick (None: now), as `ShownNest.compare` says.
+
+    Blocks come first, then containers, agents, inventories, each in order.
+    """
     one, other = recording.reading(a, tick), recording.reading(b, tick)
-    context = recording.context
-    found = differences(one, other, context, unknown=unknown)
-    return Differences(found, path_text(a), path_text(b))
+    blocks = _different_blocks(one, other, recording.context)
+    found = itertools.chain(blocks, _different_things(one, other))
+    known = (each for each in found if each.a is not None and each.b is not None)
+    return Differences(found if unknown else known, path_text(a), path_text(b))
 
 
 def false_beliefs(
@@ -154,53 +156,27 @@ def false_beliefs(
     against: BeliefPath = (),
     against_tick: int | None = None,
 ) -> list[Difference]:
-    """`falsehoods` of a node at a tick; None: now.
+    """What a node holds and another one does not: unknown is not false.
+
+    Contents are false by `are_false`, an agent's place by `are_elsewhere`.
 
     Args:
         recording: The nest's.
         path: The node.
-        tick: Its tick.
+        tick: Its tick; None: now.
         against: The node that is taken for true.
         against_tick: Its tick; None: the same.
     """
     belief = recording.reading(path, tick)
     real = recording.reading(against, tick if against_tick is None else against_tick)
-    context = recording.context
-    found = falsehoods(real, belief, context)
+    blocks = _different_blocks(real, belief, recording.context)
+    known = (each for each in blocks if each.b is not None)
+    found = itertools.chain(known, false_things(real, belief))
     return Differences(found, path_text(against), path_text(path))
 
 
-def differences(
-    a: NodeView, b: NodeView, context: BeliefContext, *, unknown: bool = True
-) -> Iterator[Difference]:
-    """Where two states differ: blocks, containers, agents, inventories, each in order.
-
-    Args:
-        a: One state.
-        b: The other.
-        context: What both stand on.
-        unknown: Whether to tell of what is unknown, or not there, in one of them.
-    """
-    every = itertools.chain(_different_blocks(a, b, context), _different_things(a, b))
-    for found in every:
-        if unknown or (found.a is not None and found.b is not None):
-            yield found
-
-
-def falsehoods(real: NodeView, belief: NodeView, context: BeliefContext) -> Iterator[Difference]:
-    """What a belief holds and reality does not: unknown is not false.
-
-    Contents are false if they claim items that are not there, or claim to be complete and
-    miss some; an agent's place by `are_elsewhere`.
-    """
-    for found in _different_blocks(real, belief, context):
-        if found.b is not None:
-            yield found
-    yield from false_things(real, belief)
-
-
 def false_things(real: BelievedThings, belief: BelievedThings) -> Iterator[Difference]:
-    """`falsehoods` of containers, agents' places and inventories."""
+    """What of containers, agents' places and inventories is false, as in `false_beliefs`."""
     return (found for found in _different_things(real, belief) if _is_false(found))
 
 

@@ -8,15 +8,13 @@ from beliefnest.belief.entries import PerceivedEvent
 from beliefnest.belief.forest import Forest
 from beliefnest.nest.explain.parts import Contents, Element, Value
 from beliefnest.nest.past.history import History
-from beliefnest.timeline.journal import Edit, EntryFilter, Journal, TimelineKey
-from beliefnest.world.frames import Frame
+from beliefnest.timeline.journal import Edit, Entry, EntryFilter, Journal, TimelineKey
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import block_words, plain_state
 from beliefnest.world.values import Box
 
 __all__ = [
-    "Change",
     "LogPlace",
     "LogStep",
     "cells_of",
@@ -34,14 +32,6 @@ class LogPlace:
 
     key: TimelineKey
     entries: int
-
-
-@dataclass(frozen=True, slots=True)
-class Change:
-    """A change of an element: when, and whether it was made by hand."""
-
-    tick: int
-    edited: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,8 +102,8 @@ def touches(element: Element, event: PerceivedEvent) -> bool:
 
 def last_change(
     history: History, journal: Journal, place: LogPlace, element: Element
-) -> Change | None:
-    """The last change of an element in the world of a timeline, on that timeline."""
+) -> Entry | None:
+    """The last entry of a timeline that changed an element in its own world."""
     path = place.key.path
     held: object = _bare(value_in(next(history.steps(place.key, path, 0, 0)), path, element))
     last = None
@@ -127,11 +117,11 @@ def last_change(
         after = _after(entry, element, history.context.registry, held)
         if after != held:
             held = after
-            last = Change(entry.tick, edited=isinstance(entry, Edit))
+            last = entry
     return last
 
 
-def _after(entry: Frame | Edit, element: Element, registry: Registry, held: object) -> object:
+def _after(entry: Entry, element: Element, registry: Registry, held: object) -> object:
     """What an element is after an entry, as bare as `_bare` makes it."""
     if isinstance(element.where, str):
         if isinstance(entry, Edit) or element.where not in entry.agents:

@@ -1,15 +1,14 @@
 """Claims that were made: who heard them, whether they were false or lies, who took them up."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 
-from beliefnest.belief.entries import AgentBelief, ContainerBelief
+from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.forest import Forest
+from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.testimony import Verdict
-from beliefnest.belief.view import State
 from beliefnest.errors import InputError
 from beliefnest.nest.past.recording import Recording
 from beliefnest.prompts.text import block_name, block_properties
@@ -67,12 +66,12 @@ class ToldClaim:
     @cached_property
     def false(self) -> bool:
         """Whether the world it was made in said otherwise at its tick."""
-        return says_otherwise(self._state(self._key.path), self.claim)
+        return self._is_contradicted(self._key.path)
 
     @cached_property
     def lie(self) -> bool:
         """Whether the speaker believed otherwise."""
-        return says_otherwise(self._state((*self._key.path, self.speaker)), self.claim)
+        return self._is_contradicted((*self._key.path, self.speaker))
 
     def taken_up(self, path: str) -> bool:
         """Whether it changed what a simulator holds, or holds the speaker to believe.
@@ -85,8 +84,9 @@ class ToldClaim:
 
     def why(self, path: str) -> str:
         """Why it was taken up, or by which condition it was not; errors as for `taken_up`."""
-        verdict = self._verdict(path)
-        return _words(verdict, parse_path(path, self._recording.agents), self)
+        names = parse_path(path, self._recording.agents)
+        grace = self._recording.setting.perception.grace
+        return _words(self._verdict(path), names, self.speaker, grace)
 
     def condition(self, path: str) -> str | None:
         """The condition of section 8 that decided (`1a`, `1b`, `3`, `4`); errors as above.
@@ -99,10 +99,6 @@ class ToldClaim:
     def is_heard(self, path: str) -> bool:
         """Whether it was perceived in a simulator, as far as that weighs it; errors as above."""
         return self._verdict(path) is not Verdict.NOT_HEARD
-
-    def grace(self) -> int:
-        """Ticks out of sight that a speaker needs to know better."""
-        return self._recording.setting.perception.grace
 
     def _verdict(self, path: str) -> Verdict:
         names = parse_path(path, self._recording.agents)
@@ -132,19 +128,15 @@ class ToldClaim:
             heard = forest.hearing.of(forest.node(path), count)
             return bool(np.asarray(heard)[first + self._row])
 
-    def _state(self, path: BeliefPath) -> State:
+    def _is_contradicted(self, path: BeliefPath) -> bool:
+        history = self._recording.history
         with self._recording.turn:
-            return self._recording.state_after(self._key, path, self._entry + 1, self.tick)
+            held = history.reading(self._key, path, self._entry + 1)
+            return says_otherwise(held, history.context, self.claim)
 
 
 def claims_told(recording: Recording, path: BeliefPath, tick: int | None) -> list[ToldClaim]:
-    """All claims made in a simulator, oldest first.
-
-    Args:
-        recording: The nest's.
-        path: The simulator, or one that follows it.
-        tick: The last tick that counts; None: all.
-    """
+    """All claims made in a simulator, or in what it follows, up to a tick (None: all)."""
     place: tuple[TimelineKey, int] | None
     info = recording.info(path)
     place = (info.key, info.entries) if tick is None else recording.place_of(info.key, tick)
@@ -166,42 +158,24 @@ def _told(recording: Recording, key: TimelineKey, count: int) -> Iterator[ToldCl
                     yield ToldClaim(recording, key, (number, row, index), entry, claim)
 
 
-class Texts(Protocol):
-    """Blocks as people read them."""
-
-    def __getitem__(self, position: Position) -> str | None:
-        """The block at a position; None: unknown."""
-
-
-class BelievedState(Protocol):
-    """What of a state a claim can contradict."""
-
-    @property
-    def agents(self) -> Mapping[str, AgentBelief]:
-        """Every agent by name."""
-
-    @property
-    def containers(self) -> Mapping[Position, ContainerBelief]:
-        """Known containers by position."""
-
-    @property
-    def blocks(self) -> Texts:
-        """Believed blocks."""
-
-
-def says_otherwise(state: BelievedState, claim: Claim) -> bool:
+def says_otherwise(held: NodeView, context: BeliefContext, claim: Claim) -> bool:
     """Whether a state contradicts a claim; what it does not know it does not contradict."""
     match claim.kind:
         case ClaimKind.POSITION:
-            believed = state.agents[str(claim.agent)].position
+            believed = held.agents[str(claim.agent)].position
             return believed is not None and _cell(believed) != claim.cell
         case ClaimKind.BLOCK:
-            return _is_other_block(state.blocks[claim.cell], str(claim.state))
+            return _is_other_block(_block(held, context, claim.cell), str(claim.state))
         case ClaimKind.ABSENT:
-            content = state.containers.get(claim.cell)
+            content = held.containers.get(claim.cell)
             return content is not None and claim.item in content.items
         case ClaimKind.LOCATED:
-            return _is_elsewhere(state, claim)
+            return _is_elsewhere(held, context, claim)
+
+
+def _block(held: NodeView, context: BeliefContext, place: Position) -> str | None:
+    state = int(held.blocks[context.box.index(place)])
+    return None if state < 0 else context.registry.text(state)
 
 
 def _cell(point: tuple[float, float, float]) -> tuple[int, ...]:
@@ -216,23 +190,22 @@ def _is_other_block(block: str | None, stated: str) -> bool:
     return not same or any(held.get(name) != value for name, value in told.items())
 
 
-def _is_elsewhere(state: BelievedState, claim: Claim) -> bool:
+def _is_elsewhere(held: NodeView, context: BeliefContext, claim: Claim) -> bool:
     """Whether an item is known to be missing in the container, or believed to be elsewhere."""
-    content = state.containers.get(claim.cell)
+    content = held.containers.get(claim.cell)
     if content is not None and claim.item in content.items:
         return False
     if content is not None and content.complete:
         return True
-    known = state.blocks[claim.cell]
-    if content is None and known is not None:
+    if content is None and _block(held, context, claim.cell) is not None:
         return True
-    others = any(claim.item in held.items for held in state.containers.values())
-    return others or any(claim.item in agent.inventory for agent in state.agents.values())
+    others = any(claim.item in other.items for other in held.containers.values())
+    return others or any(claim.item in agent.inventory for agent in held.agents.values())
 
 
-def _words(verdict: Verdict, path: BeliefPath, told: ToldClaim) -> str:
+def _words(verdict: Verdict, path: BeliefPath, speaker: str, grace: int) -> str:
     """A verdict in words, and the condition that decided it."""
-    me, speaker, grace = path[-1], told.speaker, told.grace()
+    me = path[-1]
     outer = path[-2] if len(path) > 1 else None
     words = {
         Verdict.TAKEN_UP: f"{me} believes what {speaker} said; nothing spoke against it",

@@ -214,11 +214,8 @@ def _acts_text(acts: Iterable[PerceivedEvent]) -> str:
     told = list(acts)
     # A deed and the change of the block that it brings about are recorded both.
     deeds = [act for act in told if act.actor is not None or act.kind is not EventKind.BLOCK_UPDATE]
-    return ", then ".join(dict.fromkeys(_act_text(act) for act in deeds or told))
-
-
-def _act_text(act: PerceivedEvent) -> str:
-    return f"{act.actor or 'something'} {_deed_text(act)}"
+    words = (f"{act.actor or 'something'} {_deed_text(act)}" for act in deeds or told)
+    return ", then ".join(dict.fromkeys(words))
 
 
 def _deed_text(act: PerceivedEvent) -> str:

@@ -63,9 +63,6 @@ class NestBase(ShownNest, ABC):
         Args:
             path: Those that ran in this simulator on the branch it is on: in follow mode there are
                 none, and those that ran before the fork belong to another branch. None: all.
-
-        Raises:
-            PathError: The path is malformed or names an unknown agent.
         """
         programs = tuple(self._recording.records.programs())
         if path is None:
@@ -80,9 +77,6 @@ class NestBase(ShownNest, ABC):
         Args:
             path: Those made from this simulator, in the past of the branch it is on or follows;
                 None: all.
-
-        Raises:
-            PathError: The path is malformed or names an unknown agent.
         """
         prompts = tuple(self._recording.records.prompts())
         if path is None:

@@ -50,21 +50,7 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class Exploration:
-    """What is to be tried: each program from the simulator's present.
-
-    Attributes:
-        engine: The nest's.
-        path: The simulator; it ends where it began.
-        agent: Whose bot runs the programs.
-        programs: Their texts.
-        score: Says how good it is what a program led to.
-        timeout_ticks: Ticks after which a program is stopped.
-        name: What the branches are called.
-        processes: How many run programs at the same time; None: as many as the machine has
-            processors, if what is left after the first program would take long enough.
-        senses: What programs read; what their agent perceives is worked out as it is recorded, so
-            that then they run one after the other.
-    """
+    """What is to be tried: each program from the simulator's present; see `Nest.explore`."""
 
     engine: Engine
     path: BeliefPath
@@ -74,15 +60,10 @@ class Exploration:
     timeout_ticks: int
     name: str
     processes: int | None
-    senses: Senses = "world"
+    senses: Senses
 
     def attempts(self) -> tuple[Attempt, ...]:
-        """Try all programs, in order.
-
-        Raises:
-            BranchError: A branch is there already; nothing was run.
-            InputError: The number of processes is none, or `senses` is not what programs read.
-        """
+        """Try all programs, in order; errors as those of `Nest.explore`."""
         check_senses(self.senses)
         simulator = Simulator(self.engine, self.path)
         branches = self._branches(simulator)
@@ -152,6 +133,7 @@ class Exploration:
         if processes is None:
             processes = _processors() if seconds * len(left) > _WORTH_SECONDS else 1
         processes = min(processes, len(left))
+        # What an agent perceives is worked out as it is recorded, one program after the other.
         if processes < 2 or self.senses == "percepts":
             return {}
         with self.engine.recording.turn:

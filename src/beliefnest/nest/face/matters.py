@@ -75,8 +75,24 @@ class Matter(Protocol[V]):
         """Whether a claim is about it."""
 
 
+class _Amounts:
+    """Contents, of which all or one item is followed."""
+
+    __slots__ = ()
+
+    item: str | None
+
+    def words(self, course: Course[Contents]) -> list[str]:
+        """What there is, in words."""
+        return [_contents_words(held, self.item) for _, held in course]
+
+    def is_false(self, real: Contents | None, held: Contents) -> bool:
+        """As for `false_beliefs`."""
+        return are_false(real, held)
+
+
 @dataclass(frozen=True, slots=True)
-class Contained:
+class Contained(_Amounts):
     """What is in a container: all of it, or one item.
 
     Attributes:
@@ -92,20 +108,13 @@ class Contained:
     @property
     def title(self) -> str:
         """What the plot is about."""
-        return f"What is believed of the {self.label}" + _and(self.item)
+        item = "" if self.item is None else f" and the {_plain(self.item)}"
+        return f"What is believed of the {self.label}{item}"
 
     def value(self, held: NodeView) -> Contents | None:
         """What is in it."""
         found = held.containers.get(self.container)
         return None if found is None else _only(self.item, found.items, complete=found.complete)
-
-    def words(self, course: Course[Contents]) -> list[str]:
-        """What is in it, in words."""
-        return [_contents_words(held, self.item) for _, held in course]
-
-    def is_false(self, real: Contents | None, held: Contents) -> bool:
-        """As for `false_beliefs`."""
-        return are_false(real, held)
 
     def act(self, event: PerceivedEvent) -> str:
         """Putting in, taking out, looking in."""
@@ -221,7 +230,7 @@ class BlockAt:
 
 
 @dataclass(frozen=True, slots=True)
-class Owned:
+class Owned(_Amounts):
     """How much of an item an agent has with it.
 
     Attributes:
@@ -241,14 +250,6 @@ class Owned:
         """What the agent has of it."""
         agent = held.agents[self.agent]
         return _only(self.item, agent.inventory, complete=agent.inventory_complete)
-
-    def words(self, course: Course[Contents]) -> list[str]:
-        """What the agent has of it, in words."""
-        return [_contents_words(held, self.item) for _, held in course]
-
-    def is_false(self, real: Contents | None, held: Contents) -> bool:
-        """As for `false_beliefs`."""
-        return are_false(real, held)
 
     def act(self, event: PerceivedEvent) -> str:
         """Taking, putting away, giving, getting the item."""
@@ -357,10 +358,6 @@ def _contents_words(held: Contents | None, item: str | None) -> str:
     if item is not None and not held.items:
         return f"no {_plain(item)}"
     return items_words(held.items, complete=held.complete)
-
-
-def _and(item: str | None) -> str:
-    return "" if item is None else f" and the {_plain(item)}"
 
 
 def _plain(item: str) -> str:

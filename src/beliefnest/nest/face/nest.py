@@ -15,7 +15,7 @@ from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.script import Progress, play_script
 from beliefnest.nest.face.exploration import Attempt, Exploration, ScoreFunction
 from beliefnest.nest.face.joining import Joining
-from beliefnest.nest.face.opening import HasSetting, RunStart, begun, resumed
+from beliefnest.nest.face.opening import BareSetting, HasSetting, as_scenario, begun, resumed
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.face.shown import Past
 from beliefnest.nest.face.simulator import Simulator
@@ -39,7 +39,8 @@ class Nest(Joining, Visiting):
     """The real world and every belief in it; each node is made on first use.
 
     `Nest(world)` wraps a `ScriptedWorld` and follows what happens in it; `Nest.open` opens a
-    scenario in a world of its own. Use it in a `with` block, or close it.
+    scenario in a world of its own. Use it in a `with` block, or close it. A belief path that is
+    malformed, or names an unknown agent, raises PathError wherever one is given.
 
     Args:
         world: The scripted world that is the real one.
@@ -71,8 +72,8 @@ class Nest(Joining, Visiting):
             static_blocks=frozenset(static_blocks),
             initial_beliefs=tuple(initial_beliefs),
         )
-        start = RunStart(setting, "scripted", 0)
-        self._hold(begun(start, ScriptedBodies(world), store, claims_from))
+        bodies = ScriptedBodies(world)
+        self._hold(begun(BareSetting(setting), bodies, "scripted", 0, store, claims_from))
 
     @classmethod
     def open(
@@ -112,10 +113,10 @@ class Nest(Joining, Visiting):
             StoreError: The store exists already, or cannot be written.
         """
         world = world_name(world, realtime=realtime, listen=listen)
-        start = RunStart.of(scenario, world, seed)
+        started = as_scenario(scenario)
         opened = open_world(world, seed, limits) if worlds is None else worlds.lend(world)
         try:
-            return cls._of(begun(start, opened, store, claims_from, renderer))
+            return cls._of(begun(started, opened, world, seed, store, claims_from, renderer))
         except BaseException:
             opened.close()
             raise
@@ -184,20 +185,12 @@ class Nest(Joining, Visiting):
         return self["/"].scripted
 
     def __getitem__(self, path: str) -> Simulator:
-        """The simulator of a belief path; `/` is the real world.
-
-        Raises:
-            PathError: The path is malformed or names an unknown agent.
-        """
+        """The simulator of a belief path; `/` is the real world."""
         return Simulator(self._engine, parse_path(path, self.agents))
 
     @in_turn
     def states(self, paths: Iterable[str]) -> Mapping[str, State]:
-        """What several simulators hold, read-only, by path as given; quicker than one by one.
-
-        Raises:
-            PathError: A path is malformed or names an unknown agent.
-        """
+        """What several simulators hold, read-only, by path as given; quicker than one by one."""
         nodes = {path: parse_path(path, self.agents) for path in paths}
         states = self._recording.states(nodes.values())
         return {path: states[node] for path, node in nodes.items()}
@@ -294,9 +287,6 @@ class Nest(Joining, Visiting):
             paths: Belief paths.
             after: Ticks up to this one are passed over.
             until: The last tick.
-
-        Raises:
-            PathError: A path is malformed or names an unknown agent.
         """
         parsed = {path: parse_path(path, self.agents) for path in paths}
         with self._recording.turn:

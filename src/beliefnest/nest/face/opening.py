@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol, Self
+from typing import Protocol
 
 from beliefnest.bodies.address import is_server
 from beliefnest.bodies.limits import ProcessLimits
@@ -23,7 +23,7 @@ from beliefnest.timeline.records import RunJournal, RunRecord
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.nameable import ClaimsFrom
 
-__all__ = ["HasSetting", "RunStart", "begun", "resumed"]
+__all__ = ["BareSetting", "HasSetting", "as_scenario", "begun", "resumed"]
 
 
 class HasSetting(Protocol):
@@ -47,81 +47,72 @@ class HasSetting(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class RunStart:
-    """What a run is started with.
-
-    Attributes:
-        setting: What the nest starts from.
-        world: Name of the world.
-        seed: Drives every random number.
-        text: The text of the scenario's file.
-        templates: Texts of the prompt templates that it names.
-        condition: Number of its chosen condition.
-    """
+class BareSetting:
+    """A setting that no scenario file tells of; attributes as those of `HasSetting`."""
 
     setting: Setting
-    world: str
-    seed: int
     text: str = ""
     templates: Mapping[str, str] = field(default_factory=dict)
     condition: int | None = None
 
-    @classmethod
-    def of(cls, scenario: HasSetting | Setting, world: str, seed: int) -> Self:
-        """What a run of a scenario is started with.
 
-        Raises:
-            InputError: It is a name, or something else.
-        """
-        if isinstance(scenario, Setting):
-            return cls(scenario, world, seed)
-        if not hasattr(scenario, "setting"):
-            raise InputError(
-                f"{scenario!r} is no scenario; give a loaded one: bn.Scenario.load({scenario!r})"
-            )
-        return cls(
-            scenario.setting, world, seed, scenario.text, scenario.templates, scenario.condition
-        )
+def as_scenario(given: HasSetting | Setting) -> HasSetting:
+    """What a nest can open.
 
-    def record(self, world: World) -> RunRecord:
-        """What the run file keeps of it."""
-        return RunRecord(
-            scenario=self.setting.name,
-            text=self.text,
-            condition="" if self.condition is None else str(self.condition),
-            seed=self.seed,
-            versions={**own_versions(), **world.versions},
-            setting=encode_start(self.setting, self.world),
-            templates=self.templates,
+    Raises:
+        InputError: It is a name, or something else.
+    """
+    if isinstance(given, Setting):
+        return BareSetting(given)
+    if not hasattr(given, "setting"):
+        raise InputError(
+            f"{given!r} is no scenario; give a loaded one: bn.Scenario.load({given!r})"
         )
+    return given
 
 
 def begun(
-    start: RunStart,
+    scenario: HasSetting,
     world: World,
-    store: str | Path | None,
+    name: str,
+    seed: int,
+    store: str | Path | None = None,
     claims_from: ClaimsFrom | None = None,
     renderer: Renderer | None = None,
 ) -> Engine:
-    """Begin a run in a world, in a file or in memory; `claims_from` reads what is said in it.
+    """Begin a run in a world of that name, in a file or in memory.
 
-    Prompts are filled by `renderer`; None: by one of its own.
+    Arguments as those of `Nest.open`.
 
     Raises:
         StoreError: The file exists already, or cannot be written.
         BodyError: The world could not be started.
         InputError: People are to be in it, and cannot join this world.
     """
-    _invite(start.setting, world)
+    setting = scenario.setting
+    _invite(setting, world)
     journal: RunJournal = MemoryJournal() if store is None else SqliteJournal.create_file(store)
     try:
         with journal.together():
-            journal.records.set_run(start.record(world))
-            recording = Recording(start.setting, journal, start.seed, renderer)
+            journal.records.set_run(_record(scenario, world, name, seed))
+            recording = Recording(setting, journal, seed, renderer)
             return Engine(recording, world, reader_of(claims_from, recording)).begin()
     except BaseException:
         journal.close()
         raise
+
+
+def _record(scenario: HasSetting, world: World, name: str, seed: int) -> RunRecord:
+    condition = scenario.condition
+    return RunRecord(
+        scenario=scenario.setting.name,
+        text=scenario.text,
+        condition="" if condition is None else str(condition),
+        seed=seed,
+        versions={**own_versions(), **world.versions},
+        setting=encode_start(scenario.setting, name),
+        templates=scenario.templates,
+    )
 
 
 def resumed(

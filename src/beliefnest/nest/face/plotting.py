@@ -3,10 +3,10 @@
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 from beliefnest.belief.node_view import NodeView
-from beliefnest.errors import InputError, PositionError
+from beliefnest.errors import InputError
 from beliefnest.nest.explain.told import claims_told
 from beliefnest.nest.face.matters import (
     BlockAt,
@@ -25,84 +25,70 @@ from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.paths import BeliefPath, parse_path, path_text
 from beliefnest.world.values import EventKind, Position
 
-__all__ = ["Followed", "plot_of"]
+__all__ = ["matter_of", "plot_of"]
 
 V = TypeVar("V")
 
 
-class Followed(NamedTuple):
-    """What a plot follows.
-
-    Attributes:
-        container: A container's contents; None: it is something else.
-        item: An item, in the container or with the agent; alone: wherever it is.
-        agent: An agent's place.
-        block: The block at a place.
-    """
-
-    container: Position | None = None
-    item: str | None = None
-    agent: str | None = None
-    block: Position | None = None
-
-
-def plot_of(
+def matter_of(
     recording: Recording,
-    followed: Followed,
-    paths: Sequence[str],
-    until: int | None,
-) -> Figure:
-    """The plot of what simulators held of a matter, up to a tick of the real world.
-
-    Raises:
-        InputError: There is no path, not one matter, or never was a container there.
-        PathError: A path is malformed or names an unknown agent, or there is no such agent.
-        PositionError: The container or block lies outside the box.
-        UnknownNameError: There is no such item.
-    """
-    if not paths:
-        raise InputError("a plot of no simulator is empty; give belief paths")
-    container, item, agent, block = followed
+    container: Position | None,
+    item: str | None,
+    agent: str | None,
+    block: Position | None,
+) -> Matter[Any]:
+    """What a plot is to follow; arguments and errors are those of `plot_beliefs`."""
     given = [each for each in (container, agent, block) if each is not None]
     if len(given) > 1 or not (given or item) or (block and item):
         raise InputError(
             "a plot follows a container, an item, an agent or a block; give one of them, or with "
             "an item a container that it is in or an agent that has it"
         )
-    if item is not None:
-        recording.context.registry.item_stack(item)
-    with recording.turn:
-        if container is not None:
-            return _figure(
-                recording, _contained(recording, container, item), paths, until, container
-            )
-        if block is not None:
-            return _figure(recording, _standing(recording, block), paths, until)
-        if agent is None:
-            assert item is not None
-            return _figure(recording, Carried(item, _stores(recording)), paths, until)
-        parse_path(path_text((agent,)), recording.agents)
-        if item is not None:
-            return _figure(recording, Owned(agent, item), paths, until)
-        return _figure(recording, Whereabouts(agent, _names(recording)), paths, until)
-
-
-def _check_inside(recording: Recording, place: Position) -> None:
-    box = recording.box
-    if place not in box:
-        raise PositionError(f"position {place} is outside the box {box.low}..{box.high}")
-
-
-def _standing(recording: Recording, block: Position) -> BlockAt:
-    _check_inside(recording, block)
     context = recording.context
-    return BlockAt(block, context.box.index(block), context.block_text)
+    if item is not None:
+        context.registry.item_stack(item)
+    if container is not None:
+        context.box.check(container)
+        label = recording.setting.labels.get(container, f"container {place_words(container)}")
+        return Contained(container, item, label)
+    if block is not None:
+        context.box.check(block)
+        return BlockAt(block, context.box.index(block), context.block_text)
+    if agent is not None:
+        parse_path(path_text((agent,)), recording.agents)
+        return Whereabouts(agent, _names(recording)) if item is None else Owned(agent, item)
+    assert item is not None
+    return Carried(item, _stores(recording))
 
 
-def _contained(recording: Recording, container: Position, item: str | None) -> Contained:
-    _check_inside(recording, container)
-    label = recording.setting.labels.get(container, f"container {place_words(container)}")
-    return Contained(container, item, label)
+def plot_of(
+    recording: Recording, matter: Matter[Any], paths: Sequence[str], until: int | None
+) -> Figure:
+    """The plot of what simulators held of a matter, up to a tick of the real world.
+
+    Raises:
+        InputError: There is no path, or the matter is a container that never was there.
+        PathError: A path is malformed or names an unknown agent.
+    """
+    if not paths:
+        raise InputError("a plot of no simulator is empty; give belief paths")
+    names = [parse_path(path, recording.agents) for path in paths]
+    real = _course(recording, (), matter)
+    courses = {path: _course(recording, path, matter) for path in names}
+    if isinstance(matter, Contained):
+        _check_held(recording, matter.container, [real, *courses.values()])
+    ends = {path: recording.info(path).head if until is None else until for path in names}
+    end = max(ends.values())
+    acts = [*_acts(recording, matter, end), *_said(recording, matter, end)]
+    rows = [
+        PlotRow(
+            path_text(path),
+            _bands(matter, courses[path], real, ends[path] + 1),
+            _told(recording, matter, path, ends[path]),
+        )
+        for path in names
+    ]
+    return belief_plot(rows, sorted(acts, key=lambda act: act.tick), matter.title)
 
 
 def _check_held(recording: Recording, container: Position, courses: Sequence[Course[Any]]) -> None:
@@ -126,32 +112,6 @@ def _names(recording: Recording) -> Mapping[Position, str]:
 def _stores(recording: Recording) -> Mapping[Position, str]:
     """What people call containers."""
     return {place: f"the {label}" for place, label in recording.setting.labels.items()}
-
-
-def _figure(
-    recording: Recording,
-    matter: Matter[V],
-    paths: Sequence[str],
-    until: int | None,
-    container: Position | None = None,
-) -> Figure:
-    names = [parse_path(path, recording.agents) for path in paths]
-    real = _course(recording, (), matter)
-    courses = {path: _course(recording, path, matter) for path in names}
-    if container is not None:
-        _check_held(recording, container, [real, *courses.values()])
-    ends = {path: recording.info(path).head if until is None else until for path in names}
-    end = max(ends.values())
-    acts = [*_acts(recording, matter, end), *_said(recording, matter, end)]
-    rows = [
-        PlotRow(
-            path_text(path),
-            _bands(matter, courses[path], real, ends[path] + 1),
-            _told(recording, matter, path, ends[path]),
-        )
-        for path in names
-    ]
-    return belief_plot(rows, sorted(acts, key=lambda act: act.tick), matter.title)
 
 
 def _said(recording: Recording, matter: Matter[V], end: int) -> list[NotedAct]:

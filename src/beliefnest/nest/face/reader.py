@@ -2,17 +2,11 @@
 
 from collections.abc import Sequence
 
-import numpy as np
-import numpy.typing as npt
-
 from beliefnest.belief.forest import Forest
-from beliefnest.nest.explain.chain import element_of, explain
-from beliefnest.nest.explain.explanation import Explanation
 from beliefnest.nest.explain.parts import Sighting
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
-from beliefnest.nest.past.history import History
+from beliefnest.nest.face.shown import PastSimulator
 from beliefnest.nest.past.recording import Recording
-from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.journal import Entry, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
 from beliefnest.world.paths import BeliefPath
@@ -26,26 +20,17 @@ class Reader:
 
     Attributes:
         history: From the journal to any node.
+        setting: What the nest started from.
+        agents: Names of all agents, sorted.
+        seed: Drives every random number.
     """
 
     def __init__(self, recording: Recording) -> None:
         self._recording = recording
-        self.history: History = recording.history
-
-    @property
-    def setting(self) -> Setting:
-        """What the nest started from."""
-        return self._recording.setting
-
-    @property
-    def agents(self) -> tuple[str, ...]:
-        """Names of all agents, sorted."""
-        return self._recording.agents
-
-    @property
-    def seed(self) -> int:
-        """Drives every random number."""
-        return self._recording.seed
+        self.history = recording.history
+        self.setting = recording.setting
+        self.agents = recording.agents
+        self.seed = recording.seed
 
     def timelines(self) -> Sequence[TimelineInfo]:
         """All timelines, in order of creation."""
@@ -87,27 +72,9 @@ class Reader:
         with self._recording.turn:
             self.history.advance(key, forest, position)
 
-    def explain(
-        self,
-        key: TimelineKey,
-        path: BeliefPath,
-        tick: int,
-        *,
-        container: Position | None = None,
-        agent: str | None = None,
-        block: Position | None = None,
-    ) -> Explanation:
-        """As `Simulator.explain`, of a node on any timeline, at any tick of it.
-
-        Raises:
-            InputError: None of the three was given, or several were.
-            PathError: There is no such agent.
-            PositionError: The position is outside the box.
-            TickError: The tick is in the future or before the start.
-        """
-        with self._recording.turn:
-            element = element_of(self._recording, container, agent, block)
-            return explain(self._recording.on(key), path, tick, element)
+    def simulator(self, key: TimelineKey, path: BeliefPath, tick: int) -> PastSimulator:
+        """A node at a tick of any timeline that it has or can follow."""
+        return PastSimulator(self._recording.on(key), path, tick)
 
     def look(
         self, key: TimelineKey, path: BeliefPath, tick: int, viewer: str, target: str | Position
@@ -121,10 +88,3 @@ class Reader:
             if isinstance(target, str):
                 return sighting_of_agent(reading, box, viewer, target)
             return sighting_of_block(reading, box, viewer, target)
-
-    def visible_blocks(
-        self, key: TimelineKey, path: BeliefPath, tick: int, viewer: str
-    ) -> npt.NDArray[np.bool_]:
-        """Which blocks an agent sees from its pose in a simulator: bool, shape of the box."""
-        with self._recording.turn:
-            return self._recording.on(key).reading(path, tick).visible_from(viewer)

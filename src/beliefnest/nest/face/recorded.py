@@ -7,10 +7,8 @@ from typing import Self
 from beliefnest.nest.face.base import NestBase
 from beliefnest.nest.face.shown import Past, PastSimulator
 from beliefnest.nest.past.over_time import Moment, over_time
-from beliefnest.nest.past.recording import Recording, read_recording
-from beliefnest.nest.past.setting import Setting
+from beliefnest.nest.past.recording import read_recording
 from beliefnest.timeline.journal import FOLLOW, TimelineKey
-from beliefnest.timeline.records import RunJournal
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import parse_path
 
@@ -20,13 +18,17 @@ __all__ = ["RecordedNest"]
 class RecordedNest(NestBase):
     """Simulators of a run as they were; nothing in it can act.
 
+    A belief path that is malformed, or names an unknown agent, raises PathError.
+
     Args:
-        setting: What the run started from.
-        journal: What it recorded; the caller closes it.
+        journal: The run file; whoever closes it or the nest closes both.
+
+    Raises:
+        StoreError: It cannot be read.
     """
 
-    def __init__(self, setting: Setting, journal: RunJournal) -> None:
-        self._recording = Recording(setting, journal)
+    def __init__(self, journal: SqliteJournal) -> None:
+        self._recording, _ = read_recording(journal)
 
     @classmethod
     def read(cls, store: str | Path) -> Self:
@@ -39,42 +41,26 @@ class RecordedNest(NestBase):
         """
         journal = SqliteJournal.read(store)
         try:
-            return cls.of(journal)
+            return cls(journal)
         except BaseException:
             journal.close()
             raise
-
-    @classmethod
-    def of(cls, journal: SqliteJournal) -> Self:
-        """A run whose file is open already; it is closed with the journal.
-
-        Raises:
-            StoreError: It cannot be read.
-        """
-        nest = cls.__new__(cls)
-        nest._recording, _ = read_recording(journal)
-        return nest
 
     def close(self) -> None:
         """Close the run file."""
         self._recording.close()
 
     def __getitem__(self, path: str) -> PastSimulator:
-        """A simulator at the latest tick of its timeline.
-
-        Raises:
-            PathError: The path is malformed or names an unknown agent.
-        """
+        """A simulator at the latest tick of its timeline."""
         return self.simulator(path)
 
     def select(self, path: str, branch: str) -> None:
         """Read a simulator, and those below it, on one of its branches.
 
         Raises:
-            PathError: The path is malformed or names an unknown agent.
             BranchError: The simulator has no such branch.
         """
-        names = parse_path(path, self._recording.agents)
+        names = parse_path(path, self.agents)
         if branch == FOLLOW and names:
             self._recording.selected.pop(names, None)
             return
@@ -84,32 +70,25 @@ class RecordedNest(NestBase):
 
     def branch(self, path: str) -> str:
         """Name of the branch that a simulator is read on; `follow` in follow mode."""
-        key = self._recording.selected.get(parse_path(path, self._recording.agents))
+        key = self._recording.selected.get(parse_path(path, self.agents))
         return FOLLOW if key is None else key.branch
 
     def head(self, path: str) -> int:
         """The latest tick of the timeline that a simulator is on."""
-        return self._recording.info(parse_path(path, self._recording.agents)).head
+        return self._recording.info(parse_path(path, self.agents)).head
 
     def ticks(self, path: str) -> tuple[int, ...]:
         """The ticks at which anything happened on the timeline that a simulator is on.
 
         Those before a fork belong to another timeline; the first one is the fork's.
-
-        Raises:
-            PathError: The path is malformed or names an unknown agent.
         """
-        info = self._recording.info(parse_path(path, self._recording.agents))
+        info = self._recording.info(parse_path(path, self.agents))
         entries = self._recording.journal.entries(info.key, 0, info.entries)
         return (info.start, *(entry.tick for entry in entries))
 
     def over_time(self, path: str) -> Iterator[Moment]:
-        """A simulator at every tick with a change, on every timeline that it has or can follow.
-
-        Raises:
-            PathError: The path is malformed or names an unknown agent.
-        """
-        return over_time(self._recording, parse_path(path, self._recording.agents))
+        """A simulator at every tick with a change, on every timeline that it has or can follow."""
+        return over_time(self._recording, parse_path(path, self.agents))
 
     def branches(self) -> tuple[TimelineKey, ...]:
         """All timelines there are, in order of creation."""

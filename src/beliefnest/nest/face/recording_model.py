@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from beliefnest.errors import ModelError
 from beliefnest.nest.past.recording import Recording
@@ -78,12 +78,11 @@ class RecordingModel:
         try:
             answer = self._model.answer(messages, sampling)
         except ModelError as error:
-            usage = getattr(error, "usage", None)
-            failed = replace(asked, error=str(error))
-            self._note(failed if usage is None else _spent(failed, usage))
+            spent = _spent(getattr(error, "usage", None))
+            self._note(replace(asked, error=str(error), **spent))
             raise
-        answered = replace(asked, answer=answer.text, cached=answer.cached)
-        self._note(_spent(answered, answer.usage))
+        spent = _spent(answer.usage)
+        self._note(replace(asked, answer=answer.text, cached=answer.cached, **spent))
         return answer
 
     def _note(self, prompt: PromptRecord) -> None:
@@ -91,11 +90,12 @@ class RecordingModel:
             self._recording.records.add_prompt(prompt)
 
 
-def _spent(prompt: PromptRecord, usage: "Usage") -> PromptRecord:
-    return replace(
-        prompt,
-        requests=usage.requests,
-        input_tokens=usage.input_tokens,
-        output_tokens=usage.output_tokens,
-        cost=usage.cost,
-    )
+def _spent(usage: "Usage | None") -> dict[str, Any]:
+    if usage is None:
+        return {}
+    return {
+        "requests": usage.requests,
+        "input_tokens": usage.input_tokens,
+        "output_tokens": usage.output_tokens,
+        "cost": usage.cost,
+    }

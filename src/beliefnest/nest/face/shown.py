@@ -14,7 +14,7 @@ from beliefnest.nest.explain.chain import element_of, explain
 from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs, value_words
 from beliefnest.nest.explain.explanation import Explanation
 from beliefnest.nest.explain.told import ToldClaim, claims_told
-from beliefnest.nest.face.plotting import Followed, plot_of
+from beliefnest.nest.face.plotting import matter_of, plot_of
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
@@ -176,7 +176,10 @@ class PastSimulator(ShownSimulator):
 
 
 class ShownNest:
-    """What a nest shows: live, recorded, or as it was at a past tick."""
+    """What a nest shows: live, recorded, or as it was at a past tick.
+
+    A belief path that is malformed, or names an unknown agent, raises PathError.
+    """
 
     _recording: Recording
     _tick: int | None = None
@@ -201,7 +204,6 @@ class ShownNest:
                 of most agents.
 
         Raises:
-            PathError: A path is malformed or names an unknown agent.
             TickError: The tick is in the future or before the start.
             InputError: There is no path, or the height lies outside the box.
         """
@@ -225,6 +227,7 @@ class ShownNest:
             shown = [PastSimulator(recording, path, then) for path in names]
             return _scenes(shown, against, sight, height)
 
+    @in_turn
     def plot_beliefs(
         self,
         container: Position | None = None,
@@ -251,13 +254,13 @@ class ShownNest:
             block: Where the block is that is followed, in place of a container.
 
         Raises:
-            PathError: A path is malformed or names an unknown agent, or there is no such agent.
+            PathError: There is no such agent.
             PositionError: The container or block lies outside the box.
             InputError: There is no path, not one thing to follow, or never was a container there.
             UnknownNameError: There is no such item.
         """
-        followed = Followed(container, item, agent, block)
-        return plot_of(self._recording, followed, paths, self._tick)
+        matter = matter_of(self._recording, container, item, agent, block)
+        return plot_of(self._recording, matter, paths, self._tick)
 
     @in_turn
     def compare(self, a: str, b: str, *, unknown: bool = True) -> list[Difference]:
@@ -269,7 +272,6 @@ class ShownNest:
             unknown: Whether to tell of what is unknown, or not there, in one of them.
 
         Raises:
-            PathError: A path is malformed or names an unknown agent.
             TickError: The tick that is looked at is in the future or before the start.
         """
         recording = self._recording
@@ -284,7 +286,6 @@ class ShownNest:
         and miss some; an agent's place from half a block on, wherever its head has turned to.
 
         Raises:
-            PathError: The path is malformed or names an unknown agent.
             TickError: The tick that is looked at is in the future or before the start.
         """
         names = parse_path(path, self._recording.agents)
@@ -299,9 +300,6 @@ class ShownNest:
 
         Args:
             path: The simulator; what is claimed in a simulator in control mode is told there.
-
-        Raises:
-            PathError: The path is malformed or names an unknown agent.
         """
         names = parse_path(path, self._recording.agents)
         return claims_told(self._recording, names, self._tick)
@@ -358,17 +356,17 @@ def _scenes(
 def _scene(
     shown: ShownSimulator, against: BeliefPath, sight: Sequence[str] | None, height: int
 ) -> Scene:
-    recording, names = shown._recording, shown._path
+    recording, names, state = shown._recording, shown._path, shown.state
     setting, key = recording.setting, recording.selected.get(names)
     # Who is not there at this tick looks from a remembered place: nobody can tell what it sees.
-    own = [name for name in names[-1:] if shown.state.agents[name].current]
+    own = [name for name in names[-1:] if state.agents[name].current]
     return read_scene(
-        shown,
+        state,
         wrong=_wrong(shown, against),
         against=path_text(against),
         labels=setting.labels,
         places=setting.places,
-        sight=own if sight is None else sight,
+        sight={name: shown.visible_blocks(name) for name in (own if sight is None else sight)},
         height=height,
         note=f"branch {key.branch}" if key is not None and names else "",
     )

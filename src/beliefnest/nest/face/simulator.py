@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Literal
 
 from beliefnest.bodies.protocol import ProgramPast, ProgramResult
 from beliefnest.bodies.scripted import ScriptedBody
-from beliefnest.errors import BranchError, InputError, PositionError, WorldError
+from beliefnest.errors import BranchError, InputError, WorldError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.nest.face.recording_model import RecordingModel
@@ -243,8 +243,7 @@ class Simulator(ShownSimulator):
         registry = self._recording.context.registry
         box = self._recording.box
         for position in (*(blocks or {}), *(containers or {}), *(signs or {})):
-            if position not in box:
-                raise PositionError(f"position {position} is outside the box {box.low}..{box.high}")
+            box.check(position)
         states: dict[Position, Block] = {
             position: -1 if text is None else registry.state_id(text)
             for position, text in (blocks or {}).items()

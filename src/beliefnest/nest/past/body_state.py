@@ -4,33 +4,15 @@ Frames tell what can be perceived. What else goes on in a body is kept at the en
 any other moment, and where a belief is forked, nothing is under way.
 """
 
-from dataclasses import replace
-
-from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import ForkPoint, Journal, TimelineKey
-from beliefnest.world.frames import Snapshot
-from beliefnest.world.paths import BeliefPath
 
-__all__ = ["internal_state_at", "note_internal_state", "present", "snapshot_at"]
+__all__ = ["internal_state_at", "note_internal_state", "present"]
 
 
 def present(journal: Journal, key: TimelineKey) -> ForkPoint:
     """The moment a timeline is at."""
     info = journal.info(key)
     return ForkPoint(key, info.entries, info.head)
-
-
-def snapshot_at(
-    journal: Journal, history: History, path: BeliefPath, moment: ForkPoint
-) -> Snapshot:
-    """What a body of the node `path`, the timeline's own or one below it, is filled with."""
-    reading = history.reading(moment.timeline, path, moment.entries)
-    own = path == moment.timeline.path
-    return replace(
-        reading.snapshot(),
-        tick=moment.tick,
-        internal_state=internal_state_at(journal, moment) if own else b"",
-    )
 
 
 def note_internal_state(journal: Journal, moment: ForkPoint, state: bytes) -> None:

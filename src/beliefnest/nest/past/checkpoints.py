@@ -57,14 +57,7 @@ class _Kept:
 
 
 class Checkpoints:
-    """Saved forests of the timelines of one journal.
-
-    Args:
-        journal: Where they are kept; one that cannot be written to is only read.
-        setting: What the nest started from.
-        context: What all nodes share.
-        pace: How often they are written.
-    """
+    """Saved forests of the timelines of one journal; one that is not writable is only read."""
 
     def __init__(
         self, journal: Journal, setting: Setting, context: BeliefContext, pace: Pace
@@ -83,15 +76,10 @@ class Checkpoints:
         path: BeliefPath | None = None,
         after: int = 0,
     ) -> Forest | None:
-        """The last saved forest of a timeline between two positions; None if there is none.
+        """The last saved forest of a timeline after one position, up to another; None: none is.
 
-        Args:
-            key: The timeline.
-            position: Where it may lie at most.
-            events: What happens on the timeline.
-            path: A node that has to be in it, and the only one wanted, with its ancestors;
-                None: all nodes that were saved.
-            after: Where it does not lie any more.
+        It has to hold the node `path`, and holds no more than its ancestors besides; None: all
+        nodes that were saved.
         """
         if position - after <= self._pace.lag:
             return None

@@ -21,13 +21,8 @@ _SWITCHES = ("_door", "_trapdoor", "_fence_gate", "lever", "_button", "_sign")
 class ClaimedBlocks:
     """The cells that have to be tracked from the beginning of every timeline.
 
-    Args:
-        journal: The timelines.
-        context: What all nodes share; it tracks the cells from now on.
-        snapshot: The real world at its first tick.
-
     Attributes:
-        cells: The cells so far.
+        cells: The cells so far, which the context tracks.
     """
 
     def __init__(self, journal: Journal, context: BeliefContext, snapshot: Snapshot) -> None:

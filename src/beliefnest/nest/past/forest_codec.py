@@ -32,16 +32,10 @@ def saved(forest: Forest) -> bytes:
 def restored(
     context: BeliefContext, events: EventHistory, data: bytes, path: BeliefPath | None = None
 ) -> Forest | None:
-    """A forest from the bytes of `saved`, made in the same context.
-
-    Args:
-        context: What all nodes share.
-        events: What happens on the forest's timeline.
-        data: The bytes.
-        path: The deepest node wanted; None: all there are.
+    """A forest from the bytes of `saved`, with the nodes down to `path`; None: all there are.
 
     Returns:
-        The forest, with the nodes down to that one; None if it is not among those saved.
+        None if that node is not among those saved.
 
     Raises:
         StoreError: The bytes hold no forest.

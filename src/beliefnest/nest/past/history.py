@@ -80,13 +80,7 @@ class _Stretch:
 
 
 class History:
-    """States of any node, at any entry of any timeline of a journal.
-
-    Args:
-        journal: The timelines.
-        setting: What the nest started from.
-        pace: How often checkpoints are made, and how much is read at once.
-    """
+    """States of any node, at any entry of any timeline of a journal."""
 
     def __init__(self, journal: Journal, setting: Setting, pace: Pace | None = None) -> None:
         self._journal = journal
@@ -107,11 +101,24 @@ class History:
         """
         if position is None:
             position = self._journal.info(key).entries
-        return NodeView(self._forest(key, path, position), path)
+        return NodeView(self.shared(key, path, position), path)
 
     def shared(self, key: TimelineKey, path: BeliefPath, position: int) -> Forest:
-        """The forest behind `reading`; it goes on with whoever asks next, so read it at once."""
-        return self._forest(key, path, position)
+        """A forest with a node, after some entries of a timeline.
+
+        It goes on with whoever asks next, so read it at once.
+        """
+        self._keep_up(key)
+        if position == self._journal.info(key).entries:
+            return self._head(key, path, position)
+        forest = self._past(key, path, position)
+        after = 0 if forest is None else forest.position
+        saved = self._saved(key, position, path, after)
+        forest = saved or forest or self._begun(key, path)
+        pasts = [past for past in self._pasts if past[1] is not forest]
+        self._pasts = [(key, forest), *pasts][:_PASTS]
+        self.advance(key, forest, position)
+        return forest
 
     def steps(
         self, key: TimelineKey, path: BeliefPath, first: int, last: int, extra: Sequence[int] = ()
@@ -224,7 +231,7 @@ class History:
             # What agents believed at the fork stays as it was until something happens.
             left = [cell for cell in cells if cell not in edited]
             return self.current_blocks(base.timeline, path, base.entries, left)
-        return self._forest(key, path, position).current_blocks(path, cells)
+        return self.shared(key, path, position).current_blocks(path, cells)
 
     def _edited_at_first(
         self, key: TimelineKey, path: BeliefPath, position: int
@@ -266,20 +273,6 @@ class History:
         if self._claimed.read(key):
             self._heads.clear()
             self._pasts.clear()
-
-    def _forest(self, key: TimelineKey, path: BeliefPath, position: int) -> Forest:
-        """A forest with a node, after some entries of a timeline."""
-        self._keep_up(key)
-        if position == self._journal.info(key).entries:
-            return self._head(key, path, position)
-        forest = self._past(key, path, position)
-        after = 0 if forest is None else forest.position
-        saved = self._saved(key, position, path, after)
-        forest = saved or forest or self._begun(key, path)
-        pasts = [past for past in self._pasts if past[1] is not forest]
-        self._pasts = [(key, forest), *pasts][:_PASTS]
-        self.advance(key, forest, position)
-        return forest
 
     def _past(self, key: TimelineKey, path: BeliefPath, position: int) -> Forest | None:
         """The last forest at hand with a node that lies no later than a position."""
@@ -338,7 +331,7 @@ class History:
         source = (
             self._folded(base.timeline, path, base.entries, extra)
             if extra
-            else self._forest(base.timeline, path, base.entries)
+            else self.shared(base.timeline, path, base.entries)
         )
         return forked_forest(source, self._log(key), key.path, path, base.tick, extra)
 
@@ -419,13 +412,9 @@ class History:
 
 
 def _adopt(forest: Forest, other: Forest, own: BeliefPath, path: BeliefPath) -> None:
-    """Take a node and its ancestors over, as far as they are not there.
+    """Take a node and its ancestors, as far as they are not there, from a forest as far on.
 
-    Args:
-        forest: Where they are to be.
-        other: Where they are, at the same entry of the same timeline.
-        own: The timeline's own simulator.
-        path: The node.
+    `own` is the timeline's own simulator, the first of the ancestors.
     """
     chain = [path[:depth] for depth in range(len(own), len(path) + 1)]
     missing = [node for node in chain if node not in forest]

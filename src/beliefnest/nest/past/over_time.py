@@ -8,7 +8,6 @@ import numpy as np
 from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.view import State
 from beliefnest.nest.past.recording import Recording
-from beliefnest.nest.past.views import Blocks, LiveState
 from beliefnest.timeline.journal import Journal, TimelineInfo, TimelineKey
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
@@ -83,13 +82,9 @@ def each_tick(
             recording.history.advance(key, forest, position)
             if not after < forest.tick <= until:
                 continue
-            states = {}
-            for path in paths:
-                reading = NodeView(forest, path)
-                blocks = Blocks(recording.history, key, position, reading, recording.turn)
-                box = recording.box
-                states[path] = LiveState(reading, blocks, box, forest.tick, recording.turn)
-            yield forest.tick, states
+            readings = [NodeView(forest, path) for path in paths]
+            views = [recording.view_of(each, key, position, forest.tick) for each in readings]
+            yield forest.tick, dict(zip(paths, views, strict=True))
 
 
 def _places(journal: Journal, info: TimelineInfo) -> dict[int, int]:

@@ -30,15 +30,12 @@ __all__ = ["Recording", "read_recording"]
 class Recording:
     """Timelines and states of one nest.
 
-    Args:
+    Attributes:
         setting: What the nest started from.
         journal: The timelines, with what ran on them.
         seed: Drives every random number of the nest.
-        renderer: Fills prompts; None: one of its own.
-
-    Attributes:
-        history: From the journal to any node.
         renderer: Fills prompts.
+        history: From the journal to any node.
         selected: The timeline of every simulator in control mode.
         turn: Held by the thread that is in the nest.
     """
@@ -57,23 +54,6 @@ class Recording:
         self.history = History(journal, setting)
         self.selected: dict[BeliefPath, TimelineKey] = {(): TimelineKey((), MAIN)}
         self.turn = RLock()
-
-    @classmethod
-    def resumed(cls, setting: Setting, journal: RunJournal, seed: int) -> Self:
-        """A recording with every simulator on the timeline that was noted last.
-
-        Raises:
-            StoreError: The run was stopped before it had begun.
-        """
-        recording = cls(setting, journal, seed)
-        recording.selected = {
-            path: journal.info(TimelineKey(path, branch)).key
-            for path, branch in journal.records.selected().items()
-            if branch != FOLLOW
-        }
-        if () not in recording.selected:
-            raise StoreError("the run was stopped while it began; start it again")
-        return recording
 
     @property
     def agents(self) -> tuple[str, ...]:
@@ -156,7 +136,10 @@ class Recording:
 
     def state_after(self, key: TimelineKey, path: BeliefPath, entries: int, tick: int) -> LiveState:
         """The view of a node's state on a timeline, after some of its entries, as of a tick."""
-        reading = self.history.reading(key, path, entries)
+        return self.view_of(self.history.reading(key, path, entries), key, entries, tick)
+
+    def view_of(self, reading: NodeView, key: TimelineKey, entries: int, tick: int) -> LiveState:
+        """The view of a state that was read after some entries of a timeline, as of a tick."""
         blocks = Blocks(self.history, key, entries, reading, self.turn)
         return LiveState(reading, blocks, self.box, tick, self.turn)
 
@@ -186,4 +169,12 @@ def read_recording(journal: SqliteJournal) -> tuple[Recording, str]:
     """
     run = journal.records.run()
     setting, world = decode_start(run.setting)
-    return Recording.resumed(setting, journal, run.seed), world
+    recording = Recording(setting, journal, run.seed)
+    recording.selected = {
+        path: journal.info(TimelineKey(path, branch)).key
+        for path, branch in journal.records.selected().items()
+        if branch != FOLLOW
+    }
+    if () not in recording.selected:
+        raise StoreError("the run was stopped while it began; start it again")
+    return recording, world

@@ -108,38 +108,14 @@ def decode_start(data: bytes) -> tuple[Setting, str]:
 
 
 def _perception_to(options: Perception) -> _Perception:
-    match options.hearing:
-        case Radius(blocks):
-            hearing: Literal["global", "sight"] | float = blocks
-        case "global" | "sight":
-            hearing = options.hearing
-        case other:
-            raise StoreError(f"hearing {other!r} cannot be stored")
-    return _Perception(
-        max_visible_distance=options.max_visible_distance,
-        field_of_view=options.field_of_view,
-        hearing=hearing,
-        containers=options.containers,
-        transparent_blocks=tuple(options.transparent_blocks),
-        negative_evidence=options.negative_evidence,
-        testimony=options.testimony,
-        grace=options.grace,
-        sincere=options.sincere,
-        speech_ticks=options.speech_ticks,
-    )
+    fields = {name: getattr(options, name) for name in _Perception.__struct_fields__}
+    if isinstance(options.hearing, Radius):
+        fields["hearing"] = options.hearing.blocks
+    return _Perception(**fields)
 
 
 def _perception_from(stored: _Perception) -> Perception:
-    hearing = stored.hearing
-    return Perception(
-        max_visible_distance=stored.max_visible_distance,
-        field_of_view=stored.field_of_view,
-        hearing=hearing if isinstance(hearing, str) else Radius(hearing),
-        containers=stored.containers,
-        transparent_blocks=stored.transparent_blocks,
-        negative_evidence=stored.negative_evidence,
-        testimony=stored.testimony,
-        grace=stored.grace,
-        sincere=stored.sincere,
-        speech_ticks=stored.speech_ticks,
-    )
+    fields = msgspec.structs.asdict(stored)
+    if not isinstance(stored.hearing, str):
+        fields["hearing"] = Radius(stored.hearing)
+    return Perception(**fields)

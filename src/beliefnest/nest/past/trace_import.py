@@ -16,12 +16,7 @@ __all__ = ["import_trace"]
 
 
 def import_trace(trace: Trace, name: str, store: str | Path) -> None:
-    """Make a run file of a trace; it can be read and resumed as any other.
-
-    Args:
-        trace: What happened.
-        name: What the run is called.
-        store: The file, which must not exist.
+    """Make a run file, called `name`, of a trace; it can be read and resumed as any other.
 
     Raises:
         StoreError: The file exists or cannot be written.

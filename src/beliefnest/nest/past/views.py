@@ -5,13 +5,11 @@ from contextlib import AbstractContextManager
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent
 from beliefnest.belief.node_view import NodeView
-from beliefnest.belief.view import BlockView, State
-from beliefnest.errors import PositionError
+from beliefnest.belief.view import BlockView
 from beliefnest.nest.past.history import History
 from beliefnest.pictures.figure import figure_of
 from beliefnest.pictures.scene import read_scene
@@ -137,25 +135,8 @@ class Blocks:
 
     def _index(self, position: Position) -> tuple[int, int, int]:
         box = self._context.box
-        if position not in box:
-            raise PositionError(f"position {position} lies outside the box {box.low}..{box.high}")
+        box.check(position)
         return box.index(position)
-
-
-class _Alone:
-    """A state to draw, without what its agents see."""
-
-    def __init__(self, state: State) -> None:
-        self.state = state
-
-    @property
-    def path(self) -> str:
-        """The belief path."""
-        return path_text(self.state.path)
-
-    def visible_blocks(self, agent: str) -> npt.NDArray[np.bool_]:
-        """Nothing."""
-        return np.zeros(self.state.box.shape, dtype=np.bool_)
 
 
 class LiveState:
@@ -186,7 +167,7 @@ class LiveState:
         return f"<state of {path_text(self.path)} at tick {self.tick}: {state_words(self)}>"
 
     def _repr_html_(self) -> str:
-        return figure_of([read_scene(_Alone(self))])._repr_html_()
+        return figure_of([read_scene(self)])._repr_html_()
 
     @property
     def owner(self) -> str | None:

@@ -7,7 +7,6 @@ from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.told import says_otherwise
 from beliefnest.world.claims import Claim, claims_of
 from beliefnest.world.paths import BeliefPath
-from beliefnest.world.values import Position
 
 __all__ = ["claims_at", "kind_of"]
 
@@ -40,23 +39,6 @@ def kind_of(forest: Forest, own: BeliefPath, speaker: str, claim: Claim) -> str:
         claim: The claim.
     """
     mind = own if own[-1:] == (speaker,) else (*own, speaker)
-    if says_otherwise(_Held(forest, mind), claim):
+    if says_otherwise(NodeView(forest, mind), forest.context, claim):
         return "a lie"
-    return "false" if says_otherwise(_Held(forest, own), claim) else ""
-
-
-class _Blocks:
-    def __init__(self, forest: Forest, reading: NodeView) -> None:
-        self._context, self._numbers = forest.context, reading.numbers
-
-    def __getitem__(self, position: Position) -> str | None:
-        return self._context.block_text(int(self._numbers[self._context.box.index(position)]))
-
-
-class _Held:
-    """A node of a forest as claims are compared with it."""
-
-    def __init__(self, forest: Forest, path: BeliefPath) -> None:
-        reading = NodeView(forest, path)
-        self.agents, self.containers = reading.agents, reading.containers
-        self.blocks = _Blocks(forest, reading)
+    return "false" if says_otherwise(NodeView(forest, own), forest.context, claim) else ""

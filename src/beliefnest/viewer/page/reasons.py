@@ -67,18 +67,15 @@ def explanation_of(
         InputError: There is no such thing.
         TickError: The timeline has no such tick.
     """
+    shown = reader.simulator(key, path, tick)
     kind, number = thing[:1], thing[1:]
     if kind not in {"a", "b", "c", "i"} or not number.isdecimal():
         raise InputError(f"{thing!r} is no thing; write a, b or c and a number")
     if kind in "ai":
-        told = reader.explain(key, path, tick, agent=_agent(reader, int(number)))
+        told = shown.explain(agent=_agent(reader, int(number)))
     else:
         place = _place(reader, int(number))
-        told = (
-            reader.explain(key, path, tick, container=place)
-            if kind == "c"
-            else reader.explain(key, path, tick, block=place)
-        )
+        told = shown.explain(container=place) if kind == "c" else shown.explain(block=place)
     return {"t": tick, "lines": str(told).splitlines()}
 
 
@@ -107,7 +104,7 @@ def sight_of(
     reader: Reader, key: TimelineKey, path: BeliefPath, tick: int, viewer: str
 ) -> list[int]:
     """What an agent sees in a node: lengths of runs of cells, unseen first, then seen, ..."""
-    return _runs(reader.visible_blocks(key, path, tick, viewer).ravel())
+    return _runs(reader.simulator(key, path, tick).visible_blocks(viewer).ravel())
 
 
 def ahead(reader: Reader, about: About, depth: int) -> dict[str, Any]:

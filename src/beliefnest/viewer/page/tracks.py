@@ -2,7 +2,7 @@
 
 A track says what one node holds from which tick on. Nothing in it is worked out anew: values,
 and whether they are current, are those of the belief room; what is false is what
-`falsehoods` says. Where an agent is believed to be is told by the tick at which it stood there
+`false_beliefs` says. Where an agent is believed to be is told by the tick at which it stood there
 in the timeline's own world, which makes tracks of long runs short.
 """
 
