@@ -22,7 +22,7 @@ from beliefnest.bodies.protocol import (
     RunRules,
     World,
 )
-from beliefnest.errors import BodyLostError, BranchError, TickError
+from beliefnest.errors import BodyLostError, BranchError
 from beliefnest.nest.acting.bodies import Bodies
 from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.nest.acting.hearsay import ClaimReader
@@ -118,12 +118,7 @@ class Engine:
         """Begin a branch at the current tick, or at a past one, and select it."""
         recording, journal = self.recording, self.recording.journal
         self.bodies.catch_up(recording.controller(path).path)
-        base = present(journal, recording.controller(path))
-        if tick is not None:
-            if tick > base.tick:
-                raise TickError(f"tick {tick} is in the future; the fork can be at {base.tick}")
-            place, entries = recording.place_of(base.timeline, tick)
-            base = ForkPoint(place, entries, tick)
+        base = recording.moment(path, tick)
         key = TimelineKey(path, name)
         start = self.bodies.start(path, base)
         with self.bodies.selecting(key, start.snapshot), journal.together():

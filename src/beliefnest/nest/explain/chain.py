@@ -9,7 +9,6 @@ from beliefnest.belief.forest import Forest
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError, PathError
 from beliefnest.nest.explain.element_history import (
-    LogPlace,
     LogStep,
     cells_of,
     grounded_at,
@@ -31,7 +30,7 @@ from beliefnest.nest.explain.parts import (
 )
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
 from beliefnest.nest.past.recording import Recording
-from beliefnest.timeline.journal import Edit, Entry
+from beliefnest.timeline.journal import Edit, Entry, ForkPoint
 from beliefnest.world.claims import ClaimKind, claims_of
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath
@@ -79,32 +78,25 @@ def explain(
     Raises:
         TickError: The tick is in the future, or before the start of everything.
     """
-    info = recording.info(path)
-    if tick is None:
-        place = LogPlace(info.key, info.entries)
-    else:
-        recording.reading(path, tick)
-        place = LogPlace(*recording.place_of(info.key, tick))
-    return _explained(recording, path, place, info.head if tick is None else tick, element)
+    return _explained(recording, path, recording.moment(path, tick), element)
 
 
 def _explained(
-    recording: Recording, path: BeliefPath, place: LogPlace, tick: int, element: Element
+    recording: Recording, path: BeliefPath, moment: ForkPoint, element: Element
 ) -> Explanation:
-    root = place.key.path
+    root = moment.timeline.path
     paths = [path[:depth] for depth in range(len(root), len(path) + 1)]
-    now = _held_now(recording, path, place, element)
-    fact = _fact(recording, place, now[root], element)
+    now = _held_now(recording, path, moment, element)
+    fact = _fact(recording, moment, now[root], element)
     traces = [_Finding(node, now[node]) for node in paths[1:]]
-    _follow(recording, path, place, tick, element, traces)
+    _follow(recording, path, moment, element, traces)
     before = None
-    base = recording.journal.info(place.key).base
+    base = recording.journal.info(moment.timeline).base
     if base is not None and fact.since is None:
-        earlier = LogPlace(base.timeline, base.entries)
-        before = _explained(recording, root, earlier, base.tick, element)
+        before = _explained(recording, root, base, element)
     weighed = recording.setting.perception.testimony == "informed"
     levels = tuple(replace(_level(trace, element), weighed=weighed) for trace in traces)
-    return Explanation(element, tick, fact, levels, before)
+    return Explanation(element, moment.tick, fact, levels, before)
 
 
 @dataclass(frozen=True)
@@ -139,18 +131,18 @@ class _Finding:
 
 
 def _held_now(
-    recording: Recording, path: BeliefPath, place: LogPlace, element: Element
+    recording: Recording, path: BeliefPath, moment: ForkPoint, element: Element
 ) -> dict[BeliefPath, _HeldNow]:
-    root, history = place.key.path, recording.history
+    root, history = moment.timeline.path, recording.history
     cells = cells_of(element, recording.box)
     held = {}
     if cells:
-        (forest,) = history.steps(place.key, path, place.entries, place.entries, cells)
+        (forest,) = history.steps(moment.timeline, path, moment.entries, moment.entries, cells)
     else:
-        forest = history.shared(place.key, path, place.entries)
+        forest = history.shared(moment.timeline, path, moment.entries)
     for depth in range(len(root), len(path) + 1):
         node = path[:depth]
-        basis, current = _ground_of(recording, place, forest, node, element)
+        basis, current = _ground_of(recording, moment, forest, node, element)
         block = None
         if not isinstance(element.where, str):
             cell = cell_of(recording.box, element.where)
@@ -161,7 +153,7 @@ def _held_now(
 
 
 def _ground_of(
-    recording: Recording, place: LogPlace, forest: Forest, node: BeliefPath, element: Element
+    recording: Recording, moment: ForkPoint, forest: Forest, node: BeliefPath, element: Element
 ) -> tuple[Basis | None, bool]:
     """What a node's value rests on, and whether it is current."""
     reading = NodeView(forest, node)
@@ -173,16 +165,16 @@ def _ground_of(
         return (None, False) if content is None else (content.basis, content.current)
     cell = cell_of(recording.box, element.where)
     basis = forest.bases(node, [cell])[cell]
-    current = recording.history.current_blocks(place.key, node, place.entries, (cell,))
+    current = recording.history.current_blocks(moment.timeline, node, moment.entries, (cell,))
     return basis, cell in current
 
 
-def _fact(recording: Recording, place: LogPlace, held: _HeldNow, element: Element) -> Fact:
-    change = last_change(recording.history, recording.journal, place, element)
-    base = recording.journal.info(place.key).base
+def _fact(recording: Recording, moment: ForkPoint, held: _HeldNow, element: Element) -> Fact:
+    change = last_change(recording.history, recording.journal, moment, element)
+    base = recording.journal.info(moment.timeline).base
     return Fact(
-        path=place.key.path,
-        branch=place.key.branch,
+        path=moment.timeline.path,
+        branch=moment.timeline.branch,
         value=held.value,
         block=held.block,
         since=None if change is None else change.tick,
@@ -195,8 +187,7 @@ def _fact(recording: Recording, place: LogPlace, held: _HeldNow, element: Elemen
 def _follow(
     recording: Recording,
     path: BeliefPath,
-    place: LogPlace,
-    tick: int,
+    moment: ForkPoint,
     element: Element,
     traces: list[_Finding],
 ) -> None:
@@ -207,7 +198,7 @@ def _follow(
     first = recording.setting.snapshot.tick
     start = min(first if trace.observed_at is None else trace.observed_at for trace in traces)
     last = None
-    for step in steps_since(recording.history, recording.journal, path, place, start, element):
+    for step in steps_since(recording.history, recording.journal, path, moment, start, element):
         last = step
         for trace in traces:
             _take(recording, trace, step, element)
@@ -217,7 +208,7 @@ def _follow(
             if parent is not None:
                 # Nothing happened to be missed; the looks are those of now.
                 missed = _missed(recording, trace.path, last, element, parent, acts=())
-                trace.missed = replace(missed, tick=tick)
+                trace.missed = replace(missed, tick=moment.tick)
 
 
 def _take(recording: Recording, trace: _Finding, step: LogStep, element: Element) -> None:
@@ -238,7 +229,7 @@ def _take(recording: Recording, trace: _Finding, step: LogStep, element: Element
         trace.since, trace.parent = forest.tick, outside
         trace.stood = forest.feet(trace.path[:-1], trace.path[-1])
     elif trace.missed is None and outside != trace.parent and trace.observed_at is not None:
-        entry = _entry(recording, step.place)
+        entry = _entry(recording, step)
         edited = isinstance(entry, Edit) and entry.path == trace.path[:-1]
         events = NodeView(forest, trace.path[:-1]).events()
         acts = () if edited else _acts(events, forest.tick, element)
@@ -276,7 +267,7 @@ def _told(
     recording: Recording, path: BeliefPath, step: LogStep, element: Element
 ) -> Iterable[HeardClaim]:
     """The claims of one entry by which a node may have moved something out of a container."""
-    entry = _entry(recording, step.place) if element.kind == "container" else None
+    entry = _entry(recording, step) if element.kind == "container" else None
     if not isinstance(entry, Frame):
         return
     node = step.forest.node(path)
@@ -288,11 +279,10 @@ def _told(
                 yield HeardClaim(entry.tick, str(event.actor), claim)
 
 
-def _entry(recording: Recording, place: LogPlace) -> Entry | None:
-    """The entry just before a place; None at the beginning of a timeline."""
-    if place.entries == 0:
-        return None
-    return next(recording.journal.entries(place.key, place.entries - 1, place.entries))
+def _entry(recording: Recording, step: LogStep) -> Entry | None:
+    """The entry that a step took in; None at the beginning of a timeline."""
+    count = step.forest.position
+    return next(recording.journal.entries(step.timeline, count - 1, count)) if count else None
 
 
 def _absence(recording: Recording, forest: Forest, path: BeliefPath) -> Absence:

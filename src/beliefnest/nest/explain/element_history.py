@@ -8,14 +8,13 @@ from beliefnest.belief.entries import PerceivedEvent
 from beliefnest.belief.forest import Forest
 from beliefnest.nest.explain.parts import Contents, Element, Value
 from beliefnest.nest.past.history import History
-from beliefnest.timeline.journal import Edit, Entry, EntryFilter, Journal, TimelineKey
+from beliefnest.timeline.journal import Edit, Entry, EntryFilter, ForkPoint, Journal, TimelineKey
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import block_words, plain_state
 from beliefnest.world.values import Box
 
 __all__ = [
-    "LogPlace",
     "LogStep",
     "cells_of",
     "grounded_at",
@@ -27,18 +26,10 @@ __all__ = [
 
 
 @dataclass(frozen=True, slots=True)
-class LogPlace:
-    """A place in the log: after the first `entries` entries of a timeline."""
-
-    key: TimelineKey
-    entries: int
-
-
-@dataclass(frozen=True, slots=True)
 class LogStep:
     """A forest after one more entry of a timeline."""
 
-    place: LogPlace
+    timeline: TimelineKey
     forest: Forest
 
 
@@ -53,19 +44,18 @@ def steps_since(
     history: History,
     journal: Journal,
     path: BeliefPath,
-    place: LogPlace,
+    moment: ForkPoint,
     tick: int,
     element: Element,
 ) -> Iterator[LogStep]:
-    """The forest of a node after each entry from just before `tick` to a place."""
-    info = journal.info(place.key)
+    """The forest of a node after each entry from just before `tick` to a moment."""
+    info = journal.info(moment.timeline)
     if info.base is not None and tick <= info.start:
-        base = LogPlace(info.base.timeline, info.base.entries)
-        yield from steps_since(history, journal, path, base, tick, element)
-    first = min(journal.entries_until(place.key, tick - 1), place.entries)
+        yield from steps_since(history, journal, path, info.base, tick, element)
+    first = min(journal.entries_until(moment.timeline, tick - 1), moment.entries)
     cells = cells_of(element, history.context.box)
-    for forest in history.steps(place.key, path, first, place.entries, cells):
-        yield LogStep(LogPlace(place.key, forest.position), forest)
+    for forest in history.steps(moment.timeline, path, first, moment.entries, cells):
+        yield LogStep(moment.timeline, forest)
 
 
 def value_in(forest: Forest, path: BeliefPath, element: Element) -> Value:
@@ -101,15 +91,15 @@ def touches(element: Element, event: PerceivedEvent) -> bool:
 
 
 def last_change(
-    history: History, journal: Journal, place: LogPlace, element: Element
+    history: History, journal: Journal, moment: ForkPoint, element: Element
 ) -> Entry | None:
     """The last entry of a timeline that changed an element in its own world."""
-    path = place.key.path
-    held: object = _bare(value_in(next(history.steps(place.key, path, 0, 0)), path, element))
+    path = moment.timeline.path
+    held: object = _bare(value_in(next(history.steps(moment.timeline, path, 0, 0)), path, element))
     last = None
-    entries = journal.entries(place.key, 0, place.entries)
+    entries = journal.entries(moment.timeline, 0, moment.entries)
     if element.kind != "agent":
-        found = journal.filtered(place.key, 0, place.entries, EntryFilter.CHANGES)
+        found = journal.filtered(moment.timeline, 0, moment.entries, EntryFilter.CHANGES)
         entries = (entry for _, entry in found)
     for entry in entries:
         if isinstance(entry, Edit) and entry.path != path:

@@ -12,7 +12,6 @@ from beliefnest.errors import BranchError, InputError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.speculation import Speculation
 from beliefnest.nest.face.simulator import Simulator, check_senses
-from beliefnest.nest.past.body_state import present
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.timeline.records import Senses
 from beliefnest.world.paths import BeliefPath
@@ -93,7 +92,7 @@ class Exploration:
         return tuple(attempts)
 
     def _present(self) -> ForkPoint:
-        return present(self.engine.recording.journal, self.engine.recording.controller(self.path))
+        return self.engine.recording.moment(self.path)
 
     def _branches(self, simulator: Simulator) -> Sequence[str]:
         branches = [f"{self.name} {number}" for number in range(1, len(self.programs) + 1)]

@@ -203,7 +203,7 @@ class Nest(Joining, Visiting):
             TickError: The tick is no whole number, in the future or before the start.
         """
         then = tick_of(tick)
-        self._recording.reading((), then)
+        self._recording.moment((), then)
         return Past(self._recording, then)
 
     def explore(

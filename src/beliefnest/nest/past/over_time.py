@@ -8,7 +8,7 @@ import numpy as np
 from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.view import State
 from beliefnest.nest.past.recording import Recording
-from beliefnest.timeline.journal import Journal, TimelineInfo, TimelineKey
+from beliefnest.timeline.journal import ForkPoint, Journal, TimelineInfo, TimelineKey
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
@@ -48,8 +48,9 @@ def over_time(recording: Recording, path: BeliefPath) -> Iterator[Moment]:
             continue
         before = np.full(box.shape, -1, dtype=np.int32)
         for tick, entries in _places(recording.journal, info).items():
-            grid = recording.history.reading(info.key, path, entries).blocks.copy()
-            state = recording.state_after(info.key, path, entries, tick)
+            reading = recording.history.reading(info.key, path, entries)
+            grid = reading.blocks.copy()
+            state = recording.view_of(reading, ForkPoint(info.key, entries, tick))
             yield Moment(info.key, tick, state, _changed(before, grid, box, registry))
             before = grid
 
@@ -83,7 +84,8 @@ def each_tick(
             if not after < forest.tick <= until:
                 continue
             readings = [NodeView(forest, path) for path in paths]
-            views = [recording.view_of(each, key, position, forest.tick) for each in readings]
+            moment = ForkPoint(key, position, forest.tick)
+            views = [recording.view_of(each, moment) for each in readings]
             yield forest.tick, dict(zip(paths, views, strict=True))
 
 

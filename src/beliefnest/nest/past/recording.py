@@ -18,7 +18,7 @@ from beliefnest.nest.past.setting import MAIN, Setting
 from beliefnest.nest.past.setting_codec import decode_start
 from beliefnest.nest.past.views import Blocks, LiveState
 from beliefnest.prompts import Renderer
-from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
+from beliefnest.timeline.journal import FOLLOW, ForkPoint, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import Records, RunJournal
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import BeliefPath, path_text
@@ -107,22 +107,29 @@ class Recording:
             info = self.journal.info(key)
         return key, self.journal.entries_until(key, tick)
 
-    def reading(self, path: BeliefPath, tick: int | None = None) -> NodeView:
-        """A node's state now, or at a past tick of the timeline it is on.
+    def moment(self, path: BeliefPath, tick: int | None = None) -> ForkPoint:
+        """Where a node's state comes from now, or at a past tick of the timeline it is on.
 
         Raises:
             TickError: The tick is in the future, or before the start of everything.
         """
-        key, entries = self._when(path, tick)
-        return self.history.reading(key, path, entries)
+        info = self.info(path)
+        if tick is None:
+            return ForkPoint(info.key, info.entries, info.head)
+        if tick > info.head:
+            raise TickError(f"tick {tick} is in the future; {path_text(path)} is at {info.head}")
+        return ForkPoint(*self.place_of(info.key, tick), tick)
+
+    def reading(self, path: BeliefPath, tick: int | None = None) -> NodeView:
+        """A node's state now, or at a past tick; TickError as for `moment`."""
+        moment = self.moment(path, tick)
+        return self.history.reading(moment.timeline, path, moment.entries)
 
     def state(self, path: BeliefPath, tick: int | None = None) -> LiveState:
-        """The view of a node's state now, or at a past tick; TickError as for `reading`."""
-        if tick is None:
-            info = self.info(path)
-            return self.state_after(info.key, path, info.entries, info.head)
-        key, entries = self._when(path, tick)
-        return self.state_after(key, path, entries, tick)
+        """The view of a node's state now, or at a past tick; TickError as for `moment`."""
+        moment = self.moment(path, tick)
+        reading = self.history.reading(moment.timeline, path, moment.entries)
+        return self.view_of(reading, moment)
 
     def states(self, paths: Iterable[BeliefPath]) -> Mapping[BeliefPath, LiveState]:
         """The views of several nodes' states now, by path."""
@@ -134,14 +141,10 @@ class Recording:
             self.history.expect(key, nodes)
         return {path: self.state(path) for path in wanted}
 
-    def state_after(self, key: TimelineKey, path: BeliefPath, entries: int, tick: int) -> LiveState:
-        """The view of a node's state on a timeline, after some of its entries, as of a tick."""
-        return self.view_of(self.history.reading(key, path, entries), key, entries, tick)
-
-    def view_of(self, reading: NodeView, key: TimelineKey, entries: int, tick: int) -> LiveState:
-        """The view of a state that was read after some entries of a timeline, as of a tick."""
-        blocks = Blocks(self.history, key, entries, reading, self.turn)
-        return LiveState(reading, blocks, self.box, tick, self.turn)
+    def view_of(self, reading: NodeView, moment: ForkPoint) -> LiveState:
+        """The view of a node's state that was read at a moment."""
+        blocks = Blocks(self.history, moment.timeline, moment.entries, reading, self.turn)
+        return LiveState(reading, blocks, self.box, moment.tick, self.turn)
 
     def close(self) -> None:
         """Leave checkpoints for who comes next, and close the journal."""
@@ -151,14 +154,6 @@ class Recording:
                 self.history.close()
         finally:
             self.journal.close()
-
-    def _when(self, path: BeliefPath, tick: int | None) -> tuple[TimelineKey, int]:
-        info = self.info(path)
-        if tick is None:
-            return info.key, info.entries
-        if tick > info.head:
-            raise TickError(f"tick {tick} is in the future; {path_text(path)} is at {info.head}")
-        return self.place_of(info.key, tick)
 
 
 def read_recording(journal: SqliteJournal) -> tuple[Recording, str]:
