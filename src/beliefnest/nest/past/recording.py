@@ -16,7 +16,7 @@ from beliefnest.errors import BranchError, StoreError, TickError
 from beliefnest.nest.past.history import History
 from beliefnest.nest.past.setting import MAIN, Setting
 from beliefnest.nest.past.setting_codec import decode_start
-from beliefnest.nest.past.views import Blocks, LiveState
+from beliefnest.nest.past.views import LiveState
 from beliefnest.prompts import Renderer
 from beliefnest.timeline.journal import FOLLOW, ForkPoint, TimelineInfo, TimelineKey
 from beliefnest.timeline.records import Records, RunJournal
@@ -143,8 +143,7 @@ class Recording:
 
     def view_of(self, reading: NodeView, moment: ForkPoint) -> LiveState:
         """The view of a node's state that was read at a moment."""
-        blocks = Blocks(self.history, moment.timeline, moment.entries, reading, self.turn)
-        return LiveState(reading, blocks, self.box, moment.tick, self.turn)
+        return LiveState(self.history, moment, reading, self.turn)
 
     def close(self) -> None:
         """Leave checkpoints for who comes next, and close the journal."""

@@ -14,12 +14,12 @@ from beliefnest.nest.past.history import History
 from beliefnest.pictures.figure import figure_of
 from beliefnest.pictures.scene import read_scene
 from beliefnest.pictures.words import state_words
-from beliefnest.timeline.journal import TimelineKey
+from beliefnest.timeline.journal import ForkPoint
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import path_text
-from beliefnest.world.values import Box, DroppedItem, EventKind, Position
+from beliefnest.world.values import DroppedItem, EventKind, Position
 
-__all__ = ["Blocks", "LiveState"]
+__all__ = ["LiveState"]
 
 # Questions about blocks, and cells of a box, from which on all blocks are answered at once.
 _FEW = 4
@@ -33,23 +33,18 @@ _PARTS = (
 )
 
 
-class Blocks:
+class _Blocks:
     """The blocks of a node at one entry of a timeline, by position."""
 
     def __init__(
         self,
         history: History,
-        key: TimelineKey,
-        position: int,
+        moment: ForkPoint,
         reading: NodeView,
         turn: AbstractContextManager[object],
     ) -> None:
-        self._turn = turn
-        self._history = history
-        self._context = history.context
-        self._key = key
-        self._position = position
-        self._reading = reading
+        self._history, self._context = history, history.context
+        self._moment, self._reading, self._turn = moment, reading, turn
         self._bases: dict[int, Basis | None] = {}
         self._currents: dict[int, bool] = {}
 
@@ -70,7 +65,7 @@ class Blocks:
         return int(self.grid.size)
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Blocks):
+        if not isinstance(other, _Blocks):
             return NotImplemented
         return bool(np.array_equal(self.grid, other.grid))
 
@@ -103,10 +98,9 @@ class Blocks:
         cell = self._cell(position)
         if cell not in self._currents:
             cells = self._asked_with(cell, self._currents)
+            at, path = self._moment, self._reading.path
             with self._turn:
-                found = self._history.current_blocks(
-                    self._key, self._reading.path, self._position, cells
-                )
+                found = self._history.current_blocks(at.timeline, path, at.entries, cells)
             self._currents.update((each, each in found) for each in cells)
         return self._currents[cell]
 
@@ -115,10 +109,10 @@ class Blocks:
         cell = self._cell(position)
         if cell not in self._bases:
             cells = self._asked_with(cell, self._bases)
+            at, path = self._moment, self._reading.path
             with self._turn:
-                self._bases.update(
-                    self._history.block_bases(self._key, self._reading.path, self._position, cells)
-                )
+                found = self._history.block_bases(at.timeline, path, at.entries, cells)
+            self._bases.update(found)
         return self._bases[cell]
 
     def _asked_with(self, cell: int, known: Collection[int]) -> Sequence[int]:
@@ -147,14 +141,14 @@ class LiveState:
 
     def __init__(
         self,
+        history: History,
+        moment: ForkPoint,
         reading: NodeView,
-        blocks: Blocks,
-        box: Box,
-        tick: int,
         turn: AbstractContextManager[object],
     ) -> None:
-        self.path, self.tick, self.box = reading.path, tick, box
-        self._reading, self._blocks, self._turn = reading, blocks, turn
+        self.path, self.tick, self.box = reading.path, moment.tick, history.context.box
+        self._reading, self._turn = reading, turn
+        self._blocks = _Blocks(history, moment, reading, turn)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, LiveState):
