@@ -82,14 +82,9 @@ class _Request:
 class Engine:
     """Acts in the world of one nest and records what happens.
 
-    Args:
-        recording: The nest's timelines.
-        world: Where bodies live; a body is made when it is first needed.
-        reader: Who reads claims out of what is said; None: nobody.
-
     Attributes:
         recording: The nest's timelines.
-        world: Where bodies live.
+        world: Where bodies live; a body is made when it is first needed.
         embodying: What people who visit beliefs are shown.
         bodies: The bodies of simulators in control mode.
     """

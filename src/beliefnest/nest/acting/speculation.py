@@ -21,14 +21,7 @@ __all__ = ["SpeculatedBody", "Speculation", "SpeculationStart", "speculate"]
 
 @dataclass(frozen=True, slots=True)
 class SpeculationStart:
-    """What a body begins with that a program runs in.
-
-    Attributes:
-        name: Name of the body, of no other one in its world.
-        seed: Seed of its random numbers.
-        snapshot: What it is filled with.
-        rules: How programs run in it.
-    """
+    """What a body begins with that a program runs in; no other body in its world has its name."""
 
     name: str
     seed: str
