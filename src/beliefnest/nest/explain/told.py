@@ -12,7 +12,7 @@ from beliefnest.belief.testimony import Verdict
 from beliefnest.errors import InputError
 from beliefnest.nest.past.recording import Recording
 from beliefnest.prompts.text import block_name, block_properties
-from beliefnest.timeline.journal import EntryFilter, TimelineKey
+from beliefnest.timeline.journal import EntryFilter, ForkPoint, TimelineKey
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, parse_path, path_text
@@ -137,17 +137,16 @@ class ToldClaim:
 
 def claims_told(recording: Recording, path: BeliefPath, tick: int | None) -> list[ToldClaim]:
     """All claims made in a simulator, or in what it follows, up to a tick (None: all)."""
-    place: tuple[TimelineKey, int] | None
-    info = recording.info(path)
-    place = (info.key, info.entries) if tick is None else recording.place_of(info.key, tick)
-    parts = []
-    while place is not None:
-        key, count = place
-        parts.append(list(_told(recording, key, count)))
-        base = recording.journal.info(key).base
-        same = base is not None and base.timeline.path == key.path
-        place = (base.timeline, base.entries) if base is not None and same else None
-    return [claim for part in reversed(parts) for claim in part]
+    moment = recording.moment(path)
+    if tick is not None:
+        # A tick to come is no fault: what was claimed by then is what was claimed by now.
+        moment = ForkPoint(*recording.place_of(moment.timeline, tick), tick)
+    return [
+        claim
+        for stretch in recording.stretches(moment)
+        if stretch.timeline.path == moment.timeline.path
+        for claim in _told(recording, stretch.timeline, stretch.entries)
+    ]
 
 
 def _told(recording: Recording, key: TimelineKey, count: int) -> Iterator[ToldClaim]:

@@ -21,7 +21,7 @@ from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.figure import Figure
 from beliefnest.pictures.plot import Band, NotedAct, NotedClaim, PlotRow, belief_plot
 from beliefnest.pictures.words import place_words
-from beliefnest.timeline.journal import TimelineKey
+from beliefnest.timeline.journal import ForkPoint
 from beliefnest.world.paths import BeliefPath, parse_path, path_text
 from beliefnest.world.values import EventKind, Position
 
@@ -95,9 +95,7 @@ def _check_held(recording: Recording, container: Position, courses: Sequence[Cou
     """That a container ever was there, in reality or in one of the beliefs."""
     if any(value is not None for course in courses for _, value in course):
         return
-    key = recording.controller(())
-    *_, (_, real) = _stretch(recording, key, (), recording.journal.info(key).entries)
-    known = ", ".join(map(str, sorted(real.containers)))
+    known = ", ".join(map(str, sorted(recording.reading(()).containers)))
     raise InputError(
         f"there is no container at {container}; containers are at {known or 'no place'}"
     )
@@ -143,13 +141,9 @@ def _told(
 
 def _course(recording: Recording, path: BeliefPath, matter: Matter[V]) -> Course[V]:
     """The changes of what a simulator held, on its timeline and what that was forked from."""
-    key = recording.controller(path)
-    stretches = [(key, recording.journal.info(key).entries)]
-    while (base := recording.journal.info(stretches[0][0]).base) is not None:
-        stretches.insert(0, (base.timeline, base.entries))
     course: Course[V] = []
-    for each, entries in stretches:
-        for tick, held in _stretch(recording, each, path, entries):
+    for stretch in recording.stretches(recording.moment(path)):
+        for tick, held in _held(recording, path, stretch):
             value = matter.value(held)
             # What holds at the end of a tick counts.
             while course and course[-1][0] == tick:
@@ -159,10 +153,11 @@ def _course(recording: Recording, path: BeliefPath, matter: Matter[V]) -> Course
     return course
 
 
-def _stretch(
-    recording: Recording, key: TimelineKey, path: BeliefPath, stop: int
+def _held(
+    recording: Recording, path: BeliefPath, stretch: ForkPoint
 ) -> Iterator[tuple[int, NodeView]]:
-    """A simulator after each of the first entries of a timeline."""
+    """A simulator at the beginning of a timeline, and after each of its entries."""
+    key, stop = stretch.timeline, stretch.entries
     start = recording.journal.info(key).start
     ticks = [start, *(entry.tick for entry in recording.journal.entries(key, 0, stop))]
     steps = recording.history.steps(key, path, 0, stop)

@@ -66,20 +66,15 @@ def each_tick(
         after: Ticks up to this one are passed over.
         until: The last tick.
     """
-    stages: list[tuple[TimelineKey, int]] = []
-    info = recording.info(())
-    stop = info.entries
-    while True:
-        stages.append((info.key, stop))
-        if info.base is None or info.start <= after:
-            break
-        stop, info = info.base.entries, recording.journal.info(info.base.timeline)
-    for key, last in reversed(stages):
+    for stretch in recording.stretches(recording.moment(())):
+        if stretch.tick <= after:
+            continue
+        key = stretch.timeline
         forest = recording.history.walk(key, paths)
         first = recording.journal.entries_until(key, after)
         if first > forest.position:
             recording.history.advance(key, forest, first)
-        for position in range(forest.position + 1, last + 1):
+        for position in range(forest.position + 1, stretch.entries + 1):
             recording.history.advance(key, forest, position)
             if not after < forest.tick <= until:
                 continue

@@ -107,6 +107,13 @@ class Recording:
             info = self.journal.info(key)
         return key, self.journal.entries_until(key, tick)
 
+    def stretches(self, moment: ForkPoint) -> list[ForkPoint]:
+        """The timelines that lead to a moment, oldest first: each up to where the next begins."""
+        found = [moment]
+        while (base := self.journal.info(found[-1].timeline).base) is not None:
+            found.append(base)
+        return found[::-1]
+
     def moment(self, path: BeliefPath, tick: int | None = None) -> ForkPoint:
         """Where a node's state comes from now, or at a past tick of the timeline it is on.
 
