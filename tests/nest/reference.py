@@ -6,7 +6,7 @@ program's. Where the semantics leave something open, the choice made here is:
 
 * A place that is seen (currently) to hold no container has no content, also when items
   were seen to go into it in the same tick.
-* Content that is learned by looking in, and is stale in the simulator around, stays stale.
+* Content that is learned by looking in, and is stale in the parent simulator, stays stale.
 * In transparent mode whatever content is known at a position that is seen is perceived.
 * After an edit the nodes below the edited one perceive again, with no events.
 * A tick in which nothing changed and nothing happened is no perception.

@@ -59,7 +59,7 @@ class Senses(NamedTuple):
 
     Attributes:
         far: Greatest visible distance, blocks, infinite if there is no limit.
-        cos_half: Cosine of half the field of view; -2 sees all around.
+        cos_half: Cosine of half the field of view; -2: in all directions.
         hearing: One of `HEAR_ALL`, `HEAR_SEEN`, `HEAR_NEAR`.
         radius: Greatest distance of hearing, blocks, for `HEAR_NEAR`.
         negative: Whether a pose becomes unknown when its place is seen empty.
@@ -162,7 +162,7 @@ class Nodes(NamedTuple):
             claims (semantics, section 8).
         missed: (N, A), ticks at which the owner did not perceive the agent.
         met: (N, A), id of the pose that the owner last perceived the agent in; -1: it never
-            did, or has seen since that the agent is not there any more.
+            did, or has seen since that the agent has gone.
         meets: (N, A), whether the owner sees the agent in the parent.
         met_missed: (N, A, A), `missed` as it was when the agent was last seen.
         watch_missed: (N, T, A), `missed` as it was when the tracked cell was last watched; -1:

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from beliefnest.belief.arrays import HEAR_ALL, HEAR_NEAR, HEAR_SEEN, Senses, Space
 from beliefnest.belief.entries import SOURCES, Basis, Source
-from beliefnest.belief.looks import Looks
+from beliefnest.belief.first_perceptions import FirstPerceptions
 from beliefnest.errors import InputError
 from beliefnest.perception.options import Perception, Radius
 from beliefnest.perception.sight import Sight
@@ -34,7 +34,7 @@ class BeliefContext:
         options: What agents can perceive.
         registry: Names and shapes of blocks.
         sight: How agents see.
-        looks: First looks with that sight, in this nest and others.
+        first_perceptions: Of that sight, in this nest and others.
     """
 
     box: Box
@@ -42,7 +42,7 @@ class BeliefContext:
     options: Perception
     registry: Registry
     sight: Sight
-    looks: Looks = field(default_factory=Looks)
+    first_perceptions: FirstPerceptions = field(default_factory=FirstPerceptions)
     _tracked: dict[int, None] = field(default_factory=dict)
     _signs: dict[Sign, int] = field(default_factory=dict)
 
@@ -131,7 +131,7 @@ class BeliefContext:
         """The number by which arrays know a block: its state, or one for a sign and its text.
 
         Raises:
-            InputError: More different texts were written than can be told apart.
+            InputError: More different texts were written than there are numbers for.
         """
         if isinstance(block, int):
             return block

@@ -215,7 +215,7 @@ class Forest:
         self.hearing.set(0, count, np.ones(events - count, dtype=np.bool_))
         self.enter(self._nowhere(position, events, PoseTable()))
         self.position = position
-        self.holdings.note_look((0,), position - 1)
+        self.holdings.note_perception((0,), position - 1)
 
     def advance(self, stop: int) -> None:
         """Fold entries of the stretch up to number `stop` (excluded)."""
@@ -254,13 +254,15 @@ class Forest:
         for path in paths:
             source = other.node(path)
             node = self.table.copy_node(other.table, source, is_root=False, recorded=True)
-            self.holdings.add(other.holdings.of(source).copy(), other.holdings.last_look(source))
+            self.holdings.add(
+                other.holdings.of(source).copy(), other.holdings.last_perceived(source)
+            )
             self.hearing.set(node, 0, other.hearing.of(source, count))
         self.table.link()
 
     def perceive_at_first(self) -> None:
         """Let all nodes but the first perceive what there is, with nothing happening."""
-        self._look(self.table.below(0))
+        self._perceive(self.table.below(0))
 
     def see_now(self, tick: int) -> None:
         """Note that what is current of agents' poses is so at a tick."""
@@ -287,7 +289,7 @@ class Forest:
         self.holdings.edit(node, blocks, contents, tick)
         self.position += 1
         self.tick = tick
-        self._look(self.table.below(node))
+        self._perceive(self.table.below(node))
 
     def _nowhere(self, position: int, events: int, poses: PoseTable) -> Columns:
         """An empty stretch between two entries."""
@@ -351,10 +353,10 @@ class Forest:
             entries.add(start)
         for entry in sorted(entries):
             acts = _acts(columns, entry, changes.perceived, first)
-            self._note_look(columns, entry)
+            self._note_perception(columns, entry)
             self.holdings.apply_frame(entry, columns.frames.get(entry))
             self.holdings.follow(entry, columns.tick(entry), rows.get(entry, {}), acts, everywhere)
-        self._note_look(columns, reached - 1)
+        self._note_perception(columns, reached - 1)
         self.table.edited_cells.clear()
         return reached
 
@@ -365,7 +367,7 @@ class Forest:
         count = columns.events_until(entry + 1) - first
         perceived = np.zeros((count, self.table.count), dtype=np.bool_)
         testimony = Testimony(columns, self.table, self.holdings, entry, perceived)
-        self._note_look(columns, entry)
+        self._note_perception(columns, entry)
         for level in self.table.levels():
             changes = self._changes(0)._replace(perceived=perceived)
             poses, nodes, facts = self.poses.arrays(), self.table.nodes(), columns.facts()
@@ -382,12 +384,12 @@ class Forest:
         self.verdicts = testimony.verdicts()
         return entry + 1
 
-    def _note_look(self, columns: Columns, entry: int) -> None:
+    def _note_perception(self, columns: Columns, entry: int) -> None:
         """Note that in an entry everybody perceived what there is."""
         self.holdings.see_root(columns.tick(entry))
-        self.holdings.note_look(range(self.table.count), entry)
+        self.holdings.note_perception(range(self.table.count), entry)
 
-    def _look(self, below: npt.NDArray[np.bool_]) -> None:
+    def _perceive(self, below: npt.NDArray[np.bool_]) -> None:
         context, nodes = self.context, self.table.nodes()
         changes = self._changes(0)
         nothing, at = np.zeros(0, dtype=np.int32), np.zeros(2, dtype=np.int32)
@@ -402,9 +404,9 @@ class Forest:
             # What their numbers stand for is this nest's own.
             kernel.fold(context.space, poses, facts, nodes, changes, 0, 1, below, False)
         else:
-            context.looks.look(context.space, poses, facts, nodes, changes, below)
+            context.first_perceptions.perceive(context.space, poses, facts, nodes, changes, below)
         entry, edited = self.position - 1, self.table.edited_cells
-        self.holdings.note_look(np.flatnonzero(below).tolist(), entry)
+        self.holdings.note_perception(np.flatnonzero(below).tolist(), entry)
         edited.difference_update([(node, cell) for node, cell in edited if below[node]])
         self.holdings.follow(entry, self.tick, _by_entry(changes, 0).get(0, {}), {}, below)
 

@@ -76,7 +76,7 @@ class Holdings:
         inventories: Known possessions by agent number, of agents other than the owner.
         items: Dropped items by number.
         found: Item to the cell of the container in which the owner last perceived it.
-        counts: By cell and item, how many of it were perceived there.
+        counts: By cell and item, how many of it were perceived in it.
     """
 
     containers: dict[int, Content] = field(default_factory=dict)

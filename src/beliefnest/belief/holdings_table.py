@@ -60,7 +60,7 @@ class SavedHoldings:
     Attributes:
         holdings: Contents, possessions and dropped items.
         looked: Entry after which the owner last perceived what there is.
-        doubtful: Cells of contents where no container is known, with the block there.
+        doubtful: Cells of contents where no container is known, with their block.
     """
 
     holdings: Holdings
@@ -81,7 +81,7 @@ class HoldingsTable:
         self._holdings: list[Holdings] = []
         # By node, the entry after which its owner last perceived what there is.
         self._looked: dict[int, int] = {}
-        # By node, cells of contents where no container is known, with the block there.
+        # By node, cells of contents where no container is known, with their block.
         self._doubtful: dict[int, dict[int, int]] = {}
 
     def add(self, holdings: Holdings, looked: int | None = None) -> None:
@@ -100,7 +100,7 @@ class HoldingsTable:
     def saved(self, node: int) -> SavedHoldings:
         """Holdings of a node as plain data."""
         doubtful = dict(sorted(self._doubtful.get(node, {}).items()))
-        return SavedHoldings(self._holdings[node], self.last_look(node), doubtful)
+        return SavedHoldings(self._holdings[node], self.last_perceived(node), doubtful)
 
     def restore(self, saved: SavedHoldings, signs: Sequence[Sign]) -> None:
         """Add holdings that were saved, with what was numbered then."""
@@ -108,11 +108,11 @@ class HoldingsTable:
         self._holdings.append(saved.holdings)
         self._looked[node] = saved.looked
         if saved.doubtful:
-            there = np.array([*saved.doubtful.values()], dtype=np.int16)
-            numbers = self._context.renumbered(there, signs).tolist()
+            blocks = np.array([*saved.doubtful.values()], dtype=np.int16)
+            numbers = self._context.renumbered(blocks, signs).tolist()
             self._doubtful[node] = dict(zip(saved.doubtful, numbers, strict=True))
 
-    def last_look(self, node: int) -> int:
+    def last_perceived(self, node: int) -> int:
         """Entry after which a node's owner last perceived what there is; -1: at first."""
         return self._looked.get(node, -1)
 
@@ -123,7 +123,7 @@ class HoldingsTable:
             return content
         seen = self.root.seen_at is not None and cell not in self.root.edited
         basis = Basis(self.root.seen_at or 0, Source.SEEN) if seen else content.basis
-        return Content(content.items, content.complete, basis, self.last_look(0))
+        return Content(content.items, content.complete, basis, self.last_perceived(0))
 
     def inventory(self, node: int, agent: int) -> tuple[Items, bool]:
         """Believed possessions of an agent, and whether these are known to be all.
@@ -153,7 +153,7 @@ class HoldingsTable:
         transparent = self._context.options.containers == "transparent"
         return transparent or bool(self._doubtful) or any(h.items for h in self._holdings)
 
-    def note_look(self, nodes: Sequence[int], entry: int) -> None:
+    def note_perception(self, nodes: Sequence[int], entry: int) -> None:
         """Note that the owners of nodes perceived what there is after an entry."""
         self._looked.update(dict.fromkeys(nodes, entry))
 
@@ -334,7 +334,7 @@ class HoldingsTable:
     def _learnt(self, node: int, cell: int, entry: int) -> Content:
         """A node's content of a container, as somebody in it learns it in an entry (5.4)."""
         content = self.content(node, cell)
-        is_current = node == 0 or content.entry == self.last_look(node)
+        is_current = node == 0 or content.entry == self.last_perceived(node)
         return replace(content, entry=entry if is_current else NEVER)
 
     def _see_items(self, node: int, tick: int, entry: int) -> None:

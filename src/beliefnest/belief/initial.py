@@ -199,7 +199,7 @@ def _forked_holdings(
 ) -> Holdings:
     """Holdings at a fork; what was current is so until the new timeline's first entry."""
     copied = source.of(node).copy()
-    last = source.last_look(node)
+    last = source.last_perceived(node)
     for cell in copied.containers:
         content = source.content(node, cell)
         entry = -1 if is_root or content.entry == last else NEVER

@@ -303,7 +303,7 @@ def _count_to(nodes: Nodes, node: int, tick: int) -> None:
 
 
 @inner
-def _meet(space: Space, poses: Poses, nodes: Nodes, node: int, moved: bool) -> None:
+def _observe_meetings(space: Space, poses: Poses, nodes: Nodes, node: int, moved: bool) -> None:
     """Where the present owner of a node perceives others, and where it sees that they are gone."""
     parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
     eye = eye_of(space, poses, whole(nodes.eye[node]))
@@ -324,7 +324,7 @@ def _meet(space: Space, poses: Poses, nodes: Nodes, node: int, moved: bool) -> N
 
 
 @inner
-def _watch(
+def _note_watched_places(
     facts: Facts,
     nodes: Nodes,
     changes: Changes,
@@ -376,9 +376,9 @@ def _update_node(
     _perceive_events(space, poses, facts, nodes, changes, entry, first_event, node)
     _propagate_bases(space, nodes, node, eye, moved)
     if space.senses.weighs:
-        _meet(space, poses, nodes, node, moved)
+        _observe_meetings(space, poses, nodes, node, moved)
         _count_to(nodes, node, tick)
-        _watch(facts, nodes, changes, entry, first_event, node)
+        _note_watched_places(facts, nodes, changes, entry, first_event, node)
 
 
 @compiled

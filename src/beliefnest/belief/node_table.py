@@ -59,8 +59,8 @@ class NodeTable:
         count: How many nodes there are.
         context: What all nodes share.
         poses: The pose table that the nodes' pose ids are rows of.
-        edited_cells: Nodes and cells of blocks changed by hand, or that somebody was told of, since
-            somebody last looked there.
+        edited_cells: Nodes and cells of blocks that were changed by hand, or claimed to be other,
+            since the node last perceived them.
     """
 
     def __init__(self, context: BeliefContext, poses: PoseTable, extra: Sequence[int] = ()) -> None:
@@ -255,7 +255,7 @@ class NodeTable:
     def tell(
         self, which: npt.NDArray[np.int64], cell: int, states: Sequence[int], basis: Basis
     ) -> None:
-        """Let nodes hold block states that they were told of."""
+        """Let nodes hold block states that were claimed."""
         wanted = np.array(states, dtype=np.int64)
         kernel.put_all(self.context.space, self.nodes(), which, cell, wanted)
         for node in which.tolist():
@@ -282,7 +282,7 @@ class NodeTable:
             wide = np.full((size, len(new), *row.shape[2:]), filler, dtype=row.dtype)
             self._rows[name] = np.concatenate([row, wide], axis=1)
         self._nodes = None
-        # Whoever looks next looks at the new cells too.
+        # The next look covers the new cells too.
         self._rows["eye"][: self.count] = UNKNOWN
 
     def saved(self, node: int) -> SavedNode:

@@ -36,7 +36,7 @@ class NodeView:
         self._forest = forest
         self._node = forest.node(path)
         self.count_of_events = forest.count_of_events
-        self._last_look = forest.holdings.last_look(self._node)
+        self._last_perceived = forest.holdings.last_perceived(self._node)
         forest.read_by(self)
 
     def keep(self) -> None:
@@ -50,7 +50,7 @@ class NodeView:
 
     @cached_property
     def numbers(self) -> BlockGrid:
-        """Numbers of the believed blocks, which tell texts of signs apart (`BeliefContext`)."""
+        """Numbers of the believed blocks: one for each text of a sign too (`BeliefContext`)."""
         return self._forest.table.blocks(self._node)
 
     @cached_property
@@ -60,7 +60,7 @@ class NodeView:
 
     @cached_property
     def geometry(self) -> Geometry:
-        """The believed blocks prepared for looks."""
+        """The believed blocks prepared for lines of sight."""
         context = self._forest.context
         return context.sight.geometry(self.blocks, context.box.low)
 
@@ -75,7 +75,7 @@ class NodeView:
                 content.items,
                 content.complete,
                 content.basis,
-                current=self._node == 0 or content.entry == self._last_look,
+                current=self._node == 0 or content.entry == self._last_perceived,
             )
         return found
 

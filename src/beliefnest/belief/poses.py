@@ -92,7 +92,7 @@ class PoseTable:
         return self._append(agent.position, agent.yaw, agent.pitch, last, recorded=True)
 
     def add_pose(self, position: Point, yaw: float, pitch: float, speaker: int = NOBODY) -> int:
-        """Id of a pose in which nobody was seen; an agent `speaker` may have told of it."""
+        """Id of a pose in which nobody was seen; an agent `speaker` may have claimed it."""
         return self._append(position, yaw, pitch, 0, speaker, recorded=False)
 
     def take(self, other: "PoseTable", numbers: Ints, *, recorded: bool = True) -> Ints:
@@ -137,7 +137,7 @@ class PoseTable:
         return bool(self._recorded.view()[pose])
 
     def speaker(self, pose: int) -> int:
-        """Number of the agent who told of a pose; `NOBODY`: it is no hearsay."""
+        """Number of the agent who claimed a pose; `NOBODY`: it is no hearsay."""
         return int(self._heard.view()[pose])
 
     def arrays(self) -> Poses:

@@ -170,7 +170,7 @@ class Testimony:
     def _known(
         self, which: Numbers, speaker: int, claim: Claim, nodes: Nodes
     ) -> tuple[Flags, Flags, npt.NDArray[np.int64]]:
-        """By node: is there a known place, is it seen now, ticks without the speaker since."""
+        """By node: is a place known, is it seen now, ticks without the speaker since."""
         now = nodes.missed[which, speaker].astype(np.int64)
         if claim.agent is not None:
             subject = self._context.numbers[claim.agent]
@@ -257,8 +257,8 @@ def stated(context: BeliefContext, text: str, believed: int) -> int:
     name = registry.name(state)
     if believed < 0 or context.block_name(believed) != name:
         return state
-    told = [pair.split("=") for pair in text[len(name) + 1 : -1].split(",") if pair]
-    properties = registry.properties(plain_state(old)) | dict(told)
+    claimed = [pair.split("=") for pair in text[len(name) + 1 : -1].split(",") if pair]
+    properties = registry.properties(plain_state(old)) | dict(claimed)
     inner = ",".join(f"{key}={value}" for key, value in properties.items())
     state = registry.state_id(f"{name}[{inner}]" if inner else name)
     return context.number(Sign(state, old.text) if isinstance(old, Sign) else state)
@@ -267,10 +267,10 @@ def stated(context: BeliefContext, text: str, believed: int) -> int:
 def believe_located(holdings: Holdings, cell: int, item: str, basis: Basis) -> None:
     """Put one such item into a container, out of the one in which it was believed last.
 
-    What is left there rests on what it rested on: nobody spoke of it.
+    What is left in it rests on what it rested on: nobody spoke of it.
     """
-    there = holdings.containers.get(cell)
-    items = {} if there is None else there.items
+    content = holdings.containers.get(cell)
+    items = {} if content is None else content.items
     if item not in items:
         donor, last = -1, 0
         for at, held in holdings.containers.items():
@@ -286,10 +286,10 @@ def believe_located(holdings: Holdings, cell: int, item: str, basis: Basis) -> N
 
 
 def believe_absent(holdings: Holdings, cell: int, item: str, basis: Basis) -> None:
-    """Remove an item from a container, if it is believed to be there."""
-    there = holdings.containers.get(cell)
-    if there is not None and item in there.items:
-        left = {name: count for name, count in there.items.items() if name != item}
+    """Remove an item from a container, if it is believed to be in it."""
+    content = holdings.containers.get(cell)
+    if content is not None and item in content.items:
+        left = {name: count for name, count in content.items.items() if name != item}
         _hold(holdings, cell, left, basis)
 
 

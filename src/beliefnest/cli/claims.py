@@ -7,7 +7,7 @@ from rich.table import Table
 
 from beliefnest.cli.pictures import container_name, place_text
 from beliefnest.cli.text import printable
-from beliefnest.nest.explain.told import ToldClaim
+from beliefnest.nest.explain.made_claims import MadeClaim
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.claims import Claim, ClaimKind
 from beliefnest.world.paths import parse_path, path_text, paths_below
@@ -15,7 +15,7 @@ from beliefnest.world.paths import parse_path, path_text, paths_below
 __all__ = ["claims_json", "claims_matrix", "claims_table", "paths_of_beliefs"]
 
 
-def claims_json(claims: Sequence[ToldClaim], paths: Collection[str]) -> list[dict[str, object]]:
+def claims_json(claims: Sequence[MadeClaim], paths: Collection[str]) -> list[dict[str, object]]:
     """Claims as plain data.
 
     Args:
@@ -41,7 +41,7 @@ def claims_json(claims: Sequence[ToldClaim], paths: Collection[str]) -> list[dic
     ]
 
 
-def claims_table(claims: Sequence[ToldClaim], path: str, scenario: Scenario) -> Table:
+def claims_table(claims: Sequence[MadeClaim], path: str, scenario: Scenario) -> Table:
     """Every claim, who heard it, and what a simulator made of it; not empty."""
     table = _begun()
     table.add_column("heard by")
@@ -55,7 +55,7 @@ def claims_table(claims: Sequence[ToldClaim], path: str, scenario: Scenario) -> 
     return table
 
 
-def claims_matrix(claims: Sequence[ToldClaim], paths: Sequence[str], scenario: Scenario) -> Table:
+def claims_matrix(claims: Sequence[MadeClaim], paths: Sequence[str], scenario: Scenario) -> Table:
     """Every claim, and for each of some beliefs whether it took it up, and by which condition."""
     table = _begun()
     for path in paths:
@@ -65,7 +65,7 @@ def claims_matrix(claims: Sequence[ToldClaim], paths: Sequence[str], scenario: S
     return table
 
 
-def paths_of_beliefs(claims: Sequence[ToldClaim], agents: Sequence[str], depth: int) -> list[str]:
+def paths_of_beliefs(claims: Sequence[MadeClaim], agents: Sequence[str], depth: int) -> list[str]:
     """Every belief of the world in which claims were made, shallow ones first.
 
     Args:
@@ -81,7 +81,7 @@ def _begun() -> Table:
     return Table("tick", "speaker", "claim", "", box=box.SIMPLE, title_justify="left")
 
 
-def _cells(told: ToldClaim, scenario: Scenario) -> list[str]:
+def _cells(told: MadeClaim, scenario: Scenario) -> list[str]:
     to = "" if told.addressee is None else f" to {told.addressee}"
     kind = "a lie" if told.lie else "false" if told.false else ""
     row = (str(told.tick), f"{told.speaker}{to}", _words(told.claim, scenario), kind)
@@ -96,7 +96,7 @@ def _words(claim: Claim, scenario: Scenario) -> str:
     return claim.about(container_name(claim.cell, scenario))
 
 
-def _verdict(told: ToldClaim, path: str) -> str:
+def _verdict(told: MadeClaim, path: str) -> str:
     condition = told.condition(path)
     given = "" if condition is None else f" ({condition})"
     if told.taken_up(path):

@@ -46,7 +46,7 @@ __all__ = [
 
 Eye = tuple[Vector, Vector, float, float]
 """Place, unit vector it looks along, cosine of half its field of view (-2: it sees all
-around), and how far it sees (infinite: no limit)."""
+directions), and how far it sees (infinite: no limit)."""
 
 
 class Beam(NamedTuple):

@@ -53,7 +53,7 @@ class Perception:
         max_visible_distance: Greatest distance from an eye to the centre of a visible
             block, in blocks; None: no limit.
         field_of_view: Full angle of the cone of sight around yaw and pitch, in degrees;
-            360 sees all around.
+            360: in all directions.
         hearing: `global` (everyone hears everything), `sight` (an agent hears whom it
             sees), or `Radius(r)`, also written `{"radius": r}` or `radius: r`.
         containers: `opaque` contents are known by opening or witnessing, `transparent`

@@ -44,7 +44,7 @@ class Sight:
         registry: Names and shapes of blocks.
         max_visible_distance: Greatest distance from the eye to a block's middle or an
             agent's body centre, in blocks; None: no limit.
-        field_of_view: Full angle of the cone of sight, in degrees; 360 sees all around.
+        field_of_view: Full angle of the cone of sight, in degrees; 360: in all directions.
         transparent_blocks: Names of blocks that hide nothing, beside those of
             `Registry.default_transparent`.
 
@@ -79,7 +79,7 @@ class Sight:
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Cosine of half the field of view (-2: all around), and how far is seen (infinite too)."""
+        """Cosine of half the field of view (-2: no limit), and how far is seen (infinite too)."""
         angle, far = self.field_of_view, self.max_visible_distance
         cos_half = -2.0 if angle >= 360 else math.cos(math.radians(angle) / 2)
         return cos_half, math.inf if far is None else float(far)

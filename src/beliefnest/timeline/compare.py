@@ -40,15 +40,15 @@ def first_difference(recorded: Iterable[Entry], found: Iterable[Entry]) -> Entry
         tick = min(entry.tick for entry in (old, new) if entry is not None)
         # An entry that only one history has at that tick is missing from the other.
         if old is None or new is None or type(old) is not type(new) or old.tick != new.tick:
-            there = [None if e is None or e.tick > tick else e for e in (old, new)]
-            return EntryDifference(tick, number, "", *there)
+            then = [None if e is None or e.tick > tick else e for e in (old, new)]
+            return EntryDifference(tick, number, "", *then)
         place, a, b = next(_differences("", old, new))
         return EntryDifference(tick, number, place, a, b)
     return None
 
 
 def _differences(place: str, old: Any, new: Any) -> Iterator[tuple[str, Any, Any]]:
-    """Every innermost place where two values differ, with what is there."""
+    """Every innermost place where two values differ, with both."""
     if old == new:
         return
     parts_old, parts_new = _parts(old), _parts(new)

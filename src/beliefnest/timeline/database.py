@@ -439,7 +439,7 @@ def _recognise_start(path: Path) -> None:
         if not header:
             raise NotBegunError(f"{path} is no run: it is an empty file; give the file of a run")
         raise StoreError(f"{path} is no run: it is {what}; give the file of a run")
-    # With a write-ahead log beside it, the rest of the file may still lie in there.
+    # With a write-ahead log beside it, the rest of the file may still lie in that.
     if settled and size < _page_size(header) * int.from_bytes(header[28:32], "big"):
         raise StoreError(f"{path} {_DAMAGED} (its end is missing)")
 

@@ -123,10 +123,10 @@ def count_of_events(entry: Entry) -> int:
 
 
 def branch_missing(key: TimelineKey, names: Iterable[str]) -> BranchError:
-    """The error for a branch that is not there, `names` being those that are."""
-    there = ", ".join(repr(name) for name in sorted(names))
+    """The error for a branch that does not exist, `names` being those that do."""
+    known = ", ".join(repr(name) for name in sorted(names))
     return BranchError(
-        f"{path_text(key.path)} has no branch {key.branch!r}; it has {there or 'none'}"
+        f"{path_text(key.path)} has no branch {key.branch!r}; it has {known or 'none'}"
     )
 
 
@@ -277,8 +277,8 @@ class Journal(Protocol):
     def put_checkpoint(self, key: TimelineKey, name: str, entries: int, body: bytes) -> None:
         """Keep bytes that stand for the first `entries` entries of a timeline.
 
-        They spare a reader those entries, replace what was kept there under that name, and go
-        with the timeline.
+        They spare a reader those entries, replace those of the same place and name, and go with the
+        timeline.
 
         Raises:
             BranchError: There is no timeline of that key.

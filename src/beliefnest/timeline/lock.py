@@ -27,7 +27,7 @@ class WriterLock:
         """Take the lock of a run file.
 
         Raises:
-            StoreError: Another writer holds it, or no lock file can be made there.
+            StoreError: Another writer holds it, or no lock file can be made beside the run file.
         """
         real = file.resolve()
         path = real.with_name(real.name + "-lock")

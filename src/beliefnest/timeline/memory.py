@@ -40,7 +40,7 @@ class _Timeline:
         entries: All of them; only `extend` and `cut` change them.
         found: Numbers of entries, rising, by what is looked for.
         events: How many events there are up to each entry with events.
-        agents: Numbers of the entries that tell of an agent, rising, by name.
+        agents: Numbers of the entries in which an agent changes, rising, by name.
         checkpoints: By name and number of entries.
         body_states: By number of entries and tick.
     """
@@ -108,7 +108,7 @@ class MemoryJournal:
         return self._timeline(key).info
 
     def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
-        """Begin an empty timeline; BranchError if it is there or its base is not."""
+        """Begin an empty timeline; BranchError if it exists or its base does not."""
         if key in self._timelines:
             raise branch_taken(key)
         if base is not None:
@@ -191,9 +191,9 @@ class MemoryJournal:
         self, key: TimelineKey, name: str, entries: int
     ) -> tuple[int, bytes] | None:
         """The last checkpoint of that name at or before entry `entries`, with its place."""
-        there = self._timeline(key).checkpoints
-        places = [at for kind, at in there if kind == name and at <= entries]
-        return (max(places), there[name, max(places)]) if places else None
+        kept = self._timeline(key).checkpoints
+        places = [at for kind, at in kept if kind == name and at <= entries]
+        return (max(places), kept[name, max(places)]) if places else None
 
     def put_body_state(self, key: TimelineKey, entries: int, tick: int, state: bytes) -> None:
         """Keep the internal state of a timeline's body at a moment; InputError if too few."""

@@ -195,7 +195,7 @@ class Records:
         return (self.run().versions, *([] if later is None else codec.decode(later, _VERSIONS)))
 
     def put_state(self, name: str, value: bytes) -> None:
-        """Keep bytes under a name, in place of what was there: counters, random states."""
+        """Keep bytes under a name, in place of those before: counters, random states."""
         with self._database.transaction():
             self._database.write("INSERT OR REPLACE INTO meta", name=name, value=value)
 

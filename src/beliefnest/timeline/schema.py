@@ -27,7 +27,7 @@ SMALL_TABLES = ("timeline", "meta", "selected", "program", "prompt")
 """Tables whose structure is checked whenever a file is opened; the others can be large."""
 
 # What goes on in a timeline's body after its first `entries` entries, at a tick, and cannot be
-# perceived, compressed. No cache: nothing else tells it.
+# perceived, compressed. No cache: nothing else holds it.
 BODY_STATE = """CREATE TABLE body_state (
         timeline INTEGER NOT NULL,
         entries INTEGER NOT NULL,

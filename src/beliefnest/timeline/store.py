@@ -144,7 +144,7 @@ class SqliteJournal:
         return _info(row, base)
 
     def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
-        """Begin an empty timeline; BranchError if it is there or its base is not."""
+        """Begin an empty timeline; BranchError if it exists or its base does not."""
         with self._database.transaction():
             if self._found(key) is not None:
                 raise branch_taken(key)

@@ -171,7 +171,7 @@ def load_trace(path: Path, registry: Registry) -> Trace:
     """The history in a file, all of whose lines are good.
 
     Raises:
-        InputError: The file cannot be read or has bad lines; the message tells which.
+        InputError: The file cannot be read or has bad lines; the message names them.
     """
     try:
         with open_regular(path) as file:
@@ -266,7 +266,7 @@ class _Reader:
         )
 
     def frame(self, line: _TickLine) -> Frame:
-        """The frame a line tells; nothing is remembered of a line that raises."""
+        """The frame of a line; nothing is remembered of a line that raises."""
         if line.tick <= self._tick:
             raise InputError(f"tick {line.tick} does not come after tick {self._tick}")
         _check(_tick_fault(line.tick))
@@ -367,8 +367,8 @@ class _Reader:
         for slot, item in (line.equipment or {}).items():
             self._registry.item_stack(item)
             if slot not in EQUIPMENT_SLOTS:
-                there = ", ".join(EQUIPMENT_SLOTS)
-                raise InputError(f"there is no slot {slot!r}; there are {there}")
+                slots = ", ".join(EQUIPMENT_SLOTS)
+                raise InputError(f"there is no slot {slot!r}; there are {slots}")
         return AgentState(**given) if before is None else replace(before, **given)
 
     def _inside(self, point: Point) -> None:

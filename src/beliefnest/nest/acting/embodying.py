@@ -33,9 +33,9 @@ class _Embodied:
 
     Attributes:
         plot: Where.
-        names: What its agents are called there.
+        names: What its agents are called in Minecraft.
         unknown: State of the block that unknown ones are shown as.
-        exhibit: What stands there; None: nothing yet.
+        exhibit: What stands for it; None: nothing yet.
         when: Timeline and entry that it was last brought up to.
     """
 
@@ -56,11 +56,11 @@ class Embodying:
 
     @property
     def follows(self) -> bool:
-        """Whether anything stands there."""
+        """Whether any simulator stands in Minecraft."""
         return bool(self._standing)
 
     def begin(self, path: BeliefPath, unknown: str) -> None:
-        """Let a simulator stand there; see `Simulator.embody`."""
+        """Let a simulator stand in Minecraft; see `Simulator.embody`."""
         state = self._recording.context.registry.state_id(unknown)
         if path == _REALITY:
             raise InputError("the real world stands there already; nest.layout() says where")
@@ -70,13 +70,13 @@ class Embodying:
             self._show(world, _REALITY, AIR)
 
     def end(self, path: BeliefPath) -> None:
-        """Let a simulator stand there no longer."""
+        """Let a simulator stand in Minecraft no longer."""
         self._close(path)
         if self._standing.keys() == {_REALITY}:
             self._close(_REALITY)
 
     def keep_up(self) -> None:
-        """Bring all that stands there up to what is recorded by now."""
+        """Bring all that stands in Minecraft up to what is recorded by now."""
         for path, standing in self._standing.items():
             info = self._recording.info(path)
             when = (info.key, info.entries)

@@ -1,9 +1,9 @@
 """What acts in a nest: forks and selections, programs, time, changes by hand.
 
 A simulator is in control mode iff a timeline is selected for it; it then has a body in the world,
-whose frames are recorded there (semantics, sections 6 and 7). Each call happens as a whole or, if
-it raises, not at all. If the process behind the world ends under a call, the call is made again,
-but for programs, which end as `killed`.
+whose frames are recorded on that timeline (semantics, sections 6 and 7). Each call happens as a
+whole or, if it raises, not at all. If the process behind the world ends under a call, the call is
+made again, but for programs, which end as `killed`.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -196,7 +196,7 @@ class Engine:
             step: Number of the script's step that they are; None: they are none.
             senses: What they read.
             past: Of agents whose programs go on where they were cut. None: none does, and results
-                do not tell what a later one would have to know.
+                do not say what a later one would have to know.
         """
         rules = self._rules if past is None else replace(self._rules, remembers=True, past=past)
         request = _Request(programs, timeout_ticks, step, senses, rules)

@@ -82,7 +82,7 @@ class FrameRecorder:
             self._journal.append(self.key, frames, head)
 
     def keep_up(self) -> None:
-        """Let the history follow what was written, once that is safe, and tell what was said."""
+        """Let the history follow what was written, once that is safe, and hand on what was said."""
         self._history.note(self.key)
         said, self._said = self._said, []
         if self._on_chat is not None:

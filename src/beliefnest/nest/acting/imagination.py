@@ -1,7 +1,7 @@
 """Imagination: a belief as a world of its own, tried out in this process and recorded nowhere.
 
 It is what a branch of a belief would be in the scripted world (semantics, section 6): what the
-believer believes is the case there, and what it believes others to believe follows as it follows
+believer believes is the case in it, and what it believes others to believe follows as it follows
 anything. A fork takes well under a millisecond, so that a planner can try hundreds of courses.
 Of whatever lies above the believer nothing is in it.
 """
@@ -162,10 +162,10 @@ class Imagination:
 
         Nobody whose place is unknown can.
         """
-        there = self.world.agents.get(agent)
-        if there is None:
+        state = self.world.agents.get(agent)
+        if state is None:
             return False
-        x, y, z = (math.floor(value) for value in there.position)
+        x, y, z = (math.floor(value) for value in state.position)
         return self._standing().may_lead((x, y, z), InReach(place, REACH))
 
     def knows(self, path: BeliefPath) -> bool:
@@ -233,7 +233,7 @@ class Imagination:
         """The same with what some have said of containers taken for lies.
 
         Returns:
-            That, and the containers in which things are not that were claimed to be there.
+            That, and the containers without the things that were claimed to be in them.
         """
         made = self.fork()
         held = {place: dict(items) for place, items in made.world.containers.items()}
@@ -267,7 +267,7 @@ class Imagination:
     ) -> int:
         """Let agents act together, tick by tick, until `stop` says so; how many ticks passed.
 
-        Performers whose agents are not there, or whose call cannot be done, go on with the next.
+        Performers whose agents are not in it, or whose call cannot be done, go on with the next.
         """
         passed = 0
         for name, performer in performers.items():

@@ -124,8 +124,8 @@ def placed(
 
     That is the nearest place within 3 blocks where it can stand, among those from which it can
     walk to the block where it was last seen, if there are any. Where there is no place at all the
-    agent is left where it is. Of two in one place the one stays that was seen there last; two who
-    were seen there at the same tick did stand so, and stay.
+    agent is left where it is. Of two in one place the one stays that was seen in it last; two who
+    were seen in it at the same tick did stand so, and stay.
 
     Args:
         space: The believed blocks.
@@ -159,7 +159,7 @@ def moved_agents(agents: Mapping[str, AgentState], moves: Placed) -> dict[str, A
 
 
 def unknown_floors(space: BodySpace, agents: Mapping[str, AgentState]) -> frozenset[Position]:
-    """Unknown blocks that agents would fall into; their bodies need something solid there."""
+    """Unknown blocks that agents would fall into: in a body they have to be solid."""
     floors = (space.unknown_floor(agent.position) for agent in agents.values())
     return frozenset(floor for floor in floors if floor is not None)
 
@@ -188,8 +188,8 @@ def _nearest(space: BodySpace, place: Point, taken: Sequence[Point]) -> Point | 
 
 
 def _places(space: BodySpace, place: Point) -> Iterator[Point]:
-    """Where an agent can stand around a place, unknown floors included."""
-    for x, y, z in _cells_around(_cell(place)):
+    """Where an agent can stand near a place, unknown floors included."""
+    for x, y, z in _cells_near(_cell(place)):
         # Who stands on the topmost blocks has its feet above them.
         if (x, min(y, space.box.high[1]), z) in space.box:
             for height in _levels(space, (x, y, z)):
@@ -207,14 +207,14 @@ def _levels(space: BodySpace, cell: Position) -> list[float]:
 
 def _walkable(space: BodySpace, goal: Position) -> set[Position]:
     """Cells from whose middle one can walk to the middle of a cell, itself included."""
-    around = set(_cells_around(goal))
+    near = set(_cells_near(goal))
     waiting = [(goal, height) for height in _levels(space, goal)]
     seen = set(waiting)
     while waiting:
         (x, y, z), height = waiting.pop()
         for (dx, dz), up in product(_SIDES, range(-1, 4)):
             cell = (x + dx, y + up, z + dz)
-            for other in space.heights(cell) if cell in around else ():
+            for other in space.heights(cell) if cell in near else ():
                 higher, step = max(height, other), (cell, other)
                 ends = (x + 0.5, higher, z + 0.5), (cell[0] + 0.5, higher, cell[2] + 0.5)
                 climbs = -_DROP <= height - other <= _JUMP
@@ -224,7 +224,7 @@ def _walkable(space: BodySpace, goal: Position) -> set[Position]:
     return {cell for cell, _ in seen}
 
 
-def _cells_around(cell: Position) -> Iterator[Position]:
+def _cells_near(cell: Position) -> Iterator[Position]:
     reach = range(-_AROUND, _AROUND + 1)
     for dx, dy, dz in product(reach, reach, reach):
         yield (cell[0] + dx, cell[1] + dy, cell[2] + dz)

@@ -70,7 +70,7 @@ class _RecordedTimeline:
         return start_of(self.journal, self.history, path, moment, has_physics=physics).snapshot
 
     def senses(self, call: _RecordedCall, body: Body) -> Mapping[str, Sense]:
-        """What its agents knew when, as recorded: what differs by then is told anyway."""
+        """What its agents knew when, as recorded: a difference before that is reported anyway."""
         if call.senses == "world":
             return {}
         return {agent: self._sense(call, body, agent) for agent in call.programs}
@@ -109,7 +109,7 @@ def replay(
     """Run every timeline of a run again, in order of creation.
 
     Each begins in the state that was recorded for its first tick, so that one that differs does not
-    make those based on it differ. What a user told a scripted world is told again as recorded.
+    make those based on it differ. What a user did in a scripted world is done again as recorded.
     `world` is a fresh one of the kind that the run was in.
 
     Raises:
@@ -167,13 +167,13 @@ def _run_again(
     begins = recorded.after(len(found), info.start, world)
     body = world.open_body(name, f"{seed} {name}", begins, take)
     try:
-        told = [
+        given = [
             (number, entry)
             for number, entry in enumerate(entries)
             if isinstance(entry, Edit)
             or not (world.has_physics or any(call.made(entry) for call in calls))
         ]
-        acts: list[tuple[int, int, Entry | _RecordedCall]] = [(e.tick, n, e) for n, e in told]
+        acts: list[tuple[int, int, Entry | _RecordedCall]] = [(e.tick, n, e) for n, e in given]
         acts += [(call.tick, call.entries, call) for call in calls]
         for tick, number, act in sorted(acts, key=lambda each: each[:2]):
             recorded.wait_until(body, tick)

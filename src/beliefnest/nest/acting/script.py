@@ -15,7 +15,7 @@ Progress = Callable[[str, int, int], None]
 
 
 def play_script(engine: Engine, on_progress: Progress | None = None) -> None:
-    """Play the script in the real world, from the first step not played there.
+    """Play the script in the real world, from the first step that was not played.
 
     Raises:
         ProgramError: A program failed.

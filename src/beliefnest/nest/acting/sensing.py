@@ -26,8 +26,8 @@ class Sensing:
         agent: Who it is.
         entries: How many entries of the timeline that it acts in are over by now.
         reading: The agent's belief after that many entries.
-        since: After how many entries what was heard is told at first; None: that of the past is
-            not.
+        since: The first call gives what was heard after so many entries; None: nothing that was
+            heard before.
     """
 
     def __init__(

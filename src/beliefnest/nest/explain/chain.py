@@ -194,7 +194,7 @@ def _follow(
     """Go through the log from the oldest basis on, and note in each trace what happened."""
     if not traces:
         return
-    # Whether something unknown was ever known only the whole log can tell.
+    # Only the whole log shows whether something unknown was ever known.
     first = recording.setting.snapshot.tick
     start = min(first if trace.observed_at is None else trace.observed_at for trace in traces)
     last = None

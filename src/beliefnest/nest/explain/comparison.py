@@ -30,7 +30,7 @@ __all__ = [
 ]
 
 _MOST = 12
-"""Differences that are told of in a terminal; more are counted."""
+"""Differences that are shown in a terminal; more are counted."""
 
 _APART = 0.5
 """Blocks from which on somebody is elsewhere."""
@@ -71,7 +71,7 @@ class Difference:
         kind: What it is.
         where: Position of a block or container, or name of the agent whose pose or
             inventory it is.
-        a: Block state text, `Pose` or `Contents` in `a`; None: unknown or not there.
+        a: Block state text, `Pose` or `Contents` in `a`; None: unknown, or there is none.
         b: The same in `b`.
     """
 
@@ -207,7 +207,7 @@ def are_elsewhere(
 
 
 def are_false(real: Contents | None, belief: Contents) -> bool:
-    """Whether contents claim items that are not there, or to be all and miss some.
+    """Whether contents claim items that are missing, or to be all and miss some.
 
     Args:
         real: What there is; None: there is nothing that could hold items.
@@ -227,8 +227,8 @@ def _different_blocks(a: NodeView, b: NodeView, context: BeliefContext) -> Itera
 
 def _different_things(a: BelievedThings, b: BelievedThings) -> Iterator[Difference]:
     for place in sorted(a.containers.keys() | b.containers.keys()):
-        there = (reading.containers.get(place) for reading in (a, b))
-        held = [None if c is None else Contents(dict(c.items), c.complete) for c in there]
+        contents = (reading.containers.get(place) for reading in (a, b))
+        held = [None if c is None else Contents(dict(c.items), c.complete) for c in contents]
         if held[0] != held[1]:
             yield Difference("container", place, held[0], held[1])
     for name in a.agents:
@@ -244,14 +244,14 @@ def _different_things(a: BelievedThings, b: BelievedThings) -> Iterator[Differen
 def _pose(agent: AgentBelief) -> Pose | None:
     if agent.position is None:
         return None
-    # A prior tells a place only; that its angles are 0 is nobody's belief.
+    # A prior gives a place only; that its angles are 0 is nobody's belief.
     if agent.basis is not None and agent.basis.source is Source.PRIOR:
         return Pose(agent.position, None, None)
     return Pose(agent.position, agent.yaw, agent.pitch)
 
 
 def _differ(a: Pose | None, b: Pose | None) -> bool:
-    """Whether two poses differ; angles that a prior does not tell differ from none."""
+    """Whether two poses differ; angles that a prior does not give differ from none."""
     if a is None or b is None:
         return a is not b
     if a.yaw is None or b.yaw is None:

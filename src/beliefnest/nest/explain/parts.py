@@ -1,4 +1,4 @@
-"""What an explanation consists of: facts, beliefs, looks and what was missed."""
+"""What an explanation consists of: facts, beliefs, sightings and what was missed."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ class Contents:
 
 
 Value = str | Point | Contents | None
-"""A block state's text, an agent's feet (blocks), contents; None: unknown or not there."""
+"""A block state's text, an agent's feet (blocks), contents; None: unknown, or there is none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +114,7 @@ class Missed:
         stood: The perceiver's feet in the parent node; None: unknown.
         absence: Set where the perceiver was not present.
         sightings: The looks that would have shown it, where the perceiver was present.
-        saw_acts: Whether the perceiver perceived the acts, which did not tell the change.
+        saw_acts: Whether the perceiver perceived the acts, which did not show the change.
     """
 
     tick: int

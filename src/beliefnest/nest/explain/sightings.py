@@ -1,4 +1,4 @@
-"""Looks of an agent inside one simulator, and what stopped them."""
+"""Sightings: how looks of an agent at others and at blocks end inside one simulator."""
 
 import math
 from collections.abc import Callable
@@ -44,19 +44,19 @@ def sighting_of_block(reading: NodeView, box: Box, viewer: str, place: Position)
 
 def sighting_of_agent(reading: NodeView, box: Box, viewer: str, other: str) -> Sighting:
     """The look of an agent of known pose at another, inside a simulator."""
-    here, there = reading.agents[viewer], reading.agents[other]
-    if there.position is None:
+    here, seen = reading.agents[viewer], reading.agents[other]
+    if seen.position is None:
         return Sighting(other, None, View.PLACE_UNKNOWN)
-    feet = np.array([there.position])
+    feet = np.array([seen.position])
 
     def sees(geometry: Geometry) -> bool:
         return bool(geometry.sees_agents(_eye(here), here.yaw, here.pitch, feet)[0])
 
-    x, y, z = there.position
+    x, y, z = seen.position
     centre = (x, y + BODY_CENTRE_HEIGHT, z)
     samples = [centre, *((x, y + height, z) for height in AGENT_SAMPLE_HEIGHTS)]
     view = _view(reading.geometry, sees)
-    look = Sighting(other, there.position, view, math.dist(_eye(here), centre))
+    look = Sighting(other, seen.position, view, math.dist(_eye(here), centre))
     return _with_blocker(look, reading, box, reading.geometry, _eye(here), samples)
 
 

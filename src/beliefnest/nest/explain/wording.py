@@ -122,7 +122,7 @@ def _heard(level: Level, basis: Basis) -> str:
 
 
 def _told_text(level: Level, told: HeardClaim) -> str:
-    """Who told the holder what."""
+    """Who made which claim to the holder."""
     holder, speaker = level.holder, told.speaker
     said = f"{holder} said" if speaker == holder else f"{speaker} told {holder}"
     return f"{said} at tick {told.tick} that {told.claim}"
@@ -159,16 +159,16 @@ def _looks_text(looks: Iterable[Sighting]) -> str:
 
 
 def _absence_text(missed: Missed, level: Level) -> str:
-    around = _holder_around(level) or "nobody"
+    parent = _parent_holder(level) or "nobody"
     absence = missed.absence
     if absence is None:
-        raise AssertionError("there is no absence to tell of")
-    text = f"{around} could not tell what {level.holder} saw"
+        raise AssertionError("there is no absence to explain")
+    text = f"{parent} could not tell what {level.holder} saw"
     if absence.last_seen is None:
-        text += f": {around} has never known where {level.holder} is"
+        text += f": {parent} has never known where {level.holder} is"
     else:
         place = "" if missed.stood is None else f", at {_point(missed.stood)}"
-        text += f": {around} last saw {level.holder} at tick {absence.last_seen}{place}"
+        text += f": {parent} last saw {level.holder} at tick {absence.last_seen}{place}"
     if absence.sighting is not None:
         text += f", and could not see {_look_text(absence.sighting)}"
     return text
@@ -306,16 +306,16 @@ def _point(point: Iterable[float]) -> str:
     return "(" + ", ".join(f"{round(number, 3):.10g}" for number in point) + ")"
 
 
-def _holder_around(level: Level) -> str | None:
+def _parent_holder(level: Level) -> str | None:
     return level.path[-2] if len(level.path) > 1 else None
 
 
 def _knows(level: Level) -> str:
-    around = _holder_around(level)
-    return "" if around is None else f"as far as {around} knows, "
+    parent = _parent_holder(level)
+    return "" if parent is None else f"as far as {parent} knows, "
 
 
 def _teller(level: Level) -> str:
-    """`a saw that`, `a believes that b saw that`: by whom a look is told of."""
+    """`a saw that`, `a believes that b saw that`: by whom a look is known."""
     names = level.path[:-1]
     return "" if not names else " believes that ".join(names) + " saw that "

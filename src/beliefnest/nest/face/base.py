@@ -12,7 +12,7 @@ from beliefnest.timeline.journal import TimelineKey, lineage
 from beliefnest.timeline.records import ProgramRecord, PromptRecord
 from beliefnest.world.paths import parse_path
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # The page lies above; see `view`.
     from beliefnest.viewer.page.notebook import PageView
 
 __all__ = ["NestBase"]
@@ -58,7 +58,7 @@ class NestBase(ShownNest, ABC):
 
     @in_turn
     def programs(self, path: str | None = None) -> tuple[ProgramRecord, ...]:
-        """Programs that ran, on branches that are there, in order of their end.
+        """Programs that ran, on branches that were not deleted, in order of their end.
 
         Args:
             path: Those that ran in this simulator on the branch it is on: in follow mode there are
@@ -99,6 +99,7 @@ class NestBase(ShownNest, ABC):
             depth: How deep all beliefs go, 0 to 4.
             height: Of the page, pixels.
         """
+        # The one way up: a page reads nests, with the rounds of an episode.
         from beliefnest.episodes.telling import told_episode
         from beliefnest.viewer.page.notebook import PageView
 

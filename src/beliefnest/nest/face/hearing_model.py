@@ -27,7 +27,7 @@ class AsksModel(Protocol):
         """Name of the model."""
 
     def through(self, wrap: "Callable[[Model], Model]") -> ClaimsFrom:
-        """The same, asking its model through what `wrap` puts around it."""
+        """The same, asking its model through what `wrap` makes of it."""
 
 
 def reader_of(hook: ClaimsFrom | None, recording: Recording) -> ClaimReader | None:
@@ -49,7 +49,7 @@ def reader_of(hook: ClaimsFrom | None, recording: Recording) -> ClaimReader | No
 
 
 def _takes_three(hook: object) -> bool:
-    """Whether something can be called with three arguments, as far as it tells."""
+    """Whether something can be called with three arguments, as far as is known."""
     if not callable(hook):
         return False
     try:
@@ -57,7 +57,7 @@ def _takes_three(hook: object) -> bool:
     except TypeError:
         return False
     except ValueError:
-        # Some functions of C do not tell.
+        # Some functions of C do not say.
         return True
     return True
 
@@ -94,10 +94,10 @@ class _ModelReader:
     ) -> Iterable[Claim]:
         detail = {"claims_from": text, "speaker": speaker}
 
-        def noting(model: "Model") -> "Model":
+        def recorded(model: "Model") -> "Model":
             return RecordingModel(model, self._recording, path, detail, tick)
 
         try:
-            return tuple(self._hook.through(noting)(text, speaker, nameable))
+            return tuple(self._hook.through(recorded)(text, speaker, nameable))
         except ModelError:
             return ()

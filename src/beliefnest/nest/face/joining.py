@@ -1,4 +1,4 @@
-"""People in a nest whose real world goes on in real time: who is awaited, who is there."""
+"""People in a nest whose real world goes on in real time: who is awaited, who has joined."""
 
 import sys
 
@@ -26,7 +26,7 @@ class Joining(Waiting):
     @property
     @in_turn
     def people(self) -> frozenset[str]:
-        """Names of the people who are there now."""
+        """Names of the people who have joined and not left."""
         host = joined_of(self._engine.world)
         return frozenset() if host is None else host.here()
 
@@ -37,7 +37,7 @@ class Joining(Waiting):
 
         Args:
             timeout_s: Seconds after which nobody is waited for any more.
-            on_progress: Is told who has to join, where and how; None: a line on stderr says so.
+            on_progress: Called with who has to join, where and how; None: a line on stderr says so.
 
         Raises:
             InputError: The time is below 0, or longer than a day.
@@ -46,14 +46,14 @@ class Joining(Waiting):
         host = joined_of(self._engine.world)
         if host is None or not host.invited:
             return
-        told: frozenset[str] | None = None
+        shown: frozenset[str] | None = None
 
         def all_here() -> bool:
-            nonlocal told
+            nonlocal shown
             awaited = host.invited - self.people
-            if awaited and awaited != told:
+            if awaited and awaited != shown:
                 _tell(_line(host, awaited), len(host.invited - awaited), len(host.invited))
-            told = awaited
+            shown = awaited
             return not awaited
 
         def _tell(line: str, done: int, total: int) -> None:
@@ -71,7 +71,7 @@ class Joining(Waiting):
 
     @in_turn
     def take_over(self, name: str) -> None:
-        """Let programs act for a person, who is sent away if there, until `hand_back`.
+        """Let programs act for a person, who is sent away if joined, until `hand_back`.
 
         Raises:
             UnknownNameError: The scenario has no person of that name.
@@ -93,8 +93,8 @@ class Joining(Waiting):
     def pause(self) -> None:
         """Let the real world stand still until `go_on`.
 
-        No tick passes, and nothing that people do or say is done; they are told. Beliefs can be
-        looked at, forked and acted in meanwhile. It is not recorded: no time passes.
+        No tick passes, and nothing that people do or say is done; they see a message. Beliefs can
+        be looked at, forked and acted in meanwhile. It is not recorded: no time passes.
 
         Raises:
             WorldError: It is not in real time, or on a server elsewhere.

@@ -26,7 +26,7 @@ Held = tuple[tuple[Position | str, int], ...]
 """Containers and agents that hold an item, and how many."""
 
 _NEAR = 3.0
-"""Blocks from a thing with a name within which somebody is said to be there."""
+"""Blocks from a thing with a name within which somebody is said to be near it."""
 _STEP = 1.5
 _PAUSE = 10
 """Who goes on within so many ticks, by a step of so many blocks, does not stay where it is."""
@@ -167,8 +167,8 @@ class Carried:
 
     def is_false(self, real: Held | None, held: Held) -> bool:
         """Whether there are less in one of the places."""
-        there = dict(real or ())
-        return any(count > there.get(where, 0) for where, count in held)
+        real_counts = dict(real or ())
+        return any(count > real_counts.get(where, 0) for where, count in held)
 
     def act(self, event: PerceivedEvent) -> str:
         """Taking, putting away, giving, getting it."""
@@ -204,7 +204,7 @@ class BlockAt:
         return self.text(int(held.numbers[self.index]))
 
     def words(self, course: Course[str]) -> list[str]:
-        """The block, with what tells it from those that were there as well."""
+        """The block, with what differs from those that were at the place as well."""
         known = list(dict.fromkeys(text for _, text in course if text is not None))
         words = dict(zip(known, told_apart(known), strict=True))
         return ["" if text is None else words[text] for _, text in course]
@@ -287,8 +287,8 @@ class Whereabouts:
         runs = [list(run) for _, run in groupby(_stays(course), key=lambda stay: stay[1])]
         words: list[str] = []
         for run, after in zip_longest(runs, runs[1:]):
-            told = self._run_words(run[0], None if after is None else after[0])
-            words += [told] * len(run)
+            text = self._run_words(run[0], None if after is None else after[0])
+            words += [text] * len(run)
         return words
 
     def _run_words(
@@ -322,7 +322,7 @@ class Whereabouts:
         return real is None or bool(are_elsewhere(np.array(real), np.array(held)))
 
     def act(self, event: PerceivedEvent) -> str:
-        """Coming to where it was bound for; a walk is told of when it has ended."""
+        """Coming to where it was bound for; a walk is an event when it has ended."""
         return "arrives" if event.kind is EventKind.MOVE_TO and event.actor == self.agent else ""
 
     def is_claimed(self, claim: Claim) -> bool:

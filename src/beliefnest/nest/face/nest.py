@@ -240,9 +240,9 @@ class Nest(Joining, Visiting):
             One attempt for each program, in order, with its branch, result and score.
 
         Raises:
-            PathError: The path or the agent is not there.
+            PathError: There is no such path or agent.
             BranchError: There is such a branch already; nothing was run.
-            WorldError: The agent's pose is not known there, or the world runs no programs.
+            WorldError: The agent's pose is not known in it, or the world runs no programs.
             InputError: `processes` is below 1, `senses` is neither, or the path is `/` and reality
                 is in real time.
         """
@@ -273,7 +273,7 @@ class Nest(Joining, Visiting):
 
     @in_turn
     def keep(self, name: str, value: bytes) -> None:
-        """Keep bytes in the run under a name, in place of what was there."""
+        """Keep bytes in the run under a name, in place of those before."""
         self._recording.records.put_state(f"kept {name}", value)
 
     def each_tick(
@@ -295,7 +295,7 @@ class Nest(Joining, Visiting):
                 yield tick, {path: states[names] for path, names in parsed.items()}
 
     def play(self, on_progress: Progress | None = None) -> None:
-        """Play the scenario's script in the real world, from the first step not played there.
+        """Play the scenario's script in the real world, from the first step that was not played.
 
         People in the scenario are waited for first, as by `wait_for_people`.
 

@@ -48,7 +48,7 @@ class HasSetting(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class BareSetting:
-    """A setting that no scenario file tells of; attributes as those of `HasSetting`."""
+    """A setting without a scenario file; attributes as those of `HasSetting`."""
 
     setting: Setting
     text: str = ""

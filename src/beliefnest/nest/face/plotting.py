@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError
-from beliefnest.nest.explain.told import claims_told
+from beliefnest.nest.explain.made_claims import claims_made
 from beliefnest.nest.face.matters import (
     BlockAt,
     Carried,
@@ -84,7 +84,7 @@ def plot_of(
         PlotRow(
             path_text(path),
             _bands(matter, courses[path], real, ends[path] + 1),
-            _told(recording, matter, path, ends[path]),
+            _heard(recording, matter, path, ends[path]),
         )
         for path in names
     ]
@@ -92,7 +92,7 @@ def plot_of(
 
 
 def _check_held(recording: Recording, container: Position, courses: Sequence[Course[Any]]) -> None:
-    """That a container ever was there, in reality or in one of the beliefs."""
+    """That a container ever was at a place, in reality or in one of the beliefs."""
     if any(value is not None for course in courses for _, value in course):
         return
     known = ", ".join(map(str, sorted(recording.reading(()).containers)))
@@ -116,16 +116,16 @@ def _said(recording: Recording, matter: Matter[V], end: int) -> list[NotedAct]:
     """Who claimed what of it in the real world, and whether that was false, or a lie."""
     names = _names(recording)
     found = []
-    for told in claims_told(recording, (), end):
-        if matter.is_claimed(told.claim):
-            where = names.get(told.claim.cell)
-            said = str(told.claim) if where is None else told.claim.about(where)
-            kind = " (a lie)" if told.lie else " (false)" if told.false else ""
-            found.append(NotedAct(told.tick, f"{told.speaker}: {said}{kind}"))
+    for made in claims_made(recording, (), end):
+        if matter.is_claimed(made.claim):
+            where = names.get(made.claim.cell)
+            said = str(made.claim) if where is None else made.claim.about(where)
+            kind = " (a lie)" if made.lie else " (false)" if made.false else ""
+            found.append(NotedAct(made.tick, f"{made.speaker}: {said}{kind}"))
     return found
 
 
-def _told(
+def _heard(
     recording: Recording, matter: Matter[V], path: BeliefPath, end: int
 ) -> tuple[NotedClaim, ...]:
     """The claims about it that were heard by somebody else than their speaker in a simulator."""
@@ -133,9 +133,9 @@ def _told(
     if not path or own == path or recording.setting.perception.testimony == "none":
         return ()
     return tuple(
-        NotedClaim(told.tick, told.taken_up(text))
-        for told in claims_told(recording, own, end)
-        if matter.is_claimed(told.claim) and told.is_heard(text) and told.condition(text) != "4"
+        NotedClaim(made.tick, made.taken_up(text))
+        for made in claims_made(recording, own, end)
+        if matter.is_claimed(made.claim) and made.is_heard(text) and made.condition(text) != "4"
     )
 
 
@@ -169,12 +169,12 @@ def _bands(matter: Matter[V], course: Course[V], real: Course[V], end: int) -> t
     """Bands that end wherever the value, or whether it is false, changes."""
     starts = sorted({tick for tick, _ in (*course, *real) if course[0][0] <= tick < end})
     starts = starts or [min(course[0][0], end)]
-    told = matter.words(course)
+    texts = matter.words(course)
     bands: list[Band] = []
     for start, stop in pairwise([*starts, max(end, starts[-1] + 1)]):
         number = _number(course, start)
         held, true = course[number][1], real[_number(real, start)][1]
-        false, words = held is not None and matter.is_false(true, held), told[number]
+        false, words = held is not None and matter.is_false(true, held), texts[number]
         if bands and (bands[-1].words, bands[-1].false) == (words, false):
             bands[-1] = Band(bands[-1].start, stop, words, false)
         else:

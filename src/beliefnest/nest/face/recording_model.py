@@ -18,7 +18,7 @@ __all__ = ["RecordingModel"]
 class RecordingModel:
     """A model asked from one simulator, for one conversation.
 
-    Each request is noted with its answer, or with the model's error, once that is there.
+    Each request is noted with its answer, or with the model's error, once it has come.
 
     Args:
         model: The model to ask.

@@ -13,7 +13,7 @@ from beliefnest.errors import BeliefNestError, InputError, PathError
 from beliefnest.nest.explain.chain import element_of, explain
 from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs, value_words
 from beliefnest.nest.explain.explanation import Explanation
-from beliefnest.nest.explain.told import ToldClaim, claims_told
+from beliefnest.nest.explain.made_claims import MadeClaim, claims_made
 from beliefnest.nest.face.plotting import matter_of, plot_of
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.placing import placed_in
@@ -269,7 +269,7 @@ class ShownNest:
         Args:
             a: Belief path of one.
             b: Belief path of the other.
-            unknown: Whether to tell of what is unknown, or not there, in one of them.
+            unknown: Whether to list what one of them does not know or have.
 
         Raises:
             TickError: The tick that is looked at is in the future or before the start.
@@ -282,7 +282,7 @@ class ShownNest:
     def false_beliefs(self, path: str) -> list[Difference]:
         """What a simulator holds otherwise than reality (`a`) does; unknown is not false.
 
-        Contents are false if they claim items that are not there, or claim to be complete
+        Contents are false if they claim items that are not in them, or claim to be complete
         and miss some; an agent's place from half a block on, wherever its head has turned to.
 
         Raises:
@@ -292,17 +292,17 @@ class ShownNest:
         return false_beliefs(self._recording, names, self._tick)
 
     @in_turn
-    def claims(self, path: str = "/") -> list[ToldClaim]:
+    def claims(self, path: str = "/") -> list[MadeClaim]:
         """Every claim that was made in a simulator, oldest first.
 
-        Each tells its tick, text, speaker, hearers, whether it was false and whether a lie, and
-        of any belief whether it was taken up there, and why.
+        Each has its tick, text, speaker and hearers, whether it was false and whether a lie, and
+        for any belief whether that took it up, and why.
 
         Args:
-            path: The simulator; what is claimed in a simulator in control mode is told there.
+            path: The simulator; a claim made in one in control mode is made in its own world.
         """
         names = parse_path(path, self._recording.agents)
-        return claims_told(self._recording, names, self._tick)
+        return claims_made(self._recording, names, self._tick)
 
     def __repr__(self) -> str:
         recording = self._recording
@@ -312,7 +312,7 @@ class ShownNest:
                 branches = len(recording.journal.timelines())
                 words = state_words(state)
         except BeliefNestError as error:
-            # Whoever prints a closed nest, or a tick that is not there, wants no further fault.
+            # Whoever prints a closed nest, or a tick that does not exist, wants no further fault.
             return f"<nest of {recording.setting.name}: {error}>"
         shown = f"<nest of {recording.setting.name} at tick {state.tick}"
         return f"{shown}, {branches} timeline{'s' * (branches > 1)}: {words}>"
@@ -358,7 +358,7 @@ def _scene(
 ) -> Scene:
     recording, names, state = shown._recording, shown._path, shown.state
     setting, key = recording.setting, recording.selected.get(names)
-    # Who is not there at this tick looks from a remembered place: nobody can tell what it sees.
+    # Who is not perceived at this tick is drawn at a remembered place: what it sees is unknown.
     own = [name for name in names[-1:] if state.agents[name].current]
     return read_scene(
         state,

@@ -155,7 +155,7 @@ class Simulator(ShownSimulator):
             InputError: The code is no text, or the ticks are no such number.
             PathError: There is no such agent.
             BranchError: The simulator is in follow mode.
-            WorldError: The agent is not there, or the world runs no programs.
+            WorldError: The agent is not in it, or the world runs no programs.
             BodyError: The Minecraft side failed, or died again and again before the program
                 began. If it dies under the program, the result says so (`killed`).
         """
@@ -175,8 +175,8 @@ class Simulator(ShownSimulator):
             programs: Their texts by agent.
             timeout_ticks: As for `run`.
             senses: As for `run`.
-            past: What programs had done when they were cut, by agent: they go on from there. With a
-                mapping, be it empty, results tell what programs called.
+            past: What programs had done when they were cut, by agent: they go on at that point. With a
+                mapping, be it empty, results list what programs called.
 
         Raises:
             InputError: There is no program, or as for `run`.
@@ -249,8 +249,8 @@ class Simulator(ShownSimulator):
             for position, text in (blocks or {}).items()
         }
         for position, text in (signs or {}).items():
-            there = self._recording.reading(self._path).blocks[box.index(position)]
-            state = plain_state(states.get(position, int(there)))
+            held = self._recording.reading(self._path).blocks[box.index(position)]
+            state = plain_state(states.get(position, int(held)))
             states[position] = written(registry, state, text)
         for items in (containers or {}).values():
             for name, count in items.items():
@@ -265,11 +265,11 @@ class Simulator(ShownSimulator):
 
         It stands beyond view distance of reality and is kept up to date, tick by tick, as long as
         the nest lets time pass: blocks, what is known of contents, signs, and agents of known
-        pose, under names of their own. `Nest.layout` says where, and how to go there. It is what
-        the simulator holds on whatever branch it is; nothing that is done there changes it.
+        pose, under names of their own. `Nest.layout` says where, and how to go to it. It is what
+        the simulator holds on whatever branch it is; nothing that visitors do changes it.
 
         Args:
-            stands: Whether it is to stand there. If it does, or does not, nothing happens.
+            stands: Whether it is to stand. If it does so already, or does not, nothing happens.
             unknown: The block that unknown ones are shown as.
 
         Raises:

@@ -21,8 +21,8 @@ class Standing:
         low: The lowest corner of its box, in blocks of Minecraft.
         high: The highest one.
         origin: Where scenario (0, y, 0) lies: x and z, in blocks of Minecraft.
-        command: What to type in the game to go there.
-        lag: Ticks by which what changed was shown there later than it happened, at most so far;
+        command: What to type in the game to go to it.
+        lag: Ticks by which what changed was shown later than it happened, at most so far;
             those between two calls of the nest count.
     """
 
@@ -57,7 +57,7 @@ class Visiting(NestBase):
         """Where the real world and all that `Simulator.embody` embodied stand in Minecraft.
 
         Raises:
-            InputError: The real world is not in real time, so that nobody can go there.
+            InputError: The real world is not in real time, so that nobody can go to it.
         """
         plots = self._engine.embodying.plots()
         if not plots:

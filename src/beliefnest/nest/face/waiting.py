@@ -1,4 +1,4 @@
-"""Waiting for what happens in the real world, and hearing of what is said there."""
+"""Waiting for what happens in the real world, and hearing what is said in it."""
 
 from collections.abc import Callable
 
@@ -20,7 +20,7 @@ class Waiting(NestBase):
     _engine: Engine
 
     def wait(self, until: Callable[[], bool] | None = None, timeout_s: float = 60.0) -> bool:
-        """Let time pass in the real world, tick by tick, and record what happens there.
+        """Let time pass in the real world, tick by tick, and record what happens in it.
 
         On a server time passes by itself: what has happened since the last call is recorded
         first. In the embedded and the scripted world it passes as fast as it can.

@@ -1,6 +1,6 @@
 """The state of a body at a moment of a timeline, its internal state included.
 
-Frames tell what can be perceived. What else goes on in a body is kept at the ends of calls; at
+Frames hold what can be perceived. What else goes on in a body is kept at the ends of calls; at
 any other moment, and where a belief is forked, nothing is under way.
 """
 

@@ -13,9 +13,9 @@ from dataclasses import dataclass, field, replace
 from beliefnest.belief.columns import Columns, cell_of
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis, PerceivedEvent
+from beliefnest.belief.first_perceptions import FirstPerceptions
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.initial import forked_forest, initial_forest
-from beliefnest.belief.looks import Looks
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.checkpoints import Checkpoints, Pace
 from beliefnest.nest.past.claimed_blocks import ClaimedBlocks
@@ -36,17 +36,19 @@ _STRETCHES = 8
 def context_of(setting: Setting) -> BeliefContext:
     """What the nodes of a nest with this setting stand on."""
     options = setting.perception
-    sight, looks = _seeing(
+    sight, first = _seeing(
         options.max_visible_distance, options.field_of_view, tuple(options.transparent_blocks)
     )
     agents = tuple(sorted({*setting.snapshot.agents, *setting.absent}))
-    return BeliefContext(setting.snapshot.box, agents, options, sight.registry, sight, looks)
+    return BeliefContext(setting.snapshot.box, agents, options, sight.registry, sight, first)
 
 
 @functools.lru_cache(maxsize=8)
-def _seeing(far: float | None, field: float, transparent: tuple[str, ...]) -> tuple[Sight, Looks]:
-    """How agents see: tables of shapes, and looks, are worked out once for nests that are alike."""
-    return Sight(Registry.load(), far, field, transparent), Looks()
+def _seeing(
+    far: float | None, field: float, transparent: tuple[str, ...]
+) -> tuple[Sight, FirstPerceptions]:
+    """How agents see, worked out once for nests that are alike: shapes, and first perceptions."""
+    return Sight(Registry.load(), far, field, transparent), FirstPerceptions()
 
 
 @dataclass
@@ -206,7 +208,7 @@ class History:
             self._heads[key] = head
 
     def close(self) -> None:
-        """Leave checkpoints at the heads of timelines, so that who resumes begins there."""
+        """Leave checkpoints at the heads of timelines, so that a resumed run begins at them."""
         for key, head in self._heads.items() if self._journal.writable else ():
             self.advance(key, head, self._journal.info(key).entries)
             self._checkpoints.keep_last(key, head)
@@ -362,7 +364,7 @@ class History:
         return () if base is None else self.reading(base.timeline, path, base.entries).events()
 
     def _leap(self, key: TimelineKey, forest: Forest, position: int) -> None:
-        """Bring a forest without beliefs to a position, past entries that only tell of agents.
+        """Bring a forest without beliefs to a position, past entries in which only agents change.
 
         Only the last of them counts in the end.
         """

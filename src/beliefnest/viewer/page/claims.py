@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.node_view import NodeView
-from beliefnest.nest.explain.told import says_otherwise
+from beliefnest.nest.explain.made_claims import says_otherwise
 from beliefnest.world.claims import Claim, claims_of
 from beliefnest.world.paths import BeliefPath
 

@@ -261,7 +261,7 @@ class TrackRecorder:
 
     def _note_contents(self, at: int, track: Track, number: int, tick: int) -> None:
         forest, held = self._forest, self._forest.holdings.of(number).containers
-        last, look = self._last.contents[at], forest.holdings.last_look(number)
+        last, look = self._last.contents[at], forest.holdings.last_perceived(number)
         for cell in last.keys() - held.keys():
             del last[cell]
             _put(track.contents[cell], [tick, None, False, False, -1, "", "", None])
@@ -302,14 +302,14 @@ class TrackRecorder:
         """Numbers of the nodes in which possessions of agents may have changed."""
         forest, last = self._forest, self._last
         looks = [forest.table.details_of(0, agent) for agent in range(len(last.looks))]
-        # An agent's own possessions are what the simulator around holds of them.
+        # An agent's own possessions are what the parent node holds of them.
         everywhere = looks != last.looks
         last.looks = list(looks)
         changed = set()
         for number in range(forest.count_of_nodes):
             owned = dict(forest.holdings.of(number).inventories)
-            around = forest.table.parent(number)
-            if everywhere or around in changed or owned != last.owned.get(number):
+            parent = forest.table.parent(number)
+            if everywhere or parent in changed or owned != last.owned.get(number):
                 changed.add(number)
             last.owned[number] = owned
         return changed

@@ -1,4 +1,4 @@
-"""First looks that were worked out already: scenes that begin alike are seen alike."""
+"""First perceptions that were worked out already: scenes that begin alike are seen alike."""
 
 import hashlib
 from collections.abc import Sequence
@@ -11,19 +11,19 @@ import numpy.typing as npt
 
 from beliefnest.belief.arrays import Changes, Facts, Nodes, Poses, Space
 
-__all__ = ["Looks"]
+__all__ = ["FirstPerceptions"]
 
 _MOST_BYTES = 16 << 20
 """That are kept in all."""
 _LARGEST = 1 << 20
-"""What is larger is not kept: it costs more to tell from others than it gains."""
+"""What is larger is not kept: its digest costs more than it gains."""
 
 Array = npt.NDArray[Any]
 
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """What a look leaves: the nodes' arrays, and rows of changes."""
+    """What a first perception leaves: the nodes' arrays, and rows of changes."""
 
     nodes: Sequence[Array]
     rows: Array
@@ -33,15 +33,15 @@ class _Seen:
         return sum(each.nbytes for each in (*self.nodes, self.rows))
 
 
-class Looks:
-    """Looks at what there is, with nothing happening, of nests with the same shapes of blocks."""
+class FirstPerceptions:
+    """What nodes perceive while nothing happens, in nests with the same shapes of blocks."""
 
     def __init__(self) -> None:
         self._seen: dict[bytes, _Seen] = {}
         self._bytes = 0
         self._turn = Lock()
 
-    def look(
+    def perceive(
         self,
         space: Space,
         poses: Poses,
@@ -50,7 +50,7 @@ class Looks:
         changes: Changes,
         below: npt.NDArray[np.bool_],
     ) -> None:
-        """Let the nodes that `below` marks look; as `kernel.fold` of one entry without events."""
+        """Let nodes that `below` marks perceive, as `kernel.fold` of an entry without events."""
         from beliefnest.belief import kernel  # who only lists scenarios need not wait for it
 
         if sum(each.nbytes for each in nodes) > _LARGEST:
@@ -79,7 +79,7 @@ class Looks:
 
 
 def _digest(space: Space, arrays: Sequence[Array]) -> bytes:
-    """What tells all that a look depends on from others; shapes of blocks are the same in all."""
+    """A digest of all that a perception depends on; shapes of blocks are the same in all."""
     hashed = hashlib.blake2b(digest_size=16)
     plain = (space.sizes, tuple(space.senses), [(each.shape, each.dtype.str) for each in arrays])
     hashed.update(repr(plain).encode())

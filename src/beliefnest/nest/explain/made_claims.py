@@ -18,10 +18,10 @@ from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, parse_path, path_text
 from beliefnest.world.values import Event, Position
 
-__all__ = ["ToldClaim", "claims_told", "says_otherwise"]
+__all__ = ["MadeClaim", "claims_made", "says_otherwise"]
 
 
-class ToldClaim:
+class MadeClaim:
     """A claim that was made, and what became of it; worked out when it is asked for.
 
     Attributes:
@@ -135,7 +135,7 @@ class ToldClaim:
             return says_otherwise(held, history.context, self.claim)
 
 
-def claims_told(recording: Recording, path: BeliefPath, tick: int | None) -> list[ToldClaim]:
+def claims_made(recording: Recording, path: BeliefPath, tick: int | None) -> list[MadeClaim]:
     """All claims made in a simulator, or in what it follows, up to a tick (None: all)."""
     moment = recording.moment(path)
     if tick is not None:
@@ -149,12 +149,12 @@ def claims_told(recording: Recording, path: BeliefPath, tick: int | None) -> lis
     ]
 
 
-def _told(recording: Recording, key: TimelineKey, count: int) -> Iterator[ToldClaim]:
+def _told(recording: Recording, key: TimelineKey, count: int) -> Iterator[MadeClaim]:
     for number, entry in recording.journal.filtered(key, 0, count, EntryFilter.EVENTS):
         if isinstance(entry, Frame):
             for row, event in enumerate(entry.events):
                 for index, claim in enumerate(claims_of(event)):
-                    yield ToldClaim(recording, key, (number, row, index), entry, claim)
+                    yield MadeClaim(recording, key, (number, row, index), entry, claim)
 
 
 def says_otherwise(held: NodeView, context: BeliefContext, claim: Claim) -> bool:

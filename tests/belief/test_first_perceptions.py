@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 import beliefnest as bn
-from beliefnest.belief.looks import Looks
+from beliefnest.belief.first_perceptions import FirstPerceptions
 from beliefnest.nest.past import history
 
 PATHS = ("/ann", "/bob", "/ann/bob", "/bob/ann/bob")
@@ -77,9 +77,11 @@ def test_a_scene_that_begins_alike_is_not_looked_at_again(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     kept = []
-    keep = Looks._keep
+    keep = FirstPerceptions._keep
     monkeypatch.setattr(
-        Looks, "_keep", lambda looks, key, seen: (kept.append(key), keep(looks, key, seen))
+        FirstPerceptions,
+        "_keep",
+        lambda first, key, seen: (kept.append(key), keep(first, key, seen)),
     )
     scene = {"z": 3.25, "apples": 3}
     believed(scene)
