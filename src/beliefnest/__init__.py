@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from beliefnest.version import VERSION
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # Each name is imported when it is first used.
     from beliefnest.belief.entries import InitialBelief
     from beliefnest.bodies.limits import ProcessLimits
     from beliefnest.bodies.protocol import ProgramResult

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # Compiled code takes its time to load.
     from beliefnest.perception.beams import Beam
     from beliefnest.perception.shadows import Shadows
 

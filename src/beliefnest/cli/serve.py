@@ -22,7 +22,7 @@ from beliefnest.timeline.store import SqliteJournal
 from beliefnest.viewer.page.static import check_depth
 from beliefnest.viewer.serving.host import Host, OpenRun
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # An extra, imported when something is served.
     from starlette.applications import Starlette
 
 __all__ = ["ServeOptions", "listening", "serve"]

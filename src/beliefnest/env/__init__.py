@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Literal
 
 from beliefnest.errors import MissingExtraError
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # Imported when an environment is made.
     from beliefnest.env.environment import BeliefEnv, Options
     from beliefnest.env.layout import Phrases
     from beliefnest.nest.face.nest import Nest

@@ -12,7 +12,7 @@ from beliefnest.nest.face.shown import ShownSimulator
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.values import Position
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # Models take long to import; tasks are read with YAML.
     from beliefnest.episodes.task import Task
     from beliefnest.llm.messages import Model
 

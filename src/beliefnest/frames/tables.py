@@ -19,7 +19,7 @@ from beliefnest.world.frames import Frame
 from beliefnest.world.paths import path_text
 from beliefnest.world.registry import Registry
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # Tables are an extra, imported when one is made.
     import pandas
 
 __all__ = [

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from beliefnest.errors import ModelError
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # An extra, imported when a provider is asked.
     import httpx2
 
 __all__ = ["TooManyBytesError", "bounded_client"]

@@ -20,7 +20,7 @@ from beliefnest.llm.messages import Answer, Message, Sampling, Usage
 from beliefnest.llm.providers import Endpoint
 from beliefnest.world.texts import is_well_formed
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # Extras, imported when a provider is asked.
     import httpx2
     from pydantic_ai.messages import ModelMessage, ModelResponse
     from pydantic_ai.models import Model as ChatModel

@@ -26,7 +26,7 @@ from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Point, Position
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # Compiled code takes its time to load.
     from beliefnest.perception.beams import Eye
     from beliefnest.perception.rays import Scene
 

@@ -14,7 +14,7 @@ from beliefnest.pictures.panel import draw_panel, draw_title
 from beliefnest.pictures.scene import Scene
 from beliefnest.pictures.svg import svg_text
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # Most figures are drawn without it.
     from PIL import Image
 
 __all__ = ["MARGIN", "TEXT_SIZE", "Figure", "Size", "columns_for", "figure_of"]

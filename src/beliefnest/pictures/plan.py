@@ -15,6 +15,7 @@ from beliefnest.pictures.palette import INK, MARKS, PAPER, QUIET, AgentLook, Mar
 from beliefnest.pictures.room import Room
 from beliefnest.pictures.scene import DEVICES, Device, DrawnAgent, PlanColumn, Scene, Store
 from beliefnest.world.registry import Registry
+from beliefnest.world.signs import is_sign
 
 __all__ = ["DrawnPlan", "draw_plan", "hatching"]
 
@@ -290,7 +291,7 @@ class _Sheet:
                     self._quote(shown.says, self._place(x, z))
                 (x0, y0), (x1, y1) = self._place(x, z), self._place(x + 1, z + 1)
                 self._room.avoid((x0, y0, x1, y1))
-                if shown.name.endswith("_sign"):
+                if is_sign(shown.name):
                     self._boards.append((x0, y0, x1, y1))
                 self._marks_of((x0, y0, x1, y1), shown)
         for store in self._scene.stores:

@@ -5,6 +5,7 @@ from html import escape
 
 from beliefnest.belief.view import State
 from beliefnest.pictures.palette import age_text
+from beliefnest.world.signs import is_sign
 from beliefnest.world.values import Items, Point, Position
 
 __all__ = [
@@ -54,7 +55,7 @@ def _block_words(text: str) -> str:
     block, _, says = text.partition(" that says ")
     name, _, properties = block.partition("[")
     kind = name.replace("_", " ")
-    if name.endswith("_sign"):
+    if is_sign(name):
         return f"{kind} that says {says}" if says else f"{kind} with nothing on it"
     for key, (on, off) in _STATES.items():
         if f"{key}=" in properties:

@@ -5,13 +5,12 @@ from beliefnest.belief.view import State
 from beliefnest.prompts import actions, text
 from beliefnest.prompts.filterset import filter
 from beliefnest.prompts.view import BranchView
-from beliefnest.world.doors import is_door
+from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.signs import sign_words
 from beliefnest.world.values import TICKS_PER_SECOND, EventKind, Position
 
 __all__ = ["FILTERS", "memory"]
 
-_SWITCHES = ("lever", "_button")
 _SAYINGS = frozenset({EventKind.CHAT, EventKind.THINK})
 
 
@@ -124,7 +123,7 @@ def _stands(block: str) -> str | None:
     if is_door(name):
         upper = properties.get("half") == "upper" and "hinge" in properties
         return None if upper else "open" if properties.get("open") == "true" else "shut"
-    if name.endswith(_SWITCHES):
+    if is_switch(name):
         return "on" if properties.get("powered") == "true" else "off"
     return None
 

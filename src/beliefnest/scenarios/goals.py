@@ -5,14 +5,12 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
+from beliefnest.belief.view import State
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import Registry, parse_state
 from beliefnest.world.values import EYE_HEIGHT, Items, Point, Position
-
-if TYPE_CHECKING:
-    from beliefnest.belief.view import State
 
 __all__ = [
     "AgentAt",
@@ -61,7 +59,7 @@ Look = Callable[[BeliefPath], GoalFacts]
 class StateFacts:
     """The facts of a simulator's state."""
 
-    state: "State"
+    state: State
 
     def items_in(self, place: Position) -> Items:
         """Items known to be in a container."""
@@ -360,7 +358,7 @@ class Progress:
         ]
 
 
-def looking_at(states: "Mapping[BeliefPath, State]") -> Look:
+def looking_at(states: Mapping[BeliefPath, State]) -> Look:
     """Look at states by path."""
     return lambda path: StateFacts(states[path])
 

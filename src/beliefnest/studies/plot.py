@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from beliefnest.errors import MissingExtraError
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # An extra, imported when something is plotted.
     from matplotlib.figure import Figure
 
 __all__ = ["plot_accuracy", "svg_of"]

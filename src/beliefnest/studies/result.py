@@ -14,7 +14,7 @@ from beliefnest.studies.rows import PROBES, variation_columns
 from beliefnest.studies.store import StudyFolder
 from beliefnest.studies.table import Table
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # Extras, imported when they are asked for.
     import pandas
     from matplotlib.figure import Figure
 

@@ -1,4 +1,4 @@
-"""Doors, trapdoors and fence gates: what becomes of their blocks when somebody uses them."""
+"""Doors, trapdoors, fence gates and switches: which blocks are, and what using a door does."""
 
 from collections.abc import Callable
 
@@ -6,11 +6,12 @@ from beliefnest.errors import WorldError
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 
-__all__ = ["is_door", "is_doorway", "is_open", "moves_by_hand", "passage", "used_door"]
+__all__ = ["is_door", "is_doorway", "is_open", "is_switch", "moves_by_hand", "passage", "used_door"]
 
 _KINDS = ("_door", "_trapdoor", "_fence_gate")
 _BY_POWER = "iron_"
 _WAYS = ("_door", "_fence_gate")
+_SWITCHES = ("lever", "_button")
 
 
 def is_door(name: str) -> bool:
@@ -21,6 +22,11 @@ def is_door(name: str) -> bool:
 def is_doorway(name: str) -> bool:
     """Whether one walks through the block of that name where it is open: a door or a fence gate."""
     return name.endswith(_WAYS)
+
+
+def is_switch(name: str) -> bool:
+    """Whether the block of that name is switched by hand: a lever or a button."""
+    return name.endswith(_SWITCHES)
 
 
 def moves_by_hand(name: str) -> bool:

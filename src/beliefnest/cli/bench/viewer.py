@@ -20,7 +20,7 @@ from beliefnest.perception.options import Perception
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.scripted import ScriptedWorld
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # A browser is driven by what only `dev` has.
     from beliefnest.cli.bench.browser import Browser
 
 __all__ = ["measure"]

@@ -10,7 +10,7 @@ from beliefnest.episodes.view import Policy
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.files import read_regular_text
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # Models take long to import, and few policies ask one.
     from beliefnest.llm.resolve import Connection
 
 __all__ = [

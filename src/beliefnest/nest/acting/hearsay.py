@@ -16,15 +16,13 @@ from beliefnest.nest.past.setting import Setting
 from beliefnest.prompts.text import block_name
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.claims import Claim, with_claims
-from beliefnest.world.doors import is_door
+from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.frames import Frame
 from beliefnest.world.nameable import Nameable
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Event, EventKind, Position
 
 __all__ = ["ClaimReader", "Hearsay", "has_unread", "recalled"]
-
-_SWITCHES = ("_button", "lever")
 
 
 class ClaimReader(Protocol):
@@ -131,7 +129,7 @@ def _fittings(history: History, seen: NodeView) -> dict[Position, int]:
     states = []
     for state in np.unique(blocks):
         name = registry.name(int(state)) if state >= 0 else ""
-        if name and (registry.is_container(name) or is_door(name) or name.endswith(_SWITCHES)):
+        if name and (registry.is_container(name) or is_door(name) or is_switch(name)):
             states.append(state)
     low = history.context.box.low
     return {

@@ -20,7 +20,7 @@ from beliefnest.world.signs import plain_state, written
 from beliefnest.world.texts import is_well_formed
 from beliefnest.world.values import TICKS_PER_SECOND, Block, Items, Position
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # Models take long to import, and few nests have one.
     from beliefnest.llm.messages import Model
 
 __all__ = ["Simulator", "check_senses"]
@@ -175,7 +175,7 @@ class Simulator(ShownSimulator):
             programs: Their texts by agent.
             timeout_ticks: As for `run`.
             senses: As for `run`.
-            past: What programs had done when they were cut, by agent: they go on at that point. With a
+            past: What programs had done when they were cut, by agent: they go on with it. With a
                 mapping, be it empty, results list what programs called.
 
         Raises:

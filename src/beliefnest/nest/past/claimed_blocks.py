@@ -11,11 +11,11 @@ from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import BeliefContext
 from beliefnest.timeline.journal import EntryFilter, Journal, TimelineKey
 from beliefnest.world.claims import ClaimKind, claims_of
+from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.signs import is_sign
 
 __all__ = ["ClaimedBlocks"]
-
-_SWITCHES = ("_door", "_trapdoor", "_fence_gate", "lever", "_button", "_sign")
 
 
 class ClaimedBlocks:
@@ -67,13 +67,11 @@ def _switches(context: BeliefContext, snapshot: Snapshot) -> list[int]:
     """Cells of doors, gates, levers, buttons, signs and containers at the start."""
     states = np.unique(snapshot.blocks).tolist()
     registry = context.registry
+    names = {state: registry.name(state) for state in states if state >= 0}
     wanted = [
         state
-        for state in states
-        if state >= 0
-        and (
-            registry.name(state).endswith(_SWITCHES) or registry.is_container(registry.name(state))
-        )
+        for state, name in names.items()
+        if is_door(name) or is_switch(name) or is_sign(name) or registry.is_container(name)
     ]
     cells: list[int] = np.flatnonzero(np.isin(snapshot.blocks.ravel(), wanted)).tolist()
     return cells
