@@ -32,6 +32,7 @@ __all__ = [
     "Poses",
     "Senses",
     "Space",
+    "Span",
 ]
 
 Ints = npt.NDArray[np.int32]
@@ -196,6 +197,20 @@ class Nodes(NamedTuple):
     meets: Flags
     met_missed: Ints
     watch_missed: Ints
+
+
+class Span(NamedTuple):
+    """What a pass of the kernel folds.
+
+    Attributes:
+        start: Number of the first entry, in the stretch.
+        stop: Number after the last one.
+        happens: Whether they happen; if not, nodes perceive what there is between two ticks.
+    """
+
+    start: int
+    stop: int
+    happens: bool
 
 
 class Changes(NamedTuple):

@@ -9,7 +9,7 @@ from typing import Any, cast
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.arrays import Changes, Facts, Nodes, Poses, Space
+from beliefnest.belief.arrays import Changes, Facts, Nodes, Poses, Space, Span
 
 __all__ = ["FirstPerceptions"]
 
@@ -54,12 +54,12 @@ class FirstPerceptions:
         from beliefnest.belief import kernel  # who only lists scenarios need not wait for it
 
         if sum(each.nbytes for each in nodes) > _LARGEST:
-            kernel.fold(space, poses, facts, nodes, changes, 0, 1, below, False)
+            kernel.fold(space, poses, facts, nodes, changes, Span(0, 1, False), below)
             return
         key = _digest(space, (*poses, facts.tick, *nodes, below))
         seen = self._seen.get(key)
         if seen is None:
-            kernel.fold(space, poses, facts, nodes, changes, 0, 1, below, False)
+            kernel.fold(space, poses, facts, nodes, changes, Span(0, 1, False), below)
             rows = changes.rows[: changes.used[0]].copy()
             self._keep(key, _Seen([each.copy() for each in nodes], rows))
             return

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief import kernel
-from beliefnest.belief.arrays import Changes, Facts
+from beliefnest.belief.arrays import Changes, Facts, Span
 from beliefnest.belief.columns import Columns
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis, PerceivedEvent
@@ -341,9 +341,9 @@ class Forest:
         changes = self._changes(columns.events_until(stop) - first)
         poses, nodes = self.poses.arrays(), self.table.nodes()
         everywhere = np.ones(self.table.count, dtype=np.bool_)
-        where = start - columns.first, stop - columns.first
+        span = Span(start - columns.first, stop - columns.first, True)
         reached = columns.first + kernel.fold(
-            context.space, poses, facts, nodes, changes, *where, everywhere, True
+            context.space, poses, facts, nodes, changes, span, everywhere
         )
         count = columns.events_until(reached) - first
         self.hearing.note(first, changes.perceived[:count])
@@ -371,7 +371,7 @@ class Forest:
         for level in self.table.levels():
             changes = self._changes(0)._replace(perceived=perceived)
             poses, nodes, facts = self.poses.arrays(), self.table.nodes(), columns.facts()
-            kernel.fold(space, poses, facts, nodes, changes, at, at + 1, level, True)
+            kernel.fold(space, poses, facts, nodes, changes, Span(at, at + 1, True), level)
             if level[0]:
                 self.holdings.apply_frame(entry, columns.frames.get(entry))
             rows = _by_entry(changes, columns.first).get(entry, {})
@@ -402,7 +402,7 @@ class Forest:
         poses = self.poses.arrays()
         if context.signs:
             # What their numbers stand for is this nest's own.
-            kernel.fold(context.space, poses, facts, nodes, changes, 0, 1, below, False)
+            kernel.fold(context.space, poses, facts, nodes, changes, Span(0, 1, False), below)
         else:
             context.first_perceptions.perceive(context.space, poses, facts, nodes, changes, below)
         entry, edited = self.position - 1, self.table.edited_cells

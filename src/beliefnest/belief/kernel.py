@@ -27,6 +27,7 @@ from beliefnest.belief.arrays import (
     Poses,
     Senses,
     Space,
+    Span,
 )
 from beliefnest.belief.seeing import eye_of, grid_cell, sees_agent, sees_cell, whole
 from beliefnest.perception.eyes import Eye, set_code
@@ -228,12 +229,13 @@ def _perceive_events(
     facts: Facts,
     nodes: Nodes,
     changes: Changes,
+    span: Span,
     entry: int,
-    first_event: int,
     node: int,
 ) -> None:
     """Which events of an entry the present owner of a node perceives."""
     parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
+    first_event = whole(facts.event_at[span.start])
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
         if not changes.perceived[event - first_event, parent]:
             continue
@@ -260,8 +262,8 @@ def _update_absent(
     facts: Facts,
     nodes: Nodes,
     changes: Changes,
+    span: Span,
     entry: int,
-    first_event: int,
     node: int,
 ) -> None:
     """An owner that is not present is credited with common ground alone (5.2, 5.5)."""
@@ -270,6 +272,7 @@ def _update_absent(
     nodes.watched[node, :] = False
     nodes.meets[node, :] = False
     me = whole(nodes.agent[node])
+    first_event = whole(facts.event_at[span.start])
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
         is_chat = facts.event_kind[event] == KIND_CHAT
         if is_chat and _is_common_ground(senses, facts, event, me):
@@ -328,11 +331,12 @@ def _note_watched_places(
     facts: Facts,
     nodes: Nodes,
     changes: Changes,
+    span: Span,
     entry: int,
-    first_event: int,
     node: int,
 ) -> None:
     """Note the places at which the present owner of a node perceives somebody act."""
+    first_event = whole(facts.event_at[span.start])
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
         cell = facts.event_cell[event]
         if cell < 0 or facts.event_actor[event] < 0:
@@ -350,18 +354,17 @@ def _update_node(
     facts: Facts,
     nodes: Nodes,
     changes: Changes,
+    span: Span,
     entry: int,
-    first_event: int,
     node: int,
-    happens: bool,
 ) -> None:
     """Fold an entry into one node, after its parent."""
     tick = whole(facts.tick[entry])
     if space.senses.weighs:
-        _count_to(nodes, node, tick - 1 if happens else tick)
+        _count_to(nodes, node, tick - 1 if span.happens else tick)
     parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
     if not nodes.current[parent, me]:
-        _update_absent(space.senses, facts, nodes, changes, entry, first_event, node)
+        _update_absent(space.senses, facts, nodes, changes, span, entry, node)
         if space.senses.weighs:
             _count_to(nodes, node, tick)
         return
@@ -373,12 +376,12 @@ def _update_node(
     _observe_agents(space, poses, nodes, node, eye, moved)
     if moved or nodes.fresh[node]:
         _observe_blocks(space, nodes, changes, entry, node, eye)
-    _perceive_events(space, poses, facts, nodes, changes, entry, first_event, node)
+    _perceive_events(space, poses, facts, nodes, changes, span, entry, node)
     _propagate_bases(space, nodes, node, eye, moved)
     if space.senses.weighs:
         _observe_meetings(space, poses, nodes, node, moved)
         _count_to(nodes, node, tick)
-        _note_watched_places(facts, nodes, changes, entry, first_event, node)
+        _note_watched_places(facts, nodes, changes, span, entry, node)
 
 
 @compiled
@@ -388,19 +391,17 @@ def fold(
     facts: Facts,
     nodes: Nodes,
     changes: Changes,
-    start: int,
-    stop: int,
+    span: Span,
     which: npt.NDArray[np.bool_],
-    happens: bool,
 ) -> int:
-    """Fold entries start to stop - 1 into the nodes that `which` marks.
+    """Fold the entries of a pass into the nodes that `which` marks.
 
-    If nothing `happens`, the nodes look at what there is between two ticks. Returns the entry
-    it got to: it stops early when `changes.rows` might not hold what the next entry adds.
+    Returns the entry it got to: it stops early when `changes.rows` might not hold what the next
+    entry adds.
     """
-    first_event = whole(facts.event_at[start])
+    first_event = whole(facts.event_at[span.start])
     room = changes.rows.shape[0]
-    for entry in range(start, stop):
+    for entry in range(span.start, span.stop):
         if changes.used[0] > 0 and changes.used[0] > room // 2:
             return entry
         if which[0]:
@@ -409,5 +410,5 @@ def fold(
                 changes.perceived[event - first_event, 0] = True
         for node in range(1, len(nodes.parent)):
             if which[node]:
-                _update_node(space, poses, facts, nodes, changes, entry, first_event, node, happens)
-    return stop
+                _update_node(space, poses, facts, nodes, changes, span, entry, node)
+    return span.stop
