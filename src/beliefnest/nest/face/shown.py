@@ -136,7 +136,7 @@ class ShownSimulator(ABC):
     ) -> Figure:
         """The simulator, drawn from what it holds itself; as `Nest.figure`."""
         with self._recording.turn:
-            return figure_of(_scenes([self], against, sight, height))
+            return figure_of(_scenes(self._recording, [self], against, sight, height))
 
     def __repr__(self) -> str:
         recording = self._recording
@@ -144,7 +144,7 @@ class ShownSimulator(ABC):
             with recording.turn:
                 key = recording.selected.get(self._path)
                 state = self.state
-                wrong = [_named(each, recording) for each in _wrong(self, ())]
+                wrong = [_named(each, recording) for each in self._wrong(())]
                 words = state_words(state)
         except BeliefNestError as error:
             # As for a nest.
@@ -155,6 +155,31 @@ class ShownSimulator(ABC):
 
     def _repr_html_(self) -> str:
         return self.figure()._repr_html_()
+
+    def scene(self, against: BeliefPath, sight: Sequence[str] | None, height: int) -> Scene:
+        """What `figure` draws of it."""
+        recording, names, state = self._recording, self._path, self.state
+        setting, key = recording.setting, recording.selected.get(names)
+        # Who is not perceived at this tick is drawn at a remembered place: what it sees is unknown.
+        own = [name for name in names[-1:] if state.agents[name].current]
+        return read_scene(
+            state,
+            wrong=self._wrong(against),
+            against=path_text(against),
+            labels=setting.labels,
+            places=setting.places,
+            sight={name: self.visible_blocks(name) for name in (own if sight is None else sight)},
+            height=height,
+            note=f"branch {key.branch}" if key is not None and names else "",
+        )
+
+    def _wrong(self, against: BeliefPath) -> list[Wrong]:
+        """What it holds otherwise than another, at its tick or that one's latest."""
+        recording, path, tick = self._recording, self._path, self._tick
+        if path == against:
+            return []
+        then = None if tick is None else min(tick, recording.info(against).head)
+        return wrong_things(false_beliefs(recording, path, tick, against, then))
 
     def _child_path(self, agent: str) -> BeliefPath:
         agents = self._recording.agents
@@ -225,7 +250,7 @@ class ShownNest:
         with recording.turn:
             names = [parse_path(path, recording.agents) for path in wanted]
             shown = [PastSimulator(recording, path, then) for path in names]
-            return _scenes(shown, against, sight, height)
+            return _scenes(recording, shown, against, sight, height)
 
     @in_turn
     def plot_beliefs(
@@ -334,6 +359,7 @@ class Past(ShownNest):
 
 
 def _scenes(
+    recording: Recording,
     shown: Sequence[ShownSimulator],
     against: str | None,
     sight: Sequence[str] | None,
@@ -341,7 +367,6 @@ def _scenes(
 ) -> tuple[Scene, ...]:
     if not shown:
         raise InputError("a figure of no simulator is empty; give a belief path")
-    recording = shown[0]._recording
     other = parse_path("/" if against is None else against, recording.agents)
     for name in sight or ():
         parse_path(path_text((name,)), recording.agents)
@@ -350,35 +375,7 @@ def _scenes(
         raise InputError(f"height {height} lies outside the box; give {low} to {high}")
     # One storey for all of them, so that they can be compared.
     level = best_height([each.state for each in shown]) if height is None else height
-    return tuple(_scene(each, other, sight, level) for each in shown)
-
-
-def _scene(
-    shown: ShownSimulator, against: BeliefPath, sight: Sequence[str] | None, height: int
-) -> Scene:
-    recording, names, state = shown._recording, shown._path, shown.state
-    setting, key = recording.setting, recording.selected.get(names)
-    # Who is not perceived at this tick is drawn at a remembered place: what it sees is unknown.
-    own = [name for name in names[-1:] if state.agents[name].current]
-    return read_scene(
-        state,
-        wrong=_wrong(shown, against),
-        against=path_text(against),
-        labels=setting.labels,
-        places=setting.places,
-        sight={name: shown.visible_blocks(name) for name in (own if sight is None else sight)},
-        height=height,
-        note=f"branch {key.branch}" if key is not None and names else "",
-    )
-
-
-def _wrong(shown: ShownSimulator, against: BeliefPath) -> list[Wrong]:
-    """What a simulator holds otherwise than another, at its tick or that one's latest."""
-    recording, tick = shown._recording, shown._tick
-    if shown._path == against:
-        return []
-    then = None if tick is None else min(tick, recording.info(against).head)
-    return wrong_things(false_beliefs(recording, shown._path, tick, against, then))
+    return tuple(each.scene(other, sight, level) for each in shown)
 
 
 def wrong_things(found: Iterable[Difference]) -> list[Wrong]:
