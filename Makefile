@@ -9,8 +9,8 @@ NODE = $(shell python -c 'from beliefnest.bodies.node_files import node_path; pr
 test: ## The tests, as CI runs them
 	pytest
 
-nightly: ## The tests with many more examples, kills and damages; takes hours
-	BELIEFNEST_NIGHTLY=1 pytest
+nightly: ## All that CI does, with every Python, Ray, and many more examples, kills and damages; takes hours
+	BELIEFNEST_NIGHTLY=1 .ci/run
 
 check: ## Linters and type checkers
 	ruff check

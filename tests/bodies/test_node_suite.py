@@ -5,12 +5,25 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from tests.profiles import at_night
+from tests.profiles import NIGHTLY, at_night
 
 from beliefnest.bodies.node_files import node_path
 
 NODE_ROOM = Path(__file__).parents[2] / "src" / "beliefnest" / "bodies" / "node"
 FILES = sorted(path.relative_to(NODE_ROOM) for path in (NODE_ROOM / "test").rglob("*.test.js"))
+TOGETHER = () if NIGHTLY else ("places", "plugins", "sandbox", "skills")
+"""Folders whose files run in one process by day: most of what a file takes is Node's beginning."""
+
+
+def runs() -> dict[str, list[Path]]:
+    """Name of each run of Node to the files in it."""
+    found: dict[str, list[Path]] = {}
+    for path in FILES:
+        name = path.parent.as_posix() if path.parent.name in TOGETHER else path.as_posix()
+        found.setdefault(name, []).append(path)
+    return found
+
+
 SECONDS = at_night(7200, 300)
 
 
@@ -19,10 +32,17 @@ def test_there_are_javascript_tests() -> None:
     assert (NODE_ROOM / "node_modules").is_dir(), "install them with `pip install -e '.[dev]'`"
 
 
-@pytest.mark.parametrize("file", FILES, ids=[path.as_posix() for path in FILES])
-def test_javascript(file: Path) -> None:
+@pytest.mark.parametrize(("name", "files"), runs().items(), ids=list(runs()))
+def test_javascript(name: str, files: list[Path]) -> None:
+    apart = "none" if len(files) > 1 else "process"
     ended = subprocess.run(
-        [node_path(), "--test", "--test-reporter=spec", file.as_posix()],
+        [
+            node_path(),
+            "--test",
+            f"--test-isolation={apart}",
+            "--test-reporter=spec",
+            *(file.as_posix() for file in files),
+        ],
         cwd=NODE_ROOM,
         env={**os.environ, "NO_COLOR": "1", "FORCE_COLOR": "0"},
         capture_output=True,
@@ -31,4 +51,4 @@ def test_javascript(file: Path) -> None:
         check=False,
     )
     if ended.returncode != 0:
-        pytest.fail(f"{file}:\n{ended.stdout[-8000:]}\n{ended.stderr[-4000:]}", pytrace=False)
+        pytest.fail(f"{name}:\n{ended.stdout[-8000:]}\n{ended.stderr[-4000:]}", pytrace=False)
