@@ -9,7 +9,6 @@ import numpy as np
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent
 from beliefnest.belief.node_view import NodeView
-from beliefnest.belief.view import BlockView
 from beliefnest.nest.past.history import History
 from beliefnest.pictures.figure import figure_of
 from beliefnest.pictures.scene import read_scene
@@ -147,8 +146,7 @@ class LiveState:
         turn: AbstractContextManager[object],
     ) -> None:
         self.path, self.tick, self.box = reading.path, moment.tick, history.context.box
-        self._reading, self._turn = reading, turn
-        self._blocks = _Blocks(history, moment, reading, turn)
+        self._history, self._moment, self._reading, self._turn = history, moment, reading, turn
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, LiveState):
@@ -168,16 +166,16 @@ class LiveState:
         """The agent whose belief this is; None in the real world."""
         return self.path[-1] if self.path else None
 
-    @property
-    def blocks(self) -> BlockView:
+    @cached_property
+    def blocks(self) -> _Blocks:
         """Believed blocks."""
-        return self._blocks
+        return _Blocks(self._history, self._moment, self._reading, self._turn)
 
     @cached_property
     def signs(self) -> Mapping[Position, str]:
         """Text of each known sign, in order of position; empty where nothing is written."""
         with self._turn:
-            return self._blocks.signs()
+            return self.blocks.signs()
 
     @cached_property
     def containers(self) -> Mapping[Position, ContainerBelief]:
