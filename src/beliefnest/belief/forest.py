@@ -3,6 +3,7 @@
 from bisect import bisect_left
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 from weakref import WeakSet
 
 import numpy as np
@@ -17,14 +18,30 @@ from beliefnest.belief.hearing import Hearing
 from beliefnest.belief.holdings_table import HoldingsTable, RootFacts, SavedHoldings
 from beliefnest.belief.node_table import NodeTable, SavedNode
 from beliefnest.belief.poses import PoseTable, SavedPoses
-from beliefnest.belief.protocols import EventHistory, StateReader
 from beliefnest.belief.testimony import Testimony, Verdict
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Event, Items, Point, Sign
 
-__all__ = ["Forest", "ForestState", "NodeState"]
+__all__ = ["EventHistory", "Forest", "ForestState", "NodeState"]
 
 _BATCH = 4096
+
+
+class EventHistory(Protocol):
+    """What happens on a timeline, for those who list it; folding does without."""
+
+    def events(self, count: int) -> Sequence[tuple[int, Event]]:
+        """The first events of the timeline, `count` of them or more, each with its tick."""
+
+    def before(self, path: BeliefPath) -> Sequence[PerceivedEvent]:
+        """What a node perceived before the timeline began, oldest first."""
+
+
+class StateReader(Protocol):
+    """Somebody who read a state and may read more of it."""
+
+    def keep(self) -> None:
+        """Read now what the forest will not know any more."""
 
 
 @dataclass(frozen=True, slots=True)

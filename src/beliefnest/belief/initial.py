@@ -10,12 +10,11 @@ from beliefnest.belief.arrays import UNKNOWN
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis, InitialBelief, Source
-from beliefnest.belief.forest import Forest
+from beliefnest.belief.forest import EventHistory, Forest
 from beliefnest.belief.holdings import NEVER, BelievedItem, Content, Holdings
 from beliefnest.belief.holdings_table import HoldingsTable, RootFacts
 from beliefnest.belief.node_table import NodeTable
 from beliefnest.belief.poses import PoseTable
-from beliefnest.belief.protocols import EventHistory
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.paths import AND_BELOW, BeliefPath
 from beliefnest.world.values import Position

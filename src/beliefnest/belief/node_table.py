@@ -24,8 +24,8 @@ Row = npt.NDArray[Any]
 _POSE_IDS = ("pose", "equipment", "eye", "tried", "met")
 """Rows that hold pose ids."""
 
-_BY_SPOT = {"watched": 0, "basis_at": UNKNOWN, "basis_source": 0, "watch_missed": UNKNOWN}
-"""Rows with a column for each tracked cell, and what stands where nothing is known."""
+_BY_SPOT = ("watched", "basis_at", "basis_source", "watch_missed")
+"""Rows with a column for each tracked cell."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,44 +74,39 @@ class NodeTable:
         others = [cell for cell in extra if cell not in known]
         tracked = self._tracked = np.array([*context.tracked, *others], dtype=np.int32)
         agents, cells, spots = len(context.agents), context.cells, len(tracked)
-        margin = int(np.prod(context.space.sizes))
+        # Those who weigh no claims need no room for it.
+        weighed = agents if context.space.senses.weighs else 0
+        # A row is filled when its node is added; see `_filler`.
         self._rows: dict[str, Row] = {
-            "parent": np.full(2, UNKNOWN, dtype=np.int32),
-            "agent": np.full(2, UNKNOWN, dtype=np.int32),
-            "pose": np.full((2, agents), UNKNOWN, dtype=np.int32),
-            "equipment": np.full((2, agents), UNKNOWN, dtype=np.int32),
-            "seen_at": np.full((2, agents), UNKNOWN, dtype=np.int32),
-            "current": np.zeros((2, agents), dtype=np.bool_),
-            "blocks": np.full((2, cells), UNKNOWN, dtype=np.int16),
-            "codes": np.zeros((2, margin), dtype=np.uint16),
-            "geometry": np.zeros(2, dtype=np.int32),
-            "pending": np.zeros((2, -(-cells // 64)), dtype=np.uint64),
-            "fresh": np.zeros(2, dtype=np.bool_),
-            "eye": np.full(2, UNKNOWN, dtype=np.int32),
-            "seen_geometry": np.full(2, UNKNOWN, dtype=np.int32),
-            "tried": np.full((2, agents), UNKNOWN, dtype=np.int32),
-            "sees": np.zeros((2, agents), dtype=np.bool_),
-            "watched": np.zeros((2, spots), dtype=np.bool_),
-            "basis_at": np.full((2, spots), UNKNOWN, dtype=np.int32),
-            "basis_source": np.zeros((2, spots), dtype=np.uint8),
-            **self._weighing_rows(agents if context.space.senses.weighs else 0, spots),
+            "parent": np.empty(2, np.int32),
+            "agent": np.empty(2, np.int32),
+            "pose": np.empty((2, agents), np.int32),
+            "equipment": np.empty((2, agents), np.int32),
+            "seen_at": np.empty((2, agents), np.int32),
+            "current": np.empty((2, agents), np.bool_),
+            "blocks": np.empty((2, cells), np.int16),
+            "codes": np.empty((2, int(np.prod(context.space.sizes))), np.uint16),
+            "geometry": np.empty(2, np.int32),
+            "pending": np.empty((2, -(-cells // 64)), np.uint64),
+            "fresh": np.empty(2, np.bool_),
+            "eye": np.empty(2, np.int32),
+            "seen_geometry": np.empty(2, np.int32),
+            "tried": np.empty((2, agents), np.int32),
+            "sees": np.empty((2, agents), np.bool_),
+            "watched": np.empty((2, spots), np.bool_),
+            "basis_at": np.empty((2, spots), np.int32),
+            "basis_source": np.empty((2, spots), np.uint8),
+            "counted": np.empty(2, np.int32),
+            "missed": np.empty((2, weighed), np.int32),
+            "met": np.empty((2, weighed), np.int32),
+            "meets": np.empty((2, weighed), np.bool_),
+            "met_missed": np.empty((2, weighed, weighed), np.int32),
+            "watch_missed": np.empty((2, spots, weighed), np.int32),
         }
         self._child_at = np.zeros(1, dtype=np.int32)
         self._child = np.zeros(0, dtype=np.int32)
         self._nodes: Nodes | None = None
         self._coded: tuple[npt.NDArray[Any], Row] | None = None
-
-    @staticmethod
-    def _weighing_rows(agents: int, spots: int) -> dict[str, Row]:
-        """Rows for who weighs claims; they have no room where nobody does."""
-        return {
-            "counted": np.full(2, UNKNOWN, dtype=np.int32),
-            "missed": np.zeros((2, agents), dtype=np.int32),
-            "met": np.full((2, agents), UNKNOWN, dtype=np.int32),
-            "meets": np.zeros((2, agents), dtype=np.bool_),
-            "met_missed": np.zeros((2, agents, agents), dtype=np.int32),
-            "watch_missed": np.full((2, spots, agents), UNKNOWN, dtype=np.int32),
-        }
 
     def nodes(self) -> Nodes:
         """The arrays for the kernel."""
@@ -159,7 +154,7 @@ class NodeTable:
         for name, row in self._rows.items():
             if name in _BY_SPOT:
                 known = other._rows[name][source]
-                none = np.full((1, *known.shape[1:]), _BY_SPOT[name], dtype=known.dtype)
+                none = np.full((1, *known.shape[1:]), _filler(known), dtype=known.dtype)
                 row[node] = np.concatenate([known, none])[theirs]
             else:
                 row[node] = other._rows[name][source]
@@ -277,9 +272,9 @@ class NodeTable:
             return
         self._tracked = np.array([*self._tracked.tolist(), *new], dtype=np.int32)
         size = len(self._rows["parent"])
-        for name, filler in _BY_SPOT.items():
+        for name in _BY_SPOT:
             row = self._rows[name]
-            wide = np.full((size, len(new), *row.shape[2:]), filler, dtype=row.dtype)
+            wide = np.full((size, len(new), *row.shape[2:]), _filler(row), dtype=row.dtype)
             self._rows[name] = np.concatenate([row, wide], axis=1)
         self._nodes = None
         # The next look covers the new cells too.
@@ -309,7 +304,7 @@ class NodeTable:
                 values = self.context.renumbered(values, signs)
                 self.set_blocks(node, values.reshape(self.context.box.shape))
             elif name in _BY_SPOT:
-                row[node] = _BY_SPOT[name]
+                row[node] = _filler(row)
                 row[node, places] = values.reshape(len(places), *row.shape[2:])
             else:
                 row[node] = values.reshape(row.shape[1:])
@@ -423,13 +418,14 @@ class NodeTable:
             for name, row in self._rows.items():
                 self._rows[name] = np.empty((8 * size, *row.shape[1:]), dtype=row.dtype)
                 self._rows[name][:size] = row
-        self._reset(node)
+        for row in self._rows.values():
+            row[node] = _filler(row)
+        self._rows["geometry"][node] = self._rows["missed"][node] = 0
         self.count += 1
         self._nodes = None
         return node
 
-    def _reset(self, node: int) -> None:
-        for row in self._rows.values():
-            row[node] = UNKNOWN if row.dtype.kind == "i" else 0
-        self._rows["geometry"][node] = 0
-        self._rows["missed"][node] = 0
+
+def _filler(row: Row) -> int:
+    """What stands in a row where nothing is known."""
+    return UNKNOWN if row.dtype.kind == "i" else 0

@@ -185,18 +185,16 @@ FIRST_ENTRY = -1
 def timeline_row(info: TimelineInfo) -> Row:
     """The row of a timeline."""
     base = info.base
-    return "timelines", {
-        "path": path_text(info.key.path),
-        "branch": info.key.branch,
-        "base_path": None if base is None else path_text(base.timeline.path),
-        "base_branch": None if base is None else base.timeline.branch,
-        "base_entries": None if base is None else base.entries,
-        "base_tick": None if base is None else base.tick,
-        "start": info.start,
-        "head": info.head,
-        "entries": info.entries,
-        "description": info.description,
-    }
+    return _row(
+        "timelines",
+        info,
+        path=path_text(info.key.path),
+        branch=info.key.branch,
+        base_path=None if base is None else path_text(base.timeline.path),
+        base_branch=None if base is None else base.timeline.branch,
+        base_entries=None if base is None else base.entries,
+        base_tick=None if base is None else base.tick,
+    )
 
 
 def entry_rows(key: TimelineKey, number: int, entry: Entry, registry: Registry) -> Iterator[Row]:
@@ -244,33 +242,13 @@ def snapshot_rows(key: TimelineKey, snapshot: Snapshot, registry: Registry) -> I
 
 def run_row(run: RunRecord, versions: Sequence[Mapping[str, str]]) -> Row:
     """The row of the run itself."""
-    return "run", {
-        "scenario": run.scenario,
-        "condition": run.condition or None,
-        "seed": run.seed,
-        "versions": [dict(each) for each in versions],
-        "text": run.text,
-        "templates": dict(run.templates),
-    }
+    return _row("run", run, condition=run.condition or None, versions=versions)
 
 
 def program_row(program: ProgramRecord) -> Row:
     """The row of a program that ran."""
-    return "programs", {
-        "path": path_text(program.path),
-        "branch": program.branch,
-        "tick": program.tick,
-        "agent": program.agent,
-        "code": program.code,
-        "ok": program.ok,
-        "error": program.error,
-        "ticks": program.ticks,
-        "call": program.group,
-        "lines": list(program.lines),
-        "log": list(program.log),
-        "unfinished": list(program.unfinished),
-        "detail": _program_detail(program),
-    }
+    path, detail = path_text(program.path), _program_detail(program)
+    return _row("programs", program, path=path, call=program.group, detail=detail)
 
 
 def _program_detail(program: ProgramRecord) -> dict[str, str]:
@@ -286,27 +264,23 @@ def _program_detail(program: ProgramRecord) -> dict[str, str]:
 
 def prompt_row(prompt: PromptRecord) -> Row:
     """The row of a request to a model."""
-    return "prompts", {
-        **_on_timeline(prompt.path, prompt.timeline, prompt.tick),
-        "model": prompt.model,
-        "attempt": prompt.attempt,
-        "messages": [{"role": role, "text": text} for role, text in prompt.messages],
-        "sampling": dict(prompt.sampling),
-        "answer": prompt.answer,
-        "error": prompt.error,
-        "requests": prompt.requests,
-        "input_tokens": prompt.input_tokens,
-        "output_tokens": prompt.output_tokens,
-        "cost": prompt.cost,
-        "cached": prompt.cached,
-        "detail": dict(prompt.detail),
-    }
+    place = _on_timeline(prompt.path, prompt.timeline, prompt.tick)
+    messages = [{"role": role, "text": text} for role, text in prompt.messages]
+    return _row("prompts", prompt, **place, messages=messages)
 
 
 def belief_row(row: BeliefRow) -> Row:
     """The row of one node's state at one tick."""
     place = _on_timeline(row.path, row.timeline, row.tick)
     return "beliefs", {**place, "state": dict(row.state), "blocks": dict(row.blocks)}
+
+
+def _row(table: str, record: object, **others: object) -> Row:
+    """A row of `others` and, in the other columns, what the record has under their names."""
+    columns = TABLES[table]
+    return table, {
+        name: others[name] if name in others else getattr(record, name) for name in columns
+    }
 
 
 def _on_timeline(path: BeliefPath, timeline: TimelineKey, tick: int) -> dict[str, Any]:

@@ -14,8 +14,7 @@ from importlib.resources import files
 from importlib.resources.abc import Traversable
 
 from beliefnest.belief.context import BeliefContext
-from beliefnest.belief.forest import Forest
-from beliefnest.belief.protocols import EventHistory
+from beliefnest.belief.forest import EventHistory, Forest
 from beliefnest.errors import StoreError
 from beliefnest.nest.past.forest_codec import restored, saved
 from beliefnest.nest.past.setting import Setting

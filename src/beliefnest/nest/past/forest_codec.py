@@ -4,8 +4,7 @@ import msgspec
 import zstandard
 
 from beliefnest.belief.context import BeliefContext
-from beliefnest.belief.forest import Forest, ForestState, NodeState
-from beliefnest.belief.protocols import EventHistory
+from beliefnest.belief.forest import EventHistory, Forest, ForestState, NodeState
 from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
 from beliefnest.world.paths import BeliefPath
