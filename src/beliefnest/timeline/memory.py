@@ -105,7 +105,9 @@ class MemoryJournal:
 
     def info(self, key: TimelineKey) -> TimelineInfo:
         """One timeline; BranchError if there is none of that key."""
-        return self._timeline(key).info
+        # Who reads states asks for little else: twice for each node.
+        timeline = self._timelines.get(key)
+        return self._timeline(key).info if timeline is None else timeline.info
 
     def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
         """Begin an empty timeline; BranchError if it exists or its base does not."""
