@@ -126,12 +126,8 @@ class HoldingsTable:
         return Content(content.items, content.complete, basis, self.last_perceived(0))
 
     def inventory(self, node: int, agent: int) -> tuple[Items, bool]:
-        """Believed possessions of an agent, and whether these are known to be all.
-
-        An agent's own are what the parent node holds of them, whatever the depth.
-        """
-        while node > 0 and self._table.owner(node) == agent:
-            node = self._table.parent(node)
+        """Believed possessions of an agent, and whether these are known to be all."""
+        node = self._knowing(node, agent)
         known = self._holdings[node].inventories.get(agent)
         if node == 0:
             pose, details = self._table.pose(0, agent), self._table.details_of(0, agent)
@@ -139,14 +135,19 @@ class HoldingsTable:
                 return details.inventory, known is None
         return self._holdings[node].inventories.get(agent, {}), False
 
-    def vitals(self, node: int, agent: int) -> tuple[float | None, float | None]:
+    def vitals(self, node: int, agent: int) -> Vitals:
         """Health and food of an agent, which only the agent itself perceives."""
-        while node > 0 and self._table.owner(node) == agent:
-            node = self._table.parent(node)
+        node = self._knowing(node, agent)
         details = self._table.details_of(0, agent) if node == 0 else None
         if details is None or not self._table.poses.is_recorded(self._table.pose(0, agent)):
             return self.root.vitals.get(agent, (None, None)) if node == 0 else (None, None)
         return details.health, details.food
+
+    def _knowing(self, node: int, agent: int) -> int:
+        """The node that says what an agent has: of its own, whatever the depth, the parent does."""
+        while node > 0 and self._table.owner(node) == agent:
+            node = self._table.parent(node)
+        return node
 
     def needs_looks(self) -> bool:
         """Whether there is something to be looked at that is no block and no agent."""

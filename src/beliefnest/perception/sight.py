@@ -138,8 +138,7 @@ class Geometry:
         """The geometry with other block states (-1: unknown) at some positions of the grid.
 
         Raises:
-            InputError: A position lies outside the grid.
-            UnknownNameError: A value is neither a block state id nor -1.
+            InputError, UnknownNameError: A position lies outside the grid, an id is none.
         """
         from beliefnest.perception.eyes import set_code
 
@@ -172,8 +171,7 @@ class Geometry:
     ) -> BoolArray:
         """Which of the blocks at integer positions (n, 3), in or out of the grid, are seen.
 
-        Raises:
-            InputError: The positions are not rows of three integers.
+        InputError if they are not rows of three integers.
         """
         from beliefnest.perception import shadows, views
 
@@ -187,8 +185,7 @@ class Geometry:
     def sees_points(self, eye: Point, yaw: float, pitch: float, points: npt.ArrayLike) -> BoolArray:
         """Which of the points (n, 3) are seen; each has to be within the visible distance.
 
-        Raises:
-            InputError: The points are not rows of three numbers.
+        InputError if they are not rows of three numbers.
         """
         from beliefnest.perception import views
 
@@ -199,10 +196,7 @@ class Geometry:
         """Which of the agents with feet at (n, 3) are seen.
 
         One of the points at `AGENT_SAMPLE_HEIGHTS` has to be seen, and the body centre
-        has to be within the visible distance.
-
-        Raises:
-            InputError: The feet are not rows of three numbers.
+        has to be within the visible distance. InputError if `feet` are not rows of three numbers.
         """
         from beliefnest.perception import views
 

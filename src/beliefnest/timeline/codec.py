@@ -79,11 +79,7 @@ _ENCODED = msgspec.msgpack.Decoder(list[msgspec.Raw])
 
 
 def encode(value: object) -> bytes:
-    """Bytes of a Frame, Edit, AgentState, DroppedItem, Event, or of plain data.
-
-    Raises:
-        StoreError: Something in it is no value of a world.
-    """
+    """Bytes of values of a world, or of plain data; StoreError if something in it is neither."""
     try:
         return _ENCODER.encode(value)
     except (TypeError, OverflowError, ValueError, msgspec.MsgspecError) as fault:
@@ -91,20 +87,12 @@ def encode(value: object) -> bytes:
 
 
 def decode(data: bytes, kind: type[T]) -> T:
-    """A value of type `kind` from the bytes `encode` made of it.
-
-    Raises:
-        StoreError: The bytes hold no such value.
-    """
+    """A value of type `kind` from the bytes `encode` made of it; StoreError if they hold none."""
     return cast(T, _with_tuples(_decoded(msgspec.msgpack.Decoder(kind), data, kind.__name__)))
 
 
 def encode_entry(entry: Entry) -> bytes:
-    """Bytes of a frame or an edit, which say which of the two they are.
-
-    Raises:
-        StoreError: Something in it is no value of a world.
-    """
+    """Bytes of a frame or an edit, which say which of the two they are; StoreError as above."""
     return encode(_FrameEntry(entry) if isinstance(entry, Frame) else _EditEntry(entry))
 
 
@@ -169,11 +157,7 @@ def encode_snapshot(snapshot: Snapshot) -> bytes:
 
 
 def decode_snapshot(data: bytes) -> Snapshot:
-    """A snapshot from the bytes of `encode_snapshot`; its grid is read-only.
-
-    Raises:
-        StoreError: The bytes hold none.
-    """
+    """A snapshot from the bytes of `encode_snapshot`, its grid read-only; StoreError if none."""
     body = decode(data, _SnapshotBody)
     box = Box(body.low, body.high)
     grid = np.frombuffer(body.blocks, dtype="<i4") if len(body.blocks) % 4 == 0 else None

@@ -66,11 +66,7 @@ _PRIMARY_CODE = 0xFF
 
 
 def checksum(*values: object) -> int:
-    """Checksum of a row's values; the last one may be long bytes.
-
-    Raises:
-        StoreError: A number is too large to be stored.
-    """
+    """Checksum of a row's values; StoreError if a number is too large. The last may be long."""
     *head, last = values
     try:
         body = last if isinstance(last, bytes) else msgspec.msgpack.encode(last)
@@ -119,11 +115,7 @@ class Database:
 
     @classmethod
     def create(cls, path: Path) -> "Database":
-        """Make a new run file.
-
-        Raises:
-            StoreError: There is a file of that name, or it cannot be made or written.
-        """
+        """Make a new run file; StoreError as of `SqliteJournal.create_file`."""
         _check_regular(path)
         database = cls._locked(path, "rwc")
         with database.closed_on_fault():
@@ -154,9 +146,7 @@ class Database:
     def open(cls, path: Path, older: Sequence[OlderFormat] = ()) -> "Database":
         """Open a run file to go on with it; one of an older format is converted for good.
 
-        Raises:
-            StoreError: There is none, it is foreign, newer, damaged, read-only, or has
-                another writer.
+        StoreError as of `SqliteJournal.open`.
         """
         _recognise_start(path)
         if not os.access(path, os.W_OK):
@@ -172,12 +162,9 @@ class Database:
 
     @classmethod
     def read(cls, path: Path, older: Sequence[OlderFormat] = ()) -> "Database":
-        """Open a run file to look at it, also while another process writes it.
+        """Open a run file to look at it; StoreError as of `SqliteJournal.read`.
 
         Of one of an older format a copy in memory is converted, as it is now.
-
-        Raises:
-            StoreError: There is none, or it is foreign, newer or damaged.
         """
         _recognise_start(path)
         database = cls(_connected(path, "ro"), path, None)

@@ -26,10 +26,9 @@ class _Detail:
 
 
 def convert_2(database: Database) -> None:
-    """Make a file of format 2 one of format 3; the caller opens the transaction.
+    """Make a file of format 2 one of format 3; StoreError if a row is damaged.
 
-    Raises:
-        StoreError: A row is damaged.
+    The caller opens the transaction.
     """
     database.execute(BODY_STATE)
     hidden = "keyframe WHERE name LIKE 'hidden %'"

@@ -147,11 +147,7 @@ def branch_carries(key: TimelineKey, others: Iterable[TimelineKey]) -> BranchErr
 
 
 def check_base(key: TimelineKey, base: ForkPoint, length: int) -> None:
-    """Check that a timeline of `length` entries can carry a new one.
-
-    Raises:
-        BranchError: The base lies after its end.
-    """
+    """Check that a timeline of `length` entries can carry a new one; BranchError if too short."""
     if not 0 <= base.entries <= length:
         raise BranchError(
             f"branch {key.branch!r} of {path_text(key.path)} cannot begin after entry "
@@ -183,11 +179,7 @@ def check_append(info: TimelineInfo, entries: Sequence[Entry], head: int) -> Non
 
 
 def check_place(info: TimelineInfo, entries: int) -> None:
-    """Check that a timeline has a place after its first `entries` entries.
-
-    Raises:
-        InputError: It has fewer.
-    """
+    """Check that a timeline has so many entries; InputError if it has fewer."""
     if not 0 <= entries <= info.entries:
         raise InputError(
             f"branch {info.key.branch!r} of {path_text(info.key.path)} has {info.entries} "
@@ -206,17 +198,12 @@ class Journal(Protocol):
         """All timelines, in order of creation."""
 
     def info(self, key: TimelineKey) -> TimelineInfo:
-        """One timeline.
-
-        Raises:
-            BranchError: There is none of that key.
-        """
+        """One timeline; BranchError if there is none of that key."""
 
     def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
         """Begin an empty timeline; costs the same however long its base is.
 
-        Raises:
-            BranchError: There is one of that key already, or the base is not there.
+        BranchError if there is one of that key already, or the base is not there.
         """
 
     def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:
@@ -230,10 +217,8 @@ class Journal(Protocol):
     def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
         """Entries number start (included, not negative) to stop (excluded), oldest first.
 
-        Fewer where the timeline ends before. Entries appended later are not returned.
-
-        Raises:
-            BranchError: There is no timeline of that key.
+        Fewer where the timeline ends before. Entries appended later are not returned. BranchError
+        as above.
         """
 
     def entries_until(self, key: TimelineKey, tick: int) -> int:
@@ -260,16 +245,11 @@ class Journal(Protocol):
     def rename(self, key: TimelineKey, name: str) -> None:
         """Give a timeline's branch another name; timelines based on it follow.
 
-        Raises:
-            BranchError: There is no timeline of that key, or one of that name.
+        BranchError as above, or if there is one of that name.
         """
 
     def delete(self, key: TimelineKey) -> None:
-        """Remove a timeline that no other is based on.
-
-        Raises:
-            BranchError: There is none of that key, or another timeline is based on it.
-        """
+        """Remove a timeline; BranchError as above, or if another one is based on it."""
 
     def describe(self, key: TimelineKey, description: str) -> None:
         """Set a timeline's description; BranchError if there is none of that key."""
@@ -278,11 +258,7 @@ class Journal(Protocol):
         """Keep bytes that stand for the first `entries` entries of a timeline.
 
         They spare a reader those entries, replace those of the same place and name, and go with the
-        timeline.
-
-        Raises:
-            BranchError: There is no timeline of that key.
-            InputError: The timeline does not have that many entries.
+        timeline. BranchError as above, InputError if it does not have that many entries.
         """
 
     def nearest_checkpoint(
@@ -290,8 +266,7 @@ class Journal(Protocol):
     ) -> tuple[int, bytes] | None:
         """The last checkpoint of that name at or before entry `entries`, with its place.
 
-        None if the timeline itself has none there; its base may. BranchError if there is no
-        timeline of that key.
+        None if the timeline itself has none there; its base may. BranchError as above.
         """
 
     def put_body_state(self, key: TimelineKey, entries: int, tick: int, state: bytes) -> None:
@@ -304,8 +279,7 @@ class Journal(Protocol):
             state: Bytes that only the world reads.
 
         Raises:
-            BranchError: There is no timeline of that key.
-            InputError: The timeline does not have that many entries.
+            BranchError, InputError: As of `put_checkpoint`.
         """
 
     def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
@@ -324,8 +298,7 @@ class Journal(Protocol):
 def lineage(journal: Journal, key: TimelineKey) -> Iterator[tuple[TimelineKey, int]]:
     """A timeline and those it goes on from, each with its last tick that lies in the past of it.
 
-    Raises:
-        BranchError: There is no timeline of that key.
+    BranchError as of `Journal.info`.
     """
     info = journal.info(key)
     yield key, info.head

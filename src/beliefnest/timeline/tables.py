@@ -198,11 +198,7 @@ def timeline_row(info: TimelineInfo) -> Row:
 
 
 def entry_rows(key: TimelineKey, number: int, entry: Entry, registry: Registry) -> Iterator[Row]:
-    """The rows of one entry.
-
-    Raises:
-        UnknownNameError: A block state is none of the registry's version.
-    """
+    """The rows of one entry; UnknownNameError if a block state is none of the registry's."""
     place = _place(key, number, entry.tick)
     edited = None if isinstance(entry, Frame) else path_text(entry.path)
     yield from _block_rows(place, entry.blocks.items(), registry, edited)

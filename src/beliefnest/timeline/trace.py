@@ -217,11 +217,7 @@ def read_trace(lines: Iterable[bytes], registry: Registry) -> Trace:
 
 
 def record_trace(trace: Trace, journal: Journal, key: TimelineKey) -> None:
-    """Put a trace into a journal as a new timeline.
-
-    Raises:
-        BranchError: There is a timeline of that key already.
-    """
+    """Put a trace into a journal as a new timeline; BranchError if there is one of that key."""
     start = trace.first.tick
     journal.create(key, None, start)
     journal.append(key, trace.entries, trace.entries[-1].tick if trace.entries else start)
