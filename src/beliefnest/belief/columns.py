@@ -1,10 +1,9 @@
 """A stretch of a timeline in columns, as the belief kernel reads it."""
 
 from bisect import bisect_left
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 
 from beliefnest.belief.arrays import (
     KIND_ACT,
@@ -15,10 +14,11 @@ from beliefnest.belief.arrays import (
     UNKNOWN,
     Facts,
 )
+from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.poses import Growing, PoseTable
 from beliefnest.world.claims import ClaimKind, claims_of
 from beliefnest.world.frames import Frame
-from beliefnest.world.values import Block, Box, Event, EventKind, Position
+from beliefnest.world.values import Box, Event, EventKind, Position
 
 __all__ = ["Columns", "cell_of", "place_of"]
 
@@ -47,10 +47,7 @@ class Columns:
     """A stretch of one timeline's entries in columns; all numbers are those of the timeline.
 
     Args:
-        box: The part of space covered.
-        agents: All agents, in the order in which arrays count them.
-        holds: By block number, and at the end for unknown, whether it is a container.
-        number: Number of a block.
+        context: What all nodes of the nest stand on.
         first: Number of the first entry of the stretch.
         first_event: How many events lie before it.
         poses: Where its agents' poses are kept; None: in a table of its own.
@@ -71,17 +68,12 @@ class Columns:
 
     def __init__(
         self,
-        box: Box,
-        agents: Sequence[str],
-        holds: npt.NDArray[np.bool_],
-        number: Callable[[Block], int],
+        context: BeliefContext,
         first: int = 0,
         first_event: int = 0,
         poses: PoseTable | None = None,
     ) -> None:
-        self._box = box
-        self._holds = holds
-        self._number = number
+        self._context = context
         self.first = first
         self._first_event = first_event
         self.poses = PoseTable() if poses is None else poses
@@ -90,7 +82,6 @@ class Columns:
         self.act_entries: list[int] = []
         self.claim_entries: list[int] = []
         self._effects: list[int] = []
-        self._numbers = {name: number for number, name in enumerate(agents)}
         self.frames: dict[int, Frame] = {}
         self.events: list[Event] = []
         self.acts: dict[int, list[int]] = {}
@@ -104,10 +95,30 @@ class Columns:
         """Number of the entry after the last one."""
         return self.first + len(self._tick)
 
-    def extend(self, frames: Iterable[Frame]) -> None:
-        """Add frames."""
-        for frame in frames:
-            self._add(frame)
+    def add(self, frame: Frame) -> None:
+        """Add a frame."""
+        entry, context, columns = self.end, self._context, self._columns
+        if frame.containers or frame.items:
+            self.frames[entry] = frame
+        if frame.items:
+            self.item_entries.append(entry)
+        for name, agent in frame.agents.items():
+            pose = UNKNOWN if agent is None else self.poses.add(name, agent)
+            columns["pose_agent"].append(context.numbers[name])
+            columns["pose_id"].append(pose)
+        for place, block in frame.blocks.items():
+            state = context.number(block)
+            cell = cell_of(context.box, place)
+            columns["block_cell"].append(cell)
+            columns["block_state"].append(state)
+            if context.holds[state]:
+                self.held.append(cell)
+        for event in frame.events:
+            self._add_event(entry, event)
+        if entry in self.frames or entry in self.acts:
+            self._effects.append(entry)
+        self._tick.append(frame.tick)
+        self._close_entry()
 
     def add_quiet(self, tick: int) -> None:
         """Add an entry in which nothing happens by itself."""
@@ -149,44 +160,21 @@ class Columns:
         """The columns for the kernel, which counts entries and events from the stretch's first."""
         return Facts(*(column.view() for column in self._columns.values()))
 
-    def _add(self, frame: Frame) -> None:
-        entry, columns = self.end, self._columns
-        if frame.containers or frame.items:
-            self.frames[entry] = frame
-        if frame.items:
-            self.item_entries.append(entry)
-        for name, agent in frame.agents.items():
-            pose = UNKNOWN if agent is None else self.poses.add(name, agent)
-            columns["pose_agent"].append(self._numbers[name])
-            columns["pose_id"].append(pose)
-        for place, block in frame.blocks.items():
-            state = self._number(block)
-            cell = cell_of(self._box, place)
-            columns["block_cell"].append(cell)
-            columns["block_state"].append(state)
-            if self._holds[state]:
-                self.held.append(cell)
-        for event in frame.events:
-            self._add_event(entry, event)
-        if entry in self.frames or entry in self.acts:
-            self._effects.append(entry)
-        self._tick.append(frame.tick)
-        self._close_entry()
-
     def _add_event(self, entry: int, event: Event) -> None:
-        columns, kind = self._columns, _KINDS.get(event.kind, KIND_ACT)
+        context, columns = self._context, self._columns
+        kind, actor = _KINDS.get(event.kind, KIND_ACT), event.actor
         place = event.detail.get("position")
         if kind == KIND_ACT:
             if entry not in self.acts:
                 self.act_entries.append(entry)
             number = self._first_event + len(self.events)
             self.acts.setdefault(entry, []).append(number)
-        cell = UNKNOWN if place is None or place not in self._box else cell_of(self._box, place)
+        cell = UNKNOWN if place is None or place not in context.box else cell_of(context.box, place)
         to = event.detail.get("to") if kind == KIND_CHAT else None
         columns["event_kind"].append(kind)
-        columns["event_actor"].append(NOBODY if event.actor is None else self._numbers[event.actor])
+        columns["event_actor"].append(NOBODY if actor is None else context.numbers[actor])
         columns["event_cell"].append(cell)
-        columns["event_to"].append(NOBODY if to is None else self._numbers[to])
+        columns["event_to"].append(NOBODY if to is None else context.numbers[to])
         if event.detail.get("claims"):
             self._add_claims(entry, event)
         self.events.append(event)
@@ -196,7 +184,7 @@ class Columns:
             self.claim_entries.append(entry)
         about = [claim for claim in claims_of(event) if claim.kind is not ClaimKind.POSITION]
         # Who weighs a claim has to know who watches the place.
-        self.held.extend(cell_of(self._box, claim.cell) for claim in about)
+        self.held.extend(cell_of(self._context.box, claim.cell) for claim in about)
 
     def _close_entry(self) -> None:
         columns = self._columns

@@ -105,7 +105,7 @@ class Forest:
         self.context, self._events = table.context, events
         self.table, self.holdings = table, holdings
         self.position, self.tick = 0, tick
-        self.columns = self._nowhere(0, 0, table.poses)
+        self.columns = Columns(self.context, 0, 0, table.poses)
         self.hearing = Hearing()
         tracked = frozenset(table.tracked.tolist())
         self.since = tracked if since is None else tracked & since
@@ -120,7 +120,7 @@ class Forest:
         """
         count = self.count_of_events
         # Of its poses only those are kept that nodes refer to.
-        self.enter(self._nowhere(self.position, count, PoseTable()))
+        self.enter(Columns(self.context, self.position, count, PoseTable()))
         nodes = (
             NodeState(
                 self.table.saved(node),
@@ -150,7 +150,7 @@ class Forest:
         table = NodeTable(context, PoseTable.restored(state.poses))
         forest = cls(events, table, HoldingsTable(table, state.root), state.tick)
         forest.position, forest.since = state.position, frozenset(state.since)
-        forest.columns = forest._nowhere(state.position, state.events, table.poses)
+        forest.columns = Columns(context, state.position, state.events, table.poses)
         for number, node in enumerate(nodes):
             table.restore(node.row, tracked, state.signs)
             forest.holdings.restore(node.holdings, state.signs)
@@ -230,7 +230,7 @@ class Forest:
         self._let_read()
         count = self.count_of_events
         self.hearing.set(0, count, np.ones(events - count, dtype=np.bool_))
-        self.enter(self._nowhere(position, events, PoseTable()))
+        self.enter(Columns(self.context, position, events, PoseTable()))
         self.position = position
         self.holdings.note_perception((0,), position - 1)
 
@@ -307,13 +307,6 @@ class Forest:
         self.position += 1
         self.tick = tick
         self._perceive(self.table.below(node))
-
-    def _nowhere(self, position: int, events: int, poses: PoseTable) -> Columns:
-        """An empty stretch between two entries."""
-        context = self.context
-        return Columns(
-            context.box, context.agents, context.holds, context.number, position, events, poses
-        )
 
     def _let_read(self) -> None:
         readers, self._readers = list(self._readers), WeakSet()

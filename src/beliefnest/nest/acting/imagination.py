@@ -113,7 +113,7 @@ class Imagination:
         self._held = 0
         if forest is not None:
             context = forest.context
-            self._columns = Columns(context.box, context.agents, context.holds, context.number)
+            self._columns = Columns(context)
             forest.enter(self._columns)
         world.listen(self._take)
 
@@ -330,7 +330,7 @@ class Imagination:
         events = [(frame.tick, event) for event in frame.events]
         self.happened += events
         if self._columns is not None:
-            self._columns.extend([frame])
+            self._columns.add(frame)
             self._news.happened += events
 
     def _with(self, path: BeliefPath) -> Forest:

@@ -63,7 +63,7 @@ class _Stretch:
             self.edits[self.columns.end] = entry
             self.columns.add_quiet(entry.tick)
         else:
-            self.columns.extend([entry])
+            self.columns.add(entry)
 
     def fold(self, forest: Forest, stop: int) -> None:
         """Fold entries up to number `stop` into a forest that is in this stretch."""
@@ -371,7 +371,7 @@ class History:
         first, last = forest.position, position
         while last > first and isinstance(self._entry(key, last - 1), Edit):
             last -= 1
-        stretch = self._new_stretch(first, forest.count_of_events)
+        stretch = _Stretch(Columns(self.context, first, forest.count_of_events))
         for _, entry in self._journal.filtered(key, first, last, EntryFilter.CHANGES):
             bare = replace(entry, agents={}, events=()) if isinstance(entry, Frame) else entry
             stretch.add(bare)
@@ -394,7 +394,8 @@ class History:
         first, end = number * self._pace.stretch, (number + 1) * self._pace.stretch
         stretch = self._stretches.pop((key, number), None)
         if stretch is None:
-            stretch = self._new_stretch(first, self._journal.events_until(key, first))
+            before = self._journal.events_until(key, first)
+            stretch = _Stretch(Columns(self.context, first, before))
         self._stretches[key, number] = stretch
         while len(self._stretches) > _STRETCHES:
             del self._stretches[next(iter(self._stretches))]
@@ -405,12 +406,6 @@ class History:
         self.context.track(columns.held[held:])
         self._log(key).take(columns)
         return stretch
-
-    def _new_stretch(self, first: int, first_event: int) -> _Stretch:
-        context = self.context
-        return _Stretch(
-            Columns(context.box, context.agents, context.holds, context.number, first, first_event)
-        )
 
 
 def _adopt(forest: Forest, other: Forest, own: BeliefPath, path: BeliefPath) -> None:
