@@ -290,6 +290,8 @@ class History:
 
     def _head(self, key: TimelineKey, path: BeliefPath, count: int) -> Forest:
         head = known = self._heads.get(key)
+        if head is not None and head.position == count and path in head:
+            return head
         if head is None:
             head = self._saved(key, count)
         if head is None or (not head.has_beliefs and path != key.path):
