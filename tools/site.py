@@ -134,8 +134,8 @@ def python_page() -> str:
             "`import beliefnest as bn`; everything below is `bn.NAME`, and what rooms such as",
             "`beliefnest.llm` offer has [a page of its own](modules.md). Positions are scenario",
             "coordinates in blocks, y up; angles are Mineflayer's radians; 20 ticks are a second.",
-            "Errors have [a page of their own](errors.md). Sections of the semantics are the rules",
-            "that [How beliefs are computed](../project/design/beliefs.md) follows.",
+            "Errors have [a page of their own](errors.md). Sections of the semantics are those of",
+            "[The rules of belief](../project/design/semantics.md).",
             "",
             *_names(beliefnest, "##"),
         ]
