@@ -1,4 +1,4 @@
-"""What is believed to be in containers (semantics 4)."""
+"""What is believed to be in containers (semantics, section 4)."""
 
 import pytest
 from tests.nest.places import CHEST, CLOSED, CORNER, EAST, GAP, MEETING, WEST, nest_of

@@ -1,4 +1,4 @@
-"""What is known from the start (semantics 4): static blocks and initial beliefs."""
+"""What is known from the start (semantics, section 4): static blocks and initial beliefs."""
 
 import pytest
 from tests.nest.places import CLOSED, EAST, WEST, nest_of

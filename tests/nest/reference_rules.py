@@ -81,7 +81,7 @@ class Node:
 
 
 class Rules:
-    """Perception and update: sections 3 to 5 of the semantics."""
+    """Perception and update: semantics, sections 3 to 5."""
 
     def __init__(self, start: Snapshot, options: bn.Perception) -> None:
         self.registry = Registry.load()

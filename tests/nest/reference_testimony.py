@@ -1,4 +1,4 @@
-"""Section 8 of the semantics, written from its text alone; slow, claim by claim.
+"""Testimony (semantics, section 8), written from its text alone; slow, claim by claim.
 
 Where the text leaves something open, the choice made here is:
 

@@ -1,4 +1,4 @@
-"""Branches in Minecraft: what is restored, and who is not disturbed (semantics 6)."""
+"""Branches in Minecraft: what is restored, and who is not disturbed (semantics, section 6)."""
 
 import threading
 

@@ -1,4 +1,4 @@
-"""Bodies follow changes by hand as their states do (semantics 6 and 7)."""
+"""Bodies follow changes by hand as their states do (semantics, sections 6 and 7)."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Changes by hand, and what the nodes below make of them (semantics 6)."""
+"""Changes by hand, and what the nodes below make of them (semantics, section 6)."""
 
 import pytest
 from tests.nest.comparing import everything

@@ -1,4 +1,4 @@
-"""Which events are perceived, and when perception is evaluated (semantics 3)."""
+"""Which events are perceived, and when perception is evaluated (semantics, section 3)."""
 
 import pytest
 from tests.nest.places import CHEST, CLOSED, CORNER, EAST, GAP, MEETING, WEST, nest_of

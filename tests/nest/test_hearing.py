@@ -1,4 +1,4 @@
-"""Speech, thought and who is credited with hearing them (semantics 3 and 5.5)."""
+"""Speech, thought and who is credited with hearing them (semantics, sections 3 and 5.5)."""
 
 import pytest
 from tests.nest.places import CLOSED, CORNER, EAST, GAP, MEETING, WEST, nest_of

@@ -1,4 +1,4 @@
-"""The ice-cream van (semantics 8): A in /observer/john/mary, B in /observer/mary.
+"""The ice-cream van (semantics, section 8): A in /observer/john/mary, B in /observer/mary.
 
 Two walled yards, the park (x < 10) and the street (x > 10); the observer looks down into
 both from above. Location A is in the park, B at the end of the street.

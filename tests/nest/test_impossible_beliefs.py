@@ -1,4 +1,4 @@
-"""Bodies of beliefs that cannot be: who is moved, to where, and that it can walk (semantics 7)."""
+"""Bodies of beliefs that cannot be: who is moved, and to where (semantics, section 7)."""
 
 import json
 import math

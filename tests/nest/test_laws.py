@@ -1,4 +1,4 @@
-"""Laws of the nest (semantics 5), as properties of random stories."""
+"""Laws of the nest (semantics, section 5), as properties of random stories."""
 
 from dataclasses import replace
 from typing import Any

@@ -1,4 +1,4 @@
-"""Follow and control mode, forks, and what goes where (semantics 6)."""
+"""Follow and control mode, forks, and what goes where (semantics, section 6)."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Who is credited with seeing, and what (semantics 5.1 to 5.4)."""
+"""Who is credited with seeing, and what (semantics, sections 5.1 to 5.4)."""
 
 from tests.nest.places import CHEST, CLOSED, CORNER, EAST, GAP, MEETING, WEST, nest_of, wall
 

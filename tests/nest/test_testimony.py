@@ -1,4 +1,4 @@
-"""What claims do to beliefs: section 8 clause by clause, in the nest and in the reference.
+"""Claims, clause by clause (semantics, section 8), in the nest and in the reference.
 
 Max is in the hall with two chests and knows where the diamond is; who is more than 6 blocks
 away is out of sight. In most tests he goes away before he is told anything.

@@ -1,4 +1,4 @@
-"""Past ticks and late questions: a node is a function of the log alone (semantics 5 and 6)."""
+"""Past ticks, late questions: a node follows from the log alone (semantics, sections 5 and 6)."""
 
 import itertools
 

@@ -333,7 +333,7 @@ class HoldingsTable:
         return into
 
     def _learnt(self, node: int, cell: int, entry: int) -> Content:
-        """A node's content of a container, as somebody in it learns it in an entry (5.4)."""
+        """A node's content as somebody in it learns it in an entry (semantics, section 5.4)."""
         content = self.content(node, cell)
         is_current = node == 0 or content.entry == self.last_perceived(node)
         return replace(content, entry=entry if is_current else NEVER)

@@ -358,14 +358,14 @@ class NodeTable:
         return bool(self._rows["current"][node, agent])
 
     def present(self) -> npt.NDArray[np.bool_]:
-        """By node, whether its owner is present in its parent node (5.1)."""
+        """By node, whether its owner is present in its parent node (semantics, section 5.1)."""
         parent, agent = self._rows["parent"][: self.count], self._rows["agent"][: self.count]
         present: npt.NDArray[np.bool_] = self._rows["current"][parent, agent]
         present[0] = True
         return present
 
     def is_present(self, node: int) -> bool:
-        """Whether the owner of a node is present in its parent node (5.1)."""
+        """Whether the owner of a node is present in its parent node (semantics, section 5.1)."""
         return node == 0 or self.is_current(self.parent(node), self.owner(node))
 
     def sees_cells(self, node: int, cells: Iterable[int]) -> set[int]:
@@ -387,11 +387,11 @@ class NodeTable:
         )
 
     def block_is_current(self, node: int, cell: int) -> bool:
-        """Whether a node's block is backed by a perception in the last entry (5.4)."""
+        """Whether the last entry's perception backs a node's block (semantics, section 5.4)."""
         return cell in self.current_blocks(node, (cell,))
 
     def current_blocks(self, node: int, cells: Iterable[int]) -> set[int]:
-        """Those of some cells whose block a perception in the last entry backs (5.4)."""
+        """Those of some cells whose block that perception backs (semantics, section 5.4)."""
         left = set(cells)
         while left and node > 0:
             if not self.is_present(node):

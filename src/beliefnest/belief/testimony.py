@@ -50,7 +50,7 @@ class Verdict(StrEnum):
 
     @property
     def condition(self) -> str | None:
-        """The condition that decided, as section 8 numbers it; None: none of them did."""
+        """The condition that decided, as it is numbered there; None: none of them did."""
         return _CONDITIONS.get(self)
 
 
@@ -124,7 +124,7 @@ class Testimony:
     def _weighed(
         self, number: int, which: Numbers, row: int, speaker: int, claim: Claim
     ) -> npt.NDArray[np.int8]:
-        """Codes of what some nodes make of a claim (8.1, 8.3)."""
+        """Codes of what some nodes make of a claim (semantics, sections 8.1 and 8.3)."""
         options, nodes = self._context.options, self._table.nodes()
         subject = self._context.numbers.get(claim.agent or "", UNKNOWN)
         owner, parent = nodes.agent[which], nodes.parent[which]
@@ -203,7 +203,7 @@ class Testimony:
         return seen
 
     def _believe(self, which: Numbers, event: Event, claim: Claim) -> None:
-        """Let nodes hold what is claimed (8.2)."""
+        """Let nodes hold what is claimed (semantics, section 8.2)."""
         if len(which) == 0:
             return
         speaker = str(event.actor)

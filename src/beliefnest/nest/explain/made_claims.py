@@ -89,7 +89,7 @@ class MadeClaim:
         return _words(self._verdict(path), names, self.speaker, grace)
 
     def condition(self, path: str) -> str | None:
-        """The condition of section 8 that decided (`1a`, `1b`, `3`, `4`); errors as above.
+        """The condition (`1a`, `1b`, `3`, `4`; semantics, section 8); errors as above.
 
         None where none had to: it was taken up, was not heard, is about its hearer's own place,
         or testimony is off.

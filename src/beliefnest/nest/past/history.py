@@ -240,7 +240,8 @@ class History:
     ) -> set[int] | None:
         """Cells of a node that were edited in some entries; None if it perceived anew in them.
 
-        A node perceives when something happens, and when a simulator above it is edited (6).
+        A node perceives when something happens, and when a simulator above it is edited
+        (semantics, section 6).
         """
         edited: set[int] = set()
         if path == key.path:
