@@ -54,6 +54,7 @@ class Recording:
         self.history = History(journal, setting)
         self.selected: dict[BeliefPath, TimelineKey] = {(): TimelineKey((), MAIN)}
         self.turn = RLock()
+        self._latest: tuple[TimelineInfo, ForkPoint] | None = None
 
     @property
     def agents(self) -> tuple[str, ...]:
@@ -122,7 +123,10 @@ class Recording:
         """
         info = self.info(path)
         if tick is None:
-            return ForkPoint(info.key, info.entries, info.head)
+            # Hundreds of nodes may be asked for one after the other.
+            if self._latest is None or self._latest[0] is not info:
+                self._latest = info, ForkPoint(info.key, info.entries, info.head)
+            return self._latest[1]
         if tick > info.head:
             raise TickError(f"tick {tick} is in the future; {path_text(path)} is at {info.head}")
         return ForkPoint(*self.place_of(info.key, tick), tick)
