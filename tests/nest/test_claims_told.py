@@ -130,6 +130,17 @@ def test_claims_on_a_branch_are_told_there() -> None:
     assert len(nest.claims()) == 2
 
 
+def test_who_speaks_in_a_world_of_their_own_belief_lies_against_it() -> None:
+    nest = played()
+    belief = nest["/nora"]
+    belief.switch("try")
+    belief.scripted.place_agent("max", HALL)
+    belief.scripted.withdraw("max", LEFT, {"diamond": 1})
+    belief.scripted.say("nora", "It is there.", claims=[TRUTH])
+    (lie,) = nest.claims("/nora")
+    assert (lie.false, lie.lie) == (True, True)
+
+
 def test_hearsay_is_explained_as_such() -> None:
     nest = played()
     told = str(nest["/max"].explain(container=RIGHT))

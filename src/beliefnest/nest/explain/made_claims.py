@@ -15,7 +15,7 @@ from beliefnest.prompts.text import block_name, block_properties
 from beliefnest.timeline.journal import EntryFilter, ForkPoint, TimelineKey
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
 from beliefnest.world.frames import Frame
-from beliefnest.world.paths import BeliefPath, parse_path, path_text
+from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 from beliefnest.world.values import Event, Position
 
 __all__ = ["MadeClaim", "claims_made", "says_otherwise"]
@@ -71,7 +71,7 @@ class MadeClaim:
     @cached_property
     def lie(self) -> bool:
         """Whether the speaker believed otherwise."""
-        return self._is_contradicted((*self._key.path, self.speaker))
+        return self._is_contradicted(normalised((*self._key.path, self.speaker)))
 
     def taken_up(self, path: str) -> bool:
         """Whether it changed what a simulator holds, or holds the speaker to believe.

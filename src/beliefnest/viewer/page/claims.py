@@ -6,7 +6,7 @@ from beliefnest.belief.forest import Forest
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.made_claims import says_otherwise
 from beliefnest.world.claims import Claim, claims_of
-from beliefnest.world.paths import BeliefPath
+from beliefnest.world.paths import BeliefPath, normalised
 
 __all__ = ["claims_at", "kind_of"]
 
@@ -38,7 +38,6 @@ def kind_of(forest: Forest, own: BeliefPath, speaker: str, claim: Claim) -> str:
         speaker: Who made it; what it believes is in the forest.
         claim: The claim.
     """
-    mind = own if own[-1:] == (speaker,) else (*own, speaker)
-    if says_otherwise(NodeView(forest, mind), forest.context, claim):
+    if says_otherwise(NodeView(forest, normalised((*own, speaker))), forest.context, claim):
         return "a lie"
     return "false" if says_otherwise(NodeView(forest, own), forest.context, claim) else ""
