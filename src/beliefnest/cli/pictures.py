@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from beliefnest.belief.view import State
 from beliefnest.nest.explain.comparison import false_things
+from beliefnest.nest.face.drawing import wrong_things
 from beliefnest.nest.face.nest import Nest
-from beliefnest.nest.face.shown import wrong_things
 from beliefnest.pictures.overview import Card, ConditionPicture, Note
 from beliefnest.pictures.palette import Mark, age_text
 from beliefnest.pictures.scene import Scene, Wrong, best_height, read_stores

@@ -94,7 +94,9 @@ def begun(
     journal: RunJournal = MemoryJournal() if store is None else SqliteJournal.create_file(store)
     try:
         with journal.together():
-            journal.records.set_run(_record(scenario, world, name, seed))
+            # Nobody makes a nest again that was in memory.
+            start = b"" if store is None else encode_start(setting, name)
+            journal.records.set_run(_record(scenario, world, seed, start))
             recording = Recording(setting, journal, seed, renderer)
             return Engine(recording, world, reader_of(claims_from, recording)).begin()
     except BaseException:
@@ -102,7 +104,7 @@ def begun(
         raise
 
 
-def _record(scenario: HasSetting, world: World, name: str, seed: int) -> RunRecord:
+def _record(scenario: HasSetting, world: World, seed: int, start: bytes) -> RunRecord:
     condition = scenario.condition
     return RunRecord(
         scenario=scenario.setting.name,
@@ -110,7 +112,7 @@ def _record(scenario: HasSetting, world: World, name: str, seed: int) -> RunReco
         condition="" if condition is None else str(condition),
         seed=seed,
         versions={**own_versions(), **world.versions},
-        setting=encode_start(scenario.setting, name),
+        setting=start,
         templates=scenario.templates,
     )
 

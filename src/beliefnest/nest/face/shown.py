@@ -1,9 +1,9 @@
 """What simulators and nests show of themselves, now or in the past; nothing here acts."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -11,21 +11,22 @@ import numpy.typing as npt
 from beliefnest.belief.view import State
 from beliefnest.errors import BeliefNestError, InputError, PathError
 from beliefnest.nest.explain.chain import element_of, explain
-from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs, value_words
+from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs
 from beliefnest.nest.explain.explanation import Explanation
 from beliefnest.nest.explain.made_claims import MadeClaim, claims_made
-from beliefnest.nest.face.plotting import matter_of, plot_of
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
-from beliefnest.pictures.figure import Figure, figure_of
-from beliefnest.pictures.scene import Scene, Wrong, best_height, read_scene
 from beliefnest.pictures.words import place_words, state_words
 from beliefnest.prompts import Template
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 from beliefnest.world.values import Point, Position
 
-__all__ = ["Past", "PastSimulator", "ShownNest", "ShownSimulator", "wrong_things"]
+if TYPE_CHECKING:  # What draws takes long to import, and few nests are drawn.
+    from beliefnest.pictures.figure import Figure
+    from beliefnest.pictures.scene import Scene
+
+__all__ = ["Past", "PastSimulator", "ShownNest", "ShownSimulator"]
 
 
 class ShownSimulator(ABC):
@@ -133,8 +134,10 @@ class ShownSimulator(ABC):
         *,
         sight: Sequence[str] | None = None,
         height: int | None = None,
-    ) -> Figure:
+    ) -> "Figure":
         """The simulator, drawn from what it holds itself; as `Nest.figure`."""
+        from beliefnest.pictures.figure import figure_of
+
         with self._recording.turn:
             return figure_of(_scenes(self._recording, [self], against, sight, height))
 
@@ -144,7 +147,7 @@ class ShownSimulator(ABC):
             with recording.turn:
                 key = recording.selected.get(self._path)
                 state = self.state
-                wrong = [_named(each, recording) for each in self._wrong(())]
+                wrong = [_named(each, recording) for each in self._otherwise(())]
                 words = state_words(state)
         except BeliefNestError as error:
             # As for a nest.
@@ -156,30 +159,24 @@ class ShownSimulator(ABC):
     def _repr_html_(self) -> str:
         return self.figure()._repr_html_()
 
-    def scene(self, against: BeliefPath, sight: Sequence[str] | None, height: int) -> Scene:
+    def scene(self, against: BeliefPath, sight: Sequence[str] | None, height: int) -> "Scene":
         """What `figure` draws of it."""
-        recording, names, state = self._recording, self._path, self.state
-        setting, key = recording.setting, recording.selected.get(names)
-        # Who is not perceived at this tick is drawn at a remembered place: what it sees is unknown.
-        own = [name for name in names[-1:] if state.agents[name].current]
-        return read_scene(
-            state,
-            wrong=self._wrong(against),
-            against=path_text(against),
-            labels=setting.labels,
-            places=setting.places,
-            sight={name: self.visible_blocks(name) for name in (own if sight is None else sight)},
-            height=height,
-            note=f"branch {key.branch}" if key is not None and names else "",
-        )
+        from beliefnest.nest.face.drawing import scene_of
 
-    def _wrong(self, against: BeliefPath) -> list[Wrong]:
-        """What it holds otherwise than another, at its tick or that one's latest."""
+        path, state = self._path, self.state
+        # Who is not perceived at this tick is drawn at a remembered place: what it sees is unknown.
+        own = [name for name in path[-1:] if state.agents[name].current]
+        seen = {name: self.visible_blocks(name) for name in (own if sight is None else sight)}
+        otherwise = self._otherwise(against)
+        return scene_of(self._recording, path, state, otherwise, against, seen, height)
+
+    def _otherwise(self, against: BeliefPath) -> Sequence[Difference]:
+        """What it holds (`b`) otherwise than another (`a`), at its tick or that one's latest."""
         recording, path, tick = self._recording, self._path, self._tick
         if path == against:
             return []
         then = None if tick is None else min(tick, recording.info(against).head)
-        return wrong_things(false_beliefs(recording, path, tick, against, then))
+        return false_beliefs(recording, path, tick, against, then)
 
     def _child_path(self, agent: str) -> BeliefPath:
         agents = self._recording.agents
@@ -217,7 +214,7 @@ class ShownNest:
         *,
         sight: Sequence[str] | None = None,
         height: int | None = None,
-    ) -> Figure:
+    ) -> "Figure":
         """Simulators side by side, each drawn from what it holds itself.
 
         Args:
@@ -232,6 +229,8 @@ class ShownNest:
             TickError: The tick is in the future or before the start.
             InputError: There is no path, or the height lies outside the box.
         """
+        from beliefnest.pictures.figure import figure_of
+
         return figure_of(self.scenes(paths, tick, against, sight=sight, height=height))
 
     def scenes(
@@ -242,7 +241,7 @@ class ShownNest:
         *,
         sight: Sequence[str] | None = None,
         height: int | None = None,
-    ) -> tuple[Scene, ...]:
+    ) -> "tuple[Scene, ...]":
         """What `figure` draws, as values; arguments and errors are the same."""
         wanted = [paths] if isinstance(paths, str) else list(paths)
         then = self._tick if tick is None else tick
@@ -261,7 +260,7 @@ class ShownNest:
         *,
         agent: str | None = None,
         block: Position | None = None,
-    ) -> Figure:
+    ) -> "Figure":
         """What simulators held of a thing over time: a row for each, a band for each value.
 
         Bands are marked where they are false; above stand the deeds of the real world that
@@ -284,6 +283,8 @@ class ShownNest:
             InputError: There is no path, not one thing to follow, or never was a container there.
             UnknownNameError: There is no such item.
         """
+        from beliefnest.nest.face.plotting import matter_of, plot_of
+
         matter = matter_of(self._recording, container, item, agent, block)
         return plot_of(self._recording, matter, paths, self._tick)
 
@@ -364,7 +365,9 @@ def _scenes(
     against: str | None,
     sight: Sequence[str] | None,
     height: int | None,
-) -> tuple[Scene, ...]:
+) -> "tuple[Scene, ...]":
+    from beliefnest.pictures.scene import best_height
+
     if not shown:
         raise InputError("a figure of no simulator is empty; give a belief path")
     other = parse_path("/" if against is None else against, recording.agents)
@@ -378,16 +381,9 @@ def _scenes(
     return tuple(each.scene(other, sight, level) for each in shown)
 
 
-def wrong_things(found: Iterable[Difference]) -> list[Wrong]:
-    """Differences (`a` is taken for true) as drawings know them."""
-    return [
-        Wrong(each.where, value_words(each.b), value_words(each.a), each.kind == "inventory")
-        for each in found
-    ]
-
-
-def _named(wrong: Wrong, recording: Recording) -> str:
+def _named(wrong: Difference, recording: Recording) -> str:
     """What is false, by the name that people have for it."""
     if isinstance(wrong.where, str):
-        return f"what {wrong.where} has" if wrong.is_owned else f"where {wrong.where} is"
+        is_owned = wrong.kind == "inventory"
+        return f"what {wrong.where} has" if is_owned else f"where {wrong.where} is"
     return recording.setting.labels.get(wrong.where, place_words(wrong.where))

@@ -10,8 +10,6 @@ from beliefnest.belief.columns import cell_of
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.history import History
-from beliefnest.pictures.figure import figure_of
-from beliefnest.pictures.scene import read_scene
 from beliefnest.pictures.words import state_words
 from beliefnest.timeline.journal import ForkPoint
 from beliefnest.world.frames import BlockGrid
@@ -159,6 +157,10 @@ class LiveState:
         return f"<state of {path_text(self.path)} at tick {self.tick}: {state_words(self)}>"
 
     def _repr_html_(self) -> str:
+        # What draws takes long to import, and few states are drawn.
+        from beliefnest.pictures.figure import figure_of
+        from beliefnest.pictures.scene import read_scene
+
         return figure_of([read_scene(self)])._repr_html_()
 
     @property

@@ -1,0 +1,45 @@
+"""States of simulators as values that `pictures` draws."""
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.view import State
+from beliefnest.nest.explain.comparison import Difference, value_words
+from beliefnest.nest.past.recording import Recording
+from beliefnest.pictures.scene import Scene, Wrong, read_scene
+from beliefnest.world.paths import BeliefPath, path_text
+
+__all__ = ["scene_of", "wrong_things"]
+
+
+def scene_of(
+    recording: Recording,
+    path: BeliefPath,
+    state: State,
+    otherwise: Iterable[Difference],
+    against: BeliefPath,
+    sight: Mapping[str, npt.NDArray[np.bool_]],
+    height: int,
+) -> Scene:
+    """A simulator's state as it is drawn; arguments are those of `ShownSimulator.figure`."""
+    setting, key = recording.setting, recording.selected.get(path)
+    return read_scene(
+        state,
+        wrong=wrong_things(otherwise),
+        against=path_text(against),
+        labels=setting.labels,
+        places=setting.places,
+        sight=sight,
+        height=height,
+        note=f"branch {key.branch}" if key is not None and path else "",
+    )
+
+
+def wrong_things(found: Iterable[Difference]) -> list[Wrong]:
+    """Differences (`a` is taken for true) as drawings know them."""
+    return [
+        Wrong(each.where, value_words(each.b), value_words(each.a), each.kind == "inventory")
+        for each in found
+    ]
