@@ -336,7 +336,7 @@ class Imagination:
     def _with(self, path: BeliefPath) -> Forest:
         """The forest as of now, which has to hold a node."""
         forest = self._fold()
-        if forest is None or path not in forest.table.index:
+        if forest is None or path not in forest:
             raise PathError(f"{path_text(path)} is deeper than this imagination goes")
         return forest
 
