@@ -39,6 +39,7 @@ def instance(
     places = sorted(before.keys() | now.keys())
     onlookers = _ONLOOKERS[: agents - 2]
     behind_glass, glass = booths(onlookers, 8)
+    fetched = {"agent": "max", "items": dict.fromkeys(wanted, 1)}
     rounds = -(-(reach + 24 + 6 * items + 20 * (moved - 1)) // _ROUND)
     # As far as she gets in the time that saying what has to be said leaves, and no further.
     book, passage = _passage(width, rounds * _ROUND - _SPEECH * moved - 10)
@@ -70,13 +71,8 @@ def instance(
                 belief("/nora", {**{p: now.get(p, {}) for p in places}, book: {"book": 1}}),
             ],
         },
-        "goal": {
-            "reach": [
-                {"agent": "max", "items": dict.fromkeys(wanted, 1)},
-                {"agent": "nora", "items": {"book": 1}},
-            ]
-        },
-        "goals": {"max": {"reach": [{"agent": "max", "items": dict.fromkeys(wanted, 1)}]}},
+        "goal": {"reach": [fetched, {"agent": "nora", "items": {"book": 1}}]},
+        "goals": {"max": {"reach": [fetched]}},
         "players": ["nora"],
         "policies": {"max": "search:0", **dict.fromkeys(onlookers, "search:0")},
         "talk": ["nora", *onlookers],
