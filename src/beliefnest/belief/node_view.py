@@ -34,7 +34,7 @@ class NodeView:
         self.path = path
         self.tick = forest.tick
         self._forest = forest
-        self._node = forest.table.index[path]
+        self._node = forest.node(path)
         self.count_of_events = forest.count_of_events
         self._last_perceived = forest.holdings.last_perceived(self._node)
         forest.read_by(self)
