@@ -6,6 +6,7 @@ import pytest
 from tests.nest.comparing import everything
 from tests.nest.places import CHEST, CORNER, EAST, GAP, MEETING, WEST, nest_of
 
+import beliefnest as bn
 from beliefnest.errors import BranchError, PathError, PositionError, TickError
 
 THREE = {"observer": WEST, "sally": MEETING, "anne": GAP}
@@ -99,6 +100,16 @@ def test_a_tick_in_the_future_or_before_the_start_is_an_error(tick):
     nest = told()
     assert nest.tick == 7
     with pytest.raises(TickError, match=str(tick)):
+        nest.at(tick)
+
+
+@pytest.mark.parametrize("tick", ["1", 1.5, True, None])
+def test_what_is_no_tick_is_an_error_live_and_recorded(tick, tmp_path):
+    world = bn.ScriptedWorld(((0, 0, 0), (3, 3, 3)), agents={"sally": (1.5, 0, 1.5)})
+    store = tmp_path / "run.bn"
+    with bn.Nest(world, store=store) as nest, pytest.raises(TickError, match="is no tick"):
+        nest.at(tick)
+    with bn.Nest.read(store) as nest, pytest.raises(TickError, match="is no tick"):
         nest.at(tick)
 
 

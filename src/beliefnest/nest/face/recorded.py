@@ -6,6 +6,7 @@ from typing import Self
 
 from beliefnest.nest.face.base import NestBase
 from beliefnest.nest.face.shown import Past, PastSimulator
+from beliefnest.nest.face.ticks import tick_of
 from beliefnest.nest.past.over_time import Moment, over_time
 from beliefnest.nest.past.recording import read_recording
 from beliefnest.timeline.journal import FOLLOW, TimelineKey
@@ -98,9 +99,10 @@ class RecordedNest(NestBase):
         """All simulators at a tick.
 
         Raises:
-            TickError: The tick is in the future or before the start, when a state is read.
+            TickError: The tick is no whole number; or, when a state is read, it is in the future of
+                that simulator's timeline or before the start.
         """
-        return Past(self._recording, tick)
+        return Past(self._recording, tick_of(tick))
 
     def simulator(self, path: str, tick: int | None = None) -> PastSimulator:
         """A simulator at a tick; None: at the latest one of its timeline."""
