@@ -9,6 +9,7 @@ __all__ = [
     "BodyError",
     "BodyLostError",
     "BranchError",
+    "ForkedError",
     "InputError",
     "MissingExtraError",
     "ModelError",
@@ -40,6 +41,10 @@ class WorldError(BeliefNestError):
 
 class PathError(BeliefNestError):
     """A belief path is malformed or names an agent that is not in the scenario."""
+
+
+class ForkedError(BeliefNestError):
+    """Something is used in another process than the one that opened it."""
 
 
 class PositionError(BeliefNestError):

@@ -15,6 +15,7 @@ import msgspec
 from beliefnest.bodies.child import Child
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.errors import BodyError, BodyLostError, InputError, WorldError
+from beliefnest.owned import Owned
 from beliefnest.world.texts import escaped
 
 __all__ = ["PROTOCOL", "Channel"]
@@ -36,10 +37,14 @@ class _BrokenError(Exception):
     """Node does not speak as agreed, or not at all."""
 
 
-class Channel:
-    """A running Node process and the socket to it; make one with `Channel.start`."""
+class Channel(Owned):
+    """A running Node process and the socket to it; make one with `Channel.start`.
+
+    A forked child of this process cannot speak to it: `request` and `post` raise ForkedError.
+    """
 
     def __init__(self, child: Child, connection: socket.socket, silence: float) -> None:
+        super().__init__()
         self._child = child
         self._connection = connection
         self._silence = silence
@@ -99,6 +104,7 @@ class Channel:
             BodyLostError: Node ended, or had to be killed; the message carries its last words.
             BodyError: Node failed to do it.
         """
+        self.check_own("the Minecraft side")
         if self._closed:
             raise BodyError(f"the world was closed; it cannot be asked for {op!r} any more")
         message = _encoded(op, {"id": self._number + 1, "op": op, **arguments})
@@ -126,6 +132,7 @@ class Channel:
             BodyLostError: Node takes nothing any more and was killed. If it had ended before, the
                 next request says so.
         """
+        self.check_own("the Minecraft side")
         try:
             self._send(_packed({"op": op, **arguments}))
         except _BrokenError as error:
@@ -142,6 +149,10 @@ class Channel:
         self._closed = True
         self._connection.close()
         self._child.close()
+
+    def disown(self) -> None:
+        """Close the socket in a forked child; the parent's stays open."""
+        self._connection.close()
 
     def _answer(
         self, on_frame: FrameHandler | None, percepts: PerceptsHandler | None

@@ -12,6 +12,7 @@ from typing import IO, Self
 
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.errors import BodyError
+from beliefnest.owned import Owned
 
 __all__ = ["Child"]
 
@@ -24,12 +25,17 @@ _MEGABYTE = 1 << 20
 _ENVIRONMENT = {"TZ": "UTC"}
 
 
-class Child:
-    """A running process; make one with `Child.start`."""
+class Child(Owned):
+    """A running process; make one with `Child.start`.
+
+    A process that was forked from the one that started it sees it as ended, and can neither end
+    it nor keep it alive.
+    """
 
     def __init__(
         self, process: "subprocess.Popen[bytes]", lifeline: int, stderr: IO[bytes]
     ) -> None:
+        super().__init__()
         self._process = process
         self._lifeline: int | None = lifeline
         self._stderr = stderr
@@ -78,8 +84,8 @@ class Child:
 
     @property
     def alive(self) -> bool:
-        """Whether it has not ended."""
-        return self._process.poll() is None
+        """Whether it has not ended, and is this process's own."""
+        return self.is_own and self._process.poll() is None
 
     def ends(self) -> bool:
         """Wait a moment for its end; whether that came."""
@@ -89,19 +95,27 @@ class Child:
 
     def kill(self) -> None:
         """End it at once; nothing is done if it has ended."""
+        if not self.is_own:
+            return
         with contextlib.suppress(ProcessLookupError):
             os.killpg(self._process.pid, signal.SIGKILL)
         self._process.wait()
 
     def close(self) -> None:
         """End it by its lifeline; a second call does nothing."""
-        if self._lifeline is None:
+        if self._lifeline is None or not self.is_own:
             return
         os.close(self._lifeline)
         self._lifeline = None
         if not self.ends():
             self.kill()
         self._stderr.close()
+
+    def disown(self) -> None:
+        """Close the lifeline in a forked child: the process ends with its parent alone."""
+        if self._lifeline is not None:
+            os.close(self._lifeline)
+            self._lifeline = None
 
     def obituary(self) -> tuple[str, str]:
         """How a process that has ended did so, and its last words, if any, as lines."""

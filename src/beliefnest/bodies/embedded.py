@@ -13,6 +13,7 @@ from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.node_files import EMBEDDED, node_command
 from beliefnest.bodies.protocol import AS_USUAL, ProgramResult, RunRules, Sense, Sink
 from beliefnest.errors import BodyError, BodyLostError, WorldError
+from beliefnest.owned import Owned
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.values import Box, Event
 
@@ -176,7 +177,7 @@ class EmbeddedBody:
         self._sink(frame)
 
 
-class EmbeddedWorld:
+class EmbeddedWorld(Owned):
     """A Node process, or the next one after it ended; it is started with the first body.
 
     Args:
@@ -185,6 +186,7 @@ class EmbeddedWorld:
     """
 
     def __init__(self, seed: int, limits: ProcessLimits | None = None) -> None:
+        super().__init__()
         self._seed = seed
         self._limits = limits or ProcessLimits()
         self._channel: Channel | None = None
@@ -259,6 +261,7 @@ class EmbeddedWorld:
 
     def _live(self) -> Channel:
         """The channel to Node, which is started if none is running."""
+        self.check_own("the world")
         if self._closed:
             raise BodyError("this world was closed; open another one")
         if self._channel is None or self._channel.lost:

@@ -9,6 +9,7 @@ from beliefnest.bodies.exhibits import Exhibit, Plot, Shown
 from beliefnest.bodies.limits import ProcessLimits
 from beliefnest.bodies.protocol import Body, Sink
 from beliefnest.errors import BodyError, InputError
+from beliefnest.owned import Owned
 from beliefnest.world.frames import Snapshot
 
 __all__ = ["RealtimeBody", "RealtimeWorld"]
@@ -28,7 +29,7 @@ class RealtimeBody(EmbeddedBody):
         return True
 
 
-class RealtimeWorld(ABC):
+class RealtimeWorld(Owned, ABC):
     """A process for the real world, and an embedded world for all others.
 
     Two processes of Node: the one that plays the real world opens sockets, the one in which
@@ -40,6 +41,7 @@ class RealtimeWorld(ABC):
     """
 
     def __init__(self, seed: int, limits: ProcessLimits | None = None) -> None:
+        super().__init__()
         self._seed = seed
         self._limits = limits or ProcessLimits()
         self._beliefs = EmbeddedWorld(seed, limits)
@@ -157,6 +159,7 @@ class RealtimeWorld(ABC):
 
     def _live(self) -> Channel:
         """The channel to the process of the real world, started if none is running."""
+        self.check_own("the world")
         if self._closed:
             raise BodyError("this world was closed; open another one")
         if self._channel is None or self._channel.lost:

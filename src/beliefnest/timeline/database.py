@@ -5,6 +5,7 @@ what a transaction did once it is committed, whatever becomes of the process, an
 others read meanwhile.
 """
 
+import ctypes
 import os
 import sqlite3
 import zlib
@@ -18,6 +19,7 @@ import msgspec
 
 from beliefnest.errors import NotBegunError, StoreError
 from beliefnest.files import open_regular
+from beliefnest.owned import Owned
 from beliefnest.timeline.lock import WriterLock
 from beliefnest.timeline.schema import (
     APPLICATION_ID,
@@ -98,8 +100,10 @@ class OlderFormat:
     convert: Callable[["Database"], None]
 
 
-class Database:
+class Database(Owned):
     """An open run file; made by `create`, `in_memory`, `open` or `read`.
+
+    Any use in a forked child raises ForkedError, but `close`, which does nothing there.
 
     Attributes:
         path: The file.
@@ -107,6 +111,7 @@ class Database:
     """
 
     def __init__(self, connection: sqlite3.Connection, path: Path, lock: WriterLock | None) -> None:
+        super().__init__()
         self._connection = connection
         self._lock = lock
         self._open = True
@@ -189,6 +194,7 @@ class Database:
 
     def execute(self, sql: str, values: Iterable[object] = ()) -> sqlite3.Cursor:
         """Run a statement that returns nothing."""
+        self.check_own(str(self.path))
         try:
             return self._connection.execute(sql, tuple(values))
         except _REFUSALS as fault:
@@ -196,6 +202,7 @@ class Database:
 
     def rows(self, sql: str, values: Iterable[object] = ()) -> list[Row]:
         """All rows a query returns."""
+        self.check_own(str(self.path))
         try:
             return self._connection.execute(sql, tuple(values)).fetchall()
         except _REFUSALS as fault:
@@ -255,7 +262,7 @@ class Database:
 
     def _roll_back(self, nested: bool) -> None:
         # A full disk makes SQLite roll back of its own accord.
-        if not self._open or not self._connection.in_transaction:
+        if not self._open or not self.is_own or not self._connection.in_transaction:
             return
         if nested:
             self.execute("ROLLBACK TO inner")
@@ -268,7 +275,7 @@ class Database:
 
         What SQLite keeps beside an open file is gone when nobody has it open any more.
         """
-        if not self._open:
+        if not self._open or not self.is_own:
             return
         self._open = False
         try:
@@ -280,6 +287,13 @@ class Database:
                 self._lock.release()
         if not self.writable:
             _remove_empty_log(self.path)
+
+    def disown(self) -> None:
+        """Keep the connection open for good in a forked child: SQLite may not even close it there.
+
+        Closing it would let SQLite write its parent's log into the file, and give up its locks.
+        """
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(self._connection))
 
     @contextmanager
     def closed_on_fault(self) -> Iterator[None]:

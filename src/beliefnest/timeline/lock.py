@@ -11,15 +11,17 @@ from pathlib import Path
 from filelock import lock_descriptor
 
 from beliefnest.errors import StoreError
+from beliefnest.owned import Owned
 
 __all__ = ["WriterLock"]
 
 
-class WriterLock:
+class WriterLock(Owned):
     """The right to write one run file, held until `release` or the end of the process."""
 
     def __init__(self, descriptor: int, path: Path) -> None:
-        self._descriptor = descriptor
+        super().__init__()
+        self._descriptor: int | None = descriptor
         self._path = path
 
     @classmethod
@@ -52,11 +54,20 @@ class WriterLock:
             # The holder removed the file between our opening and our locking it.
 
     def release(self) -> None:
-        """Give the lock up and remove its file."""
+        """Give the lock up and remove its file; a second call does nothing."""
+        if self._descriptor is None:
+            return
         # Windows does not remove a file that is open; one that is left behind refuses nobody.
         with suppress(PermissionError):
             self._path.unlink(missing_ok=True)
         os.close(self._descriptor)
+        self._descriptor = None
+
+    def disown(self) -> None:
+        """Close the file in a forked child, so that the lock ends with its parent."""
+        if self._descriptor is not None:
+            os.close(self._descriptor)
+            self._descriptor = None
 
 
 def _opened(path: Path, file: Path) -> int:

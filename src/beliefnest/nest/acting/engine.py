@@ -296,7 +296,9 @@ class Engine:
         return RunRules(self.recording.setting.perception.speech_ticks)
 
     def close(self) -> None:
-        """Give up all bodies, the world and the journal."""
+        """Give up all bodies, the world and the journal; nothing in a forked child."""
+        if not self.recording.turn.is_own:
+            return
         try:
             self.bodies.close()
         finally:

@@ -165,10 +165,12 @@ class Nest(Joining, Visiting):
         self._engine = engine
         self._recording = engine.recording
 
-    @in_turn
     def close(self) -> None:
-        """End the world and close the store."""
-        self._engine.close()
+        """End the world and close the store; in a forked child nothing, they are its parent's."""
+        turn = self._recording.turn
+        if turn.is_own:
+            with turn:
+                self._engine.close()
 
     @property
     def tick(self) -> int:

@@ -7,7 +7,6 @@ selection; what reads (states, explanations, recorded runs) needs no more than t
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from copy import copy
-from threading import RLock
 from typing import Self
 
 from beliefnest.belief.context import BeliefContext
@@ -16,6 +15,7 @@ from beliefnest.errors import BranchError, StoreError, TickError
 from beliefnest.nest.past.history import History
 from beliefnest.nest.past.setting import MAIN, Setting
 from beliefnest.nest.past.setting_codec import decode_start
+from beliefnest.nest.past.turn import Turn
 from beliefnest.nest.past.views import LiveState
 from beliefnest.prompts import Renderer
 from beliefnest.timeline.journal import FOLLOW, ForkPoint, TimelineInfo, TimelineKey
@@ -53,7 +53,7 @@ class Recording:
         self.renderer = Renderer() if renderer is None else renderer
         self.history = History(journal, setting)
         self.selected: dict[BeliefPath, TimelineKey] = {(): TimelineKey((), MAIN)}
-        self.turn = RLock()
+        self.turn = Turn()
         self._latest: tuple[TimelineInfo, ForkPoint] | None = None
 
     @property
@@ -157,7 +157,12 @@ class Recording:
         return LiveState(self.history, moment, reading, self.turn)
 
     def close(self) -> None:
-        """Leave checkpoints for who comes next, and close the journal."""
+        """Leave checkpoints for later readers, and close the journal.
+
+        A forked child closes nothing: all of it is its parent's.
+        """
+        if not self.turn.is_own:
+            return
         try:
             # Whoever reads the run without checkpoints gets the same, later.
             with suppress(StoreError):

@@ -1,0 +1,222 @@
+"""A forked child can neither use what its parent has open nor end it, whatever it tries."""
+
+import multiprocessing.connection
+import os
+import subprocess
+import sys
+import textwrap
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+import beliefnest as bn
+from beliefnest.bodies.embedded import EmbeddedWorld
+from beliefnest.timeline.store import SqliteJournal
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are not forked here")
+
+WALK = "await goToPosition(bot, new Vec3(0, -51, -8))"
+
+
+def in_child(act: Callable[[], object]) -> str:
+    """What an act raised in a forked child, as text; `done` if it raised nothing."""
+    read, write = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            act()
+            told = "done"
+        except BaseException as error:  # noqa: BLE001 - told to the parent
+            told = f"{type(error).__name__}: {error}"
+        os.write(write, told.encode())
+        os._exit(0)
+    os.close(write)
+    with os.fdopen(read) as told_by_child:
+        told = told_by_child.read()
+    os.waitpid(child, 0)
+    return told
+
+
+@pytest.fixture(params=["scripted", "embedded"])
+def nest(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[bn.Nest]:
+    """A nest with a run file, and a belief in control mode."""
+    scenario = bn.Scenario.load("sally-anne", 3)
+    with bn.Nest.open(scenario, world=request.param, store=tmp_path / "run.bn") as opened:
+        opened["/sally"].switch("plan")
+        yield opened
+
+
+ACTS: dict[str, Callable[[bn.Nest], object]] = {
+    "run": lambda nest: nest["/sally"].run("sally", WALK),
+    "wait": lambda nest: nest.wait(timeout_s=1),
+    "step": lambda nest: nest._engine.step((), 1),
+    "edit": lambda nest: nest["/sally"].edit(blocks={(0, -51, 0): "stone"}),
+    "switch": lambda nest: nest["/anne"].switch("other"),
+    "state": lambda nest: nest["/"].state,
+    "past": lambda nest: nest.at(0)["/sally"].state.chat,
+    "keep": lambda nest: nest.keep("name", b"value"),
+    "programs": lambda nest: nest.programs(),
+    "play": lambda nest: nest.play(),
+    "tick": lambda nest: nest.tick,
+}
+
+
+@pytest.mark.parametrize("act", ACTS.values(), ids=ACTS)
+def test_every_use_in_a_child_is_refused_in_one_line(
+    nest: bn.Nest, act: Callable[[bn.Nest], object]
+) -> None:
+    told = in_child(lambda: act(nest))
+    assert told.startswith("ForkedError: ")
+    assert f"was opened by process {os.getpid()} and cannot be used in process" in told
+    assert "\n" not in told
+
+
+def test_parent_goes_on_after_a_child_tried_everything(nest: bn.Nest, tmp_path: Path) -> None:
+    before = nest.tick
+    for act in ACTS.values():
+        in_child(lambda act=act: act(nest))
+    assert in_child(nest.close) == "done"
+    assert in_child(lambda: nest.__exit__(None, None, None)) == "done"
+    result = nest["/sally"].run("sally", WALK)
+    assert result.ok, result.error
+    assert nest.tick == before
+    assert nest["/"].run("anne", "think(bot, 'still here')").ok
+    nest.close()
+    with bn.Nest.read(tmp_path / "run.bn") as again:
+        assert [program.ok for program in again.programs()] == [True, True]
+
+
+def test_a_child_that_ends_by_itself_ends_nothing_of_its_parent(tmp_path: Path) -> None:
+    """All that runs at the end of Python runs in the child: finalizers, `with`, collection."""
+    script = """
+        import gc, os, sys
+        import beliefnest as bn
+
+        scenario = bn.Scenario.load("sally-anne", 3)
+        with bn.Nest.open(scenario, store=sys.argv[1]) as nest:
+            nest["/sally"].switch("plan")
+            child = os.fork()
+            if child:
+                assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 7
+                assert os.path.exists(sys.argv[1] + "-lock")
+                assert nest["/sally"].run("sally", "think(bot, 'on')").ok
+                assert nest["/"].run("anne", "think(bot, 'on')").ok
+            else:
+                del nest
+                gc.collect()
+                sys.exit(7)
+        with bn.Nest.read(sys.argv[1]) as again:
+            assert len(again.programs()) == 2
+        print("sound")
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(script), str(tmp_path / "run.bn")],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert (done.stdout, done.stderr, done.returncode) == ("sound\n", "", 0)
+
+
+def test_what_a_child_inherits_keeps_neither_node_nor_the_lock_alive(tmp_path: Path) -> None:
+    """A parent that is killed ends its Node and gives up its run file, whatever its child does."""
+    script = """
+        import os, signal, sys
+        import beliefnest as bn
+
+        nest = bn.Nest.open(bn.Scenario.load("sally-anne", 3), store=sys.argv[1])
+        child = os.fork()
+        if child == 0:
+            sys.stdin.read()
+            os._exit(0)
+        print(nest._engine.world.pid, child, flush=True)
+        os.kill(os.getpid(), signal.SIGKILL)
+    """
+    with subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(script), str(tmp_path / "run.bn")],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as parent:
+        assert parent.stdout is not None
+        node, _ = map(int, parent.stdout.readline().split())
+        parent.wait()
+        watch = os.pidfd_open(node) if _is_running(node) else None
+        if watch is not None:
+            multiprocessing.connection.wait([watch], timeout=30)
+            os.close(watch)
+        assert not _is_running(node)
+        with bn.Nest.resume(tmp_path / "run.bn") as nest:
+            assert nest["/"].run("anne", "think(bot, 'on')").ok
+        parent.communicate("")
+
+
+def _is_running(pid: int) -> bool:
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except FileNotFoundError:
+        return False
+    return state != "Z"
+
+
+def test_recorded_nests_journals_and_servers_are_refused(tmp_path: Path) -> None:
+    store = tmp_path / "run.bn"
+    with bn.Nest.open(bn.Scenario.load("sally-anne", 3), world="scripted", store=store):
+        pass
+    with bn.Nest.read(store) as recorded:
+        for act in (
+            lambda: recorded["/sally"].state,
+            lambda: recorded.ticks("/"),
+            recorded.branches,
+            lambda: recorded.view()._repr_html_(),
+        ):
+            assert in_child(act).startswith("ForkedError: ")
+        assert in_child(recorded.close) == "done"
+        assert recorded["/sally"].state.agents["anne"].position is not None
+    with SqliteJournal.open(store) as journal:
+        assert in_child(journal.timelines).startswith("ForkedError: ")
+        assert in_child(journal.close) == "done"
+        assert journal.timelines()
+    with bn.Nest.read(store) as fresh:
+
+        def read_anew() -> None:
+            with bn.Nest.read(store) as own:
+                assert own["/sally"].state == own["/sally"].state
+
+        assert in_child(read_anew) == "done"
+        assert fresh["/"].state.tick == 0
+
+
+def test_worlds_are_refused() -> None:
+    world = EmbeddedWorld.start(0)
+    try:
+        assert in_child(lambda: world.pid) == "done"
+        snapshot = bn.Scenario.load("sally-anne", 3).setting.snapshot
+        told = in_child(lambda: world.open_body("/", "0", snapshot, lambda frame: None))
+        assert told.startswith("ForkedError: ")
+        assert in_child(world.interrupt) == "done"
+        assert in_child(world.close) == "done"
+        world.open_body("/", "0", snapshot, lambda frame: None).close()
+    finally:
+        world.close()
+
+
+def test_episodes_are_refused(tmp_path: Path) -> None:
+    task = bn.Task.load("tell-what-is-needed", seed=3)
+    asked = tmp_path / "asked"
+
+    class Idle:
+        def act(self, view: bn.AgentView) -> str:
+            with asked.open("a") as file:
+                file.write("asked\n")
+            return ""
+
+    with bn.Episode(task, dict.fromkeys(task.agents, Idle()), world="scripted") as episode:
+        episode.play(rounds=1)
+        before = asked.read_text()
+        assert in_child(lambda: episode.play(rounds=1)).startswith("ForkedError: ")
+        assert asked.read_text() == before, "a policy was asked in the child"
+        assert in_child(episode.close) == "done"
+        episode.play(rounds=1)
