@@ -302,7 +302,7 @@ class Episode:
         return false_beliefs(self)
 
     def help(self) -> Help:
-        """Who needed help and got it, and what was superfluous: by what would have been.
+        """Measure who needed help and got it, who helped whom, and what was superfluous.
 
         Branches of a copy in memory are played: one for each agent, with the other players idle,
         and one for each thing that a player said or gave, without it. Policies are asked again,
@@ -317,14 +317,12 @@ class Episode:
                 self._help = help_in(copy, self._policies)
         return self._help
 
-    def reached_by(self, agent: str) -> float:
-        """Ticks after which an agent reached its goal; infinite: it did not, or not yet."""
+    @property
+    def progress(self) -> Mapping[str, Progress]:
+        """How far each agent's goal has come by now."""
         self._opened()
         self._watch()
-        progress = self._watching.progress[agent]
-        if not progress.succeeded(over=self.is_over):
-            return float("inf")
-        return self.ticks if progress.reached is None else progress.reached - self._start
+        return {agent: self._watching.progress[agent] for agent in self.task.agents}
 
     @property
     def spent(self) -> Spent:

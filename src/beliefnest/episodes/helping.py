@@ -1,21 +1,25 @@
 """Help: who needed it, who got it, what was said or given for nothing.
 
-By what would have been, on branches on which somebody is idle and the others act as they then
-would. An agent *needed* help if it does not reach its goal where the other players do nothing, as
-in the comparison with a person alone of Puig and others (2021), Watch-And-Help. Something said or
-given was *superfluous* if nobody reaches a goal later or not at all without it (but-for test of
-causes; Grice 1975, "not more informative than is required"). Where two say the same, each of it is
-superfluous, as with every but-for test.
+Measured by what would have been, on branches on which somebody is idle and the others act as they
+then would. Goals are divided among the agents who have them (`shares.py`), since a goal that all
+share is reached by nobody if one fails. An agent *needed* help if its share would not have come
+true had the other players done nothing, as in the comparison with a person alone of Puig and
+others (2021), Watch-And-Help. Something said or given *helped* another if the share of that other
+would have come true later or not at all without it (but-for test of causes). It was *superfluous*
+if nobody's share would have (Grice 1975, "not more informative than is required"). Where two say
+the same, each of it is superfluous, as with every but-for test.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol, Self
 
 from beliefnest.episodes.decided import Decision, Part
+from beliefnest.episodes.shares import Share, shares_of
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.view import GO_ON, AgentView, Policy
 from beliefnest.nest.face.nest import Nest
+from beliefnest.scenarios.goals import Progress
 from beliefnest.world.values import EventKind
 
 __all__ = ["Act", "Help", "help_in"]
@@ -31,7 +35,8 @@ class Act:
         agent: Whose.
         first: The round in which it began.
         last: The round in which it ended; a program that was cut may go on.
-        worse: Who would have reached its goal later, or not at all, without it.
+        worse: Agents whose share of their goals would have come true later, or not at all,
+            without it; the agent itself may be among them.
     """
 
     agent: str
@@ -39,14 +44,20 @@ class Act:
     last: int
     worse: tuple[str, ...] = ()
 
+    @property
+    def helped(self) -> tuple[str, ...]:
+        """The other agents among those who would be worse off without it."""
+        return tuple(name for name in self.worse if name != self.agent)
+
 
 @dataclass(frozen=True, slots=True)
 class Help:
     """Help in an episode.
 
     Attributes:
-        needed: Agents who would not have reached their goals had the other players done nothing.
-        given: Those of them who reached them.
+        needed: Agents whose share of their goals would not have come true had the other players
+            done nothing.
+        given: Those of them whose share came true.
         acts: What players said or gave, and who would be worse off without it.
     """
 
@@ -56,7 +67,7 @@ class Help:
 
     @property
     def superfluous(self) -> tuple[Act, ...]:
-        """What nobody would be worse off without."""
+        """Return what nobody would be worse off without."""
         return tuple(act for act in self.acts if not act.worse)
 
 
@@ -81,8 +92,9 @@ class Branching(Protocol):
     def parts(self) -> Sequence[Part]:
         """What was decided and how it ended."""
 
-    def reached_by(self, agent: str) -> float:
-        """Ticks after which an agent reached its goal; infinite: it did not."""
+    @property
+    def progress(self) -> Mapping[str, Progress]:
+        """How far each agent's goal has come."""
 
     def play(self, rounds: int | None = None) -> Self:
         """Play to the end."""
@@ -93,7 +105,7 @@ class Branching(Protocol):
 
 @dataclass(frozen=True)
 class _Without:
-    """Does what was decided, but for some rounds.
+    """Policy that does what was decided, but for some rounds.
 
     Attributes:
         decisions: By round.
@@ -106,7 +118,7 @@ class _Without:
     last: float
 
     def act(self, view: AgentView) -> str:
-        """What was decided for the round, if it is not left out."""
+        """Return what was decided for the round, if it is not left out."""
         if self.first <= view.round <= self.last or view.round >= len(self.decisions):
             return ""
         decision = self.decisions[view.round]
@@ -116,13 +128,15 @@ class _Without:
 
 
 def help_in(episode: Branching, policies: Mapping[str, Policy]) -> Help:
-    """Help in an episode that is over.
+    """Measure help in an episode that is over.
 
     Args:
         episode: A copy of it, which gets branches.
         policies: Of all agents; on the branches those who are not left out are asked again.
     """
     task = episode.task
+    shares = shares_of(episode.progress, episode.nest["/"].state.events)
+    done = _done(episode, shares)
     decided = {
         agent: [part.decisions[agent] for part in episode.parts if agent in part.decisions]
         for agent in task.agents
@@ -131,37 +145,28 @@ def help_in(episode: Branching, policies: Mapping[str, Policy]) -> Help:
     needed = []
     for agent in task.agents:
         others = {name: idle[name] for name in task.players if name != agent}
-        if not others or not task.goal_of(agent).conditions:
-            continue
-        alone = episode.forked(0, {**policies, **others}).play()
-        if alone.reached_by(agent) == float("inf"):
-            needed.append(agent)
-    given = [agent for agent in needed if episode.reached_by(agent) < float("inf")]
-    acts = [
-        _compared(episode, policies, act, decided[agent])
-        for agent in task.players
-        for act in _acts(episode, agent)
-    ]
+        if others:
+            alone = episode.forked(0, {**policies, **others}).play()
+            if _done(alone, shares)[agent] == float("inf"):
+                needed.append(agent)
+    given = [agent for agent in needed if done[agent] < float("inf")]
+    acts = []
+    for act in [act for agent in task.players for act in _acts(episode, agent)]:
+        without = _Without(decided[act.agent], act.first, act.last)
+        branch = episode.forked(act.first, {**policies, act.agent: without}).play()
+        there = _done(branch, shares)
+        acts.append(replace(act, worse=tuple(a for a in task.agents if there[a] > done[a])))
     return Help(tuple(needed), tuple(given), tuple(acts))
 
 
-def _compared(
-    episode: Branching, policies: Mapping[str, Policy], act: Act, decided: Sequence[Decision]
-) -> Act:
-    """An act with who would be worse off without it."""
-    without = _Without(decided, act.first, act.last)
-    branch = episode.forked(act.first, {**policies, act.agent: without}).play()
-    worse = [
-        name
-        for name in episode.task.agents
-        if episode.task.goal_of(name).conditions
-        and branch.reached_by(name) > episode.reached_by(name)
-    ]
-    return Act(act.agent, act.first, act.last, tuple(worse))
+def _done(episode: Branching, shares: Mapping[str, Share]) -> dict[str, float]:
+    """Return the tick by which each agent's share had come true; infinite: it never had."""
+    progress = episode.progress
+    return {agent: share.done_at(progress[agent]) for agent, share in shares.items()}
 
 
 def _acts(episode: Branching, agent: str) -> list[Act]:
-    """Programs of an agent in which it said or gave something."""
+    """Return the programs of an agent in which it said or gave something."""
     state = episode.nest["/"].state
     gave = {e.tick for e in state.events if (e.actor, e.kind) == (agent, _GAVE)}
     said = {tick for tick, speaker, _ in state.chat if speaker == agent} | gave

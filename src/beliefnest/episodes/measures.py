@@ -42,9 +42,9 @@ class Measures:
         requests: Requests to models.
         tokens: Sent to models and received.
         cost: US dollars; None where a price is not known.
-        help_needed: Agents who would not have reached their goals without the other players;
-            None, as for the next two: it was not asked for, see `Episode.help`.
-        help_given: Those of them who did.
+        help_needed: Agents whose share of their goals would not have come true without the other
+            players; None, as for the next two: it was not asked for, see `Episode.help`.
+        help_given: Those of them whose share came true.
         help_superfluous: What players said or gave without which nobody would be worse off.
     """
 

@@ -1,0 +1,111 @@
+"""Shares of a goal: the conditions that each agent brought about, of a goal that several have."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from beliefnest.belief.entries import PerceivedEvent
+from beliefnest.scenarios.goals import (
+    AgentAt,
+    BlockIs,
+    BlocksAlike,
+    Goal,
+    GoalCondition,
+    ItemsIn,
+    ItemsWith,
+    LeversHeld,
+    Progress,
+)
+from beliefnest.world.values import EventKind
+
+__all__ = ["Share", "shares_of"]
+
+_NEVER = float("inf")
+_CHANGES_NO_BLOCK = (
+    EventKind.OPEN_CONTAINER,
+    EventKind.GET_ITEM_FROM_CHEST,
+    EventKind.DEPOSIT_ITEM_INTO_CHEST,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """Conditions of an agent's goal that are its own to bring about, or to keep from.
+
+    Attributes:
+        reach: Numbers of the conditions to reach.
+        never: Numbers of the conditions that must not come true; they follow those to reach.
+    """
+
+    reach: tuple[int, ...]
+    never: tuple[int, ...]
+
+    def done_at(self, progress: Progress) -> float:
+        """Return the tick by which all of it had come true; infinite: it never had.
+
+        Args:
+            progress: How far the agent's goal came, in the episode or on a branch of it.
+        """
+        lost = _NEVER if progress.violated is None else progress.violated
+        if any(number in progress.first for number in self.never):
+            return _NEVER
+        if not progress.goal.reach:
+            return progress.start if lost == _NEVER else _NEVER
+        came = [progress.first.get(number, _NEVER) for number in self.reach]
+        done = max(came, default=progress.start)
+        return done if done <= lost else _NEVER
+
+
+def shares_of(
+    progress: Mapping[str, Progress], events: Sequence[PerceivedEvent]
+) -> dict[str, Share]:
+    """Return each agent's share of its goal.
+
+    A condition is the share of those who brought it about, among all who are after it. If it did
+    not come true, or somebody else brought it about, it is the share of all who are after it.
+
+    Args:
+        progress: How far each agent's goal came in the episode.
+        events: What happened in the episode, in order.
+    """
+    goals = {agent: each.goal for agent, each in progress.items()}
+    return {agent: _share(agent, goals, each.first, events) for agent, each in progress.items()}
+
+
+def _share(
+    agent: str,
+    goals: Mapping[str, Goal],
+    first: Mapping[int, int],
+    events: Sequence[PerceivedEvent],
+) -> Share:
+    goal = goals[agent]
+    reach = []
+    for number, condition in enumerate(goal.reach):
+        after_it = {name for name, other in goals.items() if condition in other.reach}
+        tick = first.get(number, -1)
+        did = _bringers(condition, [each for each in events if each.tick <= tick]) & after_it
+        if agent in (did or after_it):
+            reach.append(number)
+    return Share(tuple(reach), tuple(range(len(goal.reach), len(goal.conditions))))
+
+
+def _bringers(condition: GoalCondition, events: Sequence[PerceivedEvent]) -> set[str]:
+    """Return who brought a condition about: whoever holds, or has, or did what it is about."""
+    if condition.path:
+        return {condition.path[0]}
+    fact = condition.fact
+    if isinstance(fact, ItemsWith | AgentAt):
+        return {fact.agent}
+    if isinstance(fact, LeversHeld):
+        return set(fact.agents)
+    return {each.actor for each in _deeds(fact, events) if each.actor is not None}
+
+
+def _deeds(
+    fact: ItemsIn | BlockIs | BlocksAlike, events: Sequence[PerceivedEvent]
+) -> Sequence[PerceivedEvent]:
+    """Return the deeds that made a container, or a block, what it is."""
+    here = [each for each in events if each.detail.get("position") == fact.place]
+    if isinstance(fact, ItemsIn):
+        deposits = [each for each in here if each.kind is EventKind.DEPOSIT_ITEM_INTO_CHEST]
+        return [each for each in deposits if fact.item in each.detail["items"]]
+    return [each for each in here if each.kind not in _CHANGES_NO_BLOCK][-1:]
