@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from beliefnest.cli.app import run_command_line
+from beliefnest.cli.app import app, run_command_line
 from beliefnest.cli.folder import store_in
 from beliefnest.errors import InputError
 from beliefnest.timeline.store import SqliteJournal
@@ -270,3 +270,14 @@ def test_an_interrupt_ends_everything_and_leaves_a_readable_folder(whole_group: 
         assert journal.timelines()
     with pytest.raises(ProcessLookupError):
         os.killpg(process.pid, 0)
+
+
+COMMANDS = [command.name or command.callback.__name__ for command in app.registered_commands]
+
+
+@pytest.mark.parametrize("command", [[], *([name] for name in COMMANDS)])
+def test_every_command_takes_h_for_help(
+    command: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_command_line([*command, "-h"]) == 0
+    assert "-h, --help" in capsys.readouterr().out

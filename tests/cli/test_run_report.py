@@ -1,14 +1,17 @@
 """Every run folder gets a page with all that came of it, which needs nothing else."""
 
 import html
+import json
 import re
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 
+import beliefnest as bn
 from beliefnest.bodies.scripted import ScriptedBodies
 from beliefnest.cli.app import run_command_line
+from beliefnest.cli.folder import store_in
 from beliefnest.errors import BodyError
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
@@ -96,3 +99,53 @@ def test_a_run_that_cannot_begin_says_why(
     arguments = ["--condition", "1", "--world", "scripted", "--out", str(tmp_path / "run")]
     assert run_command_line(["run", "sally-anne", *arguments]) != 0
     assert capsys.readouterr().err.endswith("there is no room for it\n")
+
+
+ASK = """\
+name: ask
+box: [[0, 0, 0], [8, 3, 6]]
+blocks: [{block: stone, fill: [[0, 0, 0], [8, 0, 6]]}]
+static_blocks: [stone]
+containers: [{at: [7, 1, 5], label: red box, items: {apple: 1}}, {at: [1, 1, 5], label: blue box}]
+agents: {wim: {position: [4.5, 1, 5.5]}}
+initial_beliefs: [{path: /wim, containers: [{at: [7, 1, 5], items: {apple: 1}}]}]
+probes:
+  - path: /wim
+    expect:
+      answers: {question: "Where is the apple?", options: [red box, blue box], right: red box}
+"""
+PULL = """\
+  - {path: /wim, acts_in: /, agent: wim, task: Turn on the lever.}
+"""
+
+
+def test_a_question_is_told_with_its_answer_and_no_program(tmp_path: Path) -> None:
+    (tmp_path / "ask.yaml").write_text(ASK)
+    command = ["run", str(tmp_path / "ask.yaml"), "--world", "scripted"]
+    assert run_command_line([*command, "--out", str(tmp_path / "out")]) == 0
+    page = html.unescape((tmp_path / "out" / "report.html").read_text("utf-8"))
+    assert "acted out" not in page
+    assert "<h4>Program</h4>" not in page
+    assert "Where is the apple? Options: " in page
+    assert "Answer: red box" in page
+    assert "Judged by the model's answer to the question; that is as expected." in page
+    with bn.Nest.read(store_in(tmp_path / "out")) as nest:
+        (prompt,) = nest.prompts()
+    assert prompt.detail["task"] == "Where is the apple?"
+
+
+def test_why_a_program_failed_is_told_by_the_run_its_report_and_its_files(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "ask.yaml").write_text(ASK.partition("probes:")[0] + "probes:\n" + PULL)
+    answer = "```javascript\nawait turnOnLever(bot, new Vec3(5, 1, 1))\n```"
+    (tmp_path / "says.json").write_text(json.dumps([answer]))
+    command = ["run", str(tmp_path / "ask.yaml"), "--world", "scripted"]
+    command += ["--model", f"scripted:{tmp_path / 'says.json'}", "--out", str(tmp_path / "out")]
+    assert run_command_line(command) == 0
+    why = "line 1: turnOnLever: there is no lever at (5, 1, 1), but air. Give that of a lever."
+    assert f"probe 1: the program failed: {why}" in capsys.readouterr().out
+    page = html.unescape((tmp_path / "out" / "report.html").read_text("utf-8"))
+    assert f"the program failed: {why}; it ran from tick 0 to tick 1" in page
+    report = json.loads((tmp_path / "out" / "run.json").read_text("utf-8"))
+    assert report["runs"][0]["probes"][0]["error"] == why

@@ -66,7 +66,7 @@ def test_what_ran_in_a_simulator_is_told(run: Path, capsys: pytest.CaptureFixtur
     assert "diamond" in program["error"]
     assert program["lines"][0] == 1
     assert run_command_line(["show", str(run)]) == 0
-    assert "program of anne: ended well" in capsys.readouterr().out
+    assert "ticks 54 to 108: program of anne: ended well" in capsys.readouterr().out
 
 
 def test_a_table_names_the_containers(run: Path, capsys: pytest.CaptureFixture[str]) -> None:

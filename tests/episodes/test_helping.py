@@ -127,7 +127,7 @@ TAKES_BREAD = "await getItemFromChest(bot, new Vec3(8, 1, 7), {bread: 1})"
 
 
 def test_a_decisive_whisper_helps_its_addressee_and_not_all_who_share_the_goal() -> None:
-    policies = {
+    policies: dict[str, Any] = {
         "ann": Does({0: WHISPERS}),
         "bob": Fetches(patience=99),
         "cid": Does({1: TAKES_BREAD}),
@@ -143,7 +143,7 @@ def test_a_decisive_whisper_helps_its_addressee_and_not_all_who_share_the_goal()
 
 def test_a_whisper_helps_where_the_goal_waits_for_another_anyway() -> None:
     # Without it Bob has the apple later, though still before Cid has the bread.
-    policies = {
+    policies: dict[str, Any] = {
         "ann": Does({0: WHISPERS}),
         "bob": Fetches(patience=3),
         "cid": Does({5: TAKES_BREAD}),
@@ -168,7 +168,7 @@ def test_who_puts_something_somewhere_has_done_that_share_of_the_goal() -> None:
             has = view.state.agents["bob"].inventory.get("apple")
             return puts % "apple" if has else super().act(view)
 
-    policies = {
+    policies: dict[str, Any] = {
         "ann": Does({0: WHISPERS, 2: "await whisper(bot, 'cid', 'Go on!')"}),
         "bob": Brings(patience=99),
         "cid": Does({1: TAKES_BREAD, 3: puts % "bread"}),
@@ -183,7 +183,7 @@ def test_who_puts_something_somewhere_has_done_that_share_of_the_goal() -> None:
 
 def test_who_is_given_what_it_is_to_have_is_helped() -> None:
     takes = "await getItemFromChest(bot, new Vec3(8, 1, 1), {apple: 1})"
-    policies = {
+    policies: dict[str, Any] = {
         "ann": Does({0: takes, 1: "await giveItemToOther(bot, 'bob', 'apple', 1)"}),
         "bob": Does({1: "await receiveItemFromOther(bot, 'ann', 'apple', 1)"}),
         "cid": Does({0: TAKES_BREAD}),

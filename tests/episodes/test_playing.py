@@ -1,5 +1,6 @@
 """Rules of play: turns, budgets, goals that must never come true, what is measured."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -7,7 +8,9 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
+from beliefnest.episodes.policies import Scripted
 from beliefnest.episodes.record import Budget
+from beliefnest.episodes.telling import round_rows, told_episode
 
 HALL: dict[str, Any] = {
     "name": "hall",
@@ -70,8 +73,6 @@ def test_what_must_never_be_is_checked_at_every_tick() -> None:
     policies: dict[str, Any] = {"bob": Says()}
     with bn.Episode(task(goal=goal, rounds=2), {**policies, "ann": Says()}) as played:
         assert played.play().success
-    from beliefnest.episodes.policies import Scripted
-
     scripted = Scripted([takes_and_returns])
     with bn.Episode(task(goal=goal, rounds=2), {**policies, "ann": scripted}) as played:
         assert not played.play().success
@@ -111,12 +112,12 @@ def test_the_command_plays_and_goes_on(tmp_path: Path, capsys: pytest.CaptureFix
     assert run_command_line([*arguments, "--rounds", "2"]) == 1
     assert run_command_line(arguments) == 0
     printed = capsys.readouterr().out
-    assert "goal reached after 25 ticks, 5 rounds, 1 messages" in printed
+    assert "goal reached after 25 ticks, 5 rounds, 1 message\n" in printed
     assert "[located(" in printed
     assert run_command_line(["play", "help-find", "--agent", "anne=search:0", "--seed", "1"]) == 1
     assert run_command_line(["show", str(tmp_path / "run" / "run.bn"), "--path", "/anne"]) == 0
     assert run_command_line([*arguments, "--measure-help"]) == 0
-    told = "help: needed by 1, given to 1 of them; superfluous: 0"
+    told = "help: needed by sally; given to sally; superfluous: 0 of 1 programs with help"
     assert told in capsys.readouterr().out
     for wrong in (
         ["play"],
@@ -155,3 +156,92 @@ def test_the_command_goes_on_with_no_other_episode(
         assert run_command_line(["play", *other, *out]) == 2
         assert found in " ".join(capsys.readouterr().err.split())
     assert (tmp_path / "run" / "run.bn").read_bytes() == before
+
+
+PULLS = "await say(bot, 'Now!')\nawait turnOnLever(bot, new Vec3(5, 1, 1))"
+WHY = "line 2: turnOnLever: there is no lever at (5, 1, 1), but air. Give that of a lever."
+
+
+def test_why_a_program_failed_is_told_to_readers_and_not_to_its_agent(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "pull.js").write_text(PULLS)
+    (tmp_path / "lever.yaml").write_text(json.dumps({"scenario": HALL, "name": "x", "goal": GOAL}))
+    command = ["play", str(tmp_path / "lever.yaml"), "--agent", f"ann=program:{tmp_path}/pull.js"]
+    command += ["--agent", "bob=random", "--rounds", "1"]
+    assert run_command_line([*command, "--out", str(tmp_path / "out")]) == 1
+    assert f"failed in round 1, ann: {WHY}\n" in capsys.readouterr().out
+    assert run_command_line([*command, "--json"]) == 1
+    report = json.loads(capsys.readouterr().out)
+    assert report["rounds"][0]["agents"]["ann"]["reason"] == WHY
+    assert report["rounds"][0]["round"] == 1
+    assert report["measures"]["failures"] == [f"round 1, ann: {WHY}"]
+    with bn.Episode.resume(tmp_path / "out" / "run.bn") as episode:
+        (failure,) = episode.failures
+        assert (failure.round, failure.agent, failure.ended) == (0, "ann", "failed")
+        assert failure.reason == WHY
+        assert episode.view("ann").last.message == "line 2: turnOnLever did not work"
+    (row,) = [row for row in _rounds_of(tmp_path / "out" / "run.bn") if row["agent"] == "ann"]
+    assert (row["message"], row["reason"]) == ("line 2: turnOnLever did not work", WHY)
+
+
+def test_rounds_lost_by_a_policy_are_told_with_the_reason() -> None:
+    class Breaks:
+        def act(self, view: bn.AgentView) -> str:
+            raise RuntimeError("no answer today")
+
+    with bn.Episode(task(rounds=2), {"ann": Breaks(), "bob": Says()}) as played:
+        failures = [str(each) for each in played.play().failures]
+    why = "ann: RuntimeError: no answer today"
+    assert failures == [f"round 1, {why}", f"round 2, {why}"]
+
+
+def test_in_turns_a_round_is_one_however_many_act_in_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    content = {"name": "hall", "scenario": HALL, "goal": GOAL, "play": "turns", "rounds": 2}
+    (tmp_path / "turns.yaml").write_text(json.dumps(content))
+    command = [
+        "play",
+        str(tmp_path / "turns.yaml"),
+        "--agent",
+        "ann=random",
+        "--agent",
+        "bob=random",
+    ]
+    run_command_line([*command, "--json"])
+    report = json.loads(capsys.readouterr().out)
+    assert [part["round"] for part in report["rounds"]] == [1, 1, 2, 2]
+
+
+def _rounds_of(store: Path) -> list[dict[str, Any]]:
+    with bn.Nest.read(store) as nest:
+        told = told_episode(nest)
+    assert told is not None
+    return list(round_rows(told))
+
+
+def test_conditions_that_come_true_after_the_goal_is_lost_are_told() -> None:
+    takes = "await getItemFromChest(bot, new Vec3(1, 1, 1), {apple: 1})"
+    puts = "await depositItemIntoChest(bot, new Vec3(11, 1, 5), {apple: 1})"
+    never = [{"agent": "ann", "items": {"apple": 1}}]
+    policies: dict[str, Any] = {"ann": Scripted([f"{takes}\n{puts}"]), "bob": Scripted([])}
+    with bn.Episode(task(goal={**GOAL, "never": never}, rounds=1), policies) as played:
+        assert not played.play().success
+        (_, put), (_, taken) = played.conditions
+        assert taken is not None and put is not None and put > taken
+
+
+def test_what_is_so_at_the_start_is_kept_at_once_and_in_a_branch(tmp_path: Path) -> None:
+    goal = {"reach": [{"container": [1, 1, 1], "items": {"apple": 1}}, *GOAL["reach"]]}
+    policies: dict[str, Any] = {"ann": Scripted([]), "bob": Scripted([])}
+    with bn.Episode(task(goal=goal), policies, store=tmp_path / "run.bn") as played:
+        assert played.rounds == 0
+        start = played.start
+        kept = told_episode(played.nest)
+        assert kept is not None
+        assert [tick for _, _, tick in kept["branches"]["main"]["goal"]] == [start, None]
+        played.play(1).at(1).fork(ann=Scripted([]))
+        kept = told_episode(played.nest)
+        assert kept is not None
+        assert [tick for _, _, tick in kept["branches"]["fork 1"]["goal"]] == [start, None]

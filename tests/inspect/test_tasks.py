@@ -214,7 +214,7 @@ def test_episodes_are_samples_whose_players_a_model_plays(run, tmp_path):
     assert run(MODEL + EPISODES, tmp_path) == [
         "C 1 True",
         "anne=model:inspect:1,sally=search:0 True",
-        "sally has 1 apple: tick 25",
+        "sally has 1 apple: at tick 25",
     ]
 
 
@@ -253,3 +253,10 @@ def test_a_question_of_a_suite_is_a_sample_with_its_container_as_target(run, tmp
         "print(sample.target, sample.metadata['order'], sample.metadata['options'])\n"
     )
     assert run(code, tmp_path) == ["box 1 ['box', 'jar', 'in none of them']"]
+
+
+def test_why_a_program_failed_stands_in_the_explanation_of_an_episode():
+    from beliefnest.inspect.episodes import _line
+
+    done = {"agent": "ann", "program": "x()", "ended": "failed", "reason": "line 1: no x"}
+    assert _line(0, done) == "round 1, ann: x() (failed: line 1: no x)"

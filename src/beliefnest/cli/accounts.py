@@ -6,7 +6,18 @@ from typing import Any
 
 from beliefnest.cli.pictures import container_name, place_text, titled
 from beliefnest.nest.face.nest import Nest
-from beliefnest.scenarios.expected import Arrives, Holds, Opens, Stands
+from beliefnest.scenarios.expected import (
+    Answers,
+    Arrives,
+    Believes,
+    Holds,
+    Intends,
+    Judge,
+    Opens,
+    Says,
+    Stands,
+    Takes,
+)
 from beliefnest.scenarios.judging import Judgement
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Scenario
@@ -14,6 +25,16 @@ from beliefnest.viewer.page.words import event_text, is_lid
 from beliefnest.world.values import Position
 
 __all__ = ["accounts"]
+
+_GROUNDS = {
+    Answers: "the model's answer to the question",
+    Intends: "what the program makes for",
+    Takes: "what the agent takes out of containers",
+    Says: "what the agent says",
+    Believes: "what is believed once the program has ended",
+    Judge: "a function of the scenario",
+}
+"""Grounds of judgements that no sentence of their own tells."""
 
 _MOST = 40
 """Events that are told of; of more the last ones."""
@@ -38,13 +59,8 @@ def accounts(nest: Nest, outcome: Outcome) -> list[dict[str, list[str]]]:
 
 
 def _happened(probe: ProbeOutcome, labels: Mapping[Position, str]) -> list[str]:
-    answered = [
-        f"to {reply.question!r} the model answered {reply.answer!r}"
-        + (f", since: {reply.reason}" if reply.reason else "")
-        for reply in probe.replies
-    ]
     if probe.trial is None:
-        return [*answered, *([probe.fault] if probe.fault else [])]
+        return [probe.fault] if probe.fault else []
     told = [
         f"tick {tick}: {event_text(event, labels)}"
         for tick, event in probe.result.happened
@@ -53,8 +69,11 @@ def _happened(probe: ProbeOutcome, labels: Mapping[Position, str]) -> list[str]:
     lines = told[-_MOST:]
     if len(told) > _MOST:
         lines.insert(0, f"{len(told) - _MOST} earlier events are left out")
-    ended = "ended well" if probe.result.ok else f"failed: {probe.result.error}"
-    return [*lines, f"the program {ended}, after {probe.result.ticks} ticks", *answered]
+    result = probe.result
+    began = probe.trial.state.tick - result.ticks
+    ended = "ended well" if result.ok else f"failed: {result.error}"
+    span = f"it ran from tick {began} to tick {began + result.ticks}"
+    return [*lines, f"the program {ended}; {span}"]
 
 
 def _judged(outcome: ProbeOutcome, judged: Judgement, scenario: Scenario) -> str:
@@ -81,7 +100,7 @@ def _judged(outcome: ProbeOutcome, judged: Judgement, scenario: Scenario) -> str
             f"that is {verdict}."
         )
     told = "" if judged.ok else f": {judged.why_not}"
-    return f"Judged by {type(expect).__name__.lower()}; that is {verdict}{told}."
+    return f"Judged by {_GROUNDS[type(expect)]}; that is {verdict}{told}."
 
 
 def _why(nest: Nest, outcome: ProbeOutcome, run: Outcome) -> list[str]:

@@ -8,13 +8,16 @@ from pathlib import Path
 from typing import Any
 
 from rich import box
-from rich.markup import escape
 from rich.table import Table
+from rich.text import Text
 
 from beliefnest.bodies.worlds import check_world
 from beliefnest.cli.console import folded, progress_on, stdout
+from beliefnest.cli.text import counted, printable
 from beliefnest.episodes.episode import Budget, Episode
+from beliefnest.episodes.helping import Help
 from beliefnest.episodes.task import Task
+from beliefnest.episodes.telling import told_episode
 from beliefnest.errors import InputError, NotBegunError
 
 __all__ = ["PlayOptions", "play_task"]
@@ -76,10 +79,10 @@ def play_task(options: PlayOptions) -> int:
             on_progress(f"round {episode.rounds + 1}", episode.rounds, limit)
             episode.play(1)
         if options.measures_help:
-            on_progress("what would have been", limit, limit)
+            on_progress("playing what would have been without help", limit, limit)
             episode.help()
         on_progress("over", limit, limit)
-        report = _report(episode)
+        report = _report(episode, measures_help=options.measures_help)
     if options.as_json:
         sys.stdout.write(json.dumps(report, indent=2) + "\n")
     else:
@@ -162,29 +165,54 @@ def _told(policies: Mapping[str, str]) -> str:
     return ", ".join(f"{agent}={policy}" for agent, policy in policies.items())
 
 
-def _report(episode: Episode) -> dict[str, Any]:
-    measures, count = episode.measures.row(), len(episode.task.goal.reach)
-    return {
+def _report(episode: Episode, *, measures_help: bool) -> dict[str, Any]:
+    told = told_episode(episode.nest)
+    assert told is not None
+    branch = told["branches"][episode.branch]
+    report: dict[str, Any] = {
         "task": episode.task.name,
         "world": episode.world,
         "success": episode.success,
+        "start": told["start"],
         "goal": [
-            {"condition": text, "never": number >= count, "tick": tick}
-            for number, (text, tick) in enumerate(episode.conditions)
+            {"condition": text, "never": never, "tick": tick}
+            for text, never, tick in branch["goal"]
         ],
-        "measures": measures,
+        "measures": episode.measures.row(),
         "rounds": [
             {
+                "round": part["round"] + 1,
+                "tick": part["t"],
                 "agents": {
-                    agent: {
-                        "program": decision.program,
-                        "fault": decision.fault,
-                        "ended": part.ended[agent].how if agent in part.ended else "none",
+                    done["agent"]: {
+                        "program": done["program"],
+                        "fault": done["fault"],
+                        "ended": done["ended"] or "none",
+                        "reason": done["reason"],
                     }
-                    for agent, decision in part.decisions.items()
-                }
+                    for done in part["agents"]
+                },
             }
-            for part in episode.parts
+            for part in branch["parts"]
+        ],
+    }
+    if measures_help:
+        report["help"] = _help(episode.help())
+    return report
+
+
+def _help(found: Help) -> dict[str, Any]:
+    return {
+        "needed": list(found.needed),
+        "given": list(found.given),
+        "acts": [
+            {
+                "agent": act.agent,
+                "rounds": [act.first + 1, act.last + 1],
+                "helped": list(act.helped),
+                "worse": list(act.worse),
+            }
+            for act in found.acts
         ],
     }
 
@@ -193,26 +221,45 @@ def _print(report: Mapping[str, Any]) -> None:
     table = Table(title=report["task"], title_justify="left", box=box.SIMPLE_HEAVY)
     for heading in ("round", "agent", "program", "ended"):
         table.add_column(heading, justify="right" if heading == "round" else "left")
-    for number, part in enumerate(report["rounds"], start=1):
+    for part in report["rounds"]:
         for agent, told in part["agents"].items():
-            shown = told["program"] or (f"none: {told['fault']}" if told["fault"] else "")
-            table.add_row(str(number), agent, escape(shown), told["ended"])
+            ended = told["ended"].replace("_", " ")
+            cells = (str(part["round"]), agent, told["program"].strip(), ended)
+            table.add_row(*(Text(printable(cell)) for cell in cells))
     console = stdout()
     console.print(folded(table))
-    for condition in report["goal"]:
-        when = "at no tick" if condition["tick"] is None else f"at tick {condition['tick']}"
-        kind = "not to be: " if condition["never"] else ""
-        console.print(f"{kind}{condition['condition']}: {when}", markup=False, highlight=False)
+    lines = [f"failed in {failure}" for failure in report["measures"]["failures"]]
+    lines += [_goal_line(each) for each in report["goal"]]
+    if "help" in report:
+        lines += _help_lines(report["help"], report["measures"])
     measures = report["measures"]
-    if measures["help_needed"] is not None:
-        console.print(
-            f"help: needed by {measures['help_needed']}, given to {measures['help_given']} of "
-            f"them; superfluous: {measures['help_superfluous']}",
-            highlight=False,
-        )
     verdict = "reached" if report["success"] else "not reached"
-    console.print(
-        f"goal {verdict} after {measures['ticks']} ticks, {measures['rounds']} rounds, "
-        f"{measures['messages']} messages",
-        highlight=False,
+    # Ticks of conditions are those of the world; the goal's are counted from the first round on.
+    start = f" of play, which began at tick {report['start']}" if report["start"] else ""
+    lines.append(
+        f"goal {verdict} after {counted(measures['ticks'], 'tick')}{start}, "
+        f"{counted(measures['rounds'], 'round')}, {counted(measures['messages'], 'message')}"
     )
+    for line in lines:
+        console.print(printable(line), markup=False, highlight=False)
+
+
+def _goal_line(condition: Mapping[str, Any]) -> str:
+    when = "at no tick" if condition["tick"] is None else f"at tick {condition['tick']}"
+    kind = "not to be: " if condition["never"] else ""
+    return f"{kind}{condition['condition']}: {when}"
+
+
+def _help_lines(found: Mapping[str, Any], measures: Mapping[str, Any]) -> list[str]:
+    """Return who needed help, and whom each thing that was said or given helped, a line each."""
+    needed, given = (", ".join(found[key]) or "nobody" for key in ("needed", "given"))
+    lines = [
+        f"help: needed by {needed}; given to {given}; "
+        f"superfluous: {measures['help_superfluous']} of {len(found['acts'])} programs with help"
+    ]
+    for act in found["acts"]:
+        first, last = act["rounds"]
+        when = f"round {first}" if first == last else f"rounds {first} to {last}"
+        does = f"helped {', '.join(act['helped'])}" if act["helped"] else "helped nobody else"
+        lines.append(f"  {act['agent']} in {when}: {does}")
+    return lines

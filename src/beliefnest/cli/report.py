@@ -204,10 +204,15 @@ def _verdict(outcome: Outcome) -> str:
 
 
 def failure_lines(outcome: Outcome) -> list[str]:
-    """What was not as expected, for people, a line each."""
+    """Return what was not as expected, and why programs failed all the same, a line each."""
     number = outcome.scenario.condition
     where = "" if number is None else f"condition {number}: "
-    return [f"NO: {where}{failure}" for failure in outcome.failures]
+    failed = [
+        f"{where}{probe.probe.label or f'probe {count}'}: the program failed: {probe.error}"
+        for count, probe in enumerate(outcome.probes, start=1)
+        if probe.error is not None and probe.ok is not False
+    ]
+    return [*(f"NO: {where}{failure}" for failure in outcome.failures), *failed]
 
 
 def _headings(outcomes: Iterable[Outcome]) -> list[str]:

@@ -349,7 +349,7 @@ def _print(
         console.print(folded(_table(run, cells, console)))
         if _is_one_round(run, cells):
             for line in (line for outcome in run.outcomes for line in failure_lines(outcome)):
-                console.print(line, highlight=False, markup=False, soft_wrap=True)
+                console.print(printable(line), highlight=False, markup=False, soft_wrap=True)
         for line in _unread(run.results):
             console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
         console.print(f"recorded in {run.folder.path}", highlight=False, soft_wrap=True)

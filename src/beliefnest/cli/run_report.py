@@ -70,7 +70,15 @@ def _run(run: Mapping[str, Any], conditions: Mapping[int, str]) -> dict[str, Any
         place = folder / f"probe-{index}"
         words = {key: probe.get(key, []) for key in ("happened", "judged", "why")}
         texts = {name: _text(place / f"{name}.txt") for name in ("prompt", "answer")}
-        probes.append({**probe, **words, **texts})
+        replies = [
+            {
+                **reply,
+                "prompt": _text(place / f"question-{count}.txt"),
+                "text": _text(place / f"reply-{count}.txt"),
+            }
+            for count, reply in enumerate(probe["replies"], start=1)
+        ]
+        probes.append({**probe, **words, **texts, "replies": replies})
     return {
         **run,
         "title": "run" if number is None else f"condition {number}",

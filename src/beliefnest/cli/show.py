@@ -298,8 +298,9 @@ def _how_known(state: State, basis: Basis | None, *, current: bool) -> list[str]
 def _print_programs(programs: Sequence[ProgramRecord]) -> None:
     console = stdout()
     for program in programs:
-        ended = "ended well" if program.error is None else program.error
-        ran = f"tick {program.tick}, {program.ticks} ticks: program of {program.agent}: {ended}"
+        ended = "ended well" if program.error is None else f"failed: {program.error}"
+        span = f"ticks {program.tick} to {program.tick + program.ticks}"
+        ran = f"{span}: program of {program.agent}: {ended}"
         console.print(_foreign(ran), highlight=False)
         for told in (*program.log, *(f"stopped at its end: {each}" for each in program.unfinished)):
             console.print(_foreign(f"    {told}"), highlight=False)

@@ -11,15 +11,18 @@ from beliefnest.bodies.protocol import ProgramPast
 __all__ = [
     "Decision",
     "Ended",
+    "Failure",
     "HowEnded",
     "Part",
     "Spent",
+    "failures_in",
     "latest_end",
     "programs_of",
     "spent_in",
 ]
 
 HowEnded = Literal["none", "ok", "cut", "no_way", "failed", "lost"]
+_FAILED = ("no_way", "failed", "lost")
 
 
 class Spent(msgspec.Struct, frozen=True):
@@ -86,12 +89,55 @@ class Part(msgspec.Struct, frozen=True):
         ended: By agent; empty until it is done.
         cut: Of agents whose programs were cut, what these had done.
         began: The tick at which it began in real time; None: where time stands still meanwhile.
+        reasons: Of agents whose programs failed, the whole reason. It is for readers of the run:
+            the agents are told no more than `ended` says.
     """
 
     decisions: dict[str, Decision]
     ended: dict[str, Ended] = {}
     cut: dict[str, ProgramPast] = {}
     began: int | None = None
+    reasons: dict[str, str] = {}
+
+    def reason(self, agent: str) -> str:
+        """Return why an agent's program failed, was cut or is missing; empty: it ended well."""
+        told = self.ended[agent].message if agent in self.ended else ""
+        return self.reasons.get(agent) or self.decisions[agent].fault or told
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """A program that failed in an episode, or that a policy did not give.
+
+    Attributes:
+        round: The round, from 0.
+        agent: Whose program.
+        ended: `failed`, `no_way` or `lost`, as in `Ended.how`.
+        reason: What went wrong, in words, with the line of the program.
+    """
+
+    round: int
+    agent: str
+    ended: HowEnded
+    reason: str
+
+    def __str__(self) -> str:
+        return f"round {self.round + 1}, {self.agent}: {self.reason}"
+
+
+def failures_in(parts: Sequence[Part], per_round: int) -> tuple[Failure, ...]:
+    """Return the failures in parts of rounds.
+
+    Args:
+        parts: The parts, from the first round on.
+        per_round: How many parts a round has.
+    """
+    return tuple(
+        Failure(number // per_round, agent, ended.how, part.reason(agent))
+        for number, part in enumerate(parts)
+        for agent, ended in part.ended.items()
+        if ended.how in _FAILED
+    )
 
 
 def latest_end(parts: Sequence[Part], agent: str) -> Ended:

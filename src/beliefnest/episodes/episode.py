@@ -8,7 +8,15 @@ from typing import Self
 
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.episodes.choosing import check_resumable, chosen, name_of
-from beliefnest.episodes.decided import Part, Spent, latest_end, programs_of, spent_in
+from beliefnest.episodes.decided import (
+    Failure,
+    Part,
+    Spent,
+    failures_in,
+    latest_end,
+    programs_of,
+    spent_in,
+)
 from beliefnest.episodes.helping import Help, help_in
 from beliefnest.episodes.measures import Measures, false_beliefs, measured
 from beliefnest.episodes.people import check_repeats, people_in, played_by_people, world_of_people
@@ -335,6 +343,11 @@ class Episode:
         return tuple(self._parts)
 
     @property
+    def failures(self) -> Sequence[Failure]:
+        """Programs that failed, and rounds in which a policy gave none, with the reasons."""
+        return failures_in(self._parts, len(self._slots))
+
+    @property
     def start(self) -> int:
         """The tick at which the first round began."""
         self._opened()
@@ -410,6 +423,7 @@ class Episode:
         before = self._parts[: round * len(self._slots)]
         fork._take(nest, f"fork {number}", self._start, list(before))
         fork._owns_nest = False
+        fork._watch()
         fork._keep()
         return fork
 
@@ -436,6 +450,7 @@ class Episode:
                     EpisodeStart(plain, self.seed, task_seed, self._world, begun, self._budget),
                 )
                 self._take(nest, nest["/"].branch, begun, [])
+                self._watching.up_to_now(nest)
                 self._keep()
             except BaseException:
                 self._nest = self._lobby = None

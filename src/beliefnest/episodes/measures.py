@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Protocol
 
-from beliefnest.episodes.decided import Part, Spent
+from beliefnest.episodes.decided import Failure, Part, Spent
 from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest
 from beliefnest.world.values import EventKind
@@ -36,6 +36,7 @@ class Measures:
             not in it.
         lost_rounds: Times a policy gave no program, or failed.
         failed_programs: Programs that failed, other than by being cut.
+        failures: Why programs failed, or policies gave none: round (from 1), agent and reason.
         false_beliefs: Things that agents hold wrongly in the end, each agent's counted.
         false_beliefs_mean: The same, as mean over the beginnings of rounds and the end.
         false_beliefs_over_time: The same at each of them.
@@ -66,6 +67,7 @@ class Measures:
     acted_on_false: int
     lost_rounds: int
     failed_programs: int
+    failures: tuple[str, ...]
     false_beliefs: int
     false_beliefs_mean: float
     false_beliefs_over_time: tuple[int, ...]
@@ -120,6 +122,10 @@ class Played(Protocol):
         """Rounds played."""
 
     @property
+    def failures(self) -> Sequence[Failure]:
+        """Programs that failed, and rounds in which a policy gave none, with the reasons."""
+
+    @property
     def spent(self) -> Spent:
         """What policies have spent on models."""
 
@@ -155,6 +161,7 @@ def measured(episode: Played) -> Measures:
         acted_on_false=_acted_on_false(episode),
         lost_rounds=sum(bool(d.fault) for p in episode.parts for d in p.decisions.values()),
         failed_programs=sum(each.how in ("failed", "no_way") for each in ended),
+        failures=tuple(map(str, episode.failures)),
         false_beliefs=wrong[-1],
         false_beliefs_mean=sum(wrong) / len(wrong),
         false_beliefs_over_time=tuple(wrong),

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from beliefnest.bodies.protocol import ProgramPast, ProgramResult
 from beliefnest.episodes.decided import Ended, Part
 from beliefnest.episodes.people import RealRound
-from beliefnest.episodes.record import cut_in, ended_as
+from beliefnest.episodes.record import cut_in, ended_as, reasons_in
 from beliefnest.episodes.view import Policy
 from beliefnest.nest.face.nest import Nest
 
@@ -32,7 +32,8 @@ def play_part(nest: Nest, parts: Sequence[Part], ticks: int, end: int) -> Part:
         nest["/"].step(end - nest.tick)
     look_around(nest)
     ended = {agent: ended_as(each, results.get(agent)) for agent, each in part.decisions.items()}
-    return Part(part.decisions, ended, cut_in(results, ended, past, end - ticks, end))
+    cut = cut_in(results, ended, past, end - ticks, end)
+    return Part(part.decisions, ended, cut, reasons=reasons_in(results))
 
 
 def play_part_with_people(
@@ -63,7 +64,7 @@ def play_part_with_people(
         for agent, each in part.decisions.items()
     }
     cut = cut_in(results, ended, past, here.began, here.cut)
-    return Part(part.decisions, ended, cut, here.began)
+    return Part(part.decisions, ended, cut, here.began, reasons_in(results))
 
 
 def look_around(nest: Nest) -> None:

@@ -22,6 +22,7 @@ __all__ = [
     "keep_branch",
     "keep_start",
     "kept_in",
+    "reasons_in",
 ]
 
 _BEGINS, _START, _BRANCHES = "episode begins", "episode", "episode branches"
@@ -165,6 +166,15 @@ def cut_in(
         agent: ProgramPast(past[agent].tick if agent in past else began, result.calls, until)
         for agent, result in results.items()
         if ended[agent].how == "cut"
+    }
+
+
+def reasons_in(results: Mapping[str, ProgramResult]) -> dict[str, str]:
+    """Return why programs failed, by agent, with what their agents could not perceive."""
+    return {
+        agent: str(result.error)
+        for agent, result in results.items()
+        if result.error is not None and result.error.kind != "timeout"
     }
 
 

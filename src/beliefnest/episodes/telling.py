@@ -15,7 +15,7 @@ __all__ = ["goal_rows", "round_rows", "told_episode"]
 
 
 def told_episode(run: Keeps) -> dict[str, Any] | None:
-    """The episode in a run as plain values; None: there is none.
+    """Return the episode in a run as plain values; None: there is none.
 
     Raises:
         StoreError: It cannot be read.
@@ -37,7 +37,7 @@ def told_episode(run: Keeps) -> dict[str, Any] | None:
 
 
 def round_rows(told: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """One row for each agent in each round on each branch.
+    """Yield a row for each agent in each round on each branch.
 
     Args:
         told: As `told_episode` gives it.
@@ -57,21 +57,25 @@ def round_rows(told: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
                     "fault": done["fault"],
                     "ended": done["ended"],
                     "message": done["message"],
+                    "reason": done["reason"],
                 }
 
 
 def goal_rows(told: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """One row for each condition of the goal on each branch; arguments as for `round_rows`."""
+    """Yield a row for each condition of the goal on each branch; arguments as for `round_rows`."""
     for name, branch in told["branches"].items():
-        for condition, tick in branch["goal"]:
-            yield {"branch": name, "condition": condition, "tick": tick}
+        for condition, never, tick in branch["goal"]:
+            yield {"branch": name, "condition": condition, "never": never, "tick": tick}
 
 
 def _branch(form: TaskForm, start: EpisodeStart, branch: Branch) -> dict[str, Any]:
     parts_of_round = len(branch.policies) if form.play == "turns" else 1
     return {
         "policies": branch.policies,
-        "goal": [list(each) for each in branch.goal],
+        "goal": [
+            [text, number >= len(form.goal.reach), tick]
+            for number, (text, tick) in enumerate(branch.goal)
+        ],
         "reached": branch.reached,
         "violated": branch.violated,
         "parts": [
@@ -106,4 +110,5 @@ def _done(part: Part, agent: str) -> dict[str, Any]:
         "fault": decision.fault,
         "ended": "" if ended is None else ended.how,
         "message": "" if ended is None else ended.message,
+        "reason": part.reason(agent),
     }

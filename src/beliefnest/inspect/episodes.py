@@ -1,7 +1,7 @@
 """Tasks of episodes: a model plays the players, round after round, by what they believe."""
 
 import threading
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Coroutine, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,6 +16,7 @@ from inspect_ai.solver import Generate, Solver, TaskState, solver
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies.model import ModelPolicy, OmniscientModelPolicy
 from beliefnest.episodes.task import Task as Played
+from beliefnest.episodes.telling import told_episode
 from beliefnest.errors import InputError
 from beliefnest.inspect.messages import messages_of
 from beliefnest.inspect.parts import metrics_by, score_of
@@ -153,17 +154,24 @@ def _report(sample: dict[str, Any], asked: _Asked) -> dict[str, Any]:
         task, policies, world=sample["world"], seed=sample["instance"], names=names
     ) as episode:
         episode.play()
+        told = told_episode(episode.nest)
+        assert told is not None
+        branch = told["branches"][episode.branch]
         return {
             "success": episode.success,
-            "goal": [list(each) for each in episode.conditions],
+            "goal": branch["goal"],
             "measures": episode.measures.row(),
             "rounds": [
-                f"{number}. {agent}: {decided.program or decided.fault or 'nothing'} "
-                f"({part.ended[agent].how})"
-                for number, part in enumerate(episode.parts, start=1)
-                for agent, decided in part.decisions.items()
+                _line(part["round"], done) for part in branch["parts"] for done in part["agents"]
             ],
         }
+
+
+def _line(number: int, done: Mapping[str, Any]) -> str:
+    """Return what an agent did in a round, and why it failed, in one paragraph."""
+    reason = f": {done['reason']}" if done["reason"] else ""
+    deed = done["program"] or "nothing"
+    return f"round {number + 1}, {done['agent']}: {deed} ({done['ended']}{reason})"
 
 
 @scorer(metrics=metrics_by("needs"))
@@ -173,8 +181,9 @@ def goal_reached() -> Scorer:
     async def score(state: TaskState, target: Target) -> Score:
         found = state.metadata["episode"]
         lines = [
-            f"{condition}: {'never' if tick is None else f'tick {tick}'}"
-            for condition, tick in found["goal"]
+            f"{'not to be: ' if never else ''}{condition}: "
+            f"{'at no tick' if tick is None else f'at tick {tick}'}"
+            for condition, never, tick in found["goal"]
         ]
         return score_of(
             ok=found["success"],

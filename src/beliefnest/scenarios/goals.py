@@ -321,20 +321,22 @@ class Progress:
         return cls(goal, start, {})
 
     def feed(self, tick: int, look: Look, messages: int) -> None:
-        """Take what is the case at a tick.
+        """Take what is the case at a tick; after the goal is lost, for `first` alone.
 
         Args:
             tick: The tick.
             look: The states at it.
             messages: How many utterances of players there were in it.
         """
-        if self.reached is not None or self.violated is not None:
+        if self.reached is not None:
             return
-        self.messages += messages
         held = [condition.holds(look) for condition in self.goal.conditions]
         for number, holds in enumerate(held):
             if holds:
                 self.first.setdefault(number, tick)
+        if self.violated is not None:
+            return
+        self.messages += messages
         count = len(self.goal.reach)
         if (
             any(held[count:])

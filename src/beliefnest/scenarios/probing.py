@@ -69,13 +69,15 @@ def run_probe(
         ModelError: The model failed, or gave no program that works (`Asking.keeps_unanswered`).
         BodyError: The Minecraft side died.
     """
-    noting = nest[probe.path].noting(model, probe=f"probe {number}", task=probe.task)
+    believer, name = nest[probe.path], f"probe {number}"
     programs = _Programs((), None, ())
     if probe.asks_for_program:
+        noting = believer.noting(model, probe=name, task=probe.task)
         programs = _ask_for_program(nest, number, probe, noting, asking)
     replies: dict[Answers, Reply] = {}
     usage = sum((each.answer.usage for each in programs.attempts), Usage())
     for question in probe.questions:
+        noting = believer.noting(model, probe=name, task=question.question)
         replies[question], used = ask_question(nest, probe, question, noting, seed, asking.sampling)
         usage += used
     judged = iter(programs.verdicts)

@@ -41,6 +41,7 @@ _COLUMNS = {
     "false_beliefs_over_time": "string",
     "lost_rounds": "int64",
     "failed_programs": "int64",
+    "failures": "string",
     "requests": "int64",
     "tokens": "int64",
     "cost": "float64",
@@ -87,7 +88,7 @@ def _rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, An
 
 def _measured(found: Mapping[str, Any]) -> dict[str, Any]:
     measures, ok = found["measures"], found["measures"]["success"]
-    told = {name: plain_value(measures[name]) for name in _MEASURED}
+    told = {name: plain_value(measures.get(name)) for name in _MEASURED}
     return {
         "needs": measures["order"],
         "ok": ok,

@@ -168,8 +168,14 @@ TABLES: Mapping[str, Mapping[str, Column]] = MappingProxyType(
             "fault": "text",
             "ended": "text",
             "message": "text",
+            "reason": "text",
         },
-        "goals": {"branch": "text", "condition": "text", "tick": "integer"},
+        "goals": {
+            "branch": "text",
+            "condition": "text",
+            "never": "boolean",
+            "tick": "integer",
+        },
         "beliefs": {**_ON_TIMELINE, "state": "object", "blocks": "object"},
     }
 )

@@ -47,7 +47,8 @@ def test_the_rounds_are_told_from_what_a_run_keeps(store: Path) -> None:
     main, fork = told["branches"]["main"], told["branches"]["fork 1"]
     assert [part["t"] for part in main["parts"]] == [0, 5]
     assert [part["agents"][0]["ended"] for part in main["parts"]] == ["cut", "ok"]
-    ((_, tick),) = main["goal"]
+    ((_, never, tick),) = main["goal"]
+    assert not never
     assert main["reached"] == tick and 5 < tick <= 10
     assert (fork["reached"], len(fork["parts"])) == (None, 4)
 
@@ -97,7 +98,7 @@ def test_rounds_are_listed_and_lead_to_ticks_programs_and_branches(
     assert_accessible(browser)
     browser.click(".fork")
     browser.until(lambda: len(texts(browser, ".begins")) == 4)
-    assert texts(browser, ".goal .open .when") == ["not yet"]
+    assert texts(browser, ".goal .open .when") == ["at no tick"]
     assert "goal not reached" in browser.one(".episode .about").text
     size = browser.driver.get_window_size()
     try:

@@ -36,9 +36,10 @@ class About:
         paths: Beliefs that the scenario asks about; they are shown from the start.
         episode: Gives the rounds of the run's episode by now, as plain values: `task`, `instance`,
             `start` (a tick), `rounds` (how many there may be), and `branches` by name, each with
-            `policies`, `goal` (words and tick or None), `reached`, `violated` (ticks or None) and
-            `parts` (`round`, `t`, `end`, `agents` with `agent`, `program`, `goes_on`, `fault`,
-            `ended`, `message`). None where there is none.
+            `policies`, `goal` (words, whether it must never come true, tick or None), `reached`,
+            `violated` (ticks or None) and `parts` (`round`, `t`, `end`, `agents` with `agent`,
+            `program`, `goes_on`, `fault`, `ended`, `message`, `reason`). None where there is
+            none.
     """
 
     title: str

@@ -48,8 +48,13 @@ export function seconds (ticks) {
   return `${(ticks / 20).toFixed(1)} s`
 }
 
+/** @returns {string} a number with its noun */
+export function count (number, noun) {
+  return number === 1 ? `1 ${noun}` : `${number} ${noun}s`
+}
+
 export function ago (ticks) {
-  return ticks === 1 ? '1 tick ago' : `${ticks} ticks ago`
+  return `${count(ticks, 'tick')} ago`
 }
 
 export function itemsText (items) {

@@ -1,14 +1,16 @@
 /** Programs, prompts and answers of models, as marks on the time line and as texts. */
 
+import { count } from './elements.js'
+
 /** @returns {object[]} what to list beside events: t, key, text, actor */
 export function notesOf (run, timeline) {
   const { path, branch } = timeline.facts
   const programs = run.programs.map((each, number) => ({ each, number }))
     .filter(({ each }) => each.path === path && each.branch === branch)
-    .map(({ each, number }) => ({ t: each.t, note: `program-${number}`, actor: each.agent, text: `begins a program of ${each.ticks} ticks${each.ok ? '' : ', which fails'}` }))
+    .map(({ each, number }) => ({ t: each.t, note: `program-${number}`, actor: each.agent, text: `begins a program of ${count(each.ticks, 'tick')}${each.ok ? '' : `, which fails: ${each.error}`}` }))
   const prompts = run.prompts.map((each, number) => ({ each, number }))
     .filter(({ each }) => each.at === path && each.branch === branch)
-    .map(({ each, number }) => ({ t: each.t, note: `prompt-${number}`, actor: null, text: `${each.model} is asked from ${each.path}: ${each.task}` }))
+    .map(({ each, number }) => ({ t: each.t, note: `prompt-${number}`, actor: null, text: `${each.model} is asked from ${each.path}${each.task ? `: ${each.task}` : ''}` }))
   return [...programs, ...prompts]
 }
 
@@ -54,7 +56,7 @@ function programNote (program) {
 }
 
 function promptNote (prompt) {
-  const facts = [['asked from', prompt.path], ['at', `tick ${prompt.t}`], ['model', prompt.model], ['attempt', prompt.attempt], ['task', prompt.task]]
+  const facts = [['asked from', prompt.path], ['at', `tick ${prompt.t}`], ['model', prompt.model], ['attempt', prompt.attempt], ...(prompt.task ? [['task', prompt.task]] : [])]
   const texts = prompt.messages.map(([role, text]) => [`Prompt (${role})`, text])
   texts.push(['Answer', prompt.answer ?? `none: ${prompt.error}`])
   return { title: `What ${prompt.model} was asked`, facts, texts }

@@ -27,7 +27,7 @@ export class Rounds {
     this.shown = version
     const held = document.activeElement?.dataset?.round
     this.drawAbout(run, branch, line)
-    refill(this.goal, ...branch.goal.map(([text, when]) => this.condition(line, branch, text, when)))
+    refill(this.goal, ...branch.goal.map(([text, never, when]) => this.condition(line, { text: never ? `not to be: ${text}` : text, never, when, open: isOpen(run, branch) })))
     const turns = branch.parts.some((part, number) => number > 0 && part.round === branch.parts[number - 1].round)
     refill(this.list, ...branch.parts.map((part, number) => this.part(run, line, part, { isNow: number === now, turns, choice })))
     if (held !== undefined) this.list.querySelector(`[data-round="${CSS.escape(held)}"]`)?.focus()
@@ -49,8 +49,8 @@ export class Rounds {
     refill(this.about, `${which}, branch “${line.facts.branch}”: ${played} of at most ${rounds} rounds, ${ended}. ${players}.`)
   }
 
-  condition (line, branch, text, when) {
-    const words = when === null ? 'not yet' : `tick ${when}`
+  condition (line, { text, never, when, open }) {
+    const words = when !== null ? `tick ${when}` : !open ? 'at no tick' : never ? 'at no tick so far' : 'not yet'
     return element('li', { class: when === null ? 'open' : 'true' },
       when === null
         ? element('span', {}, `○ ${text} `, element('span', { class: 'when' }, words))
@@ -73,8 +73,9 @@ export class Rounds {
     const note = number < 0 ? null : `program-${number}`
     const words = element('span', { class: 'what' }, each.fault ? `none: ${each.fault}` : each.program ? `${each.goes_on ? '… ' : ''}${shortened(each.program)}` : 'nothing')
     const ended = ['', 'ok', 'none'].includes(each.ended) ? null : element('span', { class: `ended ${each.ended}` }, each.ended.replace('_', ' '))
-    const parts = [look ? badge(look, { small: true }) : null, words, ended]
-    const title = [`${each.agent}: ${each.program || 'nothing'}`, each.message].filter(Boolean).join('\n')
+    const why = each.reason && !each.fault && each.ended !== 'cut' ? element('span', { class: 'why' }, each.reason) : null
+    const parts = [look ? badge(look, { small: true }) : null, words, ended, why]
+    const title = [`${each.agent}: ${each.program || 'nothing'}`, each.reason].filter(Boolean).join('\n')
     if (note === null) return element('p', { class: 'deed', title }, ...parts)
     return element('button', {
       type: 'button', class: `deed${choice.note === note ? ' chosen' : ''}`, title, onclick: () => this.choose({ ...this.place(line, part.t), note })
@@ -96,6 +97,12 @@ export class Rounds {
   seek (line, tick) {
     this.choose({ ...this.place(line, tick), note: null })
   }
+}
+
+/** @returns {boolean} whether a branch of an episode can still go on */
+function isOpen (run, branch) {
+  const played = new Set(branch.parts.map(part => part.round)).size
+  return branch.reached === null && branch.violated === null && played < run.episode.rounds
 }
 
 /** @returns {object|undefined} the timeline of the real world that a timeline is, or comes from */
