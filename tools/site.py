@@ -115,7 +115,7 @@ def on_post_page(output: str, page: Page, config: MkDocsConfig) -> str:
 
 
 def project_page(file: Path) -> str:
-    """Name of the page of a paper beside `docs/`."""
+    """Return the name of the page of a paper beside `docs/`."""
     name = file.relative_to(ROOT).as_posix()
     return f"project/{name}" if "." in name else f"project/{name}.md"
 
@@ -126,7 +126,7 @@ def _relative(target: str, here: PurePosixPath) -> str:
 
 
 def python_page() -> str:
-    """Every public name with its docstring."""
+    """Return every public name with its docstring."""
     return "\n".join(
         [
             "# From Python",
@@ -143,7 +143,7 @@ def python_page() -> str:
 
 
 def modules_page() -> str:
-    """Every public name of the rooms that users import from."""
+    """Return every public name of the rooms that users import from."""
     lines = [
         "# From Python: models, prompts, tables, environments",
         "",
@@ -158,7 +158,7 @@ def modules_page() -> str:
 
 
 def _names(module: ModuleType, heading: str) -> Iterator[str]:
-    """The names that a module offers, by kind, each with its docstring."""
+    """Yield the names that a module offers, by kind, each with its docstring."""
     groups: dict[str, list[str]] = {kind: [] for kind in NAMES_OF_KINDS}
     offered = {name: getattr(module, name) for name in sorted(module.__all__)}
     for name, value in offered.items():
@@ -264,7 +264,7 @@ def _words(kind: Any) -> str:
 
 
 def scenario_page() -> str:
-    """Every key of a scenario file, from its schema."""
+    """Return every key of a scenario file, from its schema."""
     defs = schema()["$defs"]
     lines = [
         "# Keys of a scenario file",
@@ -325,7 +325,7 @@ def _goes_without_saying(form: Mapping[str, Any]) -> bool:
 
 
 def _several(forms: Sequence[str]) -> str:
-    """A list of so many values, with x, y and z for three numbers."""
+    """Return a list of so many values, with x, y and z for three numbers."""
     if len(set(forms)) > 1:
         return f"[{', '.join(forms)}]"
     if len(forms) == 3 and forms[0] in _PLAIN.values():
@@ -334,7 +334,7 @@ def _several(forms: Sequence[str]) -> str:
 
 
 def events_page() -> str:
-    """Every kind of event, with the names that prompts use."""
+    """Return every kind of event, with the names that prompts use."""
     from beliefnest.prompts.actions import ACTION_NAMES
 
     lines = [
@@ -363,7 +363,7 @@ def about_page() -> str:
 
 
 def errors_page() -> str:
-    """Every error that is raised on purpose."""
+    """Return every error that is raised on purpose."""
     lines = [
         "# Errors",
         "",

@@ -34,7 +34,7 @@ This file is written by `make notices`.
 
 
 def notices() -> str:
-    """The whole text."""
+    """Return the whole text."""
     packages: dict[str, dict[str, str]] = {}
     folders: dict[str, Path] = {}
     for listed, modules in BUNDLES.items():

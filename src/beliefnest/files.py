@@ -24,7 +24,7 @@ _KINDS = (
 
 
 def open_regular(path: Path) -> BinaryIO:
-    """A file opened to be read in binary.
+    """Return a file opened to be read in binary.
 
     Raises:
         OSError: It cannot be opened or is no regular file; `strerror` says what it is.
@@ -41,7 +41,7 @@ def open_regular(path: Path) -> BinaryIO:
 
 
 def read_regular(path: Path, longest: int = _LONGEST) -> bytes:
-    """All of a file, if it is no longer than `longest` bytes.
+    """Return all of a file, if it is no longer than `longest` bytes.
 
     Raises:
         OSError: It cannot be read, is no regular file or is too long; `strerror` says which.
@@ -54,7 +54,7 @@ def read_regular(path: Path, longest: int = _LONGEST) -> bytes:
 
 
 def read_regular_text(path: Path, longest: int = _LONGEST) -> str:
-    """All of a file as text, its line ends as those of Unix.
+    """Return all of a file as text, its line ends as those of Unix.
 
     Raises:
         OSError: As `read_regular`.
@@ -65,7 +65,7 @@ def read_regular_text(path: Path, longest: int = _LONGEST) -> str:
 
 
 def decode_json(content: bytes | str, form: type[_T]) -> _T:
-    """A value of a form from JSON.
+    """Return a value of a form from JSON.
 
     Raises:
         msgspec.DecodeError: The content is no JSON, is nested without end, or has another form.

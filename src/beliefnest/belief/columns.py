@@ -37,7 +37,7 @@ def cell_of(box: Box, place: Position) -> int:
 
 
 def place_of(box: Box, cell: int) -> Position:
-    """Block position of a flat cell of a box."""
+    """Return the block position of a flat cell of a box."""
     _, ny, nz = box.shape
     x, y, z = box.low
     return (x + cell // (ny * nz), y + cell // nz % ny, z + cell % nz)
@@ -126,7 +126,7 @@ class Columns:
         self._close_entry()
 
     def tick(self, entry: int) -> int:
-        """Tick of an entry."""
+        """Return the tick of an entry."""
         return int(self._tick.view()[entry - self.first])
 
     def events_until(self, entry: int) -> int:
@@ -134,25 +134,25 @@ class Columns:
         return self._first_event + int(self._event_at.view()[entry - self.first])
 
     def event(self, number: int) -> Event:
-        """An event of the stretch."""
+        """Return an event of the stretch."""
         return self.events[number - self._first_event]
 
     def events_since(self, entry: int) -> Iterator[tuple[int, Event]]:
-        """Events from an entry of the stretch on, each with its tick."""
+        """Yield events from an entry of the stretch on, each with its tick."""
         at, tick = self._event_at.view(), self._tick.view()
         for row in range(entry - self.first, len(tick)):
             for number in range(int(at[row]), int(at[row + 1])):
                 yield int(tick[row]), self.events[number]
 
     def with_effects(self, start: int, stop: int) -> set[int]:
-        """Entries start to stop - 1 that change contents, possessions or dropped items."""
+        """Return entries start to stop - 1 that change contents, possessions or dropped items."""
         if stop - start == 1:
             return {start} if start in self.frames or start in self.acts else set()
         low, high = bisect_left(self._effects, start), bisect_left(self._effects, stop)
         return set(self._effects[low:high])
 
     def has_claims(self, entry: int) -> bool:
-        """Whether something is claimed in an entry."""
+        """Return True if something is claimed in an entry."""
         number = bisect_left(self.claim_entries, entry)
         return self.claim_entries[number : number + 1] == [entry]
 

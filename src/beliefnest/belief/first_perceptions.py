@@ -79,7 +79,7 @@ class FirstPerceptions:
 
 
 def _digest(space: Space, arrays: Sequence[Array]) -> bytes:
-    """A digest of all that a perception depends on; shapes of blocks are the same in all."""
+    """Return a digest of all that a perception depends on; shapes of blocks are the same in all."""
     hashed = hashlib.blake2b(digest_size=16)
     plain = (space.sizes, tuple(space.senses), [(each.shape, each.dtype.str) for each in arrays])
     hashed.update(repr(plain).encode())

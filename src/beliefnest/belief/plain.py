@@ -10,7 +10,7 @@ __all__ = ["belief_json", "place_key", "state_json"]
 
 
 def state_json(state: State) -> dict[str, object]:
-    """A state as the STATE object of the public surface."""
+    """Return a state as the STATE object of the public surface."""
     return {
         "containers": {
             place_key(place): {
@@ -30,7 +30,7 @@ def state_json(state: State) -> dict[str, object]:
 
 
 def belief_json(state: State) -> dict[str, object]:
-    """All of a state but its blocks: what `state_json` has, and what it rests on."""
+    """Return all of a state but its blocks: what `state_json` has, and what it rests on."""
     return {
         **state_json(state),
         "containers": {
@@ -66,7 +66,7 @@ def _signs(state: State) -> dict[str, object]:
 
 
 def place_key(place: Position) -> str:
-    """A block's position as the key of a JSON object."""
+    """Return a block's position as the key of a JSON object."""
     return ",".join(map(str, place))
 
 

@@ -27,7 +27,7 @@ _Number = int | np.signedinteger[Any]
 
 @inlined
 def whole(number: _Number) -> int:
-    """The number as int64, so that kernels are compiled for one kind of integer only."""
+    """Return the number as int64, so that kernels are compiled for one kind of integer only."""
     return np.int64(number)  # type: ignore[return-value]  # Python's int, once compiled
 
 
@@ -40,7 +40,7 @@ def grid_cell(space: Space, cell: int) -> Cell:
 
 @inlined
 def eye_of(space: Space, poses: Poses, pose: int) -> Eye:
-    """The eye of an agent at a pose, in grid coordinates."""
+    """Return the eye of an agent at a pose, in grid coordinates."""
     x, y, z = poses.feet[pose]
     yaw, pitch = poses.angles[pose]
     place = (
@@ -59,7 +59,7 @@ def scene_of(space: Space, nodes: Nodes, node: int) -> Scene:
 
 @inner
 def sees_agent(space: Space, poses: Poses, nodes: Nodes, node: int, eye: Eye, pose: int) -> bool:
-    """Whether an eye in a node sees an agent at a pose."""
+    """Return True if an eye in a node sees an agent at a pose."""
     x, y, z = poses.feet[pose]
     feet = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
     return eye_sees_agent(scene_of(space, nodes, node), eye, feet)
@@ -67,7 +67,7 @@ def sees_agent(space: Space, poses: Poses, nodes: Nodes, node: int, eye: Eye, po
 
 @inner
 def sees_cell(space: Space, nodes: Nodes, node: int, eye: Eye, cell: int) -> bool:
-    """Whether an eye in a node sees a cell."""
+    """Return True if an eye in a node sees a cell."""
     place = grid_cell(space, cell)
     return eye_sees_block(scene_of(space, nodes, node), eye, place, space.beam, space.shadows)
 
@@ -117,7 +117,7 @@ def sees_point(
     pose: int,
     point: tuple[float, float, float],
 ) -> bool:
-    """Whether an eye at a pose sees a point (scenario coordinates) in a node."""
+    """Return True if an eye at a pose sees a point (scenario coordinates) in a node."""
     eye = eye_of(space, poses, pose)
     x, y, z = point
     place = (x + space.origin[0], y + space.origin[1], z + space.origin[2])

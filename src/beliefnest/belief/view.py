@@ -16,27 +16,27 @@ class BlockView(Protocol):
     """Believed blocks of a box: a mapping from position to block state text or None."""
 
     def __getitem__(self, position: Position) -> str | None:
-        """Canonical block state text, `air`, or None where unknown.
+        """Return the canonical block state text, `air`, or None where unknown.
 
         Raises:
             PositionError: The position is outside the box.
         """
 
     def __iter__(self) -> Iterator[Position]:
-        """All positions of the box."""
+        """Yield all positions of the box."""
 
     def __len__(self) -> int:
-        """Number of positions in the box."""
+        """Return the number of positions in the box."""
 
     @property
     def grid(self) -> BlockGrid:
         """Block state ids, shape of the box, -1 where unknown; not to be written to."""
 
     def named(self, names: frozenset[str]) -> dict[Position, str]:
-        """Known blocks whose name is one of `names`, in order of position."""
+        """Return known blocks whose name is one of `names`, in order of position."""
 
     def current(self, position: Position) -> bool:
-        """Whether the block is backed by a perception in this tick."""
+        """Return True if the block is backed by a perception in this tick."""
 
     def basis(self, position: Position) -> Basis | None:
         """What the block rests on; None where it is unknown."""

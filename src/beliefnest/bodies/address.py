@@ -20,12 +20,12 @@ _FORM = "write minecraft://HOST:PORT, with options as ?version=1.20.4&at=0,160&o
 
 
 def is_server(world: str) -> bool:
-    """Whether the name of a world is the address of a server."""
+    """Return True if the name of a world is the address of a server."""
     return world.lower().startswith(f"{SCHEME}://")
 
 
 def overwriting(world: str) -> str:
-    """The address of a server whose box's blocks may be replaced.
+    """Return the address of a server whose box's blocks may be replaced.
 
     Raises:
         InputError: The world is no server.
@@ -66,7 +66,7 @@ class ServerAddress:
 
     @classmethod
     def parse(cls, text: str) -> "ServerAddress":
-        """The address that a text is.
+        """Return the address that a text is.
 
         Raises:
             InputError: It is none, or an option is not known or not of its form.

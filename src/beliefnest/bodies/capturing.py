@@ -131,7 +131,7 @@ def _asked(channel: Channel, op: str, **more: Any) -> Any:
 
 
 def _states(palette: Sequence[str], registry: Registry) -> tuple[BlockGrid, str]:
-    """State ids of a palette, and the names in it that this version does not know."""
+    """Return the state ids of a palette, and the names in it that this version does not know."""
     states = np.full(len(palette), registry.air, dtype=np.int32)
     unknown: set[str] = set()
     for index, text in enumerate(palette):

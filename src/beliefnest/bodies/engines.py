@@ -76,7 +76,7 @@ class JavaScriptEngine:
         self.names: str = ", ".join(json.loads(self.call("names")))
 
     def read(self, text: str) -> Any:
-        """The value of a program's text; raises `failed`."""
+        """Return the value of a program's text; raises `failed`."""
         return self._context.eval(text)
 
     def advance(self) -> bool:
@@ -133,7 +133,7 @@ given => {{
 
 
 def _shared(name: str, given: str) -> str:
-    """A function that gives what a module of the bots' sandbox does, too."""
+    """Return a function that gives what a module of the bots' sandbox does, too."""
     built = Path(str(files("beliefnest"))) / "_bundle" / f"{name}.js"
     text = built.read_text(encoding="utf-8")
     return f"() => {{ const module = {{}}, env = {{}};\n{text}\nreturn {given} }}"

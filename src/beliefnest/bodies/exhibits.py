@@ -43,7 +43,7 @@ class Shown:
     agents: Mapping[str, AgentState]
 
     def whole(self) -> dict[str, Any]:
-        """All of it as a message."""
+        """Return all of it as a message."""
         return {
             "blocks": self.blocks.astype("<i4").tobytes(),
             "containers": _rows(self.containers.items()),
@@ -122,7 +122,7 @@ class Exhibit:
 
     @property
     def lost(self) -> bool:
-        """Whether the process that shows it has ended."""
+        """True if the process that shows it has ended."""
         return self._channel.lost
 
     def show(self, shown: Shown, tick: int) -> None:
@@ -152,7 +152,7 @@ def origin_of(number: int, box: Box, reality: tuple[int, int]) -> tuple[int, int
 
 
 def display_names(agents: Iterable[str], number: int, taken: Collection[str]) -> dict[str, str]:
-    """The name that each agent has in the exhibit of a number: its own, with that number.
+    """Return the name that each agent has in the exhibit of a number: its own, with that number.
 
     A long one loses letters in its middle. No two are the same, and none is a taken one, capitals
     or not.

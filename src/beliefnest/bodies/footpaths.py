@@ -40,7 +40,7 @@ class Near:
     within: float
 
     def is_met(self, cell: Position) -> bool:
-        """Whether a cell is near enough."""
+        """Return True if a cell is near enough."""
         return math.dist(cell, self.block) <= self.within
 
     def steps_left(self, cell: Position) -> float:
@@ -65,7 +65,7 @@ class InReach:
     has_free_line: Callable[[Point, Position], bool] | None = None
 
     def is_met(self, cell: Position) -> bool:
-        """Whether a block can be reached from a cell."""
+        """Return True if a block can be reached from a cell."""
         if self.beside and self._is_within(cell):
             return False
         x, y, z = feet_in(cell)
@@ -132,7 +132,7 @@ class Ground:
         self._met: dict[tuple[int, Goal], bool] = {}
 
     def stands(self, cell: Position) -> bool:
-        """Whether somebody can stand in a cell."""
+        """Return True if somebody can stand in a cell."""
         return self._at(self._standing, cell)
 
     def may_hold(self, place: Position) -> bool:
@@ -143,12 +143,12 @@ class Ground:
         return state < 0 or self._registry.is_container(self._registry.name(state))
 
     def is_sign(self, place: Position) -> bool | None:
-        """Whether there is a sign at a position; None: what is there is not known."""
+        """Return True if there is a sign at a position; None: what is there is not known."""
         state = int(self._blocks[self._box.index(place)]) if place in self._box else AIR
         return None if state < 0 else is_sign(self._registry.name(state))
 
     def steps(self, cell: Position) -> tuple[Position, ...]:
-        """The cells that one step leads to: aside, up one block, or down up to three."""
+        """Return the cells that one step leads to: aside, up one block, or down up to three."""
         found = self._steps.get(cell)
         if found is None:
             steps = self._steps_from(cell)
@@ -164,18 +164,18 @@ class Ground:
 
     @property
     def has_doorways(self) -> bool:
-        """Whether there is a door or gate that is open, or as good as open."""
+        """True if there is a door or gate that is open, or as good as open."""
         return bool(self._doorways)
 
     def _is_way(self, state: int) -> bool:
-        """Whether a block is a door or gate that can be gone through."""
+        """Return True if a block is a door or gate that can be gone through."""
         if state < 0 or not is_doorway(name := self._registry.name(state)):
             return False
         by_hand = self._opens and moves_by_hand(name)
         return by_hand or is_open(self._registry, state) is True
 
     def _is_straight(self, cell: Position, step: Position) -> bool:
-        """Whether a step leads through no doorway, or straight through it."""
+        """Return True if a step leads through no doorway, or straight through it."""
         moved = (step[0] - cell[0], step[2] - cell[2])
         for at in (cell, step):
             along = self._doorways.get(at)
@@ -187,7 +187,7 @@ class Ground:
     def way(
         self, start: Position, goal: Goal, avoiding: AbstractSet[Position] = frozenset()
     ) -> tuple[Position, ...] | None:
-        """The way that `find_way` finds, looked for once where nothing is to be avoided."""
+        """Return the way that `find_way` finds, looked for once where nothing is to be avoided."""
         # What somebody knows of free lines is not kept: it changes, and is no matter of the ground.
         if avoiding or (isinstance(goal, InReach) and goal.has_free_line is not None):
             return find_way(self, start, goal, avoiding)
@@ -206,7 +206,7 @@ class Ground:
         return self._ways[wanted]
 
     def may_lead(self, start: Position, goal: Goal) -> bool:
-        """Whether a way may lead somewhere; False: none does.
+        """Return True if a way may lead somewhere; False: none does.
 
         The goal is met in a part of the ground that has all cells in it that can be got to.
         """
@@ -220,7 +220,7 @@ class Ground:
         return self._met[asked]
 
     def _area(self, start: Position) -> frozenset[Position]:
-        """All cells that can be got to from one, as far as ways are looked for."""
+        """Return all cells that can be got to from one, as far as ways are looked for."""
         area, waiting = {start}, [start]
         while waiting and len(area) < _MOST_CELLS:
             for cell in self.steps(waiting.pop()):
@@ -273,7 +273,7 @@ def _widened(flags: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
 def find_way(
     ground: Ground, start: Position, goal: Goal, avoiding: AbstractSet[Position] = frozenset()
 ) -> tuple[Position, ...] | None:
-    """The shortest way on foot; of several the same one each time.
+    """Return the shortest way on foot; of several the same one each time.
 
     Args:
         ground: Where one can stand.

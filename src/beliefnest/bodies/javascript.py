@@ -56,7 +56,7 @@ class JavaScriptProgram:
 
     @property
     def reads(self) -> bool:
-        """Whether it can read anything of the world."""
+        """True if it can read anything of the world."""
         return not self._leaves_nothing
 
     def start(self) -> None:
@@ -88,7 +88,7 @@ class JavaScriptProgram:
 
     @property
     def listens(self) -> bool:
-        """Whether it wants to be told what is said."""
+        """True if it wants to be told what is said."""
         return bool(self._taken["listens"])
 
     def hear(self, heard: Sequence[tuple[str, str, str | None]]) -> None:
@@ -120,7 +120,7 @@ class JavaScriptProgram:
 
     @property
     def ended(self) -> bool:
-        """Whether it has ended, well or not, or can never end."""
+        """True if it has ended, well or not, or can never end."""
         return self._fault is not None or self._taken["done"] is not None or self._is_stuck
 
     @property

@@ -19,7 +19,7 @@ _HIGHEST = 65535
 
 
 def is_hosted(world: str) -> bool:
-    """Whether the name of a world is that of an embedded one in real time."""
+    """Return True if the name of a world is that of an embedded one in real time."""
     return world.startswith(f"{_SCHEME}://")
 
 
@@ -37,7 +37,7 @@ class ListenAddress:
 
     @classmethod
     def of(cls, listen: int | str) -> "ListenAddress":
-        """The address that is meant by a port of the loopback, or by `HOST:PORT`.
+        """Return the address that is meant by a port of the loopback, or by `HOST:PORT`.
 
         Raises:
             InputError: It is neither.
@@ -55,7 +55,7 @@ class ListenAddress:
 
     @classmethod
     def parse(cls, world: str) -> "ListenAddress":
-        """The address in the name of a world.
+        """Return the address in the name of a world.
 
         Raises:
             InputError: There is none.

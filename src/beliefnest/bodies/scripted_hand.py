@@ -133,7 +133,7 @@ def doors_in(value: Any) -> Doors:
 def _way(
     hand: Hand, goal: Goal, doors: Doors, bumped: AbstractSet[Position]
 ) -> tuple[Position, ...] | None:
-    """A way that opens no door, or one that does; round what the body has bumped into."""
+    """Return a way that opens no door, or one that does; round what the body has bumped into."""
     known = hand.known()
     way = known.way(hand.cell, goal, bumped)
     if way is None and doors.opens and known.with_doors_opened.has_doorways:
@@ -193,24 +193,24 @@ def _step_to(hand: Hand, cell: Position) -> None:
 
 
 def point_in(name: str, value: Any) -> Point:
-    """A point that a program gave; SkillError if it is none."""
+    """Return a point that a program gave; SkillError if it is none."""
     if not (isinstance(value, list | tuple) and len(value) == 3 and all(map(_is_number, value))):
         raise SkillError(f"{name} must be a Vec3 of three finite numbers; it is {value!r}")
     return (float(value[0]), float(value[1]), float(value[2]))
 
 
 def block_in(value: Any) -> Position:
-    """The block that a point lies in; SkillError if it is none."""
+    """Return the block that a point lies in; SkillError if it is none."""
     return cell_of(point_in("position", value))
 
 
 def cell_of(point: Point) -> Position:
-    """The cell that a point lies in."""
+    """Return the cell that a point lies in."""
     return (math.floor(point[0]), math.floor(point[1]), math.floor(point[2]))
 
 
 def items_in(value: Any) -> dict[str, int]:
-    """Items and how many of each; SkillError if they are none."""
+    """Return items and how many of each; SkillError if they are none."""
     registry = Registry.load()
     if not isinstance(value, dict) or not value:
         raise SkillError(f"items must say how many of which, like {{diamond: 1}}; it is {value!r}")
@@ -222,14 +222,14 @@ def items_in(value: Any) -> dict[str, int]:
 
 
 def text_in(value: Any) -> str:
-    """A text that is not empty; SkillError if it is none."""
+    """Return a text that is not empty; SkillError if it is none."""
     if not isinstance(value, str) or not value.strip():
         raise SkillError(f"a text is wanted that is not empty; it is {value!r}")
     return value
 
 
 def number_in(name: str, value: Any) -> float:
-    """A number of at least 0; SkillError if it is none."""
+    """Return a number of at least 0; SkillError if it is none."""
     if not _is_number(value) or value < 0:
         raise SkillError(f"{name} must be a number of at least 0; it is {value!r}")
     return float(value)

@@ -53,7 +53,7 @@ class Memory:
         return told["ok"], told["value"]
 
     def left(self, number: int, args: list[Any]) -> list[Any]:
-        """The arguments of a call that was under way: who waits has waited for some time."""
+        """Return the arguments of a call that was under way: who waits has waited for some time."""
         entry = self._entries[number]
         if entry.call.name != _WAITS or not entry.before:
             return args
@@ -66,7 +66,7 @@ class Memory:
         entry.call = replace(entry.call, answer=answer)
 
     def calls(self, tick: int) -> tuple[Called, ...]:
-        """All of them, as of a tick; none if they are too many."""
+        """Return all of them, as of a tick; none if they are too many."""
         if len(self._entries) > _MOST:
             return ()
         return tuple(

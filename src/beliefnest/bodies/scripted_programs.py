@@ -144,7 +144,7 @@ def _until_over(world: ScriptedWorld, runs: Sequence[_Run], grounds: Grounds, la
 
 
 def _begin_of(rules: RunRules, agent: str, now: int) -> int:
-    """The tick at which a program began at first."""
+    """Return the tick at which a program began at first."""
     past = rules.past.get(agent)
     return now if past is None else past.tick
 
@@ -208,7 +208,7 @@ def _heard_by(agent: str, events: Sequence[Event]) -> tuple[tuple[str, str, str 
 
 
 def _listens(run: _Run) -> bool:
-    """Whether a program is told what its agent hears, or its agent waits for that."""
+    """Return True if a program is told what its agent hears, or its agent waits for that."""
     return run.program.listens or any(name == "waitForChat" for name, _ in run.doing.values())
 
 
@@ -246,7 +246,7 @@ def _act(run: _Run) -> list[tuple[int, bool, object]]:
 
 
 def _goes_on(run: _Run) -> bool:
-    """Whether something is done still that goes on without its program."""
+    """Return True if something is done still that goes on without its program."""
     return any(name not in _ENDS_WITH_PROGRAM for name, _ in run.doing.values())
 
 

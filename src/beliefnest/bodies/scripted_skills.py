@@ -147,7 +147,7 @@ def _whisper(hand: Hand, other: Any, text: Any, claims: Any = ()) -> Doing:
 
 
 def _speak(hand: Hand) -> Doing:
-    """The ticks that it takes to say something; who says several things does so in turn."""
+    """Return the ticks that it takes to say something; who says several things does so in turn."""
     if not hand.speech_ticks:
         yield
         return

@@ -108,7 +108,7 @@ def world_name(world: str, *, realtime: bool, listen: int | str | None) -> str:
 
 
 def joined_of(world: World) -> RealtimeWorld | None:
-    """The world that people can join, also if it is lent; None if it is of another kind."""
+    """Return the world that people can join, also if it is lent; None if it is of another kind."""
     match world:
         case RealtimeWorld():
             return world
@@ -169,7 +169,7 @@ class LazyWorld:
 
     @property
     def has_physics(self) -> bool:
-        """Whether agents in its bodies stand, fall and are stopped by blocks."""
+        """True if agents in its bodies stand, fall and are stopped by blocks."""
         return self._name not in _WITHOUT_PHYSICS
 
     @property
@@ -192,11 +192,11 @@ class LazyWorld:
 
     @property
     def is_realtime(self) -> bool:
-        """Whether it goes on in real time, where people can stand in it."""
+        """True if it goes on in real time, where people can stand in it."""
         return is_server(self._name) or is_hosted(self._name)
 
     def started(self) -> World:
-        """The world itself, started if it is not yet.
+        """Return the world itself, started if it is not yet.
 
         Raises:
             BodyError: It could not be started.
@@ -206,7 +206,7 @@ class LazyWorld:
         return self._world
 
     def another(self) -> World:
-        """One more world of the kind, started with its first body."""
+        """Return one more world of the kind, started with its first body."""
         return LazyWorld(self._name, self._seed, self._limits)
 
     def interrupt(self) -> None:
@@ -251,7 +251,7 @@ class Worlds:
         self._worlds.clear()
 
     def lend(self, name: str) -> World:
-        """A world whose `close` gives up the bodies that were opened in it, not the world.
+        """Return a world whose `close` gives up the bodies that were opened in it, not the world.
 
         Raises:
             BodyError: It could not be started.
@@ -271,7 +271,7 @@ class _SharedWorld:
 
     @property
     def has_physics(self) -> bool:
-        """Whether agents in its bodies stand, fall and are stopped by blocks."""
+        """True if agents in its bodies stand, fall and are stopped by blocks."""
         return self._world.has_physics
 
     @property
@@ -291,7 +291,7 @@ class _SharedWorld:
         return body
 
     def another(self) -> World:
-        """One more world of the kind, for this nest alone."""
+        """Return one more world of the kind, for this nest alone."""
         return self._world.another()
 
     def interrupt(self) -> None:

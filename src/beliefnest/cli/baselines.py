@@ -84,7 +84,7 @@ def run_baselines(options: BaselineOptions) -> int:
 
 
 def _played(names: Sequence[str], options: BaselineOptions) -> list[dict[str, Any]]:
-    """The summary of a study of all baselines."""
+    """Return the summary of a study of all baselines."""
     study = Study(tasks=names, policies=_POLICIES, orders=_ORDERS, seeds=options.seeds)
     with ExitStack() as stack:
         folder = options.out or stack.enter_context(tempfile.TemporaryDirectory())
@@ -103,7 +103,7 @@ def _played(names: Sequence[str], options: BaselineOptions) -> list[dict[str, An
 
 
 def page_of(names: Sequence[str], found: Sequence[Group], seeds: int) -> str:
-    """The page of tasks, as Markdown."""
+    """Return the page of tasks, as Markdown."""
     lines = [
         "# Tasks",
         "",

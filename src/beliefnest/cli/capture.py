@@ -65,7 +65,7 @@ def write_capture(options: CaptureOptions) -> None:
 
 
 def _name(out: Path) -> str:
-    """The file's, of what a scenario's name can have in it."""
+    """Return the file's, of what a scenario's name can have in it."""
     return _NO_NAME.sub("-", out.stem)[:_LONGEST_NAME]
 
 

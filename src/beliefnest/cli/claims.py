@@ -16,7 +16,7 @@ __all__ = ["claims_json", "claims_matrix", "claims_table", "paths_of_beliefs"]
 
 
 def claims_json(claims: Sequence[MadeClaim], paths: Collection[str]) -> list[dict[str, object]]:
-    """Claims as plain data.
+    """Return claims as plain data.
 
     Args:
         claims: What was claimed.
@@ -42,7 +42,7 @@ def claims_json(claims: Sequence[MadeClaim], paths: Collection[str]) -> list[dic
 
 
 def claims_table(claims: Sequence[MadeClaim], path: str, scenario: Scenario) -> Table:
-    """Every claim, who heard it, and what a simulator made of it; not empty."""
+    """Return every claim, who heard it, and what a simulator made of it; not empty."""
     table = _begun()
     table.add_column("heard by")
     # What is claimed in a simulator in control mode is told there, and not believed by it.
@@ -66,7 +66,7 @@ def claims_matrix(claims: Sequence[MadeClaim], paths: Sequence[str], scenario: S
 
 
 def paths_of_beliefs(claims: Sequence[MadeClaim], agents: Sequence[str], depth: int) -> list[str]:
-    """Every belief of the world in which claims were made, shallow ones first.
+    """Return every belief of the world in which claims were made, shallow ones first.
 
     Args:
         claims: The claims; not empty.
@@ -89,7 +89,7 @@ def _cells(told: MadeClaim, scenario: Scenario) -> list[str]:
 
 
 def _words(claim: Claim, scenario: Scenario) -> str:
-    """A claim with the names that containers and places have."""
+    """Return a claim with the names that containers and places have."""
     if claim.kind is ClaimKind.POSITION:
         x, y, z = claim.place
         return claim.about(place_text((x, y, z), scenario).removeprefix("at "))

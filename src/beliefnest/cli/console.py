@@ -19,7 +19,7 @@ _NARROWEST = 20
 
 
 def stdout() -> Console:
-    """The console for results: coloured on a terminal alone.
+    """Return the console for results: coloured on a terminal alone.
 
     It is as wide as the terminal, or as COLUMNS says, or else wide enough for a table.
     """
@@ -29,7 +29,7 @@ def stdout() -> Console:
 
 
 def folded(table: Table) -> Table:
-    """The same table, whose cells are folded and never cut, however little room there is."""
+    """Return the same table, whose cells are folded and never cut, however little room there is."""
     for column in table.columns:
         column.overflow, column.no_wrap = "fold", False
     return table

@@ -47,7 +47,7 @@ class ConditionScore:
 def score_runs(
     runs: Sequence[Mapping[str, Any]], failures: Sequence[Mapping[str, Any]]
 ) -> list[ConditionScore]:
-    """The scores of runs as they are reported, in order of condition, then as they come."""
+    """Return the scores of runs as they are reported, in order of condition, then as they come."""
     keys = list(dict.fromkeys((each["condition"], each["model"]) for each in (*runs, *failures)))
     keys.sort(key=lambda key: -1 if key[0] is None else key[0])
     return [
@@ -98,7 +98,7 @@ def scores_json(scores: Sequence[ConditionScore]) -> list[dict[str, object]]:
 
 
 def score_table(name: str, scores: Sequence[ConditionScore]) -> Table:
-    """One row for each condition and model."""
+    """Return one row for each condition and model."""
     table = Table(title=name, title_justify="left", box=box.SIMPLE_HEAVY)
     table.add_column("condition", justify="right")
     table.add_column("model")

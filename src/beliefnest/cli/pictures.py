@@ -27,7 +27,7 @@ _NEAR = 3.0
 
 
 def read_condition(nest: Nest, journal: Journal, outcome: Outcome) -> ConditionPicture:
-    """The picture of a condition when its script has ended, from a nest that is still open.
+    """Return the picture of a condition when its script has ended, from a nest that is still open.
 
     Args:
         nest: After the script.
@@ -79,12 +79,12 @@ def container_name(place: Position, scenario: Scenario) -> str:
 
 
 def point_text(point: tuple[float, float, float]) -> str:
-    """A place for people."""
+    """Return a place for people."""
     return f"({', '.join(f'{value:.1f}' for value in point)})"
 
 
 def titled(name: str) -> str:
-    """An agent's name at the start of a sentence."""
+    """Return an agent's name at the start of a sentence."""
     return name[:1].upper() + name[1:]
 
 
@@ -164,7 +164,7 @@ def _place_words(name: str, state: State, scenario: Scenario) -> str:
 
 
 def place_text(point: Point, scenario: Scenario) -> str:
-    """A place for people: by its name, if it is near one that has a name."""
+    """Return a place for people: by its name, if it is near one that has a name."""
     near = {
         name: math.dist(point, (x + 0.5, y, z + 0.5))
         for name, (x, y, z) in scenario.setting.places.items()
@@ -175,7 +175,7 @@ def place_text(point: Point, scenario: Scenario) -> str:
 
 
 def _held(state: State, outcome: Outcome) -> bool | None:
-    """Whether a simulator holds all that is expected of it; None: nothing is."""
+    """Return True if a simulator holds all that is expected of it; None: nothing is."""
     verdicts = [
         each.ok for each in outcome.expectations if outcome.state(each.expectation.path) is state
     ]

@@ -59,6 +59,6 @@ def plan_run_cells(
 
 
 def _folder(number: int, model: str, models: Sequence[str]) -> Path:
-    """The number in front keeps models apart whose names differ only in special signs."""
+    """Return the number in front keeps models apart whose names differ only in special signs."""
     name = re.sub(r"[^A-Za-z0-9.]+", "-", model)
     return Path(f"model-{models.index(model) + 1}-{name}", f"repeat-{number + 1}")

@@ -143,7 +143,7 @@ def _line(
 
 
 def _is_right(row: Mapping[str, Any]) -> bool:
-    """Whether a probe and all beliefs of its cell came out as expected."""
+    """Return True if a probe and all beliefs of its cell came out as expected."""
     return row["ok"] is True and row["beliefs_ok"] is not False
 
 
@@ -156,7 +156,7 @@ def _in_words(expected: Mapping[str, Any]) -> str:
 
 
 def _rounded(place: str) -> str:
-    """A place that somebody stands at, to half a block."""
+    """Return a place that somebody stands at, to half a block."""
     return ",".join(f"{round(2 * float(part)) / 2:g}" for part in place.split(",") if part)
 
 

@@ -93,7 +93,7 @@ def run_suite(options: SuiteOptions) -> int:
 
 
 def parse_rows(text: str) -> frozenset[int]:
-    """Numbers of rows, from text such as `1-20,35`.
+    """Return numbers of rows, from text such as `1-20,35`.
 
     Raises:
         InputError: It is no such text.
@@ -139,7 +139,7 @@ def _needs_first(judged: Sequence[JudgedAnswer]) -> dict[int, Score]:
 
 
 def _telling(judged: Sequence[JudgedAnswer], *, tells: bool) -> list[JudgedAnswer]:
-    """Those whose stories have claims in them, or those whose stories have none."""
+    """Return those whose stories have claims in them, or those whose stories have none."""
     return [each for each in judged if each.tells is tells]
 
 

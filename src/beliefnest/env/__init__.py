@@ -35,7 +35,7 @@ def parallel_env(
     senses: "Senses" = "world",
     seed: int = 0,
 ) -> "BeliefEnv":
-    """A scenario as a parallel environment of PettingZoo's.
+    """Return a scenario as a parallel environment of PettingZoo's.
 
     An agent's observation is its own belief. See docs/pettingzoo.md for the layout of arrays.
 

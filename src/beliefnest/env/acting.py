@@ -170,7 +170,7 @@ class SkillActing:
         return self._ground("", self._world.blocks)
 
     def _ground(self, whose: str, grid: BlockGrid) -> Ground:
-        """The ground of a grid, made anew where that has changed."""
+        """Return the ground of a grid, made anew where that has changed."""
         known = self._grounds.get(whose)
         if known is None or not (known[0] is grid or np.array_equal(known[0], grid)):
             ground = Ground(Registry.load(), self._world.box, grid)

@@ -51,7 +51,7 @@ class ObservationLayout:
     def of(
         cls, setting: Setting, phrases: Phrases, items: Sequence[str] = ()
     ) -> "ObservationLayout":
-        """The layout of what a scenario starts from.
+        """Return the layout of what a scenario starts from.
 
         Args:
             setting: The start.
@@ -84,7 +84,7 @@ class ObservationLayout:
         )
 
     def number(self, kind: str, value: object) -> int:
-        """The number of something in its order.
+        """Return the number of something in its order.
 
         Args:
             kind: `agents`, `items`, `containers`, `doors`, `signs` or `phrases`.
@@ -122,7 +122,7 @@ class ObservationLayout:
         return shapes
 
     def arrays(self, state: State, lines: Sequence[tuple[int, str, str]] = ()) -> Arrays:
-        """A belief as arrays; docs/pettingzoo.md tells what is in each.
+        """Return a belief as arrays; docs/pettingzoo.md tells what is in each.
 
         Args:
             state: What is believed.

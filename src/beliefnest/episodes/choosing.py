@@ -15,7 +15,7 @@ _OBJECT = "object:"
 def chosen(
     task: Task, policies: Mapping[str, "str | Policy"]
 ) -> tuple[dict[str, str], dict[str, Policy]]:
-    """Policies of all agents of a task, in words and as they act.
+    """Return policies of all agents of a task, in words and as they act.
 
     Args:
         task: The task, which says who plays those that are left out.

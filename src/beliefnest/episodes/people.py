@@ -23,12 +23,12 @@ _NO_DEED = (EventKind.THINK, EventKind.BLOCK_UPDATE)
 
 
 def people_in(policies: Mapping[str, Policy]) -> frozenset[str]:
-    """The agents that are played by people."""
+    """Return the agents that are played by people."""
     return frozenset(name for name, policy in policies.items() if isinstance(policy, Person))
 
 
 def world_of_people(world: str, listen: int | str | None, people: Collection[str]) -> str:
-    """The name of the world that is played in.
+    """Return the name of the world that is played in.
 
     Raises:
         InputError: Nobody can join it, or nobody is to.
@@ -58,7 +58,7 @@ def check_repeats(world: str, what: str) -> None:
 
 
 def played_by_people(task: Task, people: Collection[str]) -> Task:
-    """A task whose scenario says which of its agents are people."""
+    """Return a task whose scenario says which of its agents are people."""
     agents = {
         name: {**entry, "type": "human" if name in people else "bot"}
         if name in people or "type" in entry

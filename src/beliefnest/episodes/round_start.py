@@ -32,7 +32,7 @@ class RoundStart(Generic[Played]):
         self.round = round
 
     def fork(self, **policies: "str | Policy") -> Played:
-        """The same episode from here on, on a branch of its own, with other policies.
+        """Return the same episode from here on, on a branch of its own, with other policies.
 
         Args:
             policies: By agent; the others are played as before.

@@ -24,12 +24,12 @@ class ReplayedPolicy:
     decisions: Sequence[Decision]
 
     def act(self, view: AgentView) -> str:
-        """The program of the round."""
+        """Return the program of the round."""
         return self.decisions[view.round].program
 
 
 def replayed(parts: Sequence[Part], agents: Iterable[str]) -> dict[str, Policy]:
-    """Policies of agents that decide what was decided before."""
+    """Return policies of agents that decide what was decided before."""
     return {
         agent: ReplayedPolicy([part.decisions[agent] for part in parts if agent in part.decisions])
         for agent in agents
@@ -61,7 +61,7 @@ class Asker:
         self._late: dict[str, _Answer] = {}
 
     def ask(self, view: AgentView) -> Decision:
-        """The program of a round; who does not give one in time gives none."""
+        """Return the program of a round; who does not give one in time gives none."""
         agent = view.agent
         policy = self._policies[agent]
         if isinstance(policy, ReplayedPolicy):

@@ -39,7 +39,7 @@ class Task:
 
     @staticmethod
     def names() -> tuple[str, ...]:
-        """Names of the built-in tasks, sorted."""
+        """Return names of the built-in tasks, sorted."""
         return tuple(sorted(builtin_tasks()))
 
     @classmethod
@@ -51,7 +51,7 @@ class Task:
         condition: int | str | None = None,
         **parameters: Any,
     ) -> Self:
-        """A built-in task, one in a file, or a scenario.
+        """Return a built-in task, one in a file, or a scenario.
 
         Args:
             name_or_path: Name of a built-in task or scenario, or path of a YAML file of either.
@@ -94,7 +94,7 @@ class Task:
 
     @classmethod
     def of(cls, scenario: Scenario, **rules: Any) -> Self:
-        """A scenario as a task: played by what its key `episode` says.
+        """Return a scenario as a task: played by what its key `episode` says.
 
         Args:
             scenario: The scenario; its probes and expectations play no part.
@@ -121,7 +121,7 @@ class Task:
 
     @classmethod
     def from_mapping(cls, content: Mapping[str, Any], seed: int | None = None) -> Self:
-        """A task built in code: what a file holds, as dicts, lists and scalars.
+        """Return a task built in code: what a file holds, as dicts, lists and scalars.
 
         Raises:
             ScenarioError: The content is wrong.

@@ -129,7 +129,7 @@ class AgentView:
 
     @property
     def may_speak(self) -> bool:
-        """Whether what it says is heard."""
+        """True if what it says is heard."""
         return self.agent in self.brief.talk
 
     @property
@@ -169,7 +169,7 @@ class AgentView:
         return self._imagine(depth)
 
     def render(self, template: str, depth: int = 0, **variables: object) -> str:
-        """The text of a prompt template, filled from its belief.
+        """Return the text of a prompt template, filled from its belief.
 
         Args:
             template: Its text. `branch` is the belief, `view` what else is known
@@ -194,7 +194,7 @@ class AgentView:
         return self._own.render(template, view=RoundFacts.of(self), about=about, **variables)
 
     def noting(self, model: "Model") -> "Model":
-        """A model whose conversation is kept in the run."""
+        """Return a model whose conversation is kept in the run."""
         return self._noting(model)
 
 
@@ -239,7 +239,7 @@ class RoundFacts:
 
 
 def _settled(state: State) -> State:
-    """A state in which who is seen was seen just now.
+    """Return a state in which who is seen was seen just now.
 
     It is noted at ticks at which something happened, be it where nobody sees it: from that an
     agent could tell that something did.

@@ -15,7 +15,7 @@ __all__ = ["messages_of"]
 
 
 def messages_of(messages: Sequence[Message]) -> list[ChatMessage]:
-    """A conversation in Inspect's form."""
+    """Return a conversation in Inspect's form."""
     forms = {
         "system": ChatMessageSystem,
         "user": ChatMessageUser,

@@ -12,7 +12,7 @@ __all__ = ["metrics_by", "score_of", "task_of"]
 
 
 def task_of(name: str, samples: list[Sample], scorer: Scorer, *before: Solver) -> Task:
-    """A task whose samples a model answers once, after some solvers."""
+    """Return a task whose samples a model answers once, after some solvers."""
     return Task(
         dataset=MemoryDataset(samples, name=name), solver=[*before, generate()], scorer=scorer
     )
@@ -30,7 +30,7 @@ def score_of(
     lines: Iterable[str],
     metadata: dict[str, Any] | None = None,
 ) -> Score:
-    """A score, with the lines that explain it in the log."""
+    """Return a score, with the lines that explain it in the log."""
     return Score(
         value=CORRECT if ok else INCORRECT,
         answer=answer,

@@ -38,7 +38,7 @@ def scenario(
 
 @task
 def hi_tom(file: str, stories: int | None = None) -> Task:
-    """The stories of Hi-ToM's form in `file`, the first so many of them."""
+    """Return the stories of Hi-ToM's form in `file`, the first so many of them."""
     return suite_task("hi-tom", file, stories)
 
 

@@ -55,7 +55,7 @@ class _Listener:
     asked: list[tuple[Message, ...]] = field(default_factory=list)
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """The answer that it was given."""
+        """Return the answer that it was given."""
         self.asked.append(tuple(messages))
         return Answer(self.text)
 

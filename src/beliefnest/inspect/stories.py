@@ -25,7 +25,7 @@ _READERS = {"hi-tom": read_items, "stories": read_own}
 
 
 def suite_task(suite: str, file: str, limit: int | None) -> Task:
-    """The task of a suite; each question is a sample.
+    """Return the task of a suite; each question is a sample.
 
     Args:
         suite: `hi-tom` or `stories`.

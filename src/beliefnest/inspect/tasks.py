@@ -31,7 +31,7 @@ def scenario_task(
     world: str,
     seed: int,
 ) -> Task:
-    """The task of a scenario; each request of each probe of each of its cells is a sample.
+    """Return the task of a scenario; each request of each probe of each of its cells is a sample.
 
     Args:
         scenario: Name of a built-in scenario, or path of a file.

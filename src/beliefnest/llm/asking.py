@@ -114,7 +114,7 @@ def ask_for_program(
 
 
 def _judge(text: str, check: Check) -> tuple[str | None, str | None]:
-    """The program of an answer, and what is wrong."""
+    """Return the program of an answer, and what is wrong."""
     try:
         program = extract_program(text)
     except NoProgramError as error:

@@ -40,7 +40,7 @@ class CachedModel:
         return self.model.name
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """The kept answer, or the model's.
+        """Return the kept answer, or the model's.
 
         Raises:
             ModelError: The model failed, or a file of the folder is damaged or cannot be

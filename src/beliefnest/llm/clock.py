@@ -10,7 +10,7 @@ class Clock(Protocol):
     """A clock that can be waited on."""
 
     def now(self) -> float:
-        """Seconds since some fixed moment."""
+        """Return seconds since some fixed moment."""
 
     def wait(self, seconds: float) -> None:
         """Let time pass."""
@@ -20,7 +20,7 @@ class SystemClock:
     """The machine's clock."""
 
     def now(self) -> float:
-        """Seconds since some fixed moment."""
+        """Return seconds since some fixed moment."""
         return time.monotonic()
 
     def wait(self, seconds: float) -> None:

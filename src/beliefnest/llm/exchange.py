@@ -30,18 +30,18 @@ class Exchange(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def request_key(model: str, messages: Sequence[Message], sampling: Sampling) -> str:
-    """A name for exactly this request: the same text, model and sampling, nothing else."""
+    """Return a name for exactly this request: the same text, model and sampling, nothing else."""
     request = msgspec.json.encode([model, list(messages), sampling])
     return hashlib.sha256(request).hexdigest()
 
 
 def encode_exchange(exchange: Exchange) -> bytes:
-    """An exchange as one line of JSON, without the line's end."""
+    """Return an exchange as one line of JSON, without the line's end."""
     return msgspec.json.encode(exchange)
 
 
 def decode_exchange(line: bytes) -> Exchange:
-    """An exchange from its line.
+    """Return an exchange from its line.
 
     Raises:
         msgspec.MsgspecError: The line is not an exchange.

@@ -21,7 +21,7 @@ class NoProgramError(ModelError):
 
 
 def extract_program(answer: str) -> str:
-    """The program in an answer: what its fenced block holds, or all of it if that is code.
+    """Return the program in an answer: what its fenced block holds, or all of it if that is code.
 
     Of several blocks the last one that is marked as JavaScript counts, or else the last
     without a mark: models that correct themselves do so at the end.

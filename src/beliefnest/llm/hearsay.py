@@ -64,7 +64,7 @@ class ClaimsFromModel:
         return self.model.name
 
     def through(self, wrap: Callable[[Model], Model]) -> "ClaimsFromModel":
-        """The same, asking through what `wrap` puts around the model."""
+        """Return the same, asking through what `wrap` puts around the model."""
         return replace(self, wrap=wrap)
 
     def __call__(self, text: str, speaker: str, nameable: Nameable) -> tuple[Claim, ...]:
@@ -83,7 +83,7 @@ class ClaimsFromModel:
 
 
 def claims_from_model(model: Model, sampling: Sampling | None = None) -> ClaimsFromModel:
-    """A hook for `Nest(..., claims_from=...)` that asks a model.
+    """Return a hook for `Nest(..., claims_from=...)` that asks a model.
 
     What it is asked and answers is kept in the run (`nest.prompts()`). Where it fails or
     answers nonsense, that is kept instead, and the text claims nothing.

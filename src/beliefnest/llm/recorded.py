@@ -31,7 +31,7 @@ class ScriptedModel:
     answers: deque[str]
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """The next answer.
+        """Return the next answer.
 
         Raises:
             ModelError: The script has ended.
@@ -56,7 +56,7 @@ class ReplayModel:
     recorded: Mapping[_Question, deque[Exchange]]
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """The next recorded answer to this question.
+        """Return the next recorded answer to this question.
 
         Raises:
             ModelError: The recording has none (left).
@@ -103,7 +103,7 @@ class FileRecordingModel:
 
 
 def load_script(name: str, path: Path) -> ScriptedModel:
-    """A scripted model from a JSON file: a list of answers.
+    """Return a scripted model from a JSON file: a list of answers.
 
     Raises:
         ModelError: The file cannot be read or is not a list of texts.
@@ -116,7 +116,7 @@ def load_script(name: str, path: Path) -> ScriptedModel:
 
 
 def load_replay(name: str, path: Path) -> ReplayModel:
-    """A replaying model from the file that a `FileRecordingModel` wrote.
+    """Return a replaying model from the file that a `FileRecordingModel` wrote.
 
     Raises:
         ModelError: The file cannot be read, or a line is not an exchange.

@@ -26,7 +26,7 @@ class RetryPolicy:
     longest_wait: float = 60.0
 
     def wait_before(self, attempt: int, retry_after: float | None) -> float:
-        """Seconds to wait before request number `attempt`, which counts from 1."""
+        """Return seconds to wait before request number `attempt`, which counts from 1."""
         backoff = min(self.first_wait * 2.0 ** (attempt - 2), self.longest_wait)
         return max(backoff, retry_after or 0.0)
 

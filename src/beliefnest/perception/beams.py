@@ -80,7 +80,7 @@ new_beam = inlined_allocating(beam_room)
 
 
 def eye_of(place: Vector, yaw: float, pitch: float, cos_half: float, far: float) -> Eye:
-    """An eye that looks along Mineflayer's radians; for the rest see `Eye`."""
+    """Return an eye that looks along Mineflayer's radians; for the rest see `Eye`."""
     level = math.cos(pitch)
     return place, (-math.sin(yaw) * level, math.sin(pitch), -math.cos(yaw) * level), cos_half, far
 
@@ -91,7 +91,7 @@ eye_at = inlined(eye_of)
 
 @inlined
 def in_field(eye: Eye, x: float, y: float, z: float) -> bool:
-    """Whether what lies at (x, y, z) from the eye's place is in the field of view."""
+    """Return True if what lies at (x, y, z) from the eye's place is in the field of view."""
     _, look, cos_half, _ = eye
     if cos_half < -1.0:
         return True
@@ -101,7 +101,7 @@ def in_field(eye: Eye, x: float, y: float, z: float) -> bool:
 
 @inlined
 def in_reach(eye: Eye, x: float, y: float, z: float) -> bool:
-    """Whether what lies at (x, y, z) from the eye's place is within the visible distance."""
+    """Return True if what lies at (x, y, z) from the eye's place is within the visible distance."""
     return math.sqrt(x * x + z * z + y * y) <= eye[3] + LIMIT_SLACK
 
 
@@ -112,7 +112,7 @@ def _inverse(d: float) -> float:
 
 @inlined
 def _offset(eye: Vector, cell: Cell, number: int) -> Vector:
-    """A sample point's place from the middle of its cell.
+    """Return a sample point's place from the middle of its cell.
 
     Number 0 is the middle; 1 to 5 are on the face turned to the eye along x, 6 to 10
     along y, 11 to 15 along z, each time the face's middle and its corners.
@@ -167,7 +167,7 @@ def _block_cell(scene: Scene, eye: Vector, cell: Cell, beam: Beam) -> bool:
 def _bounds(
     e: float, low: float, slope0: float, slope1: float, d0: float, d1: float
 ) -> tuple[int, int]:
-    """First and last cell a beam can touch between two distances, along one axis."""
+    """Return the first and last cell a beam can touch between two distances, along one axis."""
     first = e + slope0 * (d1 if slope0 < 0 else d0)
     last = e + slope1 * (d1 if slope1 > 0 else d0)
     first, last = max(first, min(e, low)), min(last, max(e, low + 1.0))

@@ -48,7 +48,7 @@ def _sees_sample(scene: Scene, eye: Eye, d: Vector) -> bool:
 
 @inlined
 def eye_sees_point(scene: Scene, eye: Eye, point: Vector) -> bool:
-    """Whether a point is seen that is within the visible distance."""
+    """Return True if a point is seen that is within the visible distance."""
     place = eye[0]
     d = (point[0] - place[0], point[1] - place[1], point[2] - place[2])
     return in_reach(eye, d[0], d[1], d[2]) and _sees_sample(scene, eye, d)
@@ -56,7 +56,7 @@ def eye_sees_point(scene: Scene, eye: Eye, point: Vector) -> bool:
 
 @merged
 def eye_sees_agent(scene: Scene, eye: Eye, feet: Vector) -> bool:
-    """Whether an agent with its feet at a point is seen by one of its sample points."""
+    """Return True if an agent with its feet at a point is seen by one of its sample points."""
     place = eye[0]
     x, y, z = feet[0] - place[0], feet[1] - place[1], feet[2] - place[2]
     if not in_reach(eye, x, y + BODY_CENTRE_HEIGHT, z):

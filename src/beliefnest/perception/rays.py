@@ -152,20 +152,20 @@ def is_compiled(function: Callable[..., object]) -> bool:
 
 @inlined
 def is_inside(sizes: Cell, cell: Cell) -> bool:
-    """Whether a cell is one of the grid's."""
+    """Return True if a cell is one of the grid's."""
     nx, ny, nz = sizes
     return 0 <= cell[0] < nx and 0 <= cell[1] < ny and 0 <= cell[2] < nz
 
 
 @inlined
 def at(sizes: Cell, cell: Cell) -> int:
-    """Index of a cell in a flat array over a grid of these sizes."""
+    """Return the index of a cell in a flat array over a grid of these sizes."""
     return (cell[0] * sizes[1] + cell[1]) * sizes[2] + cell[2]
 
 
 @inlined
 def cell_at(sizes: Cell, index: int) -> Cell:
-    """The cell of an index in a flat array over a grid of these sizes."""
+    """Return the cell of an index in a flat array over a grid of these sizes."""
     return (
         index // (sizes[1] * sizes[2]),
         index // sizes[2] % sizes[1],
@@ -175,7 +175,7 @@ def cell_at(sizes: Cell, index: int) -> Cell:
 
 @inlined
 def neighbour(cell: Cell, side: int) -> Cell:
-    """The cell across a side: 0 and 1 are low and high x, then y, then z."""
+    """Return the cell across a side: 0 and 1 are low and high x, then y, then z."""
     by = 2 * (side % 2) - 1
     axis = side // 2
     return (
@@ -187,7 +187,7 @@ def neighbour(cell: Cell, side: int) -> Cell:
 
 @inlined
 def sloped(eye: Vector, d: Vector) -> Ray:
-    """The ray from the eye along d, which is not zero."""
+    """Return the ray from the eye along d, which is not zero."""
     inverse = (
         1.0 / d[0] if d[0] != 0.0 else 0.0,
         1.0 / d[1] if d[1] != 0.0 else 0.0,
@@ -198,7 +198,7 @@ def sloped(eye: Vector, d: Vector) -> Ray:
 
 @inlined
 def _clip(e: float, inverse: float, low: float, high: float) -> tuple[float, float]:
-    """The part (t0, t1) of a line strictly between two planes; t0 > t1 if there is none."""
+    """Return the part (t0, t1) of a line strictly between two planes; t0 > t1 if there is none."""
     if inverse == 0.0:
         if low < e < high:
             return -math.inf, math.inf
@@ -210,7 +210,7 @@ def _clip(e: float, inverse: float, low: float, high: float) -> tuple[float, flo
 
 @inlined
 def span(ray: Ray, low: Vector, high: Vector) -> tuple[float, float]:
-    """The part (t0, t1) of a ray inside a box; t0 > t1 if there is none."""
+    """Return the part (t0, t1) of a ray inside a box; t0 > t1 if there is none."""
     eye, _, inverse, _ = ray
     x0, x1 = _clip(eye[0], inverse[0], low[0], high[0])
     y0, y1 = _clip(eye[1], inverse[1], low[1], high[1])
@@ -238,7 +238,7 @@ def _block_entry(scene: Scene, code: int, cell: Cell, ray: Ray) -> float:
 
 @inlined
 def _cell_entry(scene: Scene, cell: Cell, target: Cell, ray: Ray) -> tuple[float, Cell]:
-    """Entry and place of the block met first among those in and reaching into a cell."""
+    """Return the entry and place of the block met first among those in and reaching into a cell."""
     codes, sizes = scene.codes, scene.sizes
     entry = MISSED
     hit = NOWHERE
@@ -264,7 +264,7 @@ def _cell_entry(scene: Scene, cell: Cell, target: Cell, ray: Ray) -> tuple[float
 
 @inlined
 def turned(vector: tuple[N, N, N], axis: int) -> tuple[N, N, N]:
-    """A vector's components from an axis on: (x, y, z), (y, z, x) or (z, x, y)."""
+    """Return a vector's components from an axis on: (x, y, z), (y, z, x) or (z, x, y)."""
     x, y, z = vector
     if axis == 0:
         return x, y, z
@@ -275,7 +275,7 @@ def turned(vector: tuple[N, N, N], axis: int) -> tuple[N, N, N]:
 
 @inlined
 def turned_back(a: int, b: int, c: int, axis: int) -> Cell:
-    """The cell of components from an axis on; undoes `turned`."""
+    """Return the cell of components from an axis on; undoes `turned`."""
     if axis == 0:
         return a, b, c
     if axis == 1:
@@ -285,7 +285,7 @@ def turned_back(a: int, b: int, c: int, axis: int) -> Cell:
 
 @inlined
 def main_axis(d: Vector) -> int:
-    """The axis along which d is longest."""
+    """Return the axis along which d is longest."""
     x, y, z = abs(d[0]), abs(d[1]), abs(d[2])
     if x >= y and x >= z:
         return 0
@@ -294,7 +294,7 @@ def main_axis(d: Vector) -> int:
 
 @inlined
 def _part_inside(sizes: Cell, ray: Ray) -> tuple[float, float]:
-    """The part (t0, t1) of a ray inside the grid, short of its outer rim."""
+    """Return the part (t0, t1) of a ray inside the grid, short of its outer rim."""
     nx, ny, nz = sizes
     (x, y, z), d, _, _ = ray
     low, high = (_RIM, _RIM, _RIM), (nx - _RIM, ny - _RIM, nz - _RIM)
@@ -312,7 +312,7 @@ def _part_inside(sizes: Cell, ray: Ray) -> tuple[float, float]:
 
 @inner
 def _first_hit(scene: Scene, target: Cell, ray: Ray) -> Cell:
-    """The cell of the first block whose shape a ray enters; `NOWHERE` if there is none.
+    """Return the cell of the first block whose shape a ray enters; `NOWHERE` if there is none.
 
     Goes layer by layer along the ray's longest axis. In a layer the ray lies in two cells
     at most along each other axis; what it enters of the shapes there is decided by
@@ -366,13 +366,13 @@ def _first_hit(scene: Scene, target: Cell, ray: Ray) -> Cell:
 
 @inlined
 def may_lie_in_face(e: float, d: float) -> bool:
-    """Whether a ray may lie in the plane of a face across an axis: no other plane counts."""
+    """Return True if a ray may lie in the plane of a face across an axis: no other plane counts."""
     return d == 0.0 and e * 32.0 == math.floor(e * 32.0)
 
 
 @compiled
 def hidden_by(scene: Scene, target: Cell, eye: Vector, d: Vector) -> Cell:
-    """The cell of the first block that hides eye + d; `NOWHERE` if none does.
+    """Return the cell of the first block that hides eye + d; `NOWHERE` if none does.
 
     The target hides nothing. A ray in the plane of a face is free if it is free on one
     side of the plane: two blocks side by side leave no crack, and one may be grazed.

@@ -69,7 +69,7 @@ _TOUCHING = 1e-3
 
 @inlined
 def _is_enclosed(scene: Scene, shadows: Shadows, sides: Cell, index: int) -> bool:
-    """Whether every ray to a cell comes out of a full cube or a hidden cell.
+    """Return True if every ray to a cell comes out of a full cube or a hidden cell.
 
     Sides are the index steps to the neighbours nearer to the eye, 0 along an axis where
     the eye is level with the cell. Cells across edges and corners count: a ray may come
@@ -100,7 +100,7 @@ def _side(e: float, cell: int, stride: int) -> int:
 def _cells_touched(
     e: float, edge0: float, edge1: float, d0: float, d1: float, size: int
 ) -> tuple[int, int]:
-    """First and last cell, without margin, in partial shadow between two distances."""
+    """Return the first and last cell, without margin, in partial shadow between two distances."""
     low = e + edge0 * (d1 if edge0 < 0 else d0) - _GROW
     high = e + edge1 * (d1 if edge1 > 0 else d0) + _GROW
     return max(math.floor(low), 1), min(math.floor(high), size - 2)
@@ -118,7 +118,7 @@ def _cells_within(
 
 @inlined
 def _may_enter(eye: Vector, cell: Cell, low: Vector, high: Vector) -> bool:
-    """Whether the ray to a cell's middle enters a box or may lie in a plane of it."""
+    """Return True if the ray to a cell's middle enters a box or may lie in a plane of it."""
     d = (cell[0] + 0.5 - eye[0], cell[1] + 0.5 - eye[1], cell[2] + 0.5 - eye[2])
     if d[0] == 0.0 or d[1] == 0.0 or d[2] == 0.0:
         return True
@@ -159,7 +159,7 @@ def _prefer(shadows: Shadows, cell: int, block: int) -> None:
 
 @inlined
 def _gap(eye: Vector, low: Vector, high: Vector) -> tuple[int, float]:
-    """The axis along which an eye is farthest from a box, and how far."""
+    """Return the axis along which an eye is farthest from a box, and how far."""
     axis, near = 0, -1.0
     for n in range(3):
         e = turned(eye, n)[0]
@@ -233,7 +233,7 @@ def _cast_box(
 
 @inlined_allocating
 def _outward(e: float, size: int) -> npt.NDArray[np.int64]:
-    """The cells of a grid along an axis, without margin, from the eye outwards."""
+    """Return the cells of a grid along an axis, without margin, from the eye outwards."""
     order = np.empty(size - 2, dtype=np.int64)
     up = min(max(math.floor(e), 1), size - 1)
     down = up - 1
@@ -249,7 +249,7 @@ def _outward(e: float, size: int) -> npt.NDArray[np.int64]:
 
 @allocating
 def cast_shadows(scene: Scene, reaches: Reaches, eye: Vector) -> Shadows:
-    """The shadows of all blocks, near ones first: the hidden cast none."""
+    """Return the shadows of all blocks, near ones first: the hidden cast none."""
     codes, sizes, starts, boxes = scene
     size = sizes[0] * sizes[1] * sizes[2]
     marks = np.zeros(size, dtype=np.int8)

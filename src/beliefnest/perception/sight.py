@@ -135,7 +135,7 @@ class Geometry:
     codes: CodeGrid
 
     def with_blocks(self, changes: Mapping[Position, int]) -> "Geometry":
-        """The geometry with other block states (-1: unknown) at some positions of the grid.
+        """Return the geometry with other block states (-1: unknown) at some positions of the grid.
 
         Raises:
             InputError, UnknownNameError: A position lies outside the grid, an id is none.
@@ -204,7 +204,7 @@ class Geometry:
         return views.seen_agents(self._scene, self._eye(eye, yaw, pitch), places)
 
     def blocker(self, eye: Point, point: Point) -> Position | None:
-        """Position of the first block whose shape the ray from eye to point enters."""
+        """Return the position of the first block whose shape the ray from eye to point enters."""
         from beliefnest.perception import rays
 
         start, end = self._local(np.array([eye, point], dtype=np.float64)).tolist()

@@ -15,7 +15,7 @@ _FORMS: Mapping[str, str] = {".gif": "GIF", ".webp": "WEBP"}
 
 
 def check_animated(path: Path) -> str:
-    """The form that a file's ending names.
+    """Return the form that a file's ending names.
 
     Raises:
         InputError: It names none.

@@ -57,7 +57,7 @@ class Figure:
         return svg_text(self.drawing(), inline=True)
 
     def drawing(self, size: Size | None = None) -> Drawing:
-        """The marks of the figure.
+        """Return the marks of the figure.
 
         Args:
             size: Width in millimetres; or width and greatest height, and it is made smaller to fit;
@@ -77,7 +77,7 @@ class Figure:
         return self._layout(_length(self._width if size is None else size) * _POINTS)
 
     def image(self, size: Size | None = None, dpi: float = 200) -> "Image.Image":
-        """The figure as an image of pixels."""
+        """Return the figure as an image of pixels."""
         from beliefnest.pictures.raster import raster
 
         return raster(self.drawing(size), dpi)
@@ -121,7 +121,7 @@ class Figure:
 
 
 def figure_of(scenes: Sequence[Scene]) -> Figure:
-    """Simulators side by side, as many in a row as there is room for."""
+    """Return simulators side by side, as many in a row as there is room for."""
     paths = ", ".join(scene.path for scene in scenes)
     about = f"{paths} at tick {scenes[0].tick}"
     width = _COLUMNS["one column" if len(scenes) == 1 else "two columns"]

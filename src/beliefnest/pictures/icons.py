@@ -32,7 +32,7 @@ def letters(at: XY, text: str, room: float, colour: str, *, halo: str | None = N
 
 
 def agent(at: XY, radius: float, look: AgentLook, yaw: float | None, mark: Mark) -> list[Drawn]:
-    """A disc with a nose towards where the agent looks; a dashed one for a memory.
+    """Return a disc with a nose towards where the agent looks; a dashed one for a memory.
 
     Args:
         at: Its middle.
@@ -69,7 +69,7 @@ def agent(at: XY, radius: float, look: AgentLook, yaw: float | None, mark: Mark)
 
 
 def false_sign(at: XY, radius: float) -> list[Drawn]:
-    """A cross on a diamond: this is false."""
+    """Return a cross on a diamond: this is false."""
     x, y = at
     colour = MARKS[Mark.FALSE].colour
     r, c = radius * 1.35, radius * 0.42
@@ -82,7 +82,7 @@ def false_sign(at: XY, radius: float) -> list[Drawn]:
 
 
 def hearsay(at: XY, radius: float, *, believed: bool = True) -> list[Drawn]:
-    """A balloon with two strokes, as somebody's words have: this was only told.
+    """Return a balloon with two strokes, as somebody's words have: this was only told.
 
     Args:
         at: Its middle.
@@ -111,7 +111,7 @@ def hearsay(at: XY, radius: float, *, believed: bool = True) -> list[Drawn]:
 
 
 def verdict(at: XY, radius: float, *, good: bool) -> list[Drawn]:
-    """A tick, or a cross, on a disc; what is false has its cross on a diamond."""
+    """Return a tick, or a cross, on a disc; what is false has its cross on a diamond."""
     x, y = at
     if not good:
         c = radius * 0.42
@@ -129,7 +129,7 @@ def verdict(at: XY, radius: float, *, good: bool) -> list[Drawn]:
 
 
 def container(at: XY, size: float, store: Store) -> list[Drawn]:
-    """A container with what is known to be in it.
+    """Return a container with what is known to be in it.
 
     Items stand on it; it is open if it is known to be empty; `?` says that nothing is known, `+?`
     that there may be more.
@@ -184,7 +184,7 @@ def container(at: XY, size: float, store: Store) -> list[Drawn]:
 
 
 def item(at: XY, size: float, name: str) -> list[Drawn]:
-    """An item: a cut stone in its colour."""
+    """Return an item: a cut stone in its colour."""
     x, y = at
     r = size / 2
     colour = _item_colour(name)
@@ -199,7 +199,7 @@ def item(at: XY, size: float, name: str) -> list[Drawn]:
 
 
 def device(at: XY, cell: float, shown: Device) -> list[Drawn]:
-    """A door as wide as it stands, a lever, a button, a plate, a sign, a table to work at.
+    """Return a door as wide as it stands, a lever, a button, a plate, a sign, a table to work at.
 
     Args:
         at: Left upper corner of its column.

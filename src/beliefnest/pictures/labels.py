@@ -67,7 +67,7 @@ def put_labels(labels: Sequence[Label], room: Room) -> list[Put]:
 
 
 def _arranged(labels: Sequence[Label], first: Sequence[Label], free: Room) -> list[Put]:
-    """Names with their places; then whoever has the least choice chooses first."""
+    """Return names with their places; then whoever has the least choice chooses first."""
     room = free.copy()
     waiting = [*first, *(label for label in labels if label not in first)]
     put: list[Put] = []
@@ -91,7 +91,7 @@ def _arranged(labels: Sequence[Label], first: Sequence[Label], free: Room) -> li
 
 
 def leader(put: Put) -> tuple[XY, XY]:
-    """A line from an icon to its label."""
+    """Return a line from an icon to its label."""
     assert put.at is not None
     (x0, y0, x1, y1), at, size = put.label.icon, put.at, put.label.size
     end = (

@@ -35,7 +35,7 @@ _UNIT = 1000
 
 @cache
 def font_bytes(*, bold: bool) -> bytes:
-    """The TrueType file of the font."""
+    """Return the TrueType file of the font."""
     name = f"LiberationSans-{'Bold' if bold else 'Regular'}.ttf"
     with as_file(files("beliefnest.pictures") / "fonts" / name) as path:
         return Path(path).read_bytes()
@@ -43,7 +43,7 @@ def font_bytes(*, bold: bool) -> bytes:
 
 @cache
 def font(size: float, *, bold: bool) -> ImageFont.FreeTypeFont:
-    """The font, with `size` pixels to a size of the text."""
+    """Return the font, with `size` pixels to a size of the text."""
     stream = io.BytesIO(font_bytes(bold=bold))
     return ImageFont.truetype(stream, size, layout_engine=ImageFont.Layout.BASIC)
 
@@ -58,7 +58,7 @@ _LIKE = str.maketrans(
 
 
 def lettered(text: str) -> str:
-    """A text as it is drawn where no other font can help out."""
+    """Return a text as it is drawn where no other font can help out."""
     return text.translate(_LIKE)
 
 
@@ -68,12 +68,12 @@ def _unit_width(text: str, *, bold: bool) -> float:
 
 
 def text_width(text: str, size: float, *, bold: bool = False) -> float:
-    """Width of a line of text, in the unit of its size."""
+    """Return the width of a line of text, in the unit of its size."""
     return _unit_width(text, bold=bold) * size
 
 
 def wrap(text: str, size: float, width: float, *, bold: bool = False) -> list[str]:
-    """A text in lines that are no wider than `width`; a word that is wider is broken.
+    """Return a text in lines that are no wider than `width`; a word that is wider is broken.
 
     What controls or turns text is written out, as wherever texts of others are shown.
     """

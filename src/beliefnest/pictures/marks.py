@@ -161,12 +161,12 @@ class Drawing:
     title: str = ""
 
     def having(self, *roles: Role) -> Iterator[Mark]:
-        """The marks of some roles."""
+        """Yield the marks of some roles."""
         return (mark for mark in self.marks if mark.role in roles)
 
 
 def scaled(drawing: Drawing, factor: float) -> Drawing:
-    """A drawing of another size, its texts included."""
+    """Return a drawing of another size, its texts included."""
     return replace(
         drawing,
         width=drawing.width * factor,

@@ -80,7 +80,7 @@ class ConditionPicture:
 
 
 def overview(conditions: Sequence[ConditionPicture], title: str) -> Figure:
-    """The figure of a run; conditions stand side by side, and the same beliefs are level."""
+    """Return the figure of a run; conditions stand side by side, and the same beliefs are level."""
     count = len(conditions)
     width = 180.0 if count == 1 else min(85.0 * count, 255.0)
     return Figure(lambda points: _draw(conditions, title, points), width, title)
@@ -122,7 +122,7 @@ def _draw(conditions: Sequence[ConditionPicture], title: str, width: float) -> D
 def _row(
     page: _Page, row: Sequence[ConditionPicture], top: float, inner: float, columns: int
 ) -> float:
-    """Conditions side by side; returns where they end."""
+    """Return conditions side by side; returns where they end."""
     wide = (inner - _GAP * (columns - 1)) / columns
     lefts = [MARGIN + number * (wide + _GAP) for number in range(len(row))]
     heads = [_head(each, (left, top), wide) for each, left in zip(row, lefts, strict=True)]
@@ -146,7 +146,7 @@ def _row(
 
 
 def _levels(columns: Sequence[Sequence[Card]]) -> list[tuple[Card | None, ...]]:
-    """Cards of all conditions by level: those of the same belief or probe are on one."""
+    """Return cards of all conditions by level: those of the same belief or probe are on one."""
     named = [_named(cards) for cards in columns]
     order: list[tuple[object, ...]] = []
     for cards in named:
@@ -174,7 +174,7 @@ def _named(cards: Sequence[Card]) -> dict[tuple[object, ...], Card]:
 
 
 def _beside(page: _Page, condition: ConditionPicture, at: XY, inner: float) -> float:
-    """One condition, its cards to the right of the plan; returns where it ends."""
+    """Return one condition, its cards to the right of the plan; returns where it ends."""
     left, top = at
     head = _head(condition, at, inner)
     page.add(head)
@@ -206,7 +206,7 @@ def _head(condition: ConditionPicture, at: XY, width: float) -> Block:
 
 
 def _cards(page: _Page, cards: Sequence[tuple[Card, float]], top: float, width: float) -> float:
-    """Cards of one kind side by side, all as high as the highest; returns where they end."""
+    """Return cards of one kind side by side, all as high as the highest; returns where they end."""
     blocks = [_card(card, (left, top), width) for card, left in cards]
     bottom = max(block.bottom for block in blocks) + _INSET - 1
     for (card, left), block in zip(cards, blocks, strict=True):

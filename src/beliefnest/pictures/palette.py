@@ -125,7 +125,7 @@ def told_text(teller: str, ticks: int) -> str:
 
 
 def mix(first: str, second: str, share: float) -> str:
-    """The colour `share` of the way from one `#RRGGBB` to another."""
+    """Return the colour `share` of the way from one `#RRGGBB` to another."""
     one, other = bytes.fromhex(first[1:]), bytes.fromhex(second[1:])
     return "#" + bytes(round(a + (b - a) * share) for a, b in zip(one, other, strict=True)).hex()
 

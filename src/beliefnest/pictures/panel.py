@@ -64,7 +64,7 @@ def draw_panel(
     plan_at: float = 0.0,
     trails: Mapping[str, tuple[XY, ...]] | None = None,
 ) -> Block:
-    """A panel of a scene.
+    """Return a panel of a scene.
 
     Args:
         scene: What is drawn.
@@ -89,7 +89,7 @@ def draw_panel(
 
 
 def draw_title(scene: Scene, at: XY, width: float, size: float) -> Block:
-    """The head of a panel: path, what that is, tick."""
+    """Return the head of a panel: path, what that is, tick."""
     left, top = at
     block = Block(bottom=top)
     paragraph(block, scene.path, left, width, size * 1.15, bold=True)

@@ -13,7 +13,7 @@ _NAMES = {False: "LiberationSans", True: "LiberationSans-Bold"}
 
 
 def pdf_bytes(drawing: Drawing) -> bytes:
-    """The PDF of a drawing: one page of its size; the same drawing gives the same bytes."""
+    """Return the PDF of a drawing: one page of its size; the same drawing gives the same bytes."""
     from reportlab.pdfbase import pdfmetrics
     from reportlab.pdfbase.ttfonts import TTFont
     from reportlab.pdfgen.canvas import Canvas

@@ -85,7 +85,7 @@ def draw_plan(
     size: float,
     trails: Mapping[str, tuple[XY, ...]] | None = None,
 ) -> DrawnPlan:
-    """The plan of a scene.
+    """Return the plan of a scene.
 
     Args:
         scene: What is drawn.
@@ -110,7 +110,7 @@ def draw_plan(
 
 
 def hatching(bounds: Bounds, number: int, step: float = _HATCH) -> tuple[tuple[XY, XY], ...]:
-    """Lines across a rectangle that go on in its neighbours; `number` says which way."""
+    """Return lines across a rectangle that go on in its neighbours; `number` says which way."""
     x0, y0, x1, y1 = bounds
     sign = 1 if number % 2 else -1
     ends = [x0 + sign * y0, x0 + sign * y1, x1 + sign * y0, x1 + sign * y1]
@@ -169,7 +169,7 @@ class _Sheet:
         return x, y, x + wide * self._cell, y + self._cell
 
     def _runs(self, of: Mapping[tuple[int, int], object]) -> Iterator[tuple[int, int, int]]:
-        """Rows of equal neighbours: first column, row, and how many."""
+        """Yield rows of equal neighbours: first column, row, and how many."""
         across, down = self._scene.size
         for k in range(down):
             start = 0
@@ -431,7 +431,7 @@ class _Sheet:
 
 
 def _with_height(name: str, above: int) -> str:
-    """A name, with how far from the storey what it names is."""
+    """Return a name, with how far from the storey what it names is."""
     if not above:
         return name
     return f"{name}, {abs(above)} {'up' if above > 0 else 'down'}"

@@ -82,7 +82,7 @@ class NotedAct:
 
 
 def belief_plot(rows: Sequence[PlotRow], acts: Sequence[NotedAct], title: str) -> Figure:
-    """The figure of beliefs over time."""
+    """Return the figure of beliefs over time."""
     return Figure(lambda width: _draw(rows, acts, title, width), 174.0, title)
 
 
@@ -148,7 +148,7 @@ class _Chart:
 
 
 def _acts(chart: _Chart, acts: Sequence[NotedAct], top: float, marks: list[Drawn]) -> float:
-    """The words of deeds, each in the first line in which it touches no other."""
+    """Return the words of deeds, each in the first line in which it touches no other."""
     ends: list[float] = []
     low, high = chart.x(chart.start), chart.x(chart.end)
     for act in acts:
@@ -185,7 +185,7 @@ def _bands(chart: _Chart, row: PlotRow, top: float) -> list[Drawn]:
 
 
 def _told(chart: _Chart, row: PlotRow, top: float) -> list[Drawn]:
-    """A balloon above the row for each claim that was heard."""
+    """Return a balloon above the row for each claim that was heard."""
     marks: list[Drawn] = []
     for each in row.told:
         at = (chart.x(each.tick), top - _BALLOON * 1.5)
@@ -194,7 +194,7 @@ def _told(chart: _Chart, row: PlotRow, top: float) -> list[Drawn]:
 
 
 def _swatch(chart: _Chart, words: str, at: XY, wide: float, high: float) -> list[Drawn]:
-    """The look of a value; what is unknown is hatched."""
+    """Return the look of a value; what is unknown is hatched."""
     x, y = at
     if words:
         return [Rectangle(x, y, wide, high, chart.fills[words], mix(PAPER, INK, 0.5), 0.3)]
@@ -220,7 +220,7 @@ def _axis(chart: _Chart, top: float, marks: list[Drawn]) -> float:
 
 
 def _round_step(least: float) -> int:
-    """The least of 1, 2, 5, 10, 20, ... that is not below a number."""
+    """Return the least of 1, 2, 5, 10, 20, ... that is not below a number."""
     power = 10 ** max(0, math.floor(math.log10(max(least, 1.0))))
     return next(int(power * n) for n in (1, 2, 5, 10) if power * n >= least or n == 10)
 

@@ -17,7 +17,7 @@ _FINER = 2
 
 
 def raster(drawing: Drawing, dpi: float) -> Image.Image:
-    """The image of a drawing, with so many pixels to an inch."""
+    """Return the image of a drawing, with so many pixels to an inch."""
     scale = dpi / 72 * _FINER
     size = (round(drawing.width * dpi / 72), round(drawing.height * dpi / 72))
     image = Image.new("RGB", (size[0] * _FINER, size[1] * _FINER), PAPER)

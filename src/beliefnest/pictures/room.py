@@ -27,7 +27,7 @@ class Room:
         self._avoided: list[Bounds] = []
 
     def copy(self) -> "Room":
-        """The same, to try something in."""
+        """Return the same, to try something in."""
         copied = Room(self._bounds)
         copied._taken, copied._avoided = [*self._taken], [*self._avoided]
         return copied
@@ -44,7 +44,7 @@ class Room:
         return sum(_touch(bounds, each, 0) for each in self._avoided)
 
     def is_free(self, bounds: Bounds) -> bool:
-        """Whether something is inside the area and touches nothing."""
+        """Return True if something is inside the area and touches nothing."""
         x0, y0, x1, y1 = bounds
         a0, b0, a1, b1 = self._bounds
         if x0 < a0 or y0 < b0 or x1 > a1 or y1 > b1:
@@ -52,7 +52,7 @@ class Room:
         return not any(_touch(bounds, each, _GAP) for each in self._taken)
 
     def spot(self, at: XY, width: float, height: float) -> XY | None:
-        """The nearest middle for something of that size, which is then taken."""
+        """Return the nearest middle for something of that size, which is then taken."""
         for x, y in _around(at, max(width, height) / 2):
             bounds = (x - width / 2, y - height / 2, x + width / 2, y + height / 2)
             if self.is_free(bounds):
@@ -92,12 +92,12 @@ class Room:
 
 
 def _touch(a: Bounds, b: Bounds, gap: float) -> bool:
-    """Whether less than a gap lies between two."""
+    """Return True if less than a gap lies between two."""
     return a[0] < b[2] + gap and b[0] < a[2] + gap and a[1] < b[3] + gap and b[1] < a[3] + gap
 
 
 def _around(at: XY, step: float) -> Iterator[XY]:
-    """Places at and around a place, the nearest first."""
+    """Yield places at and around a place, the nearest first."""
     yield at
     for ring in range(1, 24):
         radius = ring * step * 0.75

@@ -12,7 +12,7 @@ _MILLIMETRES = 25.4 / 72
 
 
 def svg_text(drawing: Drawing, *, inline: bool = False) -> str:
-    """The SVG of a drawing.
+    """Return the SVG of a drawing.
 
     Args:
         drawing: What is drawn.
@@ -108,5 +108,5 @@ def _clean(text: str) -> str:
 
 
 def _n(value: float) -> str:
-    """A number in as few signs as its place needs."""
+    """Return a number in as few signs as its place needs."""
     return f"{value:.2f}".rstrip("0").rstrip(".") or "0"

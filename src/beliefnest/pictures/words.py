@@ -28,7 +28,7 @@ def point_words(point: Point | None) -> str:
 
 
 def place_words(place: Point | Position) -> str:
-    """A place."""
+    """Return a place."""
     return f"({', '.join(f'{value:.1f}'.removesuffix('.0') for value in place)})"
 
 
@@ -41,7 +41,7 @@ def items_words(items: Items, *, complete: bool) -> str:
 
 
 def told_apart(texts: Sequence[str]) -> tuple[str, ...]:
-    """Blocks in words: with no more of their properties than it takes to tell them apart.
+    """Return blocks in words: with no more of their properties than it takes to tell them apart.
 
     Args:
         texts: As people read blocks, with what is written on signs.
@@ -67,12 +67,12 @@ _STATES = {"open": ("open", "shut"), "powered": ("on", "off"), "lit": ("lit", "o
 
 
 def html_lines(lines: Iterable[str]) -> str:
-    """Lines of text; spaces at their beginning are kept."""
+    """Return lines of text; spaces at their beginning are kept."""
     return f'<div style="white-space:pre-wrap">{escape(chr(10).join(lines))}</div>'
 
 
 def html_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table of texts."""
+    """Return a table of texts."""
     head = "".join(f"<th>{escape(each)}</th>" for each in headings)
     body = "".join(
         f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows

@@ -21,7 +21,7 @@ class Call:
 
     @property
     def is_nothing(self) -> bool:
-        """Whether it begins nothing, so that what goes on goes on."""
+        """True if it begins nothing, so that what goes on goes on."""
         return self.skill == "doNothing"
 
     @property
@@ -48,7 +48,7 @@ def program_of(calls: "tuple[Call, ...] | list[Call]") -> str:
 
 
 def _code(value: Any) -> str:
-    """A value in a program."""
+    """Return a value in a program."""
     if isinstance(value, tuple):
         return f"new Vec3({', '.join(map(str, value))})"
     if isinstance(value, list):
@@ -59,7 +59,7 @@ def _code(value: Any) -> str:
 
 
 def _claim_code(claim: dict[str, Any]) -> str:
-    """A claim, as plain data, made by the function that programs have for it."""
+    """Return a claim, as plain data, made by the function that programs have for it."""
     place = _code(tuple(claim["place"]))
     match claim["kind"]:
         case "position":

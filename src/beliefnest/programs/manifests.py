@@ -42,6 +42,6 @@ class Skill(msgspec.Struct, frozen=True):
 
 @cache
 def skills() -> tuple[Skill, ...]:
-    """Every skill, in the order of the manifests, which are read once."""
+    """Return every skill, in the order of the manifests, which are read once."""
     file = files("beliefnest") / "programs" / "skills" / "manifests.json"
     return msgspec.json.decode(file.read_bytes(), type=tuple[Skill, ...])

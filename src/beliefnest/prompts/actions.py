@@ -58,7 +58,7 @@ _NOBODY = "-"
 
 
 def action_name(event: PerceivedEvent) -> str:
-    """The published name of the skill an event is the effect of."""
+    """Return the published name of the skill an event is the effect of."""
     if event.kind is EventKind.USE_LEVER and "powered" in event.detail:
         return "turnOnLever" if event.detail["powered"] else "turnOffLever"
     if event.kind is EventKind.USE_DOOR and "open" in event.detail:
@@ -79,6 +79,6 @@ def description(event: PerceivedEvent) -> str:
 
 
 def row(event: PerceivedEvent) -> str:
-    """An event as `time;action;agent_name;description`."""
+    """Return an event as `time;action;agent_name;description`."""
     actor = _NOBODY if event.actor is None else event.actor
     return f"{event.tick};{action_name(event)};{actor};{description(event)}"

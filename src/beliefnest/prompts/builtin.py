@@ -81,7 +81,7 @@ def _speaker(speaker: str, to: str | None) -> str:
 
 @filter("inventory")
 def inventory(branch: BranchView, agent: str | None = None) -> str:
-    """Items an agent is known to have, as `{'diamond': 1}`, what is worn or held included.
+    """Return items an agent is known to have, as `{'diamond': 1}`, what is worn or held included.
 
     `Empty` when it is known to have nothing, `No data` when nothing is known.
     """
@@ -110,7 +110,7 @@ def equipment(branch: BranchView, agent: str | None = None) -> str:
 
 @filter("helditem")
 def helditem(branch: BranchView, agent: str | None = None) -> str:
-    """The item in an agent's main hand as last seen.
+    """Return the item in an agent's main hand as last seen.
 
     `Empty` for an empty hand, `No data` when the agent was never seen.
     """
@@ -125,7 +125,7 @@ def _helditem(believed: AgentBelief) -> str:
 
 @filter("chests")
 def chests(branch: BranchView) -> str:
-    """Known chests, trapped chests and barrels: one `(x, y, z): {'diamond': 1}` a line.
+    """Return known chests, trapped chests and barrels: one `(x, y, z): {'diamond': 1}` a line.
 
     A chest that is empty, or that nothing is known of, prints `{}`; `Not observed` when no
     chest is known.
@@ -146,7 +146,7 @@ def _is_chest(state: State, at: Position) -> bool:
 
 @filter("other_players")
 def other_players(branch: BranchView) -> str:
-    """Every agent but the owner as JSON: `position`, `helditem` and `inventory` of each.
+    """Return every agent but the owner as JSON: `position`, `helditem` and `inventory` of each.
 
     The values are what the filters of these names print.
     """
@@ -166,7 +166,7 @@ def other_players(branch: BranchView) -> str:
 
 @filter("blocks")
 def blocks(branch: BranchView, names: Iterable[str] | None = None) -> str:
-    """Known blocks: one `chest: (x, y, z), (x, y, z)` a line for each name.
+    """Return known blocks: one `chest: (x, y, z), (x, y, z)` a line for each name.
 
     Without names, all that are known except air. `Not observed` for a name of which no
     block is known.
@@ -182,7 +182,7 @@ def blocks(branch: BranchView, names: Iterable[str] | None = None) -> str:
 def blocks_and_visibilities(
     branch: BranchView, names: Iterable[str] | None = None, others: Iterable[str] = ()
 ) -> str:
-    """Known blocks and who has seen them before, and sees them at this tick.
+    """Return known blocks and who has seen them before, and sees them at this tick.
 
     Names as in `blocks`. `Me` is the owner of the belief; `others` are agents whose sight
     is told as well, as the owner believes it to be.
@@ -227,7 +227,7 @@ def block_property(branch: BranchView, name: str) -> str:
 
 @filter("events")
 def events(branch: BranchView) -> str:
-    """Perceived actions other than speech, one `time;action;agent_name;description` a line.
+    """Return perceived actions other than speech, one `time;action;agent_name;description` a line.
 
     Actions have the names of the skills that do them. `Not observed` before the first.
     """
@@ -277,7 +277,7 @@ def _witnesses(event: PerceivedEvent, others: Mapping[str, State]) -> str:
 
 
 def _sightings(state: State, names: Iterable[str]) -> list[tuple[str, int, str, str]]:
-    """Agent, tick, how its place is known, and that place."""
+    """Return the agent, tick, how its place is known, and that place."""
     return [
         (name, believed.basis.observed_at, _how_known(believed), text.point(believed.position))
         for name, believed in ((name, state.agents[name]) for name in names)
@@ -309,7 +309,7 @@ def _known_blocks(state: State, names: Iterable[str] | None) -> dict[str, list[P
 
 
 def _strings(values: Iterable[str]) -> list[str]:
-    """Names a template gave; one name may stand without its list."""
+    """Return names a template gave; one name may stand without its list."""
     if isinstance(values, str):
         return [values]
     return list(values)

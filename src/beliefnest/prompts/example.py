@@ -43,7 +43,7 @@ class ExampleBlocks:
     visible: frozenset[Position] = frozenset()
 
     def __getitem__(self, position: Position) -> str | None:
-        """Block state text, or None where unknown.
+        """Return the block state text, or None where unknown.
 
         Raises:
             PositionError: The position is outside the box.
@@ -53,16 +53,16 @@ class ExampleBlocks:
         return self.known.get(position)
 
     def __iter__(self) -> Iterator[Position]:
-        """All positions of the box."""
+        """Yield all positions of the box."""
         return self.box.positions()
 
     def __len__(self) -> int:
-        """Number of positions in the box."""
+        """Return the number of positions in the box."""
         width, height, depth = self.box.shape
         return width * height * depth
 
     def named(self, names: frozenset[str]) -> dict[Position, str]:
-        """Known blocks whose name is one of `names`, in order of position."""
+        """Return known blocks whose name is one of `names`, in order of position."""
         return {
             at: block
             for at, block in sorted(self.known.items())
@@ -78,7 +78,7 @@ class ExampleBlocks:
         return grid
 
     def current(self, position: Position) -> bool:
-        """Whether the block is seen at this tick."""
+        """Return True if the block is seen at this tick."""
         return position in self.visible
 
     def basis(self, position: Position) -> Basis | None:
@@ -95,7 +95,7 @@ class ExampleBranch:
     labels: Mapping[Position, str] = field(default_factory=dict)
 
     def child(self, agent: str) -> "ExampleBranch":
-        """The belief of an agent in it; the owner's is this one.
+        """Return the belief of an agent in it; the owner's is this one.
 
         Raises:
             PathError: No belief of that agent was written down.

@@ -65,7 +65,7 @@ class FilterSet:
 
     @staticmethod
     def of(filters: Iterable[PromptFilter[Any]]) -> "FilterSet":
-        """A set of these filters alone.
+        """Return a set of these filters alone.
 
         Raises:
             InputError: Two have one name.
@@ -95,7 +95,7 @@ class FilterSet:
 
 
 def installed_filters(built_in: FilterSet) -> FilterSet:
-    """The built-in filters and those that installed packages offer.
+    """Return the built-in filters and those that installed packages offer.
 
     Raises:
         InputError: An installed package's filter cannot be loaded or its name is taken.

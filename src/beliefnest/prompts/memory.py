@@ -16,7 +16,7 @@ _SAYINGS = frozenset({EventKind.CHAT, EventKind.THINK})
 
 @filter("containers")
 def containers(branch: BranchView) -> str:
-    """Known containers, one a line: what is known of each, and where that comes from.
+    """Return known containers, one a line: what is known of each, and where that comes from.
 
     What a container holds is `known`, `known in part` (there may be more in it) or `unknown`.
     What it is called and looks as if it held is told if the scenario says `labels: true`.
@@ -92,7 +92,7 @@ def mechanisms(branch: BranchView) -> str:
 
 @filter("signs")
 def signs(branch: BranchView) -> str:
-    """Known signs, one a line: what is written on each, and where that comes from.
+    """Return known signs, one a line: what is written on each, and where that comes from.
 
     Lines of a sign are split by `/`; a sign on which nothing is written says so. With who was last
     perceived to write on it. `Not observed` when none is known.

@@ -88,7 +88,7 @@ greeting = "my_package.filters:greeting"
 
 
 def filter_reference() -> str:
-    """The text of docs/filters.md."""
+    """Return the text of docs/filters.md."""
     branch = example_branch()
     sections = [_section(each, branch) for each in BUILT_IN.filters.values()]
     return "\n".join([_HEAD, *sections])

@@ -50,7 +50,7 @@ def render(
     variables: Mapping[str, Any],
     filters: FilterSet | None = None,
 ) -> str:
-    """The text of a prompt; `Renderer` compiles a template once that is rendered often.
+    """Return the text of a prompt; `Renderer` compiles a template once that is rendered often.
 
     Args:
         template: A template, the path of a file that holds one, or Jinja2 source.
@@ -70,7 +70,7 @@ def render(
 
 @functools.cache
 def instructions(skills: tuple[object, ...]) -> str:
-    """The text of the built-in template `instructions`, which is about no simulator.
+    """Return the text of the built-in template `instructions`, which is about no simulator.
 
     Args:
         skills: What a program can call, each with its `signature` and `description`.
@@ -110,7 +110,7 @@ class Renderer:
     def render(
         self, template: Template | Path | str, branch: BranchView, variables: Mapping[str, Any]
     ) -> str:
-        """The text of a prompt; arguments and errors are those of the function `render`."""
+        """Return the text of a prompt; arguments and errors are those of the function `render`."""
         compiled = self._ready(_as_template(template))
         values = {
             **variables,
@@ -173,7 +173,7 @@ def _or_word(value: object, word: str) -> object:
 
 
 def _with_markers(text: str) -> str:
-    """The paper's two markers as variables, so that what they stand for is never parsed."""
+    """Return the paper's two markers as variables, so that what they stand for is never parsed."""
     for marker, expression in _MARKERS.items():
         text = text.replace(marker, expression)
     return text
@@ -260,7 +260,7 @@ def _unknown_variables(tree: nodes.Template, line: int, known: set[str]) -> str:
 
 
 def _words(error: Exception) -> str:
-    """The message of an error, with its kind unless the message was written to be read."""
+    """Return the message of an error, with its kind unless the message was written to be read."""
     if isinstance(error, jinja2.TemplateError):
         return error.message or type(error).__name__
     if isinstance(error, BeliefNestError):

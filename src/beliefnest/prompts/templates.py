@@ -32,7 +32,7 @@ class Template:
 
 @cache
 def built_in_template(name: str) -> Template:
-    """A template that comes with the package, which is read once.
+    """Return a template that comes with the package, which is read once.
 
     Raises:
         TemplateError: There is none of that name.
@@ -44,7 +44,7 @@ def built_in_template(name: str) -> Template:
 
 
 def load_template(path: Path) -> Template:
-    """A template from a file (UTF-8).
+    """Return a template from a file (UTF-8).
 
     Raises:
         TemplateError: The file cannot be read.

@@ -35,33 +35,33 @@ EMPTY: Final = "Empty"
 
 
 def number(value: float) -> str:
-    """A number with at most three decimals, without trailing zeros or a negative zero."""
+    """Return a number with at most three decimals, without trailing zeros or a negative zero."""
     text = f"{value:.3f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
 
 def point(value: Point) -> str:
-    """A point as `[x, y, z]`."""
+    """Return a point as `[x, y, z]`."""
     return f"[{', '.join(number(part) for part in value)}]"
 
 
 def position(value: Position) -> str:
-    """A block position as `(x, y, z)`."""
+    """Return a block position as `(x, y, z)`."""
     return f"({', '.join(number(part) for part in value)})"
 
 
 def mapping(values: Mapping[str, object]) -> str:
-    """Names and values as `{'diamond': 1}`, sorted by name."""
+    """Return names and values as `{'diamond': 1}`, sorted by name."""
     return repr(dict(sorted(values.items())))
 
 
 def as_json(value: object) -> str:
-    """A value as JSON over several lines, two spaces a level."""
+    """Return a value as JSON over several lines, two spaces a level."""
     return json.dumps(value, indent=2, ensure_ascii=False)
 
 
 def one_line(text: str) -> str:
-    """A text that agents made, on one line, so that it cannot pass for another section."""
+    """Return a text that agents made, on one line, so that it cannot pass for another section."""
     return on_one_line(text)
 
 
@@ -71,14 +71,14 @@ def block_name(block: str) -> str:
 
 
 def block_properties(block: str) -> dict[str, str]:
-    """Property name to value of a canonical block state text."""
+    """Return the property name to value of a canonical block state text."""
     inner = block.partition("[")[2].removesuffix("]")
     pairs = (pair.partition("=") for pair in inner.split(",") if pair)
     return {name: value for name, _, value in pairs}
 
 
 def nearest(name: str, names: Iterable[str]) -> str:
-    """The end of a message about an unknown name: what comes near it, or what there is."""
+    """Return the end of a message about an unknown name: what comes near it, or what there is."""
     known = sorted(names)
     close = difflib.get_close_matches(name, known, n=3, cutoff=0.5)
     if close:

@@ -24,11 +24,11 @@ class BranchView(Protocol):
         """What containers are called and look as if they held, where prompts may say so."""
 
     def child(self, agent: str) -> "BranchView":
-        """The belief simulator of an agent in this one; the owner's own is this one."""
+        """Return the belief simulator of an agent in this one; the owner's own is this one."""
 
 
 def owner_of(state: State) -> str:
-    """The agent whose belief a state is.
+    """Return the agent whose belief a state is.
 
     Raises:
         InputError: It is the real world, which is nobody's belief.
@@ -55,7 +55,7 @@ def believed_agent(state: State, agent: str | None) -> AgentBelief:
 
 
 def belief_of(branch: BranchView, agent: str) -> State:
-    """The state that an agent in a simulator believes.
+    """Return the state that an agent in a simulator believes.
 
     Raises:
         UnknownNameError: The scenario has no such agent.

@@ -47,7 +47,7 @@ class Probe:
 
     @property
     def asks_for_program(self) -> bool:
-        """Whether the model is asked for a program."""
+        """True if the model is asked for a program."""
         return not self.expect or len(self.questions) < len(self.expect)
 
 

@@ -54,7 +54,7 @@ class Document:
     templates: Mapping[str, str] = field(default_factory=dict)
 
     def fault(self, path: KeyPath, message: str) -> ScenarioError:
-        """The error that names file, line and key of what is wrong."""
+        """Return the error that names file, line and key of what is wrong."""
         return ScenarioError(f"{self.where(path)}: {_key_text(path)}{message}")
 
     def where(self, path: KeyPath) -> str:
@@ -95,7 +95,7 @@ def _child(node: YamlNode, key: str | int) -> YamlNode | None:
 
 
 def plain(node: YamlNode) -> object:
-    """The value of a node without lines."""
+    """Return the value of a node without lines."""
     if isinstance(node.value, dict):
         return {key: plain(child) for key, child in node.value.items()}
     if isinstance(node.value, list):
@@ -104,7 +104,7 @@ def plain(node: YamlNode) -> object:
 
 
 def wrapped(value: object, depth: int = 0) -> YamlNode:
-    """A document built in code, which has no lines.
+    """Return a document built in code, which has no lines.
 
     Raises:
         ScenarioError: It is nested too deep, perhaps in itself.
@@ -119,7 +119,7 @@ def wrapped(value: object, depth: int = 0) -> YamlNode:
 
 
 def merged(document: Document, condition: int) -> Document:
-    """The document with the overrides of a condition merged in.
+    """Return the document with the overrides of a condition merged in.
 
     Mappings are merged key by key, anything else replaces. Where the base has a list of
     labelled entries and the override a mapping, the entries with these labels are merged.

@@ -47,7 +47,7 @@ _CALLS: Mapping[str, Callable[..., object]] = {
 
 
 def names_in(text: str) -> frozenset[str]:
-    """The names of values that an expression is about.
+    """Return the names of values that an expression is about.
 
     Raises:
         InputError: It is no expression.

@@ -23,7 +23,7 @@ _MOST_BITS = 64
 
 
 def check_form(document: Document) -> ScenarioFile:
-    """The content of a document as typed values.
+    """Return the content of a document as typed values.
 
     Raises:
         ScenarioError: A key is unknown or missing, or a value is of the wrong kind.
@@ -104,7 +104,7 @@ def _hint(name: str, path: KeyPath) -> str:
 
 
 def _locate(root: YamlNode, steps: list[dict[str, str | None]], error: str) -> KeyPath:
-    """The place of a fault that msgspec names with `[...]` for the keys of mappings.
+    """Return the place of a fault that msgspec names with `[...]` for the keys of mappings.
 
     For each `[...]` the mapping is cut down to one entry at a time; the entry that still
     shows the fault is the one meant.
@@ -132,7 +132,7 @@ def _node_at(root: YamlNode, path: list[str | int]) -> YamlNode:
 
 
 def _with_only(node: YamlNode, path: list[str | int], key: str | int) -> YamlNode:
-    """The document with the mapping at a path cut down to one key."""
+    """Return the document with the mapping at a path cut down to one key."""
     if not path:
         return YamlNode({key: node.value[key]}, node.line)
     head, *rest = path

@@ -28,7 +28,7 @@ class NamedFunction:
         return self.loaded()(trial)
 
     def loaded(self) -> Callable[[Trial], bool | str]:
-        """The function.
+        """Return the function.
 
         Raises:
             InputError: There is none of that name.
@@ -48,7 +48,7 @@ class NamedFunction:
 
 
 def judge_of(written: object) -> Judge:
-    """The judge that a scenario names.
+    """Return the judge that a scenario names.
 
     Raises:
         InputError: It is no function and no `module:function`.

@@ -70,7 +70,7 @@ class Judgement:
 
 
 def opened_by(agent: str, events: Iterable[Event]) -> tuple[Position, ...]:
-    """The containers that an agent opened, in order."""
+    """Return the containers that an agent opened, in order."""
     return tuple(
         _position(event.detail["position"])
         for event in events
@@ -79,7 +79,7 @@ def opened_by(agent: str, events: Iterable[Event]) -> tuple[Position, ...]:
 
 
 def verdict_of(expected: Tells, trial: Trial) -> Judgement:
-    """Whether a program did what was expected."""
+    """Return True if a program did what was expected."""
     by_deed = False
     match expected:
         case Opens(container):
@@ -132,7 +132,7 @@ def outcome_of(verdicts: Sequence[Judgement], result: ProgramResult | None) -> s
 
 
 def answer_verdict(expected: Answers, answer: str | None) -> Judgement:
-    """Whether a question was answered rightly; None: it was not answered."""
+    """Return True if a question was answered rightly; None: it was not answered."""
     if answer is None:
         return Judgement(expected, ok=False, why_not="gave no answer", outcome="no_answer")
     if expected.options:
@@ -194,7 +194,7 @@ def sign_found(state: State, place: Position) -> str:
 
 
 def places_of(items: Items, state: State) -> tuple[Position, ...]:
-    """The containers that are known to hold at least these items, in order of position."""
+    """Return the containers that are known to hold at least these items, in order of position."""
     return tuple(
         place
         for place, container in sorted(state.containers.items())
@@ -240,7 +240,7 @@ def _taken(trial: Trial) -> dict[str, int]:
 
 
 def _has(answer: str, text: str) -> bool:
-    """Whether an answer has a text in it, as whole words."""
+    """Return True if an answer has a text in it, as whole words."""
     return re.search(rf"(?<!\w){re.escape(text.casefold())}(?!\w)", answer.casefold()) is not None
 
 

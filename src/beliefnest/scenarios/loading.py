@@ -34,14 +34,14 @@ _SUFFIXES = (".yaml", ".yml")
 
 
 def builtin_names() -> list[str]:
-    """Names of the scenarios that come with the package."""
+    """Return names of the scenarios that come with the package."""
     folder = files("beliefnest.scenarios") / "builtin"
     names = (entry.name for entry in folder.iterdir())
     return sorted(name.removesuffix(".yaml") for name in names if name.endswith(".yaml"))
 
 
 def condition_number(condition: int | str | None) -> int | None:
-    """The number of a condition, which may be given as text.
+    """Return the number of a condition, which may be given as text.
 
     Raises:
         ScenarioError: It is no number.
@@ -69,7 +69,7 @@ def load_conditions(name_or_path: str) -> tuple[ScenarioContent, ...]:
 
 
 def condition_numbers(document: Document) -> tuple[int | None, ...]:
-    """Numbers of a document's conditions, in order; only None if it has none.
+    """Return numbers of a document's conditions, in order; only None if it has none.
 
     Raises:
         ScenarioError: The document is not of the right form.
@@ -92,7 +92,7 @@ def kept_scenario(
 
 
 def read_document(name_or_path: str) -> Document:
-    """The document of a built-in scenario, or of one in a file.
+    """Return the document of a built-in scenario, or of one in a file.
 
     Raises:
         UnknownNameError: There is no built-in scenario of that name, and no such file.

@@ -6,10 +6,10 @@ __all__ = ["items_text", "place_text"]
 
 
 def place_text(point: Point) -> str:
-    """A place as `(2, -51, -4)`, tenths where it is no whole number."""
+    """Return a place as `(2, -51, -4)`, tenths where it is no whole number."""
     return f"({', '.join(f'{round(value, 1):g}' for value in point)})"
 
 
 def items_text(items: Items) -> str:
-    """Items as `1 diamond, 2 apple`; `nothing` if there are none."""
+    """Return items as `1 diamond, 2 apple`; `nothing` if there are none."""
     return ", ".join(f"{count} {name}" for name, count in sorted(items.items())) or "nothing"

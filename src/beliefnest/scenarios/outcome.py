@@ -71,7 +71,7 @@ class ProbeOutcome:
 
     @property
     def ok(self) -> bool | None:
-        """Whether all came out as expected; None: nothing was expected."""
+        """True if all came out as expected; None: nothing was expected."""
         return all(each.ok for each in self.verdicts) if self.probe.expect else None
 
     @property
@@ -142,7 +142,7 @@ class ExpectationOutcome:
 
     @property
     def ok(self) -> bool:
-        """Whether it holds that."""
+        """True if it holds that."""
         return self.why_not is None
 
 
@@ -181,7 +181,7 @@ class Outcome:
         return f"<{name}, {self.ticks} ticks: {held} and {right} as expected>"
 
     def state(self, path: str) -> State:
-        """The state of a simulator that the scenario names, after the script."""
+        """Return the state of a simulator that the scenario names, after the script."""
         names = parse_path(path, self.scenario.setting.snapshot.agents)
         return self.beliefs[path_text(names)] if names else self.reality
 
@@ -192,7 +192,7 @@ class Outcome:
 
     @property
     def ok(self) -> bool:
-        """Whether everything was as expected."""
+        """True if everything was as expected."""
         return all(each.ok for each in self.expectations) and all(
             each.ok is not False for each in self.probes
         )

@@ -31,7 +31,7 @@ _KEYS = ("parameters", "constraints")
 
 
 def choices(declared: ParameterEntry) -> Sequence[Any] | None:
-    """All values of a parameter, in order; None: it is any number in its range."""
+    """Return all values of a parameter, in order; None: it is any number in its range."""
     if declared.values:
         return list(declared.values)
     if declared.range is None:
@@ -47,7 +47,7 @@ def choices(declared: ParameterEntry) -> Sequence[Any] | None:
 
 
 def declared_in(document: Document, condition: int | None = None) -> dict[str, ParameterEntry]:
-    """The parameters that a document declares, as a condition says; None: as written.
+    """Return the parameters that a document declares, as a condition says; None: as written.
 
     Raises:
         ScenarioError: A declaration is not of the right form, or a condition makes a new one.
@@ -99,7 +99,7 @@ def _count_of(declared: ParameterEntry) -> float:
 def broken_constraint(
     document: Document, values: Mapping[str, object], condition: int | None = None
 ) -> str | None:
-    """The first of a document's constraints that values do not keep; None: they keep all.
+    """Return the first of a document's constraints that values do not keep; None: they keep all.
 
     A condition may have constraints of its own in their place.
 
@@ -195,7 +195,7 @@ class _Filling:
         return _HOLE.sub(written, text)
 
     def _found(self, hole: re.Match[str], path: KeyPath) -> tuple[object] | None:
-        """The value of a hole; None: it is JavaScript's own."""
+        """Return the value of a hole; None: it is JavaScript's own."""
         own = any(key in _PROGRAMS for key in path)
         try:
             names = names_in(hole[1])
@@ -217,14 +217,14 @@ def _on_line(node: YamlNode, line: int) -> YamlNode:
 
 
 def _written(value: object) -> str:
-    """A value inside a text."""
+    """Return a value inside a text."""
     if isinstance(value, list | tuple):
         return ", ".join(_written(part) for part in value)
     return value if isinstance(value, str) else json.dumps(value)
 
 
 def text_of(root: YamlNode) -> str:
-    """A document's content as YAML, one line for each entry at its top."""
+    """Return a document's content as YAML, one line for each entry at its top."""
     value = plain(root)
     assert isinstance(value, Mapping)  # the root of a document is one
     return "".join(f"{_flow(key)}: {_flow(inner)}\n" for key, inner in value.items())

@@ -28,7 +28,7 @@ _Bounds = tuple[Point, Point]
 def build_agents(
     document: Document, file: ScenarioFile, grid: BlockGrid, box: Box, registry: Registry
 ) -> dict[str, AgentState]:
-    """The agents by name, each on its own free place inside the box."""
+    """Return the agents by name, each on its own free place inside the box."""
     agents: dict[str, AgentState] = {}
     if len(file.agents) > MOST_AGENTS:
         found = len(file.agents)
@@ -75,7 +75,7 @@ def _agent(document: Document, name: str, entry: AgentEntry, registry: Registry)
 
 
 def _gaze(document: Document, name: str, entry: AgentEntry) -> tuple[float, float]:
-    """Yaw and pitch in radians."""
+    """Return the yaw and pitch in radians."""
     if entry.facing is None:
         return entry.yaw or 0.0, entry.pitch or 0.0
     if entry.yaw is not None or entry.pitch is not None:

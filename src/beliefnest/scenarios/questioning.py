@@ -58,7 +58,7 @@ def ask_question(
 
 
 def shuffled(question: Answers, seed: int) -> tuple[str, ...]:
-    """The options of a question in the order of a seed."""
+    """Return the options of a question in the order of a seed."""
     options = list(question.options)
     random.Random(f"{seed} {question.question}").shuffle(options)
     return tuple(options)

@@ -98,7 +98,7 @@ class EpisodeEntry(_Entry, frozen=True, kw_only=True):
 
 
 def goal_of(entry: GoalEntry, agents: Collection[str]) -> Goal:
-    """The goal that an entry describes.
+    """Return the goal that an entry describes.
 
     Raises:
         InputError: A condition makes no sense.
@@ -157,7 +157,7 @@ def check_condition(entry: ConditionEntry, agents: Collection[str], box: Box) ->
 
 
 def _conditions_of(entry: ConditionEntry, agents: Collection[str]) -> list[GoalCondition]:
-    """The conditions that an entry describes, one for each thing it names.
+    """Return the conditions that an entry describes, one for each thing it names.
 
     Raises:
         InputError: It makes no sense.

@@ -75,7 +75,7 @@ def run_scenario(
 
 
 def _paths(scenario: Scenario) -> list[str]:
-    """Every belief that the scenario names, normalised, in order of depth."""
+    """Return every belief that the scenario names, normalised, in order of depth."""
     agents = scenario.setting.snapshot.agents
     named = [each.path for each in scenario.expectations]
     named += [path for probe in scenario.probes for path in (probe.path, probe.acts_in)]

@@ -30,7 +30,7 @@ class Scenario(ScenarioContent):
         condition: int | str | None = None,
         parameters: Mapping[str, object] | None = None,
     ) -> Self:
-        """A built-in scenario, or one in a file.
+        """Return a built-in scenario, or one in a file.
 
         Args:
             name_or_path: Name of a built-in scenario, or path of a YAML file.
@@ -45,7 +45,7 @@ class Scenario(ScenarioContent):
 
     @classmethod
     def load_all(cls, name_or_path: str) -> tuple[Self, ...]:
-        """The scenario under each of its conditions; as written if it has none.
+        """Return the scenario under each of its conditions; as written if it has none.
 
         Raises:
             UnknownNameError: There is no built-in scenario of that name, and no such file.
@@ -60,7 +60,7 @@ class Scenario(ScenarioContent):
         condition: int | str | None = None,
         source: str = "scenario",
     ) -> Self:
-        """A scenario built in code: what a file holds, as dicts, lists and scalars.
+        """Return a scenario built in code: what a file holds, as dicts, lists and scalars.
 
         Raises:
             ScenarioError: The content is wrong.
@@ -75,7 +75,7 @@ class Scenario(ScenarioContent):
         parameters: Mapping[str, object] | None = None,
         change: Change | None = None,
     ) -> Self:
-        """The scenario of a document that was read once and is varied many times.
+        """Return the scenario of a document that was read once and is varied many times.
 
         Args:
             document: As `read_document` gives it.
@@ -92,7 +92,7 @@ class Scenario(ScenarioContent):
     def kept(
         cls, text: str, templates: Mapping[str, str], condition: int | None, source: str
     ) -> Self:
-        """A scenario as a run keeps it.
+        """Return a scenario as a run keeps it.
 
         Args:
             text: The text of its file.

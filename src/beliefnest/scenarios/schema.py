@@ -22,7 +22,7 @@ _DECLARING = ("parameters", "constraints", "conditions")
 
 
 def schema() -> dict[str, Any]:
-    """The JSON schema of a scenario file for editors, descriptions included.
+    """Return the JSON schema of a scenario file for editors, descriptions included.
 
     Anything that is no text may also be `${...}`, which a parameter's value takes the place of.
     """
@@ -35,7 +35,7 @@ def schema() -> dict[str, Any]:
 
 
 def _with_holes(entry: dict[str, Any]) -> dict[str, Any]:
-    """An object's definition whose properties may be holes, and what is in them."""
+    """Return an object's definition whose properties may be holes, and what is in them."""
     properties = {
         key: value if key in _DECLARING else _or_hole(value)
         for key, value in entry.get("properties", {}).items()
@@ -53,7 +53,7 @@ def _or_hole(value: dict[str, Any]) -> dict[str, Any]:
 
 
 def _holes_inside(form: dict[str, Any]) -> dict[str, Any]:
-    """A list or a mapping whose values may be holes; any other form as it is."""
+    """Return a list or a mapping whose values may be holes; any other form as it is."""
     inner = dict(form)
     for key in ("items", "additionalProperties"):
         if isinstance(inner.get(key), dict):
@@ -64,7 +64,7 @@ def _holes_inside(form: dict[str, Any]) -> dict[str, Any]:
 
 
 def _form() -> dict[str, Any]:
-    """The JSON schema of a scenario file whose parameters have their values in place."""
+    """Return the JSON schema of a scenario file whose parameters have their values in place."""
     published: dict[str, Any] = msgspec.json.schema(ScenarioFile)
     definitions = published["$defs"]
     for entry in definitions.values():
@@ -104,7 +104,7 @@ def allowed_keys(path: Iterable[str | int]) -> list[str]:
 
 
 def allowed_values(path: Iterable[str | int]) -> list[str]:
-    """The words that may stand at a place of a scenario file, if they are listed."""
+    """Return the words that may stand at a place of a scenario file, if they are listed."""
     return sorted({str(value) for place in _places(path) for value in place.get("enum", [])})
 
 

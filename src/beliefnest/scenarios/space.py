@@ -30,14 +30,14 @@ UNKNOWN = -1
 
 
 def box_between(first: Position, second: Position) -> Box:
-    """The box between two corners, whichever they are."""
+    """Return the box between two corners, whichever they are."""
     low = tuple(min(pair) for pair in zip(first, second, strict=True))
     high = tuple(max(pair) for pair in zip(first, second, strict=True))
     return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
 
 
 def build_box(document: Document, file: ScenarioFile) -> Box:
-    """The box of a scenario; ScenarioError if it is too large."""
+    """Return the box of a scenario; ScenarioError if it is too large."""
     box = box_between(*file.box)
     if fault := box_fault(box):
         raise document.fault(("box",), fault)

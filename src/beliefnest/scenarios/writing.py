@@ -24,7 +24,7 @@ _FULL = 20.0
 
 
 def scenario_text(name: str, description: str, place: Snapshot) -> str:
-    """A scenario file of a place; where nobody stands, a `visitor` does, who has nothing.
+    """Return a scenario file of a place; where nobody stands, a `visitor` does, who has nothing.
 
     Args:
         name: Short name of the scenario.
@@ -113,7 +113,7 @@ def _agent(state: AgentState) -> Any:
 
 
 def _standing(place: Snapshot, registry: Registry) -> tuple[float, float, float]:
-    """The lowest place to stand, and of those the nearest to the middle."""
+    """Return the lowest place to stand, and of those the nearest to the middle."""
     full = {s: _fills(registry, s) for s in np.unique(place.blocks).tolist()}
     empty = np.isin(place.blocks, [s for s in full if not registry.boxes(s)])
     floor = np.isin(place.blocks, [s for s, fills in full.items() if fills])
@@ -142,7 +142,7 @@ def _at(box: Box, index: Any) -> Position:
 
 
 def _flow(value: Any) -> Any:
-    """The value as YAML on one line."""
+    """Return the value as YAML on one line."""
     made: Any
     if isinstance(value, Mapping):
         made = CommentedMap((key, _flow(part)) for key, part in value.items())

@@ -11,7 +11,7 @@ __all__ = ["episode_draws", "scenario_draws"]
 
 
 def scenario_draws(scenario: Scenario, models: Iterable[str]) -> bool:
-    """Whether anything in a scenario is drawn, but for what the world itself draws.
+    """Return True if anything in a scenario is drawn, but for what the world itself draws.
 
     Args:
         scenario: The scenario.
@@ -48,5 +48,5 @@ def _script_draws(scenario: Scenario) -> bool:
 
 
 def _may_draw(program: str) -> bool:
-    """Whether a program may draw; one that only speaks of it is taken to."""
+    """Return True if a program may draw; one that only speaks of it is taken to."""
     return "random" in program

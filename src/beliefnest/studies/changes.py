@@ -128,7 +128,7 @@ class Renamed:
     items: Mapping[str, str]
 
     def value(self, kind: Kind, value: Any) -> Any:
-        """The new value; InputError if a program cannot be read."""
+        """Return the new value; InputError if a program cannot be read."""
         change = self._changes().get(kind)
         return value if change is None else change(value)
 
@@ -147,7 +147,7 @@ class Renamed:
         return self.agents.get(key, self.items.get(key, key))
 
     def _written(self, text: str) -> str:
-        """A text in a program: a name alone, or something that is said."""
+        """Return a text in a program: a name alone, or something that is said."""
         return self._key(text) if text in {*self.agents, *self.items} else self._told(text)
 
     def _told(self, text: str) -> str:

@@ -21,7 +21,7 @@ def rows_with_copies(
     plan: Mapping[str, Any],
     rows_of: Callable[[Mapping[str, Any], Mapping[str, Any]], Iterable[dict[str, Any]]],
 ) -> Iterator[dict[str, Any]]:
-    """The rows of all planned cells that have been tried, in the order of the plan.
+    """Yield the rows of all planned cells that have been tried, in the order of the plan.
 
     The `copy_of` of a row names the first of the cells that are `alike`; None: it is no copy. All
     of them have to have come to the same in everything: where they have not, the world drew.

@@ -157,7 +157,7 @@ def _holds(constraint: Constraint, told: str, values: Mapping[str, Any]) -> bool
 
 
 def template_named(name: str, folder: Path = Path()) -> Template:
-    """A built-in template, or one in a file.
+    """Return a built-in template, or one in a file.
 
     Raises:
         TemplateError: There is no such file.

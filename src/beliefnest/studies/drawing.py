@@ -104,7 +104,7 @@ class _Drawing:
         )
 
     def draw(self, chance: random.Random) -> Variation:
-        """One variation, which may break a constraint."""
+        """Return one variation, which may break a constraint."""
         values: dict[str, Any] = {
             name: chance.choice(listed)
             if listed is not None
@@ -138,21 +138,21 @@ def _is_possible(document: Document, symmetry: str) -> bool:
 
 
 def _proper_names(content: Mapping[str, Any]) -> tuple[str, ...]:
-    """Agents whose names are no words of the tasks, as that of a seller would be."""
+    """Return agents whose names are no words of the tasks, as that of a seller would be."""
     told = " ".join(str(probe.get("task", "")) for probe in content.get("probes", ()))
     words = set(re.findall(r"\w+", told))
     return tuple(name for name in content["agents"] if name not in words)[: len(_NAMES) // 2]
 
 
 def _carried(content: Mapping[str, Any]) -> tuple[str, ...]:
-    """Items that agents carry or containers hold at the start, and that do nothing."""
+    """Return items that agents carry or containers hold at the start, and that do nothing."""
     held = [agent.get("inventory") or {} for agent in content["agents"].values()]
     held += [container.get("items") or {} for container in content.get("containers", ())]
     return tuple(dict.fromkeys(name for items in held for name in items if name in _THINGS))
 
 
 def _words(content: object) -> Iterator[str]:
-    """All words of all texts."""
+    """Yield all words of all texts."""
     if isinstance(content, Mapping):
         for key, inner in content.items():
             yield from _words(str(key))

@@ -165,7 +165,7 @@ def _check_policies(policies: object) -> None:
 
 
 def listed(policies: Sequence[Policies] | Policies) -> tuple[Policies, ...]:
-    """Policies of all players, or a mapping, alone are a list of one."""
+    """Return policies of all players, or a mapping, alone are a list of one."""
     return (policies,) if isinstance(policies, str | Mapping) else tuple(policies)
 
 

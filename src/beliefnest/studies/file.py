@@ -52,7 +52,7 @@ class _StudyFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def read_design(path: Path) -> Design | EpisodeDesign:
-    """The design that a YAML file describes; files that it names are looked for beside it.
+    """Return the design that a YAML file describes; files that it names are looked for beside it.
 
     Raises:
         ScenarioError: The file is wrong; the message names file, line and key.

@@ -42,7 +42,7 @@ class Rewriting:
 
 
 def rewritten(program: str, by: Rewriting) -> str:
-    """A program with its positions and texts replaced.
+    """Return a program with its positions and texts replaced.
 
     Args:
         program: JavaScript, the body of an async function or a whole one.

@@ -34,16 +34,16 @@ class Counted(Protocol):
         """The form of the rows."""
 
     def counted(self, by: Sequence[str]) -> Sequence[Mapping[str, Any]]:
-        """The rows of `summary` as plain values."""
+        """Return the rows of `summary` as plain values."""
 
     def paired(
         self, between: str, by: Sequence[str] = ()
     ) -> Sequence[tuple[tuple[Any, ...], Pairs]]:
-        """The rows of `differences` as values."""
+        """Return the rows of `differences` as values."""
 
 
 def page_text(result: Counted, by: Sequence[str]) -> str:
-    """The page, the same text for the same study.
+    """Return the page, the same text for the same study.
 
     Args:
         result: What the study came to.

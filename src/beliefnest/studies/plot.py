@@ -72,12 +72,12 @@ def _inches(along: Sequence[str], colours: Sequence[str], title: str) -> tuple[f
 
 
 def _slot(along: Sequence[str], colours: Sequence[str]) -> float:
-    """Inches along the axis of the bars that stand together."""
+    """Return inches along the axis of the bars that stand together."""
     return max(0.5 * max(1, len(colours)), min(_label(along), _WIDEST))
 
 
 def _label(along: Sequence[str]) -> float:
-    """Inches of the longest text below bars."""
+    """Return inches of the longest text below bars."""
     return 0.2 + _LETTER * _longest(along)
 
 
@@ -94,7 +94,7 @@ def _told(value: Any) -> str:
 
 
 def svg_of(figure: "Figure") -> str:
-    """A figure as SVG, the same text for the same figure."""
+    """Return a figure as SVG, the same text for the same figure."""
     import matplotlib as mpl
 
     drawn = io.StringIO()

@@ -58,7 +58,7 @@ class Symmetry:
         return math.remainder(turned, 2 * math.pi)
 
     def block_state(self, text: str, registry: Registry) -> str:
-        """A block that faces, connects and hinges accordingly.
+        """Return a block that faces, connects and hinges accordingly.
 
         Raises:
             UnknownNameError: There is no such block.
@@ -77,7 +77,7 @@ class Symmetry:
         raise InputError(f"{text!r} cannot be {self.name}: there is no {changed!r}")
 
     def wanted_state(self, text: str, registry: Registry) -> str:
-        """The same, of a text in which only the properties that it names count.
+        """Return the same, of a text in which only the properties that it names count.
 
         Raises:
             UnknownNameError: There is no such block.
@@ -126,7 +126,7 @@ SYMMETRIES = tuple(Symmetry(mirrored, turns) for mirrored in (False, True) for t
 
 
 def symmetry_named(name: object) -> Symmetry:
-    """The symmetry of a name.
+    """Return the symmetry of a name.
 
     Raises:
         InputError: There is none of that name.

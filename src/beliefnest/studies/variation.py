@@ -38,7 +38,7 @@ class Variation:
 
     @property
     def changes_scene(self) -> bool:
-        """Whether it is more than values of parameters."""
+        """True if it is more than values of parameters."""
         return any(name in CHANGES for name in self.values)
 
     @property
@@ -53,7 +53,7 @@ class Variation:
         return ", ".join(parts) or "as written"
 
     def scene(self, document: Document) -> Document:
-        """The document in its symmetry and under its names.
+        """Return the document in its symmetry and under its names.
 
         Raises:
             ScenarioError: It cannot be changed for certain.
@@ -68,7 +68,7 @@ class Variation:
         return document
 
     def template(self, text: str, document: Document) -> str:
-        """A prompt template of no scenario's own in that symmetry and under these names.
+        """Return a prompt template of no scenario's own in that symmetry and under these names.
 
         Raises:
             InputError: It cannot be changed for certain, or a name is none.
@@ -137,7 +137,7 @@ class _NamedItems:
         self.words: set[str] = set()
 
     def value(self, kind: Kind, value: Any) -> Any:
-        """The same value."""
+        """Return the same value."""
         if kind == "item":
             self.found.add(value)
         elif kind == "program":
@@ -146,7 +146,7 @@ class _NamedItems:
 
 
 def listed_variations(lists: Mapping[str, Sequence[Any]]) -> list[Variation]:
-    """Every combination of listed values, the last list changing fastest."""
+    """Return every combination of listed values, the last list changing fastest."""
     names = list(lists)
     return [
         Variation(dict(zip(names, combination, strict=True)))

@@ -56,7 +56,7 @@ class Chunks:
         self._unpacker = zstandard.ZstdDecompressor()
 
     def compressed(self, body: bytes) -> bytes:
-        """The bytes, compressed."""
+        """Return the bytes, compressed."""
         return self._packer.compress(body)
 
     def decompressed(self, body: bytes) -> bytes:
@@ -134,7 +134,7 @@ class Chunks:
     def filtered(
         self, timeline: int, start: int, stop: int, what: EntryFilter
     ) -> Iterator[tuple[int, Entry]]:
-        """Those of entries start to stop - 1 that are looked for, with their numbers."""
+        """Yield those of entries start to stop - 1 that are looked for, with their numbers."""
         while start < stop:
             # No chunk has more entries than that, so that the index leads to the first one.
             found = self._chunk(
@@ -169,7 +169,7 @@ class Chunks:
         return count
 
     def agents_after(self, timeline: int, entries: int) -> Mapping[str, AgentState | None]:
-        """The last state of each agent that some entries name; the caller sees one state."""
+        """Return the last state of each agent that some entries name; the caller sees one state."""
         last = self._chunk(timeline, "first <= ? AND compressed ORDER BY first DESC", entries - 1)
         first = 0
         agents: dict[str, AgentState | None] = {}
@@ -220,7 +220,7 @@ class Chunks:
         self._database.write("INSERT INTO piece", **chunk._asdict())
 
     def _encoded(self, chunk: _Chunk) -> list[msgspec.Raw]:
-        """The encoded entries of a chunk."""
+        """Return the encoded entries of a chunk."""
         body = self.decompressed(chunk.body) if chunk.compressed else chunk.body
         encoded = codec.split(body)
         if len(encoded) != chunk.count:

@@ -97,12 +97,12 @@ def encode_entry(entry: Entry) -> bytes:
 
 
 def decode_entry(data: bytes | msgspec.Raw) -> Entry:
-    """A frame or an edit from the bytes of `encode_entry`; StoreError if they are none."""
+    """Return a frame or an edit from the bytes of `encode_entry`; StoreError if they are none."""
     return cast(Entry, _with_tuples(_decoded(_ENTRY, data, "entry of a timeline").value))
 
 
 def decode_agents(data: bytes) -> dict[str, AgentState | None]:
-    """Agents by name from the bytes `encode` made of them; StoreError if they are none."""
+    """Return agents by name from the bytes `encode` made of them; StoreError if they are none."""
     return _decoded(_AGENTS, data, "agents")
 
 
@@ -115,22 +115,22 @@ def decode_last_agents(entries: Iterable[msgspec.Raw]) -> dict[str, AgentState |
 
 
 def join(entries: Iterable[bytes | msgspec.Raw]) -> bytes:
-    """Encoded entries put together; `split` is its inverse."""
+    """Return the encoded entries put together; `split` is its inverse."""
     return _ENCODER.encode([msgspec.Raw(entry) for entry in entries])
 
 
 def split(data: bytes) -> list[msgspec.Raw]:
-    """The encoded entries that were joined; StoreError if the bytes are none."""
+    """Return the encoded entries that were joined; StoreError if the bytes are none."""
     return _decoded(_ENCODED, data, "entries of a timeline")
 
 
 def decode_ticks(encoded: Sequence[msgspec.Raw]) -> list[int]:
-    """Ticks of encoded entries, without decoding the rest; StoreError if one is none."""
+    """Return ticks of encoded entries, without decoding the rest; StoreError if one is none."""
     return [_decoded(_ENTRY_TICK, entry, "entry of a timeline")[1].tick for entry in encoded]
 
 
 def encode_snapshot(snapshot: Snapshot) -> bytes:
-    """Bytes of a snapshot; the grid as 32-bit little-endian integers, x slowest.
+    """Return bytes of a snapshot; the grid as 32-bit little-endian integers, x slowest.
 
     Raises:
         StoreError: The grid does not have the shape of the box, or something in the
@@ -177,7 +177,7 @@ def _decoded(decoder: msgspec.msgpack.Decoder[T], data: bytes | msgspec.Raw, wha
 
 
 def _with_tuples(value: Any) -> Any:
-    """The value with every sequence inside the details of its events as a tuple."""
+    """Return the value with every sequence inside the details of its events as a tuple."""
     if isinstance(value, Frame) and value.events:
         return replace(value, events=tuple(_with_tuples(event) for event in value.events))
     if isinstance(value, Event):

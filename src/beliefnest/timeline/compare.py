@@ -33,7 +33,7 @@ class EntryDifference:
 
 
 def first_difference(recorded: Iterable[Entry], found: Iterable[Entry]) -> EntryDifference | None:
-    """The first difference between two histories; None if they are the same."""
+    """Return the first difference between two histories; None if they are the same."""
     for number, (old, new) in enumerate(zip_longest(recorded, found)):
         if old == new:
             continue
@@ -48,7 +48,7 @@ def first_difference(recorded: Iterable[Entry], found: Iterable[Entry]) -> Entry
 
 
 def _differences(place: str, old: Any, new: Any) -> Iterator[tuple[str, Any, Any]]:
-    """Every innermost place where two values differ, with both."""
+    """Yield every innermost place where two values differ, with both."""
     if old == new:
         return
     parts_old, parts_new = _parts(old), _parts(new)

@@ -54,7 +54,7 @@ class _Detail(msgspec.Struct, forbid_unknown_fields=True):
 def event_from(
     kind: str, actor: str | None, detail: Mapping[str, Any], agents: Collection[str]
 ) -> Event:
-    """An event from plain data.
+    """Return an event from plain data.
 
     Args:
         kind: A value of `EventKind`.

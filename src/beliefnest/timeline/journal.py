@@ -109,7 +109,7 @@ class TimelineInfo:
 
 
 def is_found(entry: Entry, what: EntryFilter) -> bool:
-    """Whether an entry is one of those that are looked for."""
+    """Return True if an entry is one of those that are looked for."""
     if isinstance(entry, Edit):
         return what is EntryFilter.CHANGES
     if what is EntryFilter.EVENTS:
@@ -123,7 +123,7 @@ def count_of_events(entry: Entry) -> int:
 
 
 def branch_missing(key: TimelineKey, names: Iterable[str]) -> BranchError:
-    """The error for a branch that does not exist, `names` being those that do."""
+    """Return the error for a branch that does not exist, `names` being those that do."""
     known = ", ".join(repr(name) for name in sorted(names))
     return BranchError(
         f"{path_text(key.path)} has no branch {key.branch!r}; it has {known or 'none'}"
@@ -131,14 +131,14 @@ def branch_missing(key: TimelineKey, names: Iterable[str]) -> BranchError:
 
 
 def branch_taken(key: TimelineKey) -> BranchError:
-    """The error for a name that is in use."""
+    """Return the error for a name that is in use."""
     return BranchError(
         f"{path_text(key.path)} already has a branch {key.branch!r}; choose another name"
     )
 
 
 def branch_carries(key: TimelineKey, others: Iterable[TimelineKey]) -> BranchError:
-    """The error for removing what `others` are based on."""
+    """Return the error for removing what `others` are based on."""
     names = ", ".join(f"{path_text(k.path)} {k.branch!r}" for k in others)
     return BranchError(
         f"branch {key.branch!r} of {path_text(key.path)} carries others ({names}); "
@@ -192,13 +192,13 @@ class Journal(Protocol):
 
     @property
     def writable(self) -> bool:
-        """Whether it takes anything; who only looks at it leaves no checkpoints either."""
+        """True if it takes anything; who only looks at it leaves no checkpoints either."""
 
     def timelines(self) -> Sequence[TimelineInfo]:
-        """All timelines, in order of creation."""
+        """Return all timelines, in order of creation."""
 
     def info(self, key: TimelineKey) -> TimelineInfo:
-        """One timeline; BranchError if there is none of that key."""
+        """Return one timeline; BranchError if there is none of that key."""
 
     def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
         """Begin an empty timeline; costs the same however long its base is.
@@ -215,7 +215,7 @@ class Journal(Protocol):
         """
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
-        """Entries number start (included, not negative) to stop (excluded), oldest first.
+        """Yield entries number start (included, not negative) to stop (excluded), oldest first.
 
         Fewer where the timeline ends before. Entries appended later are not returned. BranchError
         as above.
@@ -227,7 +227,7 @@ class Journal(Protocol):
     def filtered(
         self, key: TimelineKey, start: int, stop: int, what: EntryFilter
     ) -> Iterator[tuple[int, Entry]]:
-        """Those of entries start to stop - 1 that are looked for, with their numbers.
+        """Yield those of entries start to stop - 1 that are looked for, with their numbers.
 
         Takes time in proportion to what is found, hardly to what is passed over. BranchError
         as above.
@@ -237,7 +237,7 @@ class Journal(Protocol):
         """How many events the first `entries` entries have; BranchError as above."""
 
     def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
-        """The last state of each agent that the first `entries` entries name.
+        """Return the last state of each agent that the first `entries` entries name.
 
         Takes the same time however many entries these are. BranchError as above.
         """
@@ -264,7 +264,7 @@ class Journal(Protocol):
     def nearest_checkpoint(
         self, key: TimelineKey, name: str, entries: int
     ) -> tuple[int, bytes] | None:
-        """The last checkpoint of that name at or before entry `entries`, with its place.
+        """Return the last checkpoint of that name at or before entry `entries`, with its place.
 
         None if the timeline itself has none there; its base may. BranchError as above.
         """
@@ -283,7 +283,7 @@ class Journal(Protocol):
         """
 
     def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
-        """The internal state that was kept for just that moment; None if none was.
+        """Return the internal state that was kept for just that moment; None if none was.
 
         BranchError as above.
         """

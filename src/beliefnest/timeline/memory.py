@@ -71,7 +71,7 @@ class _Timeline:
         self.info = replace(self.info, head=head, entries=len(self.entries))
 
     def copy(self) -> "_Timeline":
-        """The timeline as it is; once entries were added, `cut` has to follow."""
+        """Return the timeline as it is; once entries were added, `cut` has to follow."""
         checkpoints, body_states = self.checkpoints.copy(), self.body_states.copy()
         return replace(self, checkpoints=checkpoints, body_states=body_states)
 
@@ -100,11 +100,11 @@ class MemoryJournal:
         return True
 
     def timelines(self) -> Sequence[TimelineInfo]:
-        """All timelines, in order of creation."""
+        """Return all timelines, in order of creation."""
         return tuple(timeline.info for timeline in self._timelines.values())
 
     def info(self, key: TimelineKey) -> TimelineInfo:
-        """One timeline; BranchError if there is none of that key."""
+        """Return one timeline; BranchError if there is none of that key."""
         # Who reads states asks for little else: twice for each node.
         timeline = self._timelines.get(key)
         return self._timeline(key).info if timeline is None else timeline.info
@@ -124,7 +124,7 @@ class MemoryJournal:
         timeline.extend(entries, head)
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
-        """Entries number start to stop - 1, oldest first."""
+        """Yield entries number start to stop - 1, oldest first."""
         return iter(self._timeline(key).entries[start:stop])
 
     def entries_until(self, key: TimelineKey, tick: int) -> int:
@@ -134,7 +134,7 @@ class MemoryJournal:
     def filtered(
         self, key: TimelineKey, start: int, stop: int, what: EntryFilter
     ) -> Iterator[tuple[int, Entry]]:
-        """Those of entries start to stop - 1 that are looked for, with their numbers."""
+        """Yield those of entries start to stop - 1 that are looked for, with their numbers."""
         timeline = self._timeline(key)
         numbers = timeline.found[what]
         low, high = bisect_left(numbers, start), bisect_left(numbers, stop)
@@ -147,7 +147,7 @@ class MemoryJournal:
         return timeline.events[before - 1] if before else 0
 
     def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
-        """The last state of each agent that the first `entries` entries name."""
+        """Return the last state of each agent that the first `entries` entries name."""
         timeline, agents = self._timeline(key), {}
         for name, numbers in timeline.agents.items():
             before = bisect_left(numbers, entries)
@@ -192,7 +192,7 @@ class MemoryJournal:
     def nearest_checkpoint(
         self, key: TimelineKey, name: str, entries: int
     ) -> tuple[int, bytes] | None:
-        """The last checkpoint of that name at or before entry `entries`, with its place."""
+        """Return the last checkpoint of that name at or before entry `entries`, with its place."""
         kept = self._timeline(key).checkpoints
         places = [at for kind, at in kept if kind == name and at <= entries]
         return (max(places), kept[name, max(places)]) if places else None
@@ -204,7 +204,7 @@ class MemoryJournal:
         timeline.body_states[entries, tick] = state
 
     def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
-        """The internal state that was kept for a moment; None if none was."""
+        """Return the internal state that was kept for a moment; None if none was."""
         return self._timeline(key).body_states.get((entries, tick))
 
     @contextmanager

@@ -147,12 +147,12 @@ _TABLES: Mapping[type, str] = {ProgramRecord: "program", PromptRecord: "prompt"}
 
 
 def path_to(path: BeliefPath) -> str:
-    """A belief path as a run file holds it: a JSON array."""
+    """Return a belief path as a run file holds it: a JSON array."""
     return msgspec.json.encode(path).decode()
 
 
 def path_from(text: str) -> BeliefPath:
-    """The belief path of a column; StoreError if it holds none."""
+    """Return the belief path of a column; StoreError if it holds none."""
     try:
         return msgspec.json.decode(text, type=BeliefPath)
     except msgspec.MsgspecError as fault:
@@ -190,7 +190,7 @@ class Records:
             self.put_state("versions", codec.encode([*known[1:], now]))
 
     def versions(self) -> tuple[Mapping[str, str], ...]:
-        """Program to version, when the run began and whenever it went on with others."""
+        """Return the program to version, when the run began and whenever it went on with others."""
         later = self.state("versions")
         return (self.run().versions, *([] if later is None else codec.decode(later, _VERSIONS)))
 
@@ -200,7 +200,7 @@ class Records:
             self._database.write("INSERT OR REPLACE INTO meta", name=name, value=value)
 
     def state(self, name: str) -> bytes | None:
-        """The bytes last put under a name; None if there are none."""
+        """Return the bytes last put under a name; None if there are none."""
         where, what = "meta WHERE name = ?", f"state {name!r}"
         found = self._database.sound_rows("name, value", where, (name,), what)
         return next((bytes(value) for _, value in found), None)
@@ -212,7 +212,7 @@ class Records:
             self._database.write(into, path=path_to(path), branch=branch)
 
     def selected(self) -> dict[BeliefPath, str]:
-        """The branch each simulator is on, of those `select` named, in order of paths."""
+        """Return the branch each simulator is on, of those `select` named, in order of paths."""
         in_order, what = "selected ORDER BY path", "the selected branches"
         found = self._database.sound_rows("path, branch", in_order, (), what)
         return {path_from(path): branch for path, branch in found}
@@ -222,13 +222,13 @@ class Records:
         self._add(program, TimelineKey(program.path, program.branch))
 
     def next_group(self) -> int:
-        """A number for programs that run at the same time, which none before has had."""
+        """Return a number for programs that run at the same time, which none before has had."""
         # The sequence outlives deleted rows.
         row = self._database.row("SELECT seq FROM sqlite_sequence WHERE name = 'program'")
         return 1 if row is None else int(row[0]) + 1
 
     def programs(self) -> Sequence[ProgramRecord]:
-        """All programs, in order of their end."""
+        """Return all programs, in order of their end."""
         return self._all(ProgramRecord)
 
     def add_prompt(self, prompt: PromptRecord) -> None:
@@ -236,7 +236,7 @@ class Records:
         self._add(prompt, prompt.timeline)
 
     def prompts(self) -> Sequence[PromptRecord]:
-        """All requests to models, in order."""
+        """Return all requests to models, in order."""
         return self._all(PromptRecord)
 
     def follow_rename(self, path: BeliefPath, branch: str, name: str) -> None:

@@ -119,22 +119,22 @@ class SqliteJournal:
         self.close()
 
     def together(self) -> AbstractContextManager[None]:
-        """All calls made inside are kept together or, if one raises, not at all."""
+        """Return all calls made inside are kept together or, if one raises, not at all."""
         return self._database.transaction()
 
     def unchanging(self) -> AbstractContextManager[None]:
-        """All that is read inside is of one moment, whatever a writer does meanwhile."""
+        """Return all that is read inside is of one moment, whatever a writer does meanwhile."""
         return self._database.unchanging()
 
     def timelines(self) -> Sequence[TimelineInfo]:
-        """All timelines, in order of creation."""
+        """Return all timelines, in order of creation."""
         rows = {row.id: row for row in self._timeline_rows("ORDER BY id")}
         return tuple(
             _info(row, None if row.base is None else rows[row.base]) for row in rows.values()
         )
 
     def info(self, key: TimelineKey) -> TimelineInfo:
-        """One timeline; BranchError if there is none of that key."""
+        """Return one timeline; BranchError if there is none of that key."""
         row = self._row(key)
         base = None
         if row.base is not None:
@@ -181,7 +181,7 @@ class SqliteJournal:
             self._write(row._replace(head=head, entries=row.entries + len(encoded), packed=packed))
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
-        """Entries number start to stop - 1, oldest first."""
+        """Yield entries number start to stop - 1, oldest first."""
         row = self._row(key)
         found = self._chunks.raw(row.id, start, min(stop, row.entries), lambda: self._missing(key))
         return map(codec.decode_entry, found)
@@ -195,7 +195,7 @@ class SqliteJournal:
     def filtered(
         self, key: TimelineKey, start: int, stop: int, what: EntryFilter
     ) -> Iterator[tuple[int, Entry]]:
-        """Those of entries start to stop - 1 that are looked for, with their numbers."""
+        """Yield those of entries start to stop - 1 that are looked for, with their numbers."""
         row = self._row(key)
         return self._chunks.filtered(row.id, start, min(stop, row.entries), what)
 
@@ -205,7 +205,7 @@ class SqliteJournal:
             return self._chunks.events_until(self._row(key).id, entries)
 
     def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
-        """The last state of each agent that the first `entries` entries name."""
+        """Return the last state of each agent that the first `entries` entries name."""
         with self._database.unchanging():
             return self._chunks.agents_after(self._row(key).id, entries)
 
@@ -256,7 +256,7 @@ class SqliteJournal:
     def nearest_checkpoint(
         self, key: TimelineKey, name: str, entries: int
     ) -> tuple[int, bytes] | None:
-        """The last checkpoint of that name at or before entry `entries`, with its place."""
+        """Return the last checkpoint of that name at or before entry `entries`, with its place."""
         found = self._database.sound_rows(
             "timeline, name, entries, body",
             "keyframe WHERE timeline = ? AND name = ? AND entries <= ? "
@@ -280,7 +280,7 @@ class SqliteJournal:
             )
 
     def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
-        """The internal state that was kept for a moment; None if none was."""
+        """Return the internal state that was kept for a moment; None if none was."""
         found = self._database.sound_rows(
             "timeline, entries, tick, state",
             "body_state WHERE timeline = ? AND entries = ? AND tick = ?",

@@ -23,7 +23,7 @@ FileT = TypeVar("FileT", bound=Bundled)
 
 
 def read_bundled(kind: str, version: str, form: type[FileT], file_format: int) -> FileT:
-    """The facts of one kind about one Minecraft version.
+    """Return the facts of one kind about one Minecraft version.
 
     Args:
         kind: What the file is called before its version.

@@ -174,7 +174,7 @@ class _Plain(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def claims_from_plain(plain: object) -> tuple[Claim, ...]:
-    """Claims from plain data, a list of what `Claim.plain` gives.
+    """Return claims from plain data, a list of what `Claim.plain` gives.
 
     Raises:
         InputError: It is of another form; the message says which claim and where.
@@ -198,7 +198,7 @@ def _claim(number: int, plain: object) -> Claim:
 
 
 def claims_of(event: Event) -> tuple[Claim, ...]:
-    """The claims that an event carries; none for most."""
+    """Return the claims that an event carries; none for most."""
     plain = event.detail.get("claims")
     return claims_from_plain(plain) if plain else ()
 
@@ -206,7 +206,7 @@ def claims_of(event: Event) -> tuple[Claim, ...]:
 def with_claims(
     detail: Mapping[str, Any], claims: Iterable[Claim], box: Box, agents: Collection[str]
 ) -> dict[str, Any]:
-    """An utterance's detail with claims in it; as it is where there are none.
+    """Return an utterance's detail with claims in it; as it is where there are none.
 
     Raises:
         InputError: They are no list, one is no claim, or does not fit the world.

@@ -15,7 +15,7 @@ _SWITCHES = ("lever", "_button")
 
 
 def is_door(name: str) -> bool:
-    """Whether the block of that name opens and shuts: a door, a trapdoor or a fence gate."""
+    """Return True if the block of that name opens and shuts: a door, a trapdoor or a fence gate."""
     return name.endswith(_KINDS)
 
 
@@ -25,12 +25,12 @@ def is_doorway(name: str) -> bool:
 
 
 def is_switch(name: str) -> bool:
-    """Whether the block of that name is switched by hand: a lever or a button."""
+    """Return True if the block of that name is switched by hand: a lever or a button."""
     return name.endswith(_SWITCHES)
 
 
 def moves_by_hand(name: str) -> bool:
-    """Whether the door, trapdoor or gate of that name is not moved by power alone."""
+    """Return True if the door, trapdoor or gate of that name is not moved by power alone."""
     return is_door(name) and not name.startswith(_BY_POWER)
 
 
@@ -40,14 +40,14 @@ def passage(registry: Registry, state: int) -> tuple[int, int]:
 
 
 def is_open(registry: Registry, state: int) -> bool | None:
-    """Whether a door, trapdoor or gate stands open; None: the block is none."""
+    """Return True if a door, trapdoor or gate stands open; None: the block is none."""
     return registry.properties(state)["open"] == "true" if is_door(registry.name(state)) else None
 
 
 def used_door(
     registry: Registry, state_at: Callable[[Position], int], place: Position, *, opens: bool
 ) -> dict[Position, int]:
-    """The new states of a door that is used by hand; it is where the first of them is.
+    """Return the new states of a door that is used by hand; it is where the first of them is.
 
     Args:
         registry: Names and properties of states.

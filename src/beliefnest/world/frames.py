@@ -59,7 +59,7 @@ class Frame:
 
     @property
     def is_empty(self) -> bool:
-        """Whether nothing changed and nothing happened."""
+        """True if nothing changed and nothing happened."""
         return not (self.agents or self.blocks or self.containers or self.items or self.events)
 
 
@@ -84,6 +84,6 @@ class Snapshot:
     signs: Mapping[Position, str] = field(default_factory=dict)
 
     def block(self, place: Position) -> Block:
-        """The block at a position of the box."""
+        """Return the block at a position of the box."""
         state = int(self.blocks[self.box.index(place)])
         return Sign(state, self.signs[place]) if place in self.signs else state

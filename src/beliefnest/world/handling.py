@@ -63,11 +63,11 @@ class Handling:
         return _load(version)
 
     def pressed_ticks(self, name: str) -> int:
-        """Ticks after which a pressed button comes out again; 0: the block is no button."""
+        """Return ticks after which a pressed button comes out again; 0: the block is no button."""
         return self._pressed.get(name, 0)
 
     def is_pressed(self, registry: Registry, state: int) -> bool:
-        """Whether a block is a button that is pressed."""
+        """Return True if a block is a button that is pressed."""
         if not self.pressed_ticks(registry.name(state)):
             return False
         return registry.properties(state)["powered"] == "true"
@@ -91,7 +91,7 @@ class Handling:
 
 
 def switched_lever(registry: Registry, state_at: StateAt, place: Position, *, powered: bool) -> int:
-    """The new state of a lever that is brought into another one.
+    """Return the new state of a lever that is brought into another one.
 
     Raises:
         WorldError: There is no lever, it is so already, or it would move something.
@@ -108,7 +108,7 @@ def switched_lever(registry: Registry, state_at: StateAt, place: Position, *, po
 def pressed_button(
     registry: Registry, state_at: StateAt, place: Position, *, powered: bool = True
 ) -> int:
-    """The new state of a button that is pressed, or comes out again.
+    """Return the new state of a button that is pressed, or comes out again.
 
     Raises:
         WorldError: There is no button, it is so already, or it would move something.
@@ -125,7 +125,7 @@ def pressed_button(
 def put_block(
     registry: Registry, state_at: StateAt, place: Position, name: str, bodies: Iterable[Point]
 ) -> int:
-    """State of a block that is put somewhere.
+    """Return the state of a block that is put somewhere.
 
     Args:
         registry: Names and shapes.
@@ -154,7 +154,7 @@ def put_block(
 
 
 def free_to_put(registry: Registry, state_at: StateAt, place: Position) -> bool:
-    """Whether a place is free, and there is a block beside it to put something against."""
+    """Return True if a place is free, and there is a block beside it to put something against."""
     if state_at(place) not in registry.airs:
         return False
     around = (state_at(_beside(place, side)) for side in _SIDES)

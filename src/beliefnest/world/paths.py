@@ -27,7 +27,7 @@ _DEEPEST = 50
 
 
 def parse_path(text: str, agents: Collection[str]) -> BeliefPath:
-    """Agent names of a path, normalised.
+    """Return the agent names of a path, normalised.
 
     Raises:
         PathError: The text is no path, names an agent that there is not, or is too deep.
@@ -36,7 +36,7 @@ def parse_path(text: str, agents: Collection[str]) -> BeliefPath:
 
 
 def _parsed(text: str, written: str, agents: Collection[str]) -> BeliefPath:
-    """Agent names of a path that is a part of what messages show."""
+    """Return the agent names of a path that is a part of what messages show."""
     if not isinstance(text, str) or not text.startswith("/"):
         raise PathError(f"{_short(written)} is no belief path; write '/' or '/agent/agent'")
     if text == "/":
@@ -52,7 +52,7 @@ def _parsed(text: str, written: str, agents: Collection[str]) -> BeliefPath:
 
 
 def parse_pattern(text: str, agents: Collection[str]) -> BeliefPath:
-    """A path that may end in `/**`, which then is the last of the names.
+    """Return a path that may end in `/**`, which then is the last of the names.
 
     Raises:
         PathError: As for `parse_path`.
@@ -68,7 +68,7 @@ def parse_pattern(text: str, agents: Collection[str]) -> BeliefPath:
 
 
 def normalised(names: Iterable[str]) -> BeliefPath:
-    """The path with equal neighbours collapsed: an agent knows its own beliefs.
+    """Return the path with equal neighbours collapsed: an agent knows its own beliefs.
 
     Raises:
         PathError: It is too deep.
@@ -84,12 +84,12 @@ def normalised(names: Iterable[str]) -> BeliefPath:
 
 
 def path_text(path: Iterable[str]) -> str:
-    """The text of a path."""
+    """Return the text of a path."""
     return "/" + "/".join(path)
 
 
 def paths_below(root: BeliefPath, depth: int, agents: Iterable[str]) -> list[BeliefPath]:
-    """A path and all below it, down to `depth` more agents, shallow ones first."""
+    """Return a path and all below it, down to `depth` more agents, shallow ones first."""
     names = tuple(agents)
     found = level = [root]
     for _ in range(depth):
@@ -99,6 +99,6 @@ def paths_below(root: BeliefPath, depth: int, agents: Iterable[str]) -> list[Bel
 
 
 def _short(text: object) -> str:
-    """A text in a message, its beginning if it is long."""
+    """Return a text in a message, its beginning if it is long."""
     written = repr(text)
     return written if len(written) <= _LONGEST_TOLD else f"{written[:_LONGEST_TOLD]}..."

@@ -69,7 +69,7 @@ class _Block:
     properties: tuple[tuple[str, tuple[str, ...]], ...]
 
     def state_id(self, chosen: Mapping[str, str]) -> int:
-        """State id with the chosen values; the others are those of the default state."""
+        """Return the state id with the chosen values; the others are those of the default state."""
         offset = 0
         for (name, values), default in zip(self.properties, self.default_values, strict=True):
             value = chosen.get(name, default)
@@ -82,7 +82,7 @@ class _Block:
         return self.first_state + offset
 
     def values(self, state_id: int) -> tuple[str, ...]:
-        """Values of the properties in a state, in the order of `properties`."""
+        """Return values of the properties in a state, in the order of `properties`."""
         offset = state_id - self.first_state
         found: list[str] = []
         for _, values in reversed(self.properties):
@@ -122,7 +122,7 @@ class Registry:
 
     @staticmethod
     def load(version: str = "1.20.4") -> "Registry":
-        """The registry of a Minecraft version, read once per process.
+        """Return the registry of a Minecraft version, read once per process.
 
         Raises:
             BodyError: The package was not built, or its registry file is damaged.
@@ -135,7 +135,7 @@ class Registry:
         return AIR
 
     def state_id(self, text: str) -> int:
-        """State id of a text such as `oak_slab[type=top]`.
+        """Return the state id of a text such as `oak_slab[type=top]`.
 
         Raises:
             InputError: The text has not the form `name` or `name[a=b,c=d]`.
@@ -151,7 +151,7 @@ class Registry:
         return block.state_id(chosen)
 
     def text(self, state_id: int) -> str:
-        """Canonical text of a state: `name`, or `name[a=b,c=d]` sorted by property name.
+        """Return the canonical text of a state: `name`, or `name[a=b,c=d]` sorted by property name.
 
         Raises:
             UnknownNameError: No such state id.
@@ -163,7 +163,7 @@ class Registry:
         return f"{self.name(state_id)}[{inner}]"
 
     def name(self, state_id: int) -> str:
-        """Name of a state's block, without properties.
+        """Return the name of a state's block, without properties.
 
         Raises:
             UnknownNameError: No such state id.
@@ -171,7 +171,7 @@ class Registry:
         return self._block_of(state_id).name
 
     def properties(self, state_id: int) -> dict[str, str]:
-        """Property name to value, in the order in which the version lists them.
+        """Return the property name to value, in the order in which the version lists them.
 
         Raises:
             UnknownNameError: No such state id.
@@ -181,7 +181,7 @@ class Registry:
         return dict(zip(names, block.values(state_id), strict=True))
 
     def boxes(self, state_id: int) -> tuple[BoxBounds, ...]:
-        """Collision boxes of a state, in blocks from the block's lower corner.
+        """Return the collision boxes of a state, in blocks from the block's lower corner.
 
         Raises:
             UnknownNameError: No such state id.
@@ -192,7 +192,7 @@ class Registry:
         return tuple((x0, y0, z0, x1, y1, z1) for x0, y0, z0, x1, y1, z1 in rows.tolist())
 
     def state_ids(self, name: str) -> range:
-        """All state ids of a block.
+        """Return all state ids of a block.
 
         Raises:
             UnknownNameError: No such block.
@@ -207,11 +207,11 @@ class Registry:
         return CONTAINER_NAMES & self._blocks.keys()
 
     def is_container(self, name: str) -> bool:
-        """Whether the simulators follow the contents of the block of that name."""
+        """Return True if the simulators follow the contents of the block of that name."""
         return _bare(name) in CONTAINER_NAMES
 
     def has_block(self, name: str) -> bool:
-        """Whether there is a block of that name (a name without properties)."""
+        """Return True if there is a block of that name (a name without properties)."""
         return _bare(name) in self._blocks
 
     @property
@@ -225,7 +225,7 @@ class Registry:
         return tuple(self._items)
 
     def has_item(self, name: str) -> bool:
-        """Whether there is an item of that name."""
+        """Return True if there is an item of that name."""
         return _bare(name) in self._items
 
     def item_stack(self, name: str) -> int:
@@ -267,7 +267,7 @@ def _nearest(name: str, names: Iterable[str]) -> str:
 
 
 def parse_state(text: str) -> tuple[str, dict[str, str]]:
-    """Name and chosen properties of a block state text; InputError if it is none."""
+    """Return the name and chosen properties of a block state text; InputError if it is none."""
     match = _STATE_TEXT.fullmatch(text.strip())
     if match is None:
         raise InputError(f"{text!r} is not a block; write name or name[property=value,...]")

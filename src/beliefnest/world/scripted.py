@@ -110,7 +110,7 @@ class ScriptedWorld(ScriptedState):
 
     @classmethod
     def from_snapshot(cls, snapshot: Snapshot) -> "ScriptedWorld":
-        """A world that is as a snapshot says."""
+        """Return a world that is as a snapshot says."""
         world = cls((snapshot.box.low, snapshot.box.high), tick=snapshot.tick)
         world.set_state(snapshot)
         return world
@@ -141,7 +141,7 @@ class ScriptedWorld(ScriptedState):
         self._listeners.remove(listener)
 
     def snapshot(self) -> Snapshot:
-        """All there is now."""
+        """Return all there is now."""
         facts = self._facts
         return Snapshot(
             self._tick,
@@ -372,7 +372,7 @@ class ScriptedWorld(ScriptedState):
             pending.events.append(Event(kind, name, detail))
 
     def _claiming(self, detail: dict[str, Any], claims: Iterable[Claim]) -> dict[str, Any]:
-        """An utterance's detail with its claims, which speak of what there is here."""
+        """Return an utterance's detail with its claims, which speak of what there is here."""
         try:
             return with_claims(detail, claims, self._box, self._facts.agents)
         except InputError as fault:

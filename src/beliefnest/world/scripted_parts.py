@@ -48,7 +48,7 @@ class WorldFacts:
     """Buttons that come out again, each with the tick at which it does."""
 
     def copied(self) -> "WorldFacts":
-        """The same facts; a tick that changes blocks changes a copy of them."""
+        """Return the same facts; a tick that changes blocks changes a copy of them."""
         return WorldFacts(
             self.blocks,
             dict(self.containers),
@@ -85,7 +85,7 @@ class Pending:
 
 
 def checked_box(box: tuple[Position, Position]) -> Box:
-    """The box between two corners; WorldError if it is none."""
+    """Return the box between two corners; WorldError if it is none."""
     low, high = (tuple(int(value) for value in corner) for corner in box)
     if len(low) != 3 or len(high) != 3 or any(a > b for a, b in zip(low, high, strict=True)):
         raise WorldError(f"the box {box} is none; give its lower and its upper corner")
@@ -96,21 +96,21 @@ def checked_box(box: tuple[Position, Position]) -> Box:
 
 
 def checked_name(name: str) -> str:
-    """An agent name; WorldError if it is none."""
+    """Return an agent name; WorldError if it is none."""
     if fault := agent_name_fault(name):
         raise WorldError(fault)
     return name
 
 
 def checked_utterance(text: str) -> str:
-    """A text that can be said at once; WorldError if it cannot."""
+    """Return a text that can be said at once; WorldError if it cannot."""
     if fault := fault_of(str(text)):
         raise WorldError(fault)
     return str(text)
 
 
 def sum_of(items: Items, change: Items) -> dict[str, int]:
-    """Items with others beside them."""
+    """Return items with others beside them."""
     return {
         name: items.get(name, 0) + change.get(name, 0)
         for name in [*items, *(change.keys() - items.keys())]
@@ -118,7 +118,7 @@ def sum_of(items: Items, change: Items) -> dict[str, int]:
 
 
 def rest_of(items: Items, change: Items, who: str) -> dict[str, int]:
-    """Items without some of them; WorldError if they are not there."""
+    """Return items without some of them; WorldError if they are not there."""
     for name, count in change.items():
         if items.get(name, 0) < count:
             raise WorldError(f"{who} has {items.get(name, 0)} {name}, not {count}")
@@ -127,7 +127,7 @@ def rest_of(items: Items, change: Items, who: str) -> dict[str, int]:
 
 
 def whole_position(position: Position) -> Position:
-    """A block position; WorldError if it is none."""
+    """Return a block position; WorldError if it is none."""
     # The longer test for numbers that are no ints.
     if len(position) != 3 or any(type(p) is not int and p != math.floor(p) for p in position):
         raise WorldError(f"{position!r} is no block position; give three whole numbers")

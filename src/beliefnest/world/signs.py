@@ -29,7 +29,7 @@ LONGEST_LINE = 45
 
 
 def is_sign(name: str) -> bool:
-    """Whether the block of that name is a sign: one that stands, hangs, or is on a wall."""
+    """Return True if the block of that name is a sign: one that stands, hangs, or is on a wall."""
     return name.endswith("_sign")
 
 
@@ -56,14 +56,14 @@ def sign_words(text: str) -> str:
 
 
 def block_words(registry: Registry, block: Block) -> str | None:
-    """A block as people read it, with what is written on it; None: unknown."""
+    """Return a block as people read it, with what is written on it; None: unknown."""
     if isinstance(block, Sign):
         return f'{registry.text(block.state)} that says "{sign_words(block.text)}"'
     return None if block < 0 else registry.text(block)
 
 
 def written(registry: Registry, state: int, text: str) -> Block:
-    """A block with a text on it; without text it is a block state like any other.
+    """Return a block with a text on it; without text it is a block state like any other.
 
     Raises:
         InputError: The block is no sign, or the text does not fit on one.
@@ -78,7 +78,7 @@ def written(registry: Registry, state: int, text: str) -> Block:
 
 
 def plain_state(block: Block) -> int:
-    """Block state id of a block, whatever is written on it; -1: unknown."""
+    """Return the block state id of a block, whatever is written on it; -1: unknown."""
     return block.state if isinstance(block, Sign) else block
 
 

@@ -17,7 +17,7 @@ _BIDIRECTIONAL = frozenset(
 
 
 def is_well_formed(text: str) -> bool:
-    """Whether a text can be stored and sent: it has no half of a surrogate pair in it."""
+    """Return True if a text can be stored and sent: it has no half of a surrogate pair in it."""
     return not any("\ud800" <= character <= "\udfff" for character in text)
 
 
@@ -42,7 +42,7 @@ def escaped(text: str) -> str:
 
 
 def on_one_line(text: str) -> str:
-    """A text as it stands among others: white space as single spaces, the rest `escaped`."""
+    """Return a text as it stands among others: white space as single spaces, the rest `escaped`."""
     return escaped(" ".join(text.split()))
 
 

@@ -37,7 +37,7 @@ _LATE = 100_000
 
 
 def measure() -> Sequence[Metric]:
-    """All figures of the beliefs, one after the other."""
+    """Return all figures of the beliefs, one after the other."""
     return [*_visible_sets(), *_crowd(8, 3), *_crowd(16, 2), _claims(), *_late(), _memory()]
 
 
@@ -64,7 +64,7 @@ def _random_geometry(shape: tuple[int, int, int], percent: int) -> Geometry:
 
 
 def _look(geometry: Geometry, eye: Point) -> float:
-    """Milliseconds of a complete visible set, the median of many."""
+    """Return milliseconds of a complete visible set, the median of many."""
     geometry.visible_blocks(eye, 0.0, 0.0)
     return _median(lambda: geometry.visible_blocks(eye, 0.0, 0.0), 31)
 
@@ -100,7 +100,7 @@ class _Crowd:
         self._open = False
 
     def nodes(self, depth: int) -> list[str]:
-        """All paths down to a depth."""
+        """Return all paths down to a depth."""
         names = list(self._yaws)
         paths: list[str] = []
         for length in range(1, depth + 1):
@@ -159,7 +159,7 @@ def _crowd(agents: int, depth: int) -> list[Metric]:
 
 
 def _claims() -> Metric:
-    """A tick in which somebody claims something that everybody hears and weighs."""
+    """Return a tick in which somebody claims something that everybody hears and weighs."""
     crowd = _Crowd(8, Perception(testimony="informed", grace=0))
     paths = crowd.nodes(3)
     spent = []

@@ -75,7 +75,7 @@ class Browser:
             time.sleep(0.02)
 
     def one(self, selector: str) -> WebElement:
-        """The element of a selector, once it is there."""
+        """Return the element of a selector, once it is there."""
         found: list[WebElement] = self.until(
             lambda: self.driver.find_elements(By.CSS_SELECTOR, selector)
         )

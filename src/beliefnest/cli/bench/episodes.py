@@ -28,7 +28,7 @@ await waitTicks(bot, 200)
 
 
 def measure() -> list[Metric]:
-    """A round of four agents, branches of an order-1 search, each task at its order."""
+    """Return a round of four agents, branches of an order-1 search, each task at its order."""
     return [
         _round(),
         _branches(),

@@ -28,7 +28,7 @@ class Metric:
 
     @property
     def ok(self) -> bool | None:
-        """Whether the target was reached; None: there is none."""
+        """True if the target was reached; None: there is none."""
         if self.target is None:
             return None
         return self.value >= self.target if self.at_least else self.value <= self.target

@@ -81,7 +81,7 @@ def _late(seconds: float, ticks: int) -> float:
 
 
 def _server(named: str) -> Sequence[Metric]:
-    """A verified body of Sally-Anne's box, and the processor time of many bots."""
+    """Return a verified body of Sally-Anne's box, and the processor time of many bots."""
     world = MinecraftWorld.start(ServerAddress.parse(named), 0)
     snapshot = Scenario.load("sally-anne", 1).setting.snapshot
     try:

@@ -69,7 +69,7 @@ def _containment() -> Sequence[Metric]:
 
 
 def _call() -> float:
-    """Seconds from the call to the result of the walk."""
+    """Return seconds from the call to the result of the walk."""
     with (
         tempfile.TemporaryDirectory() as folder,
         Nest.open(_hall(1), store=Path(folder) / "run.bn") as nest,
@@ -106,7 +106,7 @@ def _speed(nest: Nest, programs: dict[str, str], senses: Senses = "world") -> fl
 
 
 def _round(number: int) -> str:
-    """A walk of four legs; neighbours begin at different corners and keep apart."""
+    """Return a walk of four legs; neighbours begin at different corners and keep apart."""
     places = (_CORNERS[(number + leg) % len(_CORNERS)] for leg in range(len(_CORNERS)))
     row = number // len(_CORNERS)
     return "\n".join(
@@ -116,7 +116,7 @@ def _round(number: int) -> str:
 
 
 def _hall(agents: int) -> Scenario:
-    """A hall of 43 by 43 blocks with pillars."""
+    """Return a hall of 43 by 43 blocks with pillars."""
     feet = _FLOOR + 1
     pillars = ((x, z) for x in _PILLARS for z in _PILLARS)
     document = {

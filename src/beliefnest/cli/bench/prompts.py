@@ -46,7 +46,7 @@ def measure() -> Sequence[Metric]:
 
 
 def _walked(ticks: int) -> Nest:
-    """A nest in which four agents have walked around a wall, and now and then spoken."""
+    """Return a nest in which four agents have walked around a wall, and now and then spoken."""
     wall: dict[Position, str] = {(10, y, z): "stone" for y in range(3) for z in range(4, 16)}
     chests: dict[Position, dict[str, int]] = {(3, 0, 10): {"diamond": 1}, (17, 0, 10): {}}
     world = ScriptedWorld(

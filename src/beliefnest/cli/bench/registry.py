@@ -33,7 +33,7 @@ NEEDING_MORE = frozenset({"minecraft"})
 
 
 def checked(names: Sequence[str]) -> Sequence[str]:
-    """Names of benches, as they are; none: all that need nothing more.
+    """Return names of benches, as they are; none: all that need nothing more.
 
     Raises:
         UnknownNameError: There is none of a name.

@@ -21,7 +21,7 @@ _RUNS = 5
 
 
 def measure() -> Sequence[Metric]:
-    """All conditions as a user runs them, and Minecraft time against wall time."""
+    """Return all conditions as a user runs them, and Minecraft time against wall time."""
     _whole()
     return [
         Metric("all conditions, process start included", median_seconds(_whole, _RUNS), "s", 8.0),
@@ -40,7 +40,7 @@ def _whole() -> None:
 
 
 def _speed() -> float:
-    """The median of the three conditions, which share one world, as in a run."""
+    """Return the median of the three conditions, which share one world, as in a run."""
     ratios = []
     with Worlds(0) as worlds:
         for scenario in Scenario.load_all("sally-anne"):

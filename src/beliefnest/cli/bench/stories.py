@@ -31,7 +31,7 @@ def _story(chance: random.Random, chapters: int) -> str:
 
 
 def _chapter(chance: random.Random, number: int) -> Iterator[str]:
-    """All come in, and leave one by one after moving the thing or not."""
+    """Yield all come in, and leave one by one after moving the thing or not."""
     cast = chance.sample(_CAST, len(_CAST) if number == 0 else chance.choice([3, 4]))
     room, thing, boxes = f"room{number}", f"thing{number}", [f"{b}{number}" for b in _BOXES]
     everyone = f"{', '.join(cast[:-1])} and {cast[-1]}"

@@ -34,7 +34,7 @@ class _Run:
 
 
 def measure() -> Sequence[Metric]:
-    """Two hundred variations of Sally-Anne with the offline model.
+    """Return two hundred variations of Sally-Anne with the offline model.
 
     What is `once started` begins when all processes play: each takes some seconds of a core to
     start Python, its kernels and Node, however many cells it plays then. One job has Python on

@@ -53,7 +53,7 @@ _SINGLES = TimelineKey((), "single")
 
 
 def measure() -> Sequence[Metric]:
-    """A million ticks of eight agents that walk, recorded and then used.
+    """Return a million ticks of eight agents that walk, recorded and then used.
 
     They walk in an open field that everybody knows. What is recorded goes to the journal a
     thousand ticks at a time, and is noted by the nest's history, as in a long call of a nest; two
@@ -162,7 +162,7 @@ def _drop_checkpoints(path: Path) -> None:
 
 
 def _one_by_one(journal: SqliteJournal, walk: Sequence[Frame]) -> float:
-    """Ticks a second."""
+    """Return ticks a second."""
     journal.create(_SINGLES, None, 0)
     started = time.perf_counter()
     for frame in walk[:_SINGLE]:
@@ -197,7 +197,7 @@ def _open(path: Path) -> float:
 
 
 def _switch(store: Path) -> float:
-    """Seconds to go from one branch of the real world to another, in Minecraft."""
+    """Return seconds to go from one branch of the real world to another, in Minecraft."""
     with Nest.open(Scenario.load("sally-anne", 3), store=store) as nest:
         world = nest["/"]
         for name, program in _STROLL.items():
@@ -209,7 +209,7 @@ def _switch(store: Path) -> float:
 
 
 def _resume(store: Path, path: str) -> float:
-    """Seconds from the file of a long run to the state of a simulator."""
+    """Return seconds from the file of a long run to the state of a simulator."""
     started = time.perf_counter()
     with Nest.resume(store) as nest:
         _check(nest[path].state)
@@ -217,7 +217,7 @@ def _resume(store: Path, path: str) -> float:
 
 
 def _look_back(store: Path, path: str) -> float:
-    """Seconds to the state of a simulator at a past tick of a long run."""
+    """Return seconds to the state of a simulator at a past tick of a long run."""
     chance = random.Random(2)
     with Nest.read(store) as nest:
         return median_seconds(

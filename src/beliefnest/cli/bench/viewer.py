@@ -59,7 +59,7 @@ new MutationObserver(note).observe(slider, {attributes: true})
 
 
 def measure() -> Sequence[Metric]:
-    """All figures of the page.
+    """Return all figures of the page.
 
     Raises:
         InputError: There is no browser to measure in.
@@ -101,7 +101,7 @@ def _story(place: Path) -> Path:
 
 
 def _long(place: Path) -> Path:
-    """The page of a long walk of many agents in a hall with walls."""
+    """Return the page of a long walk of many agents in a hall with walls."""
     store, page = place / "long.bn", place / "long.html"
     walk = _Walk()
     with Nest(walk.world, Perception(), static_blocks=["stone", "air"], store=store):

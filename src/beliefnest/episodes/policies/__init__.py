@@ -48,7 +48,7 @@ def resolve_policy(
     environment: Mapping[str, str] | None = None,
     connection: "Connection | None" = None,
 ) -> Policy:
-    """The policy of a name.
+    """Return the policy of a name.
 
     Args:
         name: As in `POLICIES`. A file of `scripted` has programs between lines of `---`; a model is
@@ -85,7 +85,7 @@ def resolve_policy(
 
 
 def draws_by_seed(name: str) -> bool:
-    """Whether a policy itself draws; what the programs draw that it begins is theirs.
+    """Return True if a policy itself draws; what the programs draw that it begins is theirs.
 
     Args:
         name: As for `resolve_policy`.
@@ -109,7 +109,7 @@ def text_of_policy(name: str) -> str:
 
 
 def policy_beside(name: str, folder: Path) -> str:
-    """The name of a policy whose file, if it has one, is looked for in a folder."""
+    """Return the name of a policy whose file, if it has one, is looked for in a folder."""
     kind, colon, file = name.partition(":")
     return f"{kind}:{folder / file}" if kind in _READ and colon else name
 
@@ -129,7 +129,7 @@ def _model(
 
 
 def order_of(text: str, name: str) -> int:
-    """The order of Theory of Mind in a policy's name.
+    """Return the order of Theory of Mind in a policy's name.
 
     Raises:
         InputError: It is none.

@@ -24,7 +24,7 @@ __all__ = ["calls_of", "claims_of_mind", "is_news", "items_of", "said"]
 
 
 def items_of(goals: Sequence[Goal]) -> list[str]:
-    """Items that goals are about, sorted."""
+    """Return items that goals are about, sorted."""
     facts = [condition.fact for goal in goals for condition in goal.conditions]
     return sorted({each.item for each in facts if isinstance(each, ItemsIn | ItemsWith)})
 
@@ -65,7 +65,7 @@ def claims_of_mind(mind: Imagination, goals: Sequence[Goal], *, lies: bool) -> I
 
 
 def is_news(mind: Imagination, claim: Claim, speaker: str) -> bool:
-    """Whether somebody else is not believed to believe a claim already."""
+    """Return True if somebody else is not believed to believe a claim already."""
     registry, box = Registry.load(), mind.world.box
     for other in mind.world.agents:
         if other == speaker or not mind.knows((other,)):
@@ -83,7 +83,7 @@ def is_news(mind: Imagination, claim: Claim, speaker: str) -> bool:
 
 
 def said(claim: Claim) -> Call:
-    """The utterance of a claim."""
+    """Return the utterance of a claim."""
     x, y, z = claim.cell
     what = claim.item or claim.agent or claim.state or ""
     return Call("say", (f"{claim.kind.value} {what} {x} {y} {z}", [claim.plain()]))
@@ -144,7 +144,7 @@ def _sought(mind: Imagination, goals: Sequence[Goal]) -> Iterator[tuple[Position
 
 
 def _materials(mind: Imagination, agent: str, goals: Sequence[Goal]) -> list[str]:
-    """Blocks that an agent may want at hand; any there are, for who does not know which."""
+    """Return blocks that an agent may want at hand; any there are, for who does not know which."""
     world, registry = mind.world, Registry.load()
     sought = {name for _, name in _sought(mind, goals)}
     there = {item for held in world.containers.values() for item in held}
@@ -155,7 +155,7 @@ def _materials(mind: Imagination, agent: str, goals: Sequence[Goal]) -> list[str
 
 
 def _building(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[Call]:
-    """Blocks put where they are to be, and others broken that are there."""
+    """Yield blocks put where they are to be, and others broken that are there."""
     if agent not in mind.world.agents:
         return
     facts, mine = MindFacts(mind), mind.world.agents[agent].inventory

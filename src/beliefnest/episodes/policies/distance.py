@@ -42,11 +42,11 @@ class MindFacts:
         self._agents = mind.world.agents
 
     def items_in(self, place: Position) -> Items:
-        """Items known to be in a container."""
+        """Return items known to be in a container."""
         return self._world.containers.get(place, {})
 
     def items_of(self, agent: str) -> Items:
-        """Items that an agent is known to have."""
+        """Return items that an agent is known to have."""
         there = self._agents.get(agent)
         return {} if there is None else there.inventory
 
@@ -56,13 +56,13 @@ class MindFacts:
         return None if there is None else there.position
 
     def block(self, place: Position) -> str | None:
-        """Block state text."""
+        """Return the block state text."""
         state = int(self._world.blocks[self._world.box.index(place)])
         unknown = state == 0 and self._mind.is_unknown(place)
         return None if unknown else Registry.load().text(state)
 
     def may_reach(self, agent: str, place: Position) -> bool:
-        """Whether an agent may get to where it can use a block."""
+        """Return True if an agent may get to where it can use a block."""
         return self._mind.may_reach(agent, place)
 
     @property
@@ -89,12 +89,12 @@ class BeliefFacts:
         self._view = mind.view(path)
 
     def items_in(self, place: Position) -> Items:
-        """Items known to be in a container."""
+        """Return items known to be in a container."""
         known = self._view.containers.get(place)
         return {} if known is None else known.items
 
     def items_of(self, agent: str) -> Items:
-        """Items that an agent is known to have."""
+        """Return items that an agent is known to have."""
         return self._view.agents[agent].inventory
 
     def feet_of(self, agent: str) -> Point | None:
@@ -102,18 +102,18 @@ class BeliefFacts:
         return self._view.agents[agent].position
 
     def block(self, place: Position) -> str | None:
-        """Block state text."""
+        """Return the block state text."""
         state = int(self._view.blocks[self._mind.world.box.index(place)])
         return None if state < 0 else Registry.load().text(state)
 
 
 def is_visible(condition: GoalCondition, mind: Imagination) -> bool:
-    """Whether a mind reaches as deep as a condition."""
+    """Return True if a mind reaches as deep as a condition."""
     return mind.knows(condition.path)
 
 
 def held(condition: GoalCondition, mind: Imagination) -> bool:
-    """Whether a condition that is visible holds in a mind."""
+    """Return True if a condition that is visible holds in a mind."""
     if normalised((*mind.root, *condition.path)) == mind.root:
         return condition.fact.holds(MindFacts(mind))
     return condition.fact.holds(BeliefFacts(mind, condition.path))
@@ -166,7 +166,7 @@ def _to_block(facts: MindFacts, place: Position, wanted: str | None) -> float:
 
 
 def name_of(state: str) -> str:
-    """Name of a block state's block."""
+    """Return the name of a block state's block."""
     return state.partition("[")[0]
 
 

@@ -36,7 +36,7 @@ class ModelPolicy:
     spent: Spent = field(default_factory=Spent)
 
     def act(self, view: AgentView) -> str:
-        """The program that the model answers with.
+        """Return the program that the model answers with.
 
         Raises:
             ModelError: The model failed, or gave no program.
@@ -122,7 +122,7 @@ def _template() -> str:
 
 
 def _sentence(goal: Goal, agent: str) -> str:
-    """A goal as one would ask for it; the simplest ones as a wish."""
+    """Return a goal as one would ask for it; the simplest ones as a wish."""
     facts = [each.fact for each in goal.reach if not each.path]
     if len(facts) == 1 and not goal.never and isinstance(facts[0], ItemsWith):
         wanted = facts[0]

@@ -134,7 +134,7 @@ class Planner:
     def plan(
         self, mind: Imagination, agent: str, order: int, ticks: int, bounds: Bounds
     ) -> FoundPlan:
-        """The best course that is found; of equals the first and shortest.
+        """Return the best course that is found; of equals the first and shortest.
 
         Args:
             mind: What the agent believes; it is left as it is.
@@ -195,7 +195,7 @@ class _Planning:
         return FoundPlan(best.calls, best.score)
 
     def _imagined(self, mind: Imagination) -> list[str]:
-        """The others whose doing is reckoned with."""
+        """Return the others whose doing is reckoned with."""
         if self._order == 0:
             return []
         return [name for name in sorted(mind.world.agents) if name != self._agent]
@@ -212,7 +212,7 @@ class _Planning:
         return known[key]
 
     def _expanded(self, node: _Node) -> list[_Node]:
-        """The node with each of the calls that can be done next."""
+        """Return the node with each of the calls that can be done next."""
         if node.reached is not None or node.violated is not None or node.elapsed >= self._horizon:
             return []
         found = []
@@ -350,7 +350,7 @@ class _Planning:
         return ()
 
     def _succeeds(self, mind: Imagination, call: Call) -> bool:
-        """Whether the agent, left alone in a mind, can do a call."""
+        """Return True if the agent, left alone in a mind, can do a call."""
         trial, mine = mind.bare(), Performer([call])
         trial.play({self._agent: mine}, self._horizon, lambda: mine.is_done)
         return not mine.failed
@@ -369,7 +369,7 @@ class Search:
     bounds: Bounds = Bounds()
 
     def act(self, view: AgentView) -> str:
-        """The calls of its plan, as a program."""
+        """Return the calls of its plan, as a program."""
         mind = view.imagine(self.order)
         planner = Planner(view.brief)
         # Imagined is a scripted world, in which a block on foot takes one tick.
@@ -392,7 +392,7 @@ class Omniscient:
     sees_all: bool = True
 
     def act(self, view: AgentView) -> str:
-        """The calls of its plan, as a program."""
+        """Return the calls of its plan, as a program."""
         return Search(self.order, self.bounds).act(view)
 
 

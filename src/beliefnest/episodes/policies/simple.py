@@ -36,7 +36,7 @@ class Scripted:
     programs: Sequence[str]
 
     def act(self, view: AgentView) -> str:
-        """The program of the round."""
+        """Return the program of the round."""
         return self.programs[view.round] if view.round < len(self.programs) else ""
 
 
@@ -54,7 +54,7 @@ class Program:
     text: str
 
     def act(self, view: AgentView) -> str:
-        """The program, until it has ended by itself."""
+        """Return the program, until it has ended by itself."""
         if next((each for each in reversed(view.before) if each), "") != self.text:
             return self.text
         return GO_ON if view.last.how == "cut" else ""
@@ -65,7 +65,7 @@ class Random:
     """Any deed or true claim that bears on the agent's goals, or nothing, each as likely."""
 
     def act(self, view: AgentView) -> str:
-        """A call drawn by the episode's seed, the agent and the round."""
+        """Return a call drawn by the episode's seed, the agent and the round."""
         mind = view.imagine(0)
         goals = list(view.brief.goals.values())
         calls = calls_of(mind, view.agent, goals)

@@ -23,7 +23,7 @@ _TASKS: Mapping[str, str] = {
 
 
 def builtin_tasks() -> Mapping[str, str]:
-    """Name of each task to the name of its module here."""
+    """Return the name of each task to the name of its module here."""
     return _TASKS
 
 
@@ -34,7 +34,7 @@ def parameters_of(name: str) -> Mapping[str, tuple[int, int, int]]:
 
 
 def generated(name: str, seed: int, parameters: Mapping[str, int]) -> dict[str, Any]:
-    """An instance of a task, as plain values.
+    """Return an instance of a task, as plain values.
 
     Args:
         name: The task.

@@ -17,7 +17,7 @@ _BUILDERS = ("bob", "carl", "dora")
 
 
 def instance(chance: random.Random, plots: int, agents: int) -> dict[str, Any]:
-    """An instance.
+    """Return an instance.
 
     Args:
         chance: Draws the model, and what stands on plots at first.

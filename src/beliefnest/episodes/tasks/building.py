@@ -24,24 +24,24 @@ Position = tuple[int, int, int]
 
 
 def floor(width: int, depth: int) -> dict[str, Any]:
-    """The floor of a hall, at y = 0."""
+    """Return the floor of a hall, at y = 0."""
     return {"block": FLOOR, "fill": [[0, 0, 0], [width, 0, depth]]}
 
 
 def wall(low: Position, high: Position, block: str = WALL) -> dict[str, Any]:
-    """Blocks between two corners."""
+    """Return blocks between two corners."""
     return {"block": block, "fill": [list(low), list(high)]}
 
 
 def chest(at: Position, items: Mapping[str, int] | None = None, label: str = "") -> dict[str, Any]:
-    """A chest with what is in it."""
+    """Return a chest with what is in it."""
     return {"at": list(at), "items": dict(items or {}), "label": label}
 
 
 def abreast(
     names: Sequence[str], first: Sequence[float], step: tuple[float, float]
 ) -> dict[str, list[float]]:
-    """Feet of people in a row.
+    """Return feet of people in a row.
 
     Args:
         names: Of them all.
@@ -57,7 +57,7 @@ def abreast(
 def booths(
     names: Sequence[str], first: int
 ) -> tuple[dict[str, dict[str, Any]], list[dict[str, Any]]]:
-    """People in booths of glass, four blocks apart, who see and speak and reach nothing.
+    """Return people in booths of glass, four blocks apart, who see and speak and reach nothing.
 
     Args:
         names: Of the people.
@@ -93,7 +93,7 @@ def belief(
 
 
 def hall(width: int, depth: int, blocks: Iterable[Mapping[str, Any]] = ()) -> dict[str, Any]:
-    """A scenario's box and blocks: a hall with a floor that everybody knows.
+    """Return a scenario's box and blocks: a hall with a floor that everybody knows.
 
     Feet stand at y = 1; x goes from 0 to `width`, z from 0 to `depth`.
     """

@@ -17,7 +17,7 @@ _ONLOOKERS = ("ben", "cleo")
 
 
 def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dict[str, Any]:
-    """An instance.
+    """Return an instance.
 
     Args:
         chance: Draws sides, places and the thing.
@@ -66,7 +66,7 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
 def _places(
     chance: random.Random, chests: int, sides: list[tuple[str, int]]
 ) -> list[tuple[int, int, int]]:
-    """Places of chests; the first at one end of the hall, the second at the other."""
+    """Return places of chests; the first at one end of the hall, the second at the other."""
     rows = {name: chance.sample(range(1, 9), 8) for name, _ in sides}
     places = []
     for number in range(chests):

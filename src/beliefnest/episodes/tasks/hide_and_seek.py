@@ -18,7 +18,7 @@ _SEEKERS = ("bob", "cara", "dan")
 
 
 def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dict[str, Any]:
-    """An instance.
+    """Return an instance.
 
     Args:
         chance: Draws sides, places and the treasure.

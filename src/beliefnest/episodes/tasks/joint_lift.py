@@ -17,7 +17,7 @@ _COMPANIONS = ("bob", "carl", "dora")
 
 
 def instance(chance: random.Random, far: int, agents: int) -> dict[str, Any]:
-    """An instance.
+    """Return an instance.
 
     Args:
         chance: Draws the side and the places.
@@ -74,7 +74,7 @@ def instance(chance: random.Random, far: int, agents: int) -> dict[str, Any]:
 
 
 def _site(first: tuple[int, int, int], length: int, levers: int) -> list[tuple[int, int, int]]:
-    """Places of a lift's levers, in a row from north to south."""
+    """Return places of a lift's levers, in a row from north to south."""
     x, y, z = first
     return [(x, y, z + length * number // (levers - 1)) for number in range(levers)]
 
@@ -84,7 +84,7 @@ def _lever(at: tuple[int, int, int]) -> dict[str, Any]:
 
 
 def _mirror(content: dict[str, Any], width: int) -> dict[str, Any]:
-    """The instance with east and west exchanged."""
+    """Return the instance with east and west exchanged."""
 
     def swapped(value: Any) -> Any:
         if isinstance(value, dict):

@@ -18,7 +18,7 @@ _WAITERS = ("waiter", "wendy", "will")
 
 
 def instance(chance: random.Random, orders: int, hatches: int, agents: int) -> dict[str, Any]:
-    """An instance.
+    """Return an instance.
 
     Args:
         chance: Draws places, dishes, and which hatch can be seen.

@@ -17,7 +17,7 @@ _COOKS = ("bob", "carl", "dora")
 
 
 def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dict[str, Any]:
-    """An instance.
+    """Return an instance.
 
     Args:
         chance: Draws places and ingredients.
@@ -74,6 +74,6 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
 def _room(
     chance: random.Random, chests: int, columns: list[int], farthest: int
 ) -> list[tuple[int, int, int]]:
-    """Places of a room's chests; the first is the farthest from the pot."""
+    """Return places of a room's chests; the first is the farthest from the pot."""
     places = [(x, 1, chance.choice((0, 8))) for x in sorted(chance.sample(columns, chests - 1))]
     return [(farthest, 1, chance.choice((1, 7))), *places]

@@ -24,7 +24,7 @@ _Contents = dict[Position, dict[str, int]]
 def instance(
     chance: random.Random, items: int, moved: int, reach: int, agents: int
 ) -> dict[str, Any]:
-    """An instance.
+    """Return an instance.
 
     Args:
         chance: Draws sides, places and things.

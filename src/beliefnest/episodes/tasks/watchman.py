@@ -19,7 +19,7 @@ _WATCHMEN = ("watchman", "warden", "sentry")
 
 
 def instance(chance: random.Random, coffers: int, reach: int, agents: int) -> dict[str, Any]:
-    """An instance.
+    """Return an instance.
 
     Args:
         chance: Draws places and sides.
@@ -80,7 +80,7 @@ def instance(chance: random.Random, coffers: int, reach: int, agents: int) -> di
 def _beliefs(
     watchmen: Sequence[str], contents: Mapping[tuple[int, int, int], Mapping[str, int]]
 ) -> list[dict[str, Any]]:
-    """All know what is in the coffers, and each watchman takes it that the spy does not."""
+    """Return all know what is in the coffers, and each watchman takes it that the spy does not."""
     nothing: dict[tuple[int, int, int], dict[str, int]] = {place: {} for place in contents}
     # So they also take it of one another that they think so.
     pairs = [f"{one}/{other}" for one, other in itertools.permutations(watchmen, 2)]

@@ -21,7 +21,7 @@ _NOT_KNOWN = "I do not know"
 
 
 def answer_question(question: str, text: str, reading: Reading) -> str:
-    """An answer in the form that is asked for.
+    """Return an answer in the form that is asked for.
 
     Args:
         question: What is asked.

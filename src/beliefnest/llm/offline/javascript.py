@@ -20,12 +20,12 @@ _SEARCH_DISTANCE = 20
 
 
 def fenced(program: str) -> str:
-    """A program as the answer of a chat model."""
+    """Return a program as the answer of a chat model."""
     return f"```javascript\n{program}\n```"
 
 
 def vector(point: Point) -> str:
-    """A position as `new Vec3(-2, -51, -4)`."""
+    """Return a position as `new Vec3(-2, -51, -4)`."""
     return f"new Vec3({', '.join(_number(part) for part in point)})"
 
 

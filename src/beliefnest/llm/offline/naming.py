@@ -12,7 +12,7 @@ _ARTICLES = frozenset({"a", "an", "the"})
 
 
 def singular(phrase: str) -> tuple[str, ...]:
-    """The words of a phrase without the ending of a plural."""
+    """Return the words of a phrase without the ending of a plural."""
     return tuple(
         word[:-1] if word.endswith("s") and not word.endswith("ss") else word
         for word in words(phrase)
@@ -20,7 +20,7 @@ def singular(phrase: str) -> tuple[str, ...]:
 
 
 def match_item(phrase: str, names: Iterable[str]) -> str | None:
-    """The item a phrase means: the same words, or else the last of an item's words.
+    """Return the item a phrase means: the same words, or else the last of an item's words.
 
     "iron ingots" means `iron_ingot`; "pickaxe" means `iron_pickaxe` if nothing else ends so.
     """
@@ -34,7 +34,7 @@ def match_item(phrase: str, names: Iterable[str]) -> str | None:
 
 
 def match_name(phrase: str, names: Iterable[str]) -> str | None:
-    """The name a phrase means: the same words, or else the only one that shares them.
+    """Return the name a phrase means: the same words, or else the only one that shares them.
 
     "ice cream seller" means `ice_cream_seller`, `IceCreamSeller` or `seller`.
     """
@@ -68,6 +68,6 @@ def place_named_last(text: str, places: Mapping[str, Point]) -> Point | None:
 
 
 def _speaks_of_leaving(before: Sequence[str]) -> bool:
-    """Whether the words before a place, articles and "to" aside, end in leaving it."""
+    """Return True if the words before a place, articles and "to" aside, end in leaving it."""
     rest = [word for word in before if word not in _ARTICLES | {"to", "at", "in", "go", "going"}]
     return bool(rest) and rest[-1] in _NOT_THERE

@@ -64,7 +64,7 @@ class _Wanted:
 
 
 def plan(reading: Reading) -> str:
-    """The program for the task of a prompt, as JavaScript."""
+    """Return the program for the task of a prompt, as JavaScript."""
     sentences = (part.rstrip(".!? ") for part in _SENTENCE_END.split(reading.task))
     programs = (_plan_sentence(sentence, reading) for sentence in sentences)
     return next((program for program in programs if program), _not_understood(reading))
@@ -116,7 +116,7 @@ def _item_in(chests: Sequence[Point], wanted: _Wanted, reading: Reading) -> str 
 
 
 def _help(phrase: str, reading: Reading) -> str | None:
-    """A program to get a player what it is after; None if the phrase names no player."""
+    """Return a program to get a player what it is after; None if the phrase names no player."""
     player = match_name(phrase, reading.players)
     if player is None:
         return None
@@ -151,7 +151,7 @@ def _wish(player: str, reading: Reading) -> _Wanted | None:
 
 
 def _chests_meant(source: str | None, reading: Reading) -> list[Point]:
-    """All known chests, or the one whose position the task gives."""
+    """Return all known chests, or the one whose position the task gives."""
     given = points_in(source or "")
     meant = [chest for chest in reading.chests if chest in given]
     return meant or list(reading.chests)
@@ -182,7 +182,7 @@ def _takings(
 
 
 def _go(phrase: str, reading: Reading) -> str | None:
-    """A program to go where a phrase says; None if it names nothing that is known."""
+    """Return a program to go where a phrase says; None if it names nothing that is known."""
     given = points_in(phrase)
     if given:
         return javascript.go_to(given[-1])
@@ -206,7 +206,7 @@ def believed_place(player: str, reading: Reading) -> Point | None:
 
 
 def _said_to_be_at(player: str, reading: Reading) -> Point | None:
-    """The place named last in the newest message a player said or that names the player."""
+    """Return the place named last in the newest message a player said or that names the player."""
     for heard in reversed(reading.chat):
         if heard.speaker == player or set(words(player)) <= set(words(heard.text)):
             where = place_named_last(heard.text, reading.places)

@@ -67,12 +67,12 @@ class Reading:
 
 
 def words(text: str) -> tuple[str, ...]:
-    """The words of a name or sentence in lower case; `_` and `-` part words."""
+    """Return the words of a name or sentence in lower case; `_` and `-` part words."""
     return tuple(re.findall(r"[a-z0-9']+", re.sub(r"[_-]", " ", text.lower())))
 
 
 def points_in(text: str) -> list[Point]:
-    """Every `(x, y, z)` or `[x, y, z]` in a text."""
+    """Return every `(x, y, z)` or `[x, y, z]` in a text."""
     return [(float(x), float(y), float(z)) for x, y, z in _POINT.findall(text)]
 
 
@@ -94,7 +94,7 @@ def read_prompt(text: str) -> Reading:
 
 
 def _sections(text: str) -> dict[str, list[str]]:
-    """Heading to the lines below it; the last section of a name counts."""
+    """Return the heading to the lines below it; the last section of a name counts."""
     sections: dict[str, list[str]] = {}
     lines: list[str] = []
     for line in text.splitlines():
@@ -110,14 +110,14 @@ def _sections(text: str) -> dict[str, list[str]]:
 
 
 def _ends_section(line: str, stripped: str) -> bool:
-    """Whether a line is `<...>`, `[...]` (not a position) or the task."""
+    """Return True if a line is `<...>`, `[...]` (not a position) or the task."""
     if stripped.startswith(("<", "[")):
         return _DIVIDER.fullmatch(stripped) is not None and _POINT.fullmatch(stripped) is None
     return _TASK.match(line) is not None
 
 
 def _task(text: str) -> str:
-    """The last task of the text: its line and what follows up to an empty line."""
+    """Return the last task of the text: its line and what follows up to an empty line."""
     lines = text.splitlines()
     starts = [index for index, line in enumerate(lines) if _TASK.match(line)]
     if not starts:
@@ -152,7 +152,7 @@ def _signs(lines: Sequence[str]) -> dict[Point, str]:
 
 
 def _items(text: str) -> dict[str, int]:
-    """Items written as `{'diamond': 1}`; an entry that is not of that kind is left out."""
+    """Return items written as `{'diamond': 1}`; an entry that is not of that kind is left out."""
     try:
         value = ast.literal_eval(text)
     except (ValueError, SyntaxError):

@@ -47,7 +47,7 @@ class Hearsay:
         self._history = history
 
     def completed(self, frame: Frame, key: TimelineKey) -> Frame:
-        """The frame with what its utterances claim, where they do not say so themselves.
+        """Return the frame with what its utterances claim, where they do not say so themselves.
 
         All that happened before it has to be recorded: that decides what can be named.
 
@@ -72,12 +72,12 @@ class Hearsay:
 
 
 def has_unread(frame: Frame) -> bool:
-    """Whether something was said in a frame of which it is not known what it claims."""
+    """Return True if something was said in a frame of which it is not known what it claims."""
     return any(map(_is_unread, frame.events))
 
 
 def recalled(frame: Frame, recorded: Frame | None) -> Frame:
-    """A frame that came about again, with what was once read out of the same utterances."""
+    """Return a frame that came about again, with what was once read out of the same utterances."""
     if recorded is None or not has_unread(frame):
         return frame
     known = [event for event in recorded.events if "claims_from" in event.detail]
@@ -95,7 +95,7 @@ def _is_unread(event: Event) -> bool:
 
 
 def _bare(event: Event) -> tuple[object, ...]:
-    """An utterance without what it claims."""
+    """Return an utterance without what it claims."""
     detail: Mapping[str, Any] = event.detail
     return event.kind, event.actor, detail["text"], detail.get("to")
 
@@ -124,7 +124,7 @@ def _nameable(setting: Setting, history: History, seen: NodeView) -> Nameable:
 
 
 def _fittings(history: History, seen: NodeView) -> dict[Position, int]:
-    """The containers, doors and switches of a simulator, as block states."""
+    """Return the containers, doors and switches of a simulator, as block states."""
     registry, blocks = history.context.registry, seen.blocks
     states = []
     for state in np.unique(blocks):

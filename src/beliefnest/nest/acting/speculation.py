@@ -58,7 +58,7 @@ class SpeculatedBody:
 
     @property
     def lost(self) -> bool:
-        """Whether the process ended in which they ran."""
+        """True if the process ended in which they ran."""
         return self._ran and isinstance(self._speculation.error, BodyLostError)
 
     @property
@@ -184,7 +184,7 @@ class _Workplace:
             self._body = None
 
     def _begun(self) -> Body | None:
-        """The body, as it is at the start; None: none can be made."""
+        """Return the body, as it is at the start; None: none can be made."""
         if self._body is not None:
             try:
                 self._body.set_state(self._start.snapshot)

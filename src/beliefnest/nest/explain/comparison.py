@@ -118,7 +118,7 @@ class Differences(list[Difference]):
 
 
 def value_words(value: str | Pose | Contents | None) -> str:
-    """One side of a difference, for people."""
+    """Return one side of a difference, for people."""
     match value:
         case Pose(position=position):
             return point_words(position)
@@ -193,7 +193,7 @@ def _is_false(thing: Difference) -> bool:
 def are_elsewhere(
     real: npt.NDArray[np.float64], held: npt.NDArray[np.float64]
 ) -> npt.NDArray[np.bool_]:
-    """Whether places at which agents are believed to be are false: from half a block on.
+    """Return True if places at which agents are believed to be are false: from half a block on.
 
     Less is a shuffle on the spot. Where somebody looks changes all the time, and nobody who
     remembers where somebody stands claims to know it.
@@ -207,7 +207,7 @@ def are_elsewhere(
 
 
 def are_false(real: Contents | None, belief: Contents) -> bool:
-    """Whether contents claim items that are missing, or to be all and miss some.
+    """Return True if contents claim items that are missing, or to be all and miss some.
 
     Args:
         real: What there is; None: there is nothing that could hold items.
@@ -251,7 +251,7 @@ def _pose(agent: AgentBelief) -> Pose | None:
 
 
 def _differ(a: Pose | None, b: Pose | None) -> bool:
-    """Whether two poses differ; angles that a prior does not give differ from none."""
+    """Return True if two poses differ; angles that a prior does not give differ from none."""
     if a is None or b is None:
         return a is not b
     if a.yaw is None or b.yaw is None:

@@ -25,7 +25,7 @@ _Sees = Callable[[Geometry], bool]
 
 
 def sighting_of_block(reading: NodeView, box: Box, viewer: str, place: Position) -> Sighting:
-    """The look of an agent of known pose at a block, inside a simulator."""
+    """Return the look of an agent of known pose at a block, inside a simulator."""
     here = reading.agents[viewer]
     cells = np.array([place])
 
@@ -43,7 +43,7 @@ def sighting_of_block(reading: NodeView, box: Box, viewer: str, place: Position)
 
 
 def sighting_of_agent(reading: NodeView, box: Box, viewer: str, other: str) -> Sighting:
-    """The look of an agent of known pose at another, inside a simulator."""
+    """Return the look of an agent of known pose at another, inside a simulator."""
     here, seen = reading.agents[viewer], reading.agents[other]
     if seen.position is None:
         return Sighting(other, None, View.PLACE_UNKNOWN)

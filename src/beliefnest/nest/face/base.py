@@ -58,7 +58,7 @@ class NestBase(ShownNest, ABC):
 
     @in_turn
     def programs(self, path: str | None = None) -> tuple[ProgramRecord, ...]:
-        """Programs that ran, on branches that were not deleted, in order of their end.
+        """Return programs that ran, on branches that were not deleted, in order of their end.
 
         Args:
             path: Those that ran in this simulator on the branch it is on: in follow mode there are
@@ -87,11 +87,11 @@ class NestBase(ShownNest, ABC):
 
     @in_turn
     def kept(self, name: str) -> bytes | None:
-        """The bytes that `Nest.keep` kept last under a name; None if there are none."""
+        """Return the bytes that `Nest.keep` kept last under a name; None if there are none."""
         return self._recording.records.state(f"kept {name}")
 
     def view(self, depth: int = 2, height: int = 720) -> "PageView":
-        """The page of the nest as it is when it is first shown, for a notebook's cell.
+        """Return the page of the nest as it is when it is first shown, for a notebook's cell.
 
         An episode's rounds are in it.
 

@@ -23,7 +23,7 @@ def scene_of(
     sight: Mapping[str, npt.NDArray[np.bool_]],
     height: int,
 ) -> Scene:
-    """A simulator's state as it is drawn; arguments are those of `ShownSimulator.figure`."""
+    """Return a simulator's state as it is drawn; arguments are those of `ShownSimulator.figure`."""
     setting, key = recording.setting, recording.selected.get(path)
     return read_scene(
         state,

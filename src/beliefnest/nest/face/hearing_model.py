@@ -27,7 +27,7 @@ class AsksModel(Protocol):
         """Name of the model."""
 
     def through(self, wrap: "Callable[[Model], Model]") -> ClaimsFrom:
-        """The same, asking its model through what `wrap` makes of it."""
+        """Return the same, asking its model through what `wrap` makes of it."""
 
 
 def reader_of(hook: ClaimsFrom | None, recording: Recording) -> ClaimReader | None:
@@ -49,7 +49,7 @@ def reader_of(hook: ClaimsFrom | None, recording: Recording) -> ClaimReader | No
 
 
 def _takes_three(hook: object) -> bool:
-    """Whether something can be called with three arguments, as far as is known."""
+    """Return True if something can be called with three arguments, as far as is known."""
     if not callable(hook):
         return False
     try:

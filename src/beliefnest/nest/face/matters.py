@@ -63,16 +63,16 @@ class Matter(Protocol[V]):
         """What a simulator holds of it; None: nothing."""
 
     def words(self, course: Course[V]) -> list[str]:
-        """Each value of a course in words; empty: nothing is known."""
+        """Return each value of a course in words; empty: nothing is known."""
 
     def is_false(self, real: V | None, held: V) -> bool:
-        """Whether reality is otherwise."""
+        """Return True if reality is otherwise."""
 
     def act(self, event: PerceivedEvent) -> str:
         """What somebody did that mattered to it, without who; empty: something else."""
 
     def is_claimed(self, claim: Claim) -> bool:
-        """Whether a claim is about it."""
+        """Return True if a claim is about it."""
 
 
 class _Amounts:
@@ -156,7 +156,7 @@ class Carried:
         return found or None
 
     def words(self, course: Course[Held]) -> list[str]:
-        """The containers by their names, and who has it."""
+        """Return the containers by their names, and who has it."""
         return [", ".join(self._at(*each) for each in held or ()) for _, held in course]
 
     def _at(self, where: Position | str, count: int) -> str:
@@ -166,7 +166,7 @@ class Carried:
         return f"{many}in {self.names.get(where, f'container {place_words(where)}')}"
 
     def is_false(self, real: Held | None, held: Held) -> bool:
-        """Whether there are less in one of the places."""
+        """Return True if there are less in one of the places."""
         real_counts = dict(real or ())
         return any(count > real_counts.get(where, 0) for where, count in held)
 
@@ -200,11 +200,11 @@ class BlockAt:
         return f"What is believed of the block at {place_words(self.block)}"
 
     def value(self, held: NodeView) -> str | None:
-        """The block."""
+        """Return the block."""
         return self.text(int(held.numbers[self.index]))
 
     def words(self, course: Course[str]) -> list[str]:
-        """The block, with what differs from those that were at the place as well."""
+        """Return the block, with what differs from those that were at the place as well."""
         known = list(dict.fromkeys(text for _, text in course if text is not None))
         words = dict(zip(known, told_apart(known), strict=True))
         return ["" if text is None else words[text] for _, text in course]
@@ -283,7 +283,7 @@ class Whereabouts:
         return held.agents[self.agent].position
 
     def words(self, course: Course[Point]) -> list[str]:
-        """Places by the names of what is near; who walks is on the way."""
+        """Return places by the names of what is near; who walks is on the way."""
         runs = [list(run) for _, run in groupby(_stays(course), key=lambda stay: stay[1])]
         words: list[str] = []
         for run, after in zip_longest(runs, runs[1:]):
@@ -308,7 +308,7 @@ class Whereabouts:
         return self._place_words(place)
 
     def _place_words(self, place: Point) -> str:
-        """The nearest name; without one the block in which the feet are."""
+        """Return the nearest name; without one the block in which the feet are."""
         away = {
             name: math.dist(place, (x + 0.5, y, z + 0.5)) for (x, y, z), name in self.names.items()
         }
@@ -331,7 +331,7 @@ class Whereabouts:
 
 
 def _stays(course: Course[Point]) -> Course[Point]:
-    """Each place, or the one before from which it is no more than a shuffle."""
+    """Return each place, or the one before from which it is no more than a shuffle."""
     stays: Course[Point] = []
     for tick, place in course:
         last = stays[-1][1] if stays else None
@@ -352,7 +352,7 @@ def _only(item: str | None, items: Items, *, complete: bool) -> Contents:
 
 
 def _contents_words(held: Contents | None, item: str | None) -> str:
-    """The value; empty where nothing is known."""
+    """Return the value; empty where nothing is known."""
     if held is None or not (held.items or held.complete):
         return ""
     if item is not None and not held.items:

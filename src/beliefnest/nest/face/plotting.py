@@ -64,7 +64,7 @@ def matter_of(
 def plot_of(
     recording: Recording, matter: Matter[Any], paths: Sequence[str], until: int | None
 ) -> Figure:
-    """The plot of what simulators held of a matter, up to a tick of the real world.
+    """Return the plot of what simulators held of a matter, up to a tick of the real world.
 
     Raises:
         InputError: There is no path, or the matter is a container that never was there.
@@ -156,7 +156,7 @@ def _course(recording: Recording, path: BeliefPath, matter: Matter[V]) -> Course
 def _held(
     recording: Recording, path: BeliefPath, stretch: ForkPoint
 ) -> Iterator[tuple[int, NodeView]]:
-    """A simulator at the beginning of a timeline, and after each of its entries."""
+    """Yield a simulator at the beginning of a timeline, and after each of its entries."""
     key, stop = stretch.timeline, stretch.entries
     start = recording.journal.info(key).start
     ticks = [start, *(entry.tick for entry in recording.journal.entries(key, 0, stop))]

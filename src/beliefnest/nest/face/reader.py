@@ -33,27 +33,27 @@ class Reader:
         self.seed = recording.seed
 
     def timelines(self) -> Sequence[TimelineInfo]:
-        """All timelines, in order of creation."""
+        """Return all timelines, in order of creation."""
         with self._recording.turn:
             return tuple(self._recording.journal.timelines())
 
     def selected(self) -> set[TimelineKey]:
-        """The timelines that simulators in control mode are on."""
+        """Return the timelines that simulators in control mode are on."""
         with self._recording.turn:
             return set(self._recording.selected.values())
 
     def programs(self) -> Sequence[ProgramRecord]:
-        """All programs that ran, in order of their end."""
+        """Return all programs that ran, in order of their end."""
         with self._recording.turn:
             return tuple(self._recording.records.programs())
 
     def prompts(self) -> Sequence[PromptRecord]:
-        """All requests to models with what came of them, in order."""
+        """Return all requests to models with what came of them, in order."""
         with self._recording.turn:
             return tuple(self._recording.records.prompts())
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Sequence[Entry]:
-        """Entries of a timeline, from number `start` to before `stop`."""
+        """Return entries of a timeline, from number `start` to before `stop`."""
         with self._recording.turn:
             return tuple(self._recording.journal.entries(key, start, stop))
 
@@ -63,7 +63,7 @@ class Reader:
             return self._recording.journal.entries_until(key, tick)
 
     def walk(self, key: TimelineKey, paths: Sequence[BeliefPath]) -> Forest:
-        """A forest with nodes of a timeline, at its beginning; `advance` takes it on."""
+        """Return a forest with nodes of a timeline, at its beginning; `advance` takes it on."""
         with self._recording.turn:
             return self.history.walk(key, paths)
 
@@ -73,7 +73,7 @@ class Reader:
             self.history.advance(key, forest, position)
 
     def simulator(self, key: TimelineKey, path: BeliefPath, tick: int) -> PastSimulator:
-        """A node at a tick of any timeline that it has or can follow."""
+        """Return a node at a tick of any timeline that it has or can follow."""
         return PastSimulator(self._recording.on(key), path, tick)
 
     def look(

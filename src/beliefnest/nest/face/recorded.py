@@ -33,7 +33,7 @@ class RecordedNest(NestBase):
 
     @classmethod
     def read(cls, store: str | Path) -> Self:
-        """A run file as it was left, or as another process writes it, on its branches.
+        """Return a run file as it was left, or as another process writes it, on its branches.
 
         Close it, or use it in a `with` block.
 
@@ -52,7 +52,7 @@ class RecordedNest(NestBase):
         self._recording.close()
 
     def __getitem__(self, path: str) -> PastSimulator:
-        """A simulator at the latest tick of its timeline."""
+        """Return a simulator at the latest tick of its timeline."""
         return self.simulator(path)
 
     def select(self, path: str, branch: str) -> None:
@@ -70,16 +70,16 @@ class RecordedNest(NestBase):
         self._recording.selected[names] = key
 
     def branch(self, path: str) -> str:
-        """Name of the branch that a simulator is read on; `follow` in follow mode."""
+        """Return the name of the branch that a simulator is read on; `follow` in follow mode."""
         key = self._recording.selected.get(parse_path(path, self.agents))
         return FOLLOW if key is None else key.branch
 
     def head(self, path: str) -> int:
-        """The latest tick of the timeline that a simulator is on."""
+        """Return the latest tick of the timeline that a simulator is on."""
         return self._recording.info(parse_path(path, self.agents)).head
 
     def ticks(self, path: str) -> tuple[int, ...]:
-        """The ticks at which anything happened on the timeline that a simulator is on.
+        """Return the ticks at which anything happened on the timeline that a simulator is on.
 
         Those before a fork belong to another timeline; the first one is the fork's.
         """
@@ -92,11 +92,11 @@ class RecordedNest(NestBase):
         return over_time(self._recording, parse_path(path, self.agents))
 
     def branches(self) -> tuple[TimelineKey, ...]:
-        """All timelines there are, in order of creation."""
+        """Return all timelines there are, in order of creation."""
         return tuple(info.key for info in self._recording.journal.timelines())
 
     def at(self, tick: int) -> Past:
-        """All simulators at a tick.
+        """Return all simulators at a tick.
 
         Raises:
             TickError: The tick is no whole number; or, when a state is read, it is in the future of
@@ -105,5 +105,5 @@ class RecordedNest(NestBase):
         return Past(self._recording, tick_of(tick))
 
     def simulator(self, path: str, tick: int | None = None) -> PastSimulator:
-        """A simulator at a tick; None: at the latest one of its timeline."""
+        """Return a simulator at a tick; None: at the latest one of its timeline."""
         return self.at(self.head(path) if tick is None else tick)[path]

@@ -63,7 +63,7 @@ class Simulator(ShownSimulator):
         return body.world
 
     def child(self, agent: str) -> "Simulator":
-        """The simulator of what `agent` believes in this one."""
+        """Return the simulator of what `agent` believes in this one."""
         return Simulator(self._engine, self._child_path(agent))
 
     @in_turn
@@ -96,7 +96,7 @@ class Simulator(ShownSimulator):
 
     @in_turn
     def branches(self) -> tuple[TimelineInfo, ...]:
-        """The simulator's own timelines, in order of creation, each with its fork point."""
+        """Return the simulator's own timelines, in order of creation, each with its fork point."""
         timelines = self._recording.journal.timelines()
         return tuple(info for info in timelines if info.key.path == self._path)
 
@@ -196,7 +196,7 @@ class Simulator(ShownSimulator):
         return self._engine.run(self._path, programs, _timeout(timeout_ticks), None, senses, past)
 
     def noting(self, model: "Model", **detail: str) -> "Model":
-        """A model whose conversation with the caller is kept in the run, request by request.
+        """Return a model whose conversation with the caller is kept in the run, request by request.
 
         Give it to `ask_for_program` in place of the model; `Nest.prompts` lists what was kept.
 
@@ -325,7 +325,7 @@ def _timeout(ticks: int) -> int:
 
 
 def _based_on(key: TimelineKey, infos: Sequence[TimelineInfo]) -> list[TimelineKey]:
-    """All timelines that rest on one, each after those that rest on it."""
+    """Return all timelines that rest on one, each after those that rest on it."""
     resting = {key}
     for info in infos:
         if info.base is not None and info.base.timeline in resting:

@@ -10,7 +10,7 @@ __all__ = ["internal_state_at", "note_internal_state", "present"]
 
 
 def present(journal: Journal, key: TimelineKey) -> ForkPoint:
-    """The moment a timeline is at."""
+    """Return the moment a timeline is at."""
     info = journal.info(key)
     return ForkPoint(key, info.entries, info.head)
 

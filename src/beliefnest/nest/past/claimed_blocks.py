@@ -64,7 +64,7 @@ class ClaimedBlocks:
 
 
 def _switches(context: BeliefContext, snapshot: Snapshot) -> list[int]:
-    """Cells of doors, gates, levers, buttons, signs and containers at the start."""
+    """Return cells of doors, gates, levers, buttons, signs and containers at the start."""
     states = np.unique(snapshot.blocks).tolist()
     registry = context.registry
     names = {state: registry.name(state) for state in states if state >= 0}

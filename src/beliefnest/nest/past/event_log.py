@@ -35,7 +35,7 @@ class EventLog:
         self._entries = 0
 
     def events(self, count: int) -> Sequence[tuple[int, Event]]:
-        """The first `count` events or more, each with its tick."""
+        """Return the first `count` events or more, each with its tick."""
         if len(self._events) < count:
             stop = self._journal.info(self._key).entries
             for _, entry in self._journal.filtered(

@@ -20,7 +20,7 @@ class _Saved(msgspec.Struct, forbid_unknown_fields=True):
 
 
 def saved(forest: Forest) -> bytes:
-    """Bytes of a forest, which leaves the stretch it is in; `restored` is the inverse."""
+    """Return bytes of a forest, which leaves the stretch it is in; `restored` is the inverse."""
     state, nodes = forest.saved()
     # Many nodes with all their blocks take a lot of memory, so each is packed by itself.
     packer = zstandard.ZstdCompressor(level=_LEVEL)

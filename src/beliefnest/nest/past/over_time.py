@@ -58,7 +58,7 @@ def over_time(recording: Recording, path: BeliefPath) -> Iterator[Moment]:
 def each_tick(
     recording: Recording, paths: Sequence[BeliefPath], after: int, until: int
 ) -> Iterator[tuple[int, Mapping[BeliefPath, State]]]:
-    """Several simulators below the real world, at each tick at which something happened.
+    """Yield several simulators below the real world, at each tick at which something happened.
 
     Args:
         recording: Where the real world is on the timeline that is looked at.
@@ -85,7 +85,7 @@ def each_tick(
 
 
 def _places(journal: Journal, info: TimelineInfo) -> dict[int, int]:
-    """The first tick and each with an entry: how many entries lie at it or before."""
+    """Return the first tick and each with an entry: how many entries lie at it or before."""
     places = {info.start: 0}
     for number, entry in enumerate(journal.entries(info.key, 0, info.entries), start=1):
         places[entry.tick] = number

@@ -15,7 +15,7 @@ _LIBRARIES = ("jinja2", "msgspec", "numba", "numpy", "zstandard")
 
 
 def own_versions() -> dict[str, str]:
-    """Program to version of what this process runs; the world adds its own."""
+    """Return the program to version of what this process runs; the world adds its own."""
     return {
         "beliefnest": VERSION,
         "python": platform.python_version(),

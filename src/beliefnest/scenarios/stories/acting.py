@@ -41,7 +41,7 @@ def tell(world: ScriptedWorld, plan: FloorPlan, act: Act) -> None:
 
 
 def programs_of(act: Act, plan: FloorPlan) -> dict[str, str]:
-    """The programs that bots act something out with, by agent; empty: nothing is done."""
+    """Return the programs that bots act something out with, by agent; empty: nothing is done."""
     match act:
         case Come(agents, room):
             return {agent: _walk(plan.stands[room, agent], act.shuts) for agent in agents}

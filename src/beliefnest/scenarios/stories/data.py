@@ -66,7 +66,7 @@ class StoryItems:
 
 
 def read_items(path: Path, rows: Collection[int] | None = None) -> tuple[StoryItems, ...]:
-    """The stories of a file as Hi-ToM has it; rows of the same story are put together.
+    """Return the stories of a file as Hi-ToM has it; rows of the same story are put together.
 
     Args:
         path: A JSON file: an array of rows with `story`, `question`, `answer` and, if it likes,

@@ -58,7 +58,7 @@ def _saying(text: str | None) -> str:
 def _perceptions(
     played: PlayedStory, question: Question, answer: StoryAnswer, expected: str | None
 ) -> list[str]:
-    """The nest's own account of the containers answered and expected."""
+    """Return the nest's own account of the containers answered and expected."""
     room = played.story.things[question.thing].room
     wanted = None if expected is None else Place(room, expected)
     found = (answer.place, wanted)

@@ -40,7 +40,7 @@ def form_fault(fault: msgspec.DecodeError, story: type[Any], event: Any) -> str:
 
 
 def _keys(story: type[Any], path: str) -> Sequence[str]:
-    """The keys of a story; none where it is another part."""
+    """Return the keys of a story; none where it is another part."""
     return [] if path else [field.name for field in msgspec.structs.fields(story)]
 
 

@@ -145,7 +145,7 @@ class Line:
         return f"{self.unit} {self.number}"
 
     def fault(self, what: str) -> InputError:
-        """The error to raise for this line."""
+        """Return the error to raise for this line."""
         return InputError(f"{self.place}: {self.text!r}: {what}")
 
 
@@ -231,7 +231,7 @@ _KINDS = tuple((re.compile(form), make) for form, make in _FORMS)
 
 
 def parse_lines(text: str) -> tuple[Line, ...]:
-    """The sentences of a story, one for every line that is not blank.
+    """Return the sentences of a story, one for every line that is not blank.
 
     Raises:
         InputError: A line is none of the sentences known; the message gives its number.
@@ -244,7 +244,7 @@ def parse_lines(text: str) -> tuple[Line, ...]:
 
 
 def parse_line(number: int, text: str, unit: str = "line") -> Line:
-    """One sentence of a story, the line or event of that number.
+    """Return one sentence of a story, the line or event of that number.
 
     Raises:
         InputError: It is none of the sentences known.

@@ -140,7 +140,7 @@ class _OwnStory(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def read_own(path: Path, rows: Collection[int] | None = None) -> tuple[StoryItems, ...]:
-    """The stories of a file of JSON lines, one story a line.
+    """Return the stories of a file of JSON lines, one story a line.
 
     Args:
         path: The file.
@@ -172,7 +172,7 @@ def read_own(path: Path, rows: Collection[int] | None = None) -> tuple[StoryItem
 
 
 def _story(number: int, told: _OwnStory) -> StoryItems:
-    """A story; its events are its lines."""
+    """Return a story; its events are its lines."""
     story = story_of([_line(at, event) for at, event in enumerate(told.events, 1)])
     items = [Item(number, _question(asked), asked.answer) for asked in told.questions]
     for item in items:

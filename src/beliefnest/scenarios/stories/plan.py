@@ -73,12 +73,12 @@ class FloorPlan:
     signs: Mapping[str, Position]
 
     def place_at(self, position: Position) -> Place:
-        """The container at a position of one."""
+        """Return the container at a position of one."""
         return next(place for place, where in self.places.items() if where == position)
 
 
 def lay_out(story: Story) -> FloorPlan:
-    """A plan with all rooms, containers and agents of a story; everyone is in no room.
+    """Return a plan with all rooms, containers and agents of a story; everyone is in no room.
 
     Raises:
         InputError: The story has more things than Minecraft has items.
@@ -173,7 +173,7 @@ def _carved(
 
 
 def item_names(things: Sequence[str], registry: Registry) -> dict[str, str]:
-    """A Minecraft item of its own for every thing.
+    """Return a Minecraft item of its own for every thing.
 
     A thing that is an item by name stands for itself, the others take the remaining
     items in the registry's order.

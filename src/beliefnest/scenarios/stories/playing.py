@@ -173,7 +173,7 @@ class PlayedStory:
         return self._find(self.asked(question), question.thing)
 
     def asked(self, question: Question) -> Simulator | PastSimulator:
-        """The simulator that a question is about.
+        """Return the simulator that a question is about.
 
         Raises:
             InputError: The question names an agent or a thing that is not in the story.
@@ -195,7 +195,7 @@ class PlayedStory:
         return tuple(found[question] for question in asked)
 
     def line_at(self, tick: int) -> int | None:
-        """Index of the line during which a tick passed; None: before the first."""
+        """Return the index of the line during which a tick passed; None: before the first."""
         if tick <= self.plan.snapshot.tick:
             return None
         return next((n for n, end in enumerate(self.line_ends) if tick <= end), None)
@@ -221,7 +221,7 @@ class PlayedStory:
 
 
 def _deepest_first(path: str) -> tuple[int, str]:
-    """A deep node brings those above it along."""
+    """Return a deep node brings those above it along."""
     return (-path.count("/"), path)
 
 
@@ -259,7 +259,7 @@ def check_question(story: Story, question: Question) -> None:
 
 
 def _grace(story: Story, plan: FloorPlan, world: str) -> int:
-    """Ticks that somebody may be out of sight for no other reason than that one walks.
+    """Return ticks that somebody may be out of sight for no other reason than that one walks.
 
     Who leaves a room does not see those in the hall before it gets there; in the scripted
     world that takes no time. In the embedded one the next line waits for longer than that, so

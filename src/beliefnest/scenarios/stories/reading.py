@@ -34,7 +34,7 @@ class StoryReader:
         return self.reader.name
 
     def through(self, wrap: "Callable[[Model], Model]") -> "StoryReader":
-        """The same, asking through what `wrap` puts around the model."""
+        """Return the same, asking through what `wrap` puts around the model."""
         return replace(self, reader=self.reader.through(wrap))
 
     def __call__(self, text: str, speaker: str, nameable: Nameable) -> Iterable[Claim]:

@@ -174,12 +174,12 @@ class Story:
 
     @property
     def tells(self) -> bool:
-        """Whether anybody tells anything in it."""
+        """True if anybody tells anything in it."""
         return any(isinstance(act, Tell) for act in self.acts)
 
 
 def read_story(text: str) -> Story:
-    """The story that a text tells.
+    """Return the story that a text tells.
 
     Raises:
         InputError: A line cannot be parsed, or contradicts those before it; the message
@@ -189,7 +189,7 @@ def read_story(text: str) -> Story:
 
 
 def story_of(lines: Sequence[Line]) -> Story:
-    """The story that some lines tell.
+    """Return the story that some lines tell.
 
     Raises:
         InputError: There are none, or one contradicts those before it; the message gives its
@@ -213,7 +213,7 @@ def story_of(lines: Sequence[Line]) -> Story:
 
 
 def _rooms(lines: Sequence[Line]) -> tuple[str, ...]:
-    """Names of the rooms: what is gone into, and what containers are in."""
+    """Return names of the rooms: what is gone into, and what containers are in."""
     sentences = [line.sentence for line in lines]
     named = Entered | Exited | Stayed | DoorUsed | Wrote
     visited = [s.room for s in sentences if isinstance(s, named)]
@@ -225,7 +225,7 @@ def _rooms(lines: Sequence[Line]) -> tuple[str, ...]:
 
 
 def _stated_rooms(lines: Sequence[Line], rooms: Sequence[str]) -> dict[str, str]:
-    """The room of every container for which a line states it."""
+    """Return the room of every container for which a line states it."""
     stated: dict[str, str] = {}
     for line in lines:
         match line.sentence:
@@ -331,14 +331,14 @@ class _Reader:
         return Tell(told.agent, told.hearer, told.thing, place, told.is_there)
 
     def _room_of(self, line: Line, agent: str) -> str:
-        """The room with containers that an agent is in."""
+        """Return the room with containers that an agent is in."""
         room = self.whereabouts.get(agent)
         if room is None or room == WAITING_ROOM:
             raise line.fault(f"{agent} is in no room with containers; let {agent} enter one first")
         return room
 
     def _here(self, line: Line, room: str, container: str) -> str:
-        """A room, once it is seen that its container is not stated to be in another one."""
+        """Return a room, once it is seen that its container is not stated to be in another one."""
         stated = self.stated.get(container, room)
         if stated != room:
             raise line.fault(f"the {container} is in the {stated}, and they are in the {room}")
@@ -357,7 +357,7 @@ class _Reader:
             raise line.fault(f"the {thing} is in the {before.container} of the {before.room}")
 
     def _place(self, line: Line, room: str, container: str) -> Place:
-        """A container of a room, which becomes one of the story's."""
+        """Return a container of a room, which becomes one of the story's."""
         if container in self.first:
             raise line.fault(f"the {container} lies in a container itself")
         place = Place(room, container)
@@ -365,7 +365,7 @@ class _Reader:
         return place
 
     def _room_near(self, number: int) -> str:
-        """The room that was entered last before a line, or next after it."""
+        """Return the room that was entered last before a line, or next after it."""
         before, after = self.lines[:number][::-1], self.lines[number:]
         for line in (*before, *after):
             sentence = line.sentence

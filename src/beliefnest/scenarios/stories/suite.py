@@ -37,7 +37,7 @@ class JudgedAnswer:
 
     @property
     def ok(self) -> bool:
-        """Whether the answer is the one expected."""
+        """True if the answer is the one expected."""
         return self.answer.text == self.item.expected
 
 
@@ -92,7 +92,7 @@ def answer_story(
 
 
 def score(judged: Iterable[JudgedAnswer]) -> Score:
-    """The score of some answers."""
+    """Return the score of some answers."""
     verdicts = [each.ok for each in judged]
     return Score(len(verdicts), sum(verdicts))
 
@@ -100,7 +100,7 @@ def score(judged: Iterable[JudgedAnswer]) -> Score:
 def scores_by_order(
     judged: Sequence[JudgedAnswer], of: Callable[[JudgedAnswer], bool] = lambda _: True
 ) -> dict[int, Score]:
-    """The score of each order that is asked for, among those answers that `of` selects."""
+    """Return the score of each order that is asked for, among those answers that `of` selects."""
     orders = sorted({each.item.question.order for each in judged})
     return {
         order: score(each for each in judged if each.item.question.order == order and of(each))

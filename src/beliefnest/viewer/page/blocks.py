@@ -96,7 +96,7 @@ class BlockPalette:
         self.entries: list[dict[str, Any]] = []
 
     def number(self, state: int) -> int:
-        """Number here of a block that arrays know by `state`; -1 for unknown."""
+        """Return the number here of a block that arrays know by `state`; -1 for unknown."""
         if state < 0:
             return -1
         if state not in self._numbers:

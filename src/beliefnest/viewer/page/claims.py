@@ -12,7 +12,7 @@ __all__ = ["claims_at", "kind_of"]
 
 
 def claims_at(forest: Forest, first: int) -> Iterator[tuple[int, int, str, Claim]]:
-    """The claims of the entry that a forest is at.
+    """Yield the claims of the entry that a forest is at.
 
     Args:
         forest: At the entry.
@@ -30,7 +30,7 @@ def claims_at(forest: Forest, first: int) -> Iterator[tuple[int, int, str, Claim
 
 
 def kind_of(forest: Forest, own: BeliefPath, speaker: str, claim: Claim) -> str:
-    """Whether a claim that was just made is `a lie` or `false`; empty: neither.
+    """Return True if a claim that was just made is `a lie` or `false`; empty: neither.
 
     Args:
         forest: At the entry in which it was made.

@@ -36,7 +36,7 @@ _SHELL = """<!doctype html>
 
 
 def page_html(title: str, content: Mapping[str, Any], *, served: bool) -> str:
-    """The page.
+    """Return the page.
 
     Args:
         title: For the browser's tab.

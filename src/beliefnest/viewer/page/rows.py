@@ -19,7 +19,7 @@ class _Sent:
         self._done: dict[str, tuple[int, Any]] = {}
 
     def fresh(self, name: str, rows: Sequence[Any]) -> tuple[int, Sequence[Any]] | None:
-        """Number of the first row that is new, and these rows; None: there are none."""
+        """Return the number of the first row that is new, and these rows; None: there are none."""
         count, last = self._done.get(name, (0, None))
         # Of several changes in one tick the last one counts, so the last row may be another now.
         first = count - 1 if count and rows[count - 1] != last else count
@@ -81,7 +81,7 @@ class TrackRows:
         return [self._palette.number(value) if at % 2 else value for at, value in enumerate(pairs)]
 
     def _runs(self, grid: Sequence[int]) -> list[int]:
-        """The grid as [state, how often, state, how often, ...]."""
+        """Return the grid as [state, how often, state, how often, ...]."""
         runs: list[int] = []
         last = None
         for state in grid:
@@ -101,7 +101,7 @@ class StandRows:
         self._sent = 0
 
     def update(self) -> Mapping[str, Any] | None:
-        """Columns `t`, `x`, `y`, `z`, `yaw`, `pitch` (thousandths); None: nothing is new.
+        """Return columns `t`, `x`, `y`, `z`, `yaw`, `pitch` (thousandths); None: nothing is new.
 
         Each number but the first is the difference from the one before. `gone` numbers the rows
         of the columns in which the agent is not there.

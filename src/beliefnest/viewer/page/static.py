@@ -22,7 +22,7 @@ def check_depth(depth: int) -> None:
 def still_page(
     runs: Iterable[tuple[Reader, About]], depth: int = 2, first: Mapping[str, Any] | None = None
 ) -> str:
-    """The text of a page that shows some runs as they are now, for instance all conditions.
+    """Return the text of a page that shows some runs as they are now, for instance all conditions.
 
     Args:
         runs: Each with what people call it.

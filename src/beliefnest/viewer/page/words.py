@@ -32,7 +32,7 @@ _SAYS = "the sign at {place} says “{text}”"
 
 
 def event_text(event: Event, labels: Mapping[Position, str]) -> str:
-    """An event as one line.
+    """Return an event as one line.
 
     Args:
         event: What happened.
@@ -64,7 +64,7 @@ def event_text(event: Event, labels: Mapping[Position, str]) -> str:
 
 
 def is_lid(event: Event) -> bool:
-    """Whether an event is a barrel's lid that moves: that it is opened is told already."""
+    """Return True if an event is a barrel's lid that moves: that it is opened is told already."""
     if event.kind is not EventKind.BLOCK_UPDATE or event.actor is not None:
         return False
     name = str(event.detail.get("block", "")).partition("[")[0]

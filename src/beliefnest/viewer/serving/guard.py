@@ -88,5 +88,5 @@ class Guard:
 
 
 def _same(one: str, other: str) -> bool:
-    """Whether two texts are equal, in a time that does not tell how far they are."""
+    """Return True if two texts are equal, in a time that does not tell how far they are."""
     return hmac.compare_digest(one.encode(), other.encode())
