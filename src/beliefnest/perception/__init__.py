@@ -1,1 +1,1 @@
-"""Pure functions from a scene to what one agent perceives of it."""
+"""Pure functions from a scene to the percepts of one agent."""

@@ -1,7 +1,7 @@
-"""All rays from an eye to the sample points of one block, tried together: compiled.
+"""Compiled test of all rays from an eye to the sample points of one block together.
 
-The rays of a beam run close to each other, so that the cells they pass are looked up once
-and each shape met is clipped against all rays in one loop. Grids and codes as in `rays`.
+The rays of a beam run close to each other. The kernel therefore looks up each cell on their way
+once, and clips each shape there against all rays in one loop. Grids and codes are as in `rays`.
 """
 
 import math
@@ -45,16 +45,17 @@ __all__ = [
 ]
 
 Eye = tuple[Vector, Vector, float, float]
-"""Place, unit vector it looks along, cosine of half its field of view (-2: it sees all
-directions), and how far it sees (infinite: no limit)."""
+"""Place of the eye, unit vector of its look, cosine of half its field of view (-2: all
+directions), and greatest visible distance (infinite: no limit)."""
 
 
 class Beam(NamedTuple):
     """The rays from an eye to the sample points of one block.
 
     Attributes:
-        slopes: float64 (4, rays), 1 / d along x, y and z, and the t that 1e-9 blocks take.
-        opens: int64 (rays,), -1 as long as nothing was found to hide the ray's end, then 0.
+        slopes: float64 (4, rays). Rows 0 to 2: 1 / d along x, y and z. Row 3: the length of
+            1e-9 blocks in units of t.
+        opens: int64 (rays,), -1 while no block is found to hide the end of the ray, then 0.
     """
 
     slopes: npt.NDArray[np.float64]
@@ -62,31 +63,31 @@ class Beam(NamedTuple):
 
 
 _SAMPLES = 16
-# Face corners are pulled in by 0.01. Counted from the middle so that a mirrored block
-# has the mirrored samples to the last bit.
+# Face corners are pulled in by 0.01. The offset is from the middle of the block, so that a
+# mirrored block has exactly the mirrored sample points.
 _CORNER = 0.49
-# Stands for 1 / 0 without yielding infinity times zero.
+# Replaces 1 / 0, because infinity times zero would be NaN.
 _STEEP = 1e300
 _SPARE = 1e-9
 
 
 def beam_room() -> Beam:
-    """Room for the rays of one beam after the other."""
+    """Return scratch memory for one beam, to be reused for each block."""
     return Beam(np.ones((4, _SAMPLES)), np.empty(_SAMPLES, dtype=np.int64))
 
 
 new_beam = inlined_allocating(beam_room)
-"""`beam_room` for kernels."""
+"""Version of `beam_room` for kernels."""
 
 
 def eye_of(place: Vector, yaw: float, pitch: float, cos_half: float, far: float) -> Eye:
-    """Return an eye that looks along Mineflayer's radians; for the rest see `Eye`."""
+    """Return an eye; yaw and pitch are in Mineflayer's radians, the rest is as in `Eye`."""
     level = math.cos(pitch)
     return place, (-math.sin(yaw) * level, math.sin(pitch), -math.cos(yaw) * level), cos_half, far
 
 
 eye_at = inlined(eye_of)
-"""`eye_of` for kernels."""
+"""Version of `eye_of` for kernels."""
 
 
 @inlined
@@ -128,7 +129,7 @@ def _offset(eye: Vector, cell: Cell, number: int) -> Vector:
 
 @merged
 def _block_box(eye: Vector, low: Vector, high: Vector, beam: Beam) -> bool:
-    """Close the rays that enter a box; whether any is left open."""
+    """Close the rays that enter a box; return True if any ray is still open."""
     slopes, opens = beam
     x0, y0, z0 = low[0] - eye[0], low[1] - eye[1], low[2] - eye[2]
     x1, y1, z1 = high[0] - eye[0], high[1] - eye[1], high[2] - eye[2]
@@ -146,7 +147,7 @@ def _block_box(eye: Vector, low: Vector, high: Vector, beam: Beam) -> bool:
 
 @inner
 def _block_cell(scene: Scene, eye: Vector, cell: Cell, beam: Beam) -> bool:
-    """Close the rays that enter the shape of a cell's own block; whether any is left open."""
+    """Close the rays that enter the block of a cell; return True if any ray is still open."""
     i, j, k = cell
     starts, boxes = scene.starts, scene.boxes
     code = scene.codes[at(scene.sizes, cell)] & OWN
@@ -176,7 +177,11 @@ def _bounds(
 
 @inner
 def _beam_ends(scene: Scene, eye: Vector, target: Cell, beam: Beam) -> bool:
-    """Whether any ray of a beam gets to the target, layer by layer along its longest axis."""
+    """Return True if any ray of a beam reaches the target.
+
+    The loop goes layer by layer along the longest axis of the beam. In each layer it visits the
+    rectangle of cells between the beam's outermost slopes.
+    """
     codes, sizes = scene.codes, scene.sizes
     axis = main_axis((target[0] + 0.5 - eye[0], target[1] + 0.5 - eye[1], target[2] + 0.5 - eye[2]))
     ea, eb, ec = turned(eye, axis)
@@ -216,7 +221,7 @@ def _beam_ends(scene: Scene, eye: Vector, target: Cell, beam: Beam) -> bool:
 
 @merged
 def _fill_axis(slopes: npt.NDArray[np.float64], axis: int, d: float, e: float, low: int) -> None:
-    """Write the slopes of a beam's rays along one axis; d leads to the block's middle."""
+    """Write the slopes of a beam's rays along one axis; d is the way to the block's middle."""
     level, inner, outer = _inverse(d), _inverse(d - _CORNER), _inverse(d + _CORNER)
     face = _inverse(d + (0.5 if e > low else -0.5))
     for n in range(_SAMPLES):
@@ -231,9 +236,10 @@ def _fill_axis(slopes: npt.NDArray[np.float64], axis: int, d: float, e: float, l
 
 @merged
 def _take_middles(opens: npt.NDArray[np.int64], levels: int) -> int:
-    """Close the rays that may lie in the plane of a face; bit n of the result: ray n was open.
+    """Close the rays that may lie in the plane of a face, and return which of them were open.
 
-    Bit a of levels: the eye is level with the block's middle along axis a, in such a plane.
+    Bit n of the result is set if ray n was open. Bit a of `levels` is set if the eye is level
+    with the middle of the block along axis a and may lie in the plane of a face.
     """
     taken = 0
     for face in range(-1, 3):
@@ -247,11 +253,15 @@ def _take_middles(opens: npt.NDArray[np.int64], levels: int) -> int:
 
 @merged
 def _aim(eye: Eye, cell: Cell, beam: Beam) -> int:
-    """Set up the beam from an eye to a block; rays in the plane of a face go to the result."""
+    """Set up the beam from an eye to a block.
+
+    Rays in the plane of a face are not part of the beam. The result has bit n set for each such
+    ray n; the caller tries them one by one.
+    """
     slopes, opens = beam
     place = eye[0]
     x, y, z = cell[0] + 0.5 - place[0], cell[1] + 0.5 - place[1], cell[2] + 0.5 - place[2]
-    # One length stands for all: that of a ray to a sample differs by less than a block.
+    # One length serves for all rays: lengths to the sample points differ by less than a block.
     least = LEAST_LENGTH / max(math.sqrt(x * x + z * z + y * y), 0.5)
     for n in range(_SAMPLES):
         slopes[3, n] = least
@@ -277,7 +287,10 @@ def _aim(eye: Eye, cell: Cell, beam: Beam) -> int:
 def sees_block(
     scene: Scene, eye: Eye, cell: Cell, beam: Beam, shadows: Shadows, index: int
 ) -> bool:
-    """Whether a block is seen, if near enough; index: of what `cast_shadows` noted, or -1."""
+    """Return True if a block, within the visible distance, is seen.
+
+    `index` is the index of the cell in `shadows`, which `cast_shadows` made; -1: no shadows.
+    """
     place = eye[0]
     x, y, z = cell[0] + 0.5 - place[0], cell[1] + 0.5 - place[1], cell[2] + 0.5 - place[2]
     in_plane = _aim(eye, cell, beam)

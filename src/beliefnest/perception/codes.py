@@ -1,4 +1,4 @@
-"""Grids of shape codes, which the compiled kernels look through.
+"""Grids of shape codes, the input of the compiled line-of-sight kernels.
 
 A grid of codes is uint16 (nx + 2, ny + 2, nz + 2): the blocks and a margin of one cell on
 every side. A code is the shape of the cell's own block (`EMPTY`, `FULL`, or `FIRST_SHAPE`
@@ -24,8 +24,8 @@ __all__ = [
 
 CodeGrid = npt.NDArray[np.uint16]
 Reaches = npt.NDArray[np.uint8]
-"""By code without `INTRUDED`: bit s says that the shape reaches out of its cell at side s.
-Sides 0 and 1 are low and high x, then y, then z."""
+"""Sides at which shapes reach out of their cells, indexed by code without `INTRUDED`.
+Bit s is set if the shape reaches out at side s. Sides 0 and 1 are low and high x, then y, z."""
 
 EMPTY = 0
 FULL = 1
@@ -34,14 +34,20 @@ INTRUDED = 0x8000
 OWN = 0x7FFF
 
 LIMIT_SLACK = 1e-9
-"""By this much limits of distance and angle are wider, so that they are inclusive whatever
-the rounding of a mirrored or turned world."""
+"""Tolerance added to limits of distance and angle. It makes the limits inclusive, however a
+mirrored or rotated world rounds."""
 
 
 def code_grid(
     blocks: npt.NDArray[np.signedinteger[Any]], codes: npt.NDArray[np.uint16], reaches: Reaches
 ) -> CodeGrid:
-    """The grid of codes of a grid of blocks (nx, ny, nz); `codes` are those of each block."""
+    """Return the code grid of a grid of blocks.
+
+    Args:
+        blocks: Block state ids (nx, ny, nz), -1 where unknown.
+        codes: Code of each block state; the last entry is for unknown.
+        reaches: Sides at which the shape of each code reaches out of its cell.
+    """
     grid = np.zeros([size + 2 for size in blocks.shape], dtype=np.uint16)
     grid[1:-1, 1:-1, 1:-1] = codes[blocks]
     flat = grid.reshape(-1)

@@ -30,7 +30,7 @@ _HEIGHTS = np.array(AGENT_SAMPLE_HEIGHTS)
 
 @merged
 def eye_sees_block(scene: Scene, eye: Eye, cell: Cell, beam: Beam, shadows: Shadows) -> bool:
-    """Whether a block is seen; the beam is room to work in, the shadows are `no_shadows()`."""
+    """Return True if a block is seen; `beam` is scratch memory, `shadows` is `no_shadows()`."""
     x, y, z = eye[0]
     if not in_reach(eye, cell[0] + 0.5 - x, cell[1] + 0.5 - y, cell[2] + 0.5 - z):
         return False
@@ -48,7 +48,7 @@ def _sees_sample(scene: Scene, eye: Eye, d: Vector) -> bool:
 
 @inlined
 def eye_sees_point(scene: Scene, eye: Eye, point: Vector) -> bool:
-    """Return True if a point is seen that is within the visible distance."""
+    """Return True if a point is within the visible distance and seen."""
     place = eye[0]
     d = (point[0] - place[0], point[1] - place[1], point[2] - place[2])
     return in_reach(eye, d[0], d[1], d[2]) and _sees_sample(scene, eye, d)
@@ -82,7 +82,7 @@ def _update_intruded(codes: Codes, sizes: Cell, reaches: Reaches, cell: Cell) ->
 
 @compiled
 def set_code(codes: Codes, sizes: Cell, reaches: Reaches, cell: Cell, code: int) -> None:
-    """Put another block into a cell of the grid, not of its margin."""
+    """Put the code of another block into a cell of the grid; the margin stays as it is."""
     codes[at(sizes, cell)] = codes[at(sizes, cell)] & INTRUDED | code
     for side in range(6):
         _update_intruded(codes, sizes, reaches, neighbour(cell, side))

@@ -1,4 +1,4 @@
-"""What agents can perceive: the options of the observation function (semantics, section 3)."""
+"""Options of the observation function, which decides what agents perceive (semantics, 3)."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -28,7 +28,7 @@ Hearing = Literal["global", "sight"] | Radius
 
 
 _SPELLED_RADIUS = re.compile(r"radius:\s*([0-9]+(?:\.[0-9]+)?)")
-"""The mapping as one writes it in a scenario file, given as text."""
+"""The text form of the mapping that scenario files use."""
 
 
 def _hearing(value: object) -> Hearing:
@@ -56,20 +56,20 @@ class Perception:
             360: in all directions.
         hearing: `global` (everyone hears everything), `sight` (an agent hears whom it
             sees), or `Radius(r)`, also written `{"radius": r}` or `radius: r`.
-        containers: `opaque` contents are known by opening or witnessing, `transparent`
-            contents are perceived whenever the container's block is seen.
+        containers: `opaque`: agents learn contents by opening a container or by witnessing
+            transfers. `transparent`: agents perceive contents whenever they see the block.
         transparent_blocks: Names of further blocks that do not block sight.
-        negative_evidence: Whether a believed pose becomes unknown when its place is
+        negative_evidence: If True, a believed pose becomes unknown when the agent's place is
             seen to be empty.
-        testimony: How hearers take claims (semantics, section 8): `none` (the text alone is
-            known), `accept` (whatever is heard is believed), or `informed` (if the hearer could
-            not look, and the speaker had a chance to learn it).
-        grace: Ticks that a speaker has to be out of a hearer's sight before it may have learnt
-            something, under `informed`.
-        sincere: Whether speakers are taken to believe what they say; if not, a hearer who does
-            not take a claim up does not credit the speaker with it either, under `informed`.
-        speech_ticks: Ticks that it takes a program's agent to say or whisper something; it is heard
-            at their end. 0: it is said in the next tick.
+        testimony: Effect of claims on hearers (semantics, section 8). `none`: hearers know the
+            text only. `accept`: hearers believe every claim. `informed`: a hearer believes a
+            claim if it could not look itself and the speaker had a chance to learn the fact.
+        grace: Under `informed`, the number of ticks that a speaker must be out of the hearer's
+            sight before the hearer assumes that the speaker may have learnt something.
+        sincere: Under `informed`, True if hearers assume that speakers believe what they say.
+            If False, a hearer that rejects a claim does not attribute it to the speaker either.
+        speech_ticks: Ticks that an agent needs to say or whisper something in a program. Others
+            hear it at the end. 0: they hear it in the next tick.
 
     Raises:
         InputError: An option is out of range or of the wrong kind.

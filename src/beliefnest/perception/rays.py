@@ -1,11 +1,12 @@
-"""One ray through a grid of shapes: compiled, exact, the same in a mirror.
+"""Compiled, exact cast of one ray through a grid of shapes.
 
-The grid is one of codes (see `codes`), flattened, with its three sizes beside it.
+Results do not change if the world is mirrored. The grid is a flattened code grid (see `codes`)
+with its three sizes.
 Coordinates are those of the grid: cell (i, j, k) is the cube from (i, j, k) to
 (i + 1, j + 1, k + 1). A ray is eye + t * d, 0 <= t <= 1.
 
-Shapes lie on a grid of 1/32 and reach out of their cell by half a cell at most, along one
-axis, as all shapes of Minecraft do; tests/world/test_registry.py holds that.
+Corners of shapes are multiples of 1/32, and a shape reaches out of its cell by at most half a
+cell, along one axis. All shapes of Minecraft are so; tests/world/test_registry.py checks it.
 """
 
 import math
@@ -53,17 +54,17 @@ Codes = npt.NDArray[np.uint16]
 Starts = npt.NDArray[np.int32]
 Boxes = npt.NDArray[np.float64]
 Ray = tuple[Vector, Vector, Vector, float]
-"""Eye, d, 1 / d (0 where d is 0), and the t that 1e-9 blocks take."""
+"""Eye, d, 1 / d (0 where d is 0), and the length of 1e-9 blocks in units of t."""
 
 
 class Scene(NamedTuple):
-    """What kernels look through: a grid of codes, and the shapes that codes stand for.
+    """Code grid and the shapes of its codes, as kernels take them.
 
     Attributes:
-        codes: uint16, the grid, flattened.
-        sizes: Its cells along x, y, z.
+        codes: uint16, the flattened code grid.
+        sizes: Number of cells along x, y, z.
         starts: int32 (shapes + 1,), first row of each shape in `boxes`.
-        boxes: float64 (n, 6), low and high corners of shapes' boxes in their cells.
+        boxes: float64 (n, 6), low and high corners of the boxes of shapes, relative to the cell.
     """
 
     codes: Codes
@@ -77,62 +78,62 @@ NOWHERE = (-1, -1, -1)
 MISSED = 2.0
 LEAST_LENGTH = 1e-9
 _NUDGE = 1e-7
-# Which cells a ray is tried against is decided with this much to spare.
+# Tolerance in choosing the cells that a ray is tested against.
 _SPARE = 1e-11
-# No shape reaches so near the outer side of the margin.
+# No shape comes this near to the outer side of the margin.
 _RIM = 1e-3
 
 
 _KERNEL: dict[str, Any] = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
-# Without numba's counting of references: atomic steps at every use of an array, two thirds of a
-# tick's time and a fifth of the compilation's. Arrays are kept alive by who calls a kernel.
+# Numba's reference counting is off: its atomic operations at each use of an array took two thirds
+# of a tick and a fifth of the compilation. The caller of a kernel keeps the arrays alive.
 _BORROWING: dict[str, Any] = {**_KERNEL, "_nrt": False}
-# A wrapper for calls from Python takes as long to compile as a small kernel.
+# Kernels that only kernels call need no wrapper for Python, which would double their compilation.
 _INNER: dict[str, Any] = {"no_cpython_wrapper": True}
 
 
 def compiled(function: F) -> F:
-    """Compile a kernel that makes no arrays on first use, and keep it for the next process.
+    """Compile a kernel on first use and cache it on disk; the kernel must not allocate arrays.
 
-    It is kept beside the package, or in the user's cache folder, or in NUMBA_CACHE_DIR. A
+    The cache is beside the package, in the user's cache folder, or in NUMBA_CACHE_DIR. A
     process that can write to none of them compiles for itself.
     """
     return _kept(function, _BORROWING)
 
 
 def allocating(function: F) -> F:
-    """`compiled` for a kernel that makes arrays."""
+    """Compile as `compiled` does, for a kernel that allocates arrays."""
     return _kept(function, _KERNEL)
 
 
 def inner(function: F) -> F:
-    """`compiled` for a kernel that only kernels call."""
+    """Compile as `compiled` does, for a kernel that only kernels call."""
     return _kept(function, _BORROWING | _INNER)
 
 
 def inlined(function: F) -> F:
-    """Compile a kernel that makes no arrays into each kernel that calls it."""
+    """Let LLVM inline a kernel into each of its callers; the kernel must not allocate arrays."""
     return _jit(function, _BORROWING | _INNER | {"forceinline": True})
 
 
 def merged(function: F) -> F:
-    """Compile a kernel that makes no arrays as a part of the only kernel that calls it.
+    """Merge a kernel into its only caller before compilation; it must not allocate arrays.
 
-    Its text is put into the other's before anything is compiled, which for one place saves most
-    of what a kernel takes to compile; for several `inlined` takes less.
+    Numba inserts the code into the caller, which saves most of the compilation time of the
+    kernel. With several callers `inlined` compiles faster.
     """
     return _jit(function, _BORROWING | _INNER | {"inline": "always"})
 
 
 def inlined_allocating(function: F) -> F:
-    """`inlined` for a kernel that makes arrays."""
+    """Inline as `inlined` does, for a kernel that allocates arrays."""
     return _jit(function, _KERNEL | _INNER | {"forceinline": True})
 
 
 def _kept(function: F, options: dict[str, Any]) -> F:
     try:
         return _jit(function, options | {"cache": True})
-    except RuntimeError:  # raised at once, by the search for a folder; compiling comes later
+    except RuntimeError:  # no writable cache folder; raised before anything is compiled
         return _jit(function, options)
 
 
@@ -141,11 +142,11 @@ def _jit(function: F, options: dict[str, Any]) -> F:
 
 
 def is_compiled(function: Callable[..., object]) -> bool:
-    """Whether a kernel of `compiled` can be called without a wait: compiled here, or kept."""
+    """Return True if a kernel of `compiled` needs no compilation: done before, or cached."""
     kernel: Any = function
     if not hasattr(kernel, "py_func") or kernel.signatures:
         return True
-    # Only numba can tell whether what it kept was compiled from this source, and has no public way.
+    # Numba checks here that its cache is of this source; it has no public function for that.
     kept = getattr(kernel._cache, "_cache_file", None)
     return kept is not None and bool(kept._load_index())
 
@@ -220,7 +221,7 @@ def span(ray: Ray, low: Vector, high: Vector) -> tuple[float, float]:
 
 @inlined
 def _block_entry(scene: Scene, code: int, cell: Cell, ray: Ray) -> float:
-    """Where a ray first enters a box of a cell's own shape; `MISSED` if nowhere."""
+    """Return the t at which a ray first enters the block of a cell; `MISSED` if it does not."""
     i, j, k = cell
     least = ray[3]
     if code == FULL:
@@ -238,7 +239,10 @@ def _block_entry(scene: Scene, code: int, cell: Cell, ray: Ray) -> float:
 
 @inlined
 def _cell_entry(scene: Scene, cell: Cell, target: Cell, ray: Ray) -> tuple[float, Cell]:
-    """Return the entry and place of the block met first among those in and reaching into a cell."""
+    """Return t and cell of the first block that a ray enters inside a cell.
+
+    Candidates are the block of the cell itself and blocks of neighbours that reach into it.
+    """
     codes, sizes = scene.codes, scene.sizes
     entry = MISSED
     hit = NOWHERE
@@ -314,9 +318,9 @@ def _part_inside(sizes: Cell, ray: Ray) -> tuple[float, float]:
 def _first_hit(scene: Scene, target: Cell, ray: Ray) -> Cell:
     """Return the cell of the first block whose shape a ray enters; `NOWHERE` if there is none.
 
-    Goes layer by layer along the ray's longest axis. In a layer the ray lies in two cells
-    at most along each other axis; what it enters of the shapes there is decided by
-    clipping, so that the order in which it passes edges and corners plays no part.
+    The loop goes layer by layer along the longest axis of the ray. In one layer the ray touches
+    at most two cells along each other axis. All shapes in these cells are clipped against the
+    ray and the least t wins, so rounding at edges and corners cannot change the result.
     """
     codes, sizes = scene.codes, scene.sizes
     t0, t1 = _part_inside(sizes, ray)
@@ -366,7 +370,7 @@ def _first_hit(scene: Scene, target: Cell, ray: Ray) -> Cell:
 
 @inlined
 def may_lie_in_face(e: float, d: float) -> bool:
-    """Return True if a ray may lie in the plane of a face across an axis: no other plane counts."""
+    """Return True if a ray may lie in the plane of a face that is normal to an axis."""
     return d == 0.0 and e * 32.0 == math.floor(e * 32.0)
 
 
@@ -374,15 +378,15 @@ def may_lie_in_face(e: float, d: float) -> bool:
 def hidden_by(scene: Scene, target: Cell, eye: Vector, d: Vector) -> Cell:
     """Return the cell of the first block that hides eye + d; `NOWHERE` if none does.
 
-    The target hides nothing. A ray in the plane of a face is free if it is free on one
-    side of the plane: two blocks side by side leave no crack, and one may be grazed.
+    The target hides nothing. A ray in the plane of a face is free if it is free on one side of
+    the plane. So a ray cannot pass between two adjacent blocks, but it may graze a single one.
     """
     if d[0] != 0.0 and d[1] != 0.0 and d[2] != 0.0:
         return _first_hit(scene, target, sloped(eye, d))
     hit = NOWHERE
     if d[0] == 0.0 and d[1] == 0.0 and d[2] == 0.0:
         return hit
-    # Along an axis without such a plane there is one side, and nothing to be moved.
+    # Along an axis without such a plane there is only one ray, which is not moved.
     sides_x = 2 if may_lie_in_face(eye[0], d[0]) else 1
     sides_y = 2 if may_lie_in_face(eye[1], d[1]) else 1
     sides_z = 2 if may_lie_in_face(eye[2], d[2]) else 1

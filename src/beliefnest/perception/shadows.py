@@ -1,10 +1,10 @@
-"""Shadows cast from an eye: compiled bounds on what it can and cannot see.
+"""Shadow casting: compiled bounds on the cells that an eye can and cannot see.
 
-For every cell of a grid of codes (as in `rays`) a mark: `CLEAR` where the middle of the
-cell is certainly free to the eye, `HIDDEN` where nothing in the closed cell is, else
-`UNSURE`. Of a cell that is not hidden all blocks that may hide parts of it are noted,
-the one that hides the middle first, then nearest layers first: up to `ROOM` indices, and
-their number, at most `ROOM` + 1.
+Each cell of a code grid (as in `rays`) gets a mark. `CLEAR`: the eye certainly sees the middle of
+the cell. `HIDDEN`: the eye sees no point of the closed cell. `UNSURE`: anything else. For each cell
+that is not hidden, the suspects are the blocks that may hide parts of it. The suspect that hides
+the middle comes first, the others follow by layer, nearest first. Up to `ROOM` suspects are
+stored; their count goes up to `ROOM` + 1, which means "too many".
 """
 
 import math
@@ -41,12 +41,12 @@ __all__ = [
 
 
 class Shadows(NamedTuple):
-    """What is known of the cells of a grid after shadows were cast; empty if none were.
+    """Result of shadow casting for the cells of a grid; empty arrays if none was done.
 
     Attributes:
         marks: int8 (cells,), `CLEAR`, `HIDDEN` or `UNSURE`.
-        counts: uint8 (cells,), how many blocks may hide parts of the cell.
-        suspects: int32 (cells, `ROOM`), the cells of these blocks.
+        counts: uint8 (cells,), number of blocks that may hide parts of the cell.
+        suspects: int32 (cells, `ROOM`), cell indices of these blocks.
     """
 
     marks: npt.NDArray[np.int8]
@@ -59,21 +59,21 @@ UNSURE = 1
 HIDDEN = 2
 ROOM = 8
 
-# Full shadows are drawn this much too small, and partial ones too large, so that rays
-# which barely enter a box, or lie in the plane of its face, are left to be tried.
+# Full shadows are made this much smaller and partial shadows larger. Rays that barely enter a box
+# or lie in the plane of a face thus stay `UNSURE`, and the exact test decides them.
 _SHRINK = 1e-4
 _GROW = 1e-6
-# An eye nearer than this to a box is taken to be in it.
+# An eye nearer than this to a box counts as inside it.
 _TOUCHING = 1e-3
 
 
 @inlined
 def _is_enclosed(scene: Scene, shadows: Shadows, sides: Cell, index: int) -> bool:
-    """Return True if every ray to a cell comes out of a full cube or a hidden cell.
+    """Return True if every ray to a cell passes a full cube or a hidden cell just before it.
 
-    Sides are the index steps to the neighbours nearer to the eye, 0 along an axis where
-    the eye is level with the cell. Cells across edges and corners count: a ray may come
-    through an edge without entering the neighbours beside it.
+    `sides` are the index steps to the neighbours nearer to the eye, 0 along an axis where the
+    eye is level with the cell. Neighbours across edges and corners count too, because a ray may
+    come through an edge without entering the neighbours beside it.
     """
     if sides[0] == 0 and sides[1] == 0 and sides[2] == 0:
         return False
@@ -110,7 +110,7 @@ def _cells_touched(
 def _cells_within(
     e: float, edge0: float, edge1: float, d0: float, d1: float, size: int
 ) -> tuple[int, int]:
-    """First and last cell, without margin, in full shadow all the way between two distances."""
+    """Return the first and last cell, without margin, in full shadow between two distances."""
     low = e + edge0 * (d1 if edge0 > 0 else d0)
     high = e + edge1 * (d0 if edge1 > 0 else d1)
     return max(math.ceil(low), 1), min(math.floor(high) - 1, size - 2)
@@ -129,7 +129,7 @@ def _may_enter(eye: Vector, cell: Cell, low: Vector, high: Vector) -> bool:
 
 @inlined
 def _suspect(shadows: Shadows, cell: int, block: int) -> None:
-    """Note a block that may hide parts of a cell; beyond the room for them only their number."""
+    """Add a block to the suspects of a cell; without room for it, only count it."""
     counts = shadows.counts
     if cell != block and counts[cell] <= ROOM:
         if counts[cell] < ROOM:
@@ -139,7 +139,7 @@ def _suspect(shadows: Shadows, cell: int, block: int) -> None:
 
 @inlined
 def _doubt_all(shadows: Shadows, index: int) -> None:
-    """Note the block of that index, which the eye touches, for all cells."""
+    """Make the block of an index, which the eye touches, a suspect of all cells."""
     marks = shadows.marks
     for n in range(len(marks)):
         _suspect(shadows, n, index)
@@ -149,7 +149,7 @@ def _doubt_all(shadows: Shadows, index: int) -> None:
 
 @inlined
 def _prefer(shadows: Shadows, cell: int, block: int) -> None:
-    """Let the suspect noted last, which hides a cell's middle, be the first one tried."""
+    """Move the last suspect of a cell, which hides its middle, to the first place."""
     counts, suspects = shadows.counts, shadows.suspects
     if cell != block:
         if counts[cell] <= ROOM:
@@ -159,7 +159,7 @@ def _prefer(shadows: Shadows, cell: int, block: int) -> None:
 
 @inlined
 def _gap(eye: Vector, low: Vector, high: Vector) -> tuple[int, float]:
-    """Return the axis along which an eye is farthest from a box, and how far."""
+    """Return the axis along which an eye is farthest from a box, and the distance."""
     axis, near = 0, -1.0
     for n in range(3):
         e = turned(eye, n)[0]
@@ -249,7 +249,11 @@ def _outward(e: float, size: int) -> npt.NDArray[np.int64]:
 
 @allocating
 def cast_shadows(scene: Scene, reaches: Reaches, eye: Vector) -> Shadows:
-    """Return the shadows of all blocks, near ones first: the hidden cast none."""
+    """Return the shadows of all blocks.
+
+    Blocks cast their shadows in order of distance, near ones first, so that hidden blocks need
+    not cast any.
+    """
     codes, sizes, starts, boxes = scene
     size = sizes[0] * sizes[1] * sizes[2]
     marks = np.zeros(size, dtype=np.int8)
@@ -284,7 +288,7 @@ def cast_shadows(scene: Scene, reaches: Reaches, eye: Vector) -> Shadows:
 
 
 def no_shadows() -> Shadows:
-    """What stands for the result of `cast_shadows` where it was not called."""
+    """Return an empty result, for lookups without shadow casting."""
     return Shadows(
         np.empty(0, dtype=np.int8),
         np.empty(0, dtype=np.uint8),

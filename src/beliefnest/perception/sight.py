@@ -1,14 +1,15 @@
-"""Who sees what: line of sight through a grid of blocks (semantics, section 3).
+"""Line of sight through a grid of blocks (semantics, section 3).
 
-A block is seen if, from the eye, a ray inside the field of view reaches one of its sample
-points without entering the shape of another opaque block, and its middle is within the
-greatest visible distance. Sample points are the middle and, for each face strictly turned
-to the eye, the face's middle and its corners pulled in by 0.01. Every block can be seen,
-air and unknown ones included; the latter hide nothing, nor does anything outside the grid.
+An agent sees a block if two conditions hold. The centre of the block is within the greatest
+visible distance. And a ray inside the field of view runs from the eye to one of the block's
+sample points without entering the shape of another opaque block. Sample points are the centre
+of the block and, for each face strictly turned to the eye, the centre of the face and its four
+corners, pulled in by 0.01. Every block can be seen, also air and unknown blocks. Unknown
+blocks and everything outside the grid hide nothing.
 
-Entering means to overlap the inside of a box for more than 1e-9 blocks. A ray that lies
-in the plane of a face is free if it is free when moved by 1e-7 to either side. Limits of
-distance and angle are inclusive, to 1e-9. The kernels are compiled on first use.
+A ray enters a box if it overlaps the inside of the box for more than 1e-9 blocks. A ray in the
+plane of a face is free if it is free when moved by 1e-7 to either side. Limits of distance and
+angle are inclusive, with a tolerance of 1e-9. The kernels are compiled on first use.
 """
 
 import functools
@@ -38,18 +39,18 @@ Points = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """How agents see; the same for every agent at every depth.
+    """Options of sight, the same for every agent at every depth.
 
     Attributes:
         registry: Names and shapes of blocks.
         max_visible_distance: Greatest distance from the eye to a block's middle or an
             agent's body centre, in blocks; None: no limit.
         field_of_view: Full angle of the cone of sight, in degrees; 360: in all directions.
-        transparent_blocks: Names of blocks that hide nothing, beside those of
+        transparent_blocks: Names of blocks that hide nothing, in addition to those of
             `Registry.default_transparent`.
 
     Raises:
-        UnknownNameError: A name of `transparent_blocks` is no block.
+        UnknownNameError: A name in `transparent_blocks` is not the name of a block.
     """
 
     registry: Registry
@@ -59,7 +60,7 @@ class Sight:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "transparent_blocks", tuple(self.transparent_blocks))
-        self._transparent  # noqa: B018 - a wrong name is refused here, not at the first look
+        self._transparent  # noqa: B018 - refuse an unknown name here, not at the first look
 
     def geometry(self, blocks: BlockGrid, origin: Position) -> "Geometry":
         """Prepare a grid for many looks.
@@ -70,7 +71,7 @@ class Sight:
 
         Raises:
             InputError: The grid is not three-dimensional.
-            UnknownNameError: A value is neither a block state id nor -1.
+            UnknownNameError: A value of the grid is neither a block state id nor -1.
         """
         _check_grid(blocks, self.registry.states)
         codes = code_grid(blocks, self.state_codes, self.reaches)
@@ -79,7 +80,7 @@ class Sight:
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Cosine of half the field of view (-2: no limit), and how far is seen (infinite too)."""
+        """Cosine of half the field of view (-2: no limit) and greatest distance (may be inf)."""
         angle, far = self.field_of_view, self.max_visible_distance
         cos_half = -2.0 if angle >= 360 else math.cos(math.radians(angle) / 2)
         return cos_half, math.inf if far is None else float(far)
@@ -94,7 +95,7 @@ class Sight:
 
     @functools.cached_property
     def state_codes(self) -> npt.NDArray[np.uint16]:
-        """Code (see `codes`) of each state, and at the end that of unknown."""
+        """Shape code (see `codes`) of each block state; the last entry is for unknown."""
         shape_codes = np.arange(len(self.registry.shape_start) - 1) + FIRST_SHAPE
         sizes = np.diff(self.registry.shape_start)
         single = np.flatnonzero(sizes == 1)
@@ -106,7 +107,7 @@ class Sight:
 
     @functools.cached_property
     def reaches(self) -> npt.NDArray[np.uint8]:
-        """By code, the sides at which its shape reaches out of the cell, one bit for each."""
+        """Sides at which the shape of each code reaches out of its cell, one bit a side."""
         starts, boxes = self.registry.shape_start, self.registry.shape_boxes
         reaches = np.zeros(len(starts) - 1 + FIRST_SHAPE, dtype=np.uint8)
         owners = np.repeat(np.arange(len(starts) - 1), np.diff(starts)) + FIRST_SHAPE
@@ -118,16 +119,16 @@ class Sight:
 
 @dataclass(frozen=True, eq=False)
 class Geometry:
-    """A grid of blocks prepared for looks; make it with `Sight.geometry`.
+    """A grid of blocks prepared for looks; made by `Sight.geometry`.
 
-    Positions and points are scenario coordinates. An eye is a point; yaw and pitch are
-    Mineflayer's radians (yaw 0 looks along -z, pi/2 along -x, positive pitch up) and
+    Positions and points are scenario coordinates. An eye is a point. Yaw and pitch are in
+    Mineflayer's radians (yaw 0 looks along -z, pi/2 along -x, positive pitch up); they
     matter only for a field of view below 360 degrees.
 
     Attributes:
-        sight: How agents see.
-        origin: Position of the grid's low corner.
-        codes: What each cell holds, as described in `codes`, read-only.
+        sight: Options of sight.
+        origin: Position of the low corner of the grid.
+        codes: Shape code of each cell (see the module `codes`), read-only.
     """
 
     sight: Sight
@@ -138,7 +139,8 @@ class Geometry:
         """Return the geometry with other block states (-1: unknown) at some positions of the grid.
 
         Raises:
-            InputError, UnknownNameError: A position lies outside the grid, an id is none.
+            InputError: A position lies outside the grid.
+            UnknownNameError: A value is neither a block state id nor -1.
         """
         from beliefnest.perception.eyes import set_code
 
@@ -157,7 +159,7 @@ class Geometry:
         return Geometry(self.sight, self.origin, codes)
 
     def visible_blocks(self, eye: Point, yaw: float, pitch: float) -> BoolArray:
-        """Which blocks of the grid are seen: bool (nx, ny, nz)."""
+        """Return a mask of the visible blocks of the grid: bool (nx, ny, nz)."""
         from beliefnest.perception import shadows, views
 
         seer = self._eye(eye, yaw, pitch)
@@ -169,9 +171,16 @@ class Geometry:
     def sees_blocks(
         self, eye: Point, yaw: float, pitch: float, positions: npt.ArrayLike
     ) -> BoolArray:
-        """Which of the blocks at integer positions (n, 3), in or out of the grid, are seen.
+        """Return a mask of the visible blocks among given ones: bool (n,).
 
-        InputError if they are not rows of three integers.
+        Args:
+            eye: Place of the eye.
+            yaw: Direction of the look, in radians.
+            pitch: Elevation of the look, in radians.
+            positions: Integer positions (n, 3), inside or outside the grid.
+
+        Raises:
+            InputError: `positions` are not rows of three integers.
         """
         from beliefnest.perception import shadows, views
 
@@ -183,9 +192,12 @@ class Geometry:
         return views.seen_blocks(self._scene, seer, cells, shadows.no_shadows())
 
     def sees_points(self, eye: Point, yaw: float, pitch: float, points: npt.ArrayLike) -> BoolArray:
-        """Which of the points (n, 3) are seen; each has to be within the visible distance.
+        """Return a mask of the visible points among `points` (n, 3): bool (n,).
 
-        InputError if they are not rows of three numbers.
+        A point is visible only within the greatest visible distance.
+
+        Raises:
+            InputError: `points` are not rows of three numbers.
         """
         from beliefnest.perception import views
 
@@ -193,10 +205,13 @@ class Geometry:
         return views.seen_points(self._scene, self._eye(eye, yaw, pitch), places)
 
     def sees_agents(self, eye: Point, yaw: float, pitch: float, feet: npt.ArrayLike) -> BoolArray:
-        """Which of the agents with feet at (n, 3) are seen.
+        """Return a mask of the visible agents among those with `feet` (n, 3): bool (n,).
 
-        One of the points at `AGENT_SAMPLE_HEIGHTS` has to be seen, and the body centre
-        has to be within the visible distance. InputError if `feet` are not rows of three numbers.
+        An agent is visible if one of its points at `AGENT_SAMPLE_HEIGHTS` is visible and the
+        centre of its body is within the greatest visible distance.
+
+        Raises:
+            InputError: `feet` are not rows of three numbers.
         """
         from beliefnest.perception import views
 
@@ -226,7 +241,7 @@ class Geometry:
         )
 
     def _local(self, points: Points) -> Points:
-        """Points in coordinates of the codes, which have a margin of one cell."""
+        """Return points in the coordinates of the code grid, which has a margin of one cell."""
         return points + (1.0 - np.array(self.origin))
 
     def _eye(self, eye: Point, yaw: float, pitch: float) -> "Eye":

@@ -1,6 +1,6 @@
-"""What an eye sees of a grid of shapes: compiled loops over blocks, agents and points.
+"""Compiled loops over the blocks, agents and points that one eye may see.
 
-Coordinates are those of `rays`, an `Eye` is that of `beams`.
+Coordinates are those of `rays`; `Eye` is defined in `beams`.
 """
 
 import numpy as np
@@ -18,10 +18,11 @@ __all__ = ["seen_agents", "seen_blocks", "seen_points"]
 def seen_blocks(
     scene: Scene, eye: Eye, cells: npt.NDArray[np.int64], shadows: Shadows
 ) -> npt.NDArray[np.bool_]:
-    """Which blocks are seen: those of the cells (n, 3), in or out of the grid.
+    """Return a mask of the blocks that are seen.
 
-    With shadows from `cast_shadows` the cells are left out, and the
-    blocks are all of the grid, its margin included (which is never seen).
+    Without shadows the mask is about the cells (n, 3), inside or outside the grid. With shadows
+    from `cast_shadows` the cells are ignored and the mask is about all cells of the grid,
+    including its margin, which is never seen.
     """
     sizes, marks = scene.sizes, shadows.marks
     whole = len(marks) > 0
@@ -52,7 +53,7 @@ def _is_margin(sizes: Cell, cell: Cell) -> bool:
 
 @allocating
 def seen_agents(scene: Scene, eye: Eye, feet: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-    """Which of the agents with feet at (n, 3) are seen."""
+    """Return a mask of the agents, with feet at (n, 3), that are seen."""
     seen = np.zeros(len(feet), dtype=np.bool_)
     for n in range(len(feet)):
         seen[n] = eye_sees_agent(scene, eye, (feet[n, 0], feet[n, 1], feet[n, 2]))
@@ -61,7 +62,7 @@ def seen_agents(scene: Scene, eye: Eye, feet: npt.NDArray[np.float64]) -> npt.ND
 
 @allocating
 def seen_points(scene: Scene, eye: Eye, points: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-    """Which of the points (n, 3) are seen."""
+    """Return a mask of the points (n, 3) that are seen."""
     seen = np.zeros(len(points), dtype=np.bool_)
     for n in range(len(points)):
         seen[n] = eye_sees_point(scene, eye, (points[n, 0], points[n, 1], points[n, 2]))
