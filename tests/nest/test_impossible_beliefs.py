@@ -311,3 +311,197 @@ def test_whoever_was_last_seen_about_a_door_can_walk_in_the_body(worlds, facing,
             nest[path].switch("try")
             result = nest[path].run(agent, WALK.format(*goal), 400)
             assert result.ok, (path, nest[path].placed, result)
+
+
+PLACE = (6, 1, 7)
+"""Behind the wall that ann does not see through."""
+PLACES = {"unseen air": PLACE, "wall": (1, 1, 4), "seen air": (2, 1, 2), "floor": (3, 0, 2)}
+TELL = "await say(bot, 'Look there.', [located('diamond', new Vec3({}, {}, {}))])"
+TAKE = "await getItemFromChest(bot, new Vec3({}, {}, {}), {{diamond: 1}})"
+
+
+def telling(**more):
+    rules = {"testimony": "accept", "hearing": "global"}
+    return bn.Scenario.from_mapping({**ROOM, "perception": rules, **more})
+
+
+def facts(state):
+    contents = {place: dict(held.items) for place, held in state.containers.items()}
+    return contents, state.blocks.grid.copy()
+
+
+@pytest.mark.parametrize("world", ["embedded", "scripted"])
+@pytest.mark.parametrize("senses", ["world", "percepts"])
+@pytest.mark.parametrize("place", PLACES.values(), ids=list(PLACES))
+def test_a_chest_is_put_where_something_is_believed_to_be(worlds, world, senses, place, tmp_path):
+    lent = {"worlds": worlds} if world == "embedded" else {"world": world}
+    with bn.Nest.open(telling(), store=tmp_path / "run.bn", **lent) as nest:
+        assert nest["/"].run("bob", TELL.format(*place)).ok
+        belief = nest["/ann"]
+        contents, blocks = facts(belief.state)
+        assert contents[place] == {"diamond": 1}
+        block = belief.state.blocks[place]
+        assert belief.placed == {}
+        belief.switch("try")
+        assert belief.placed[place] == (block, "chest")
+        belief.switch("other")
+        belief.switch("try")
+        assert facts(belief.state)[0] == contents
+        assert np.array_equal(facts(belief.state)[1], blocks)
+        result = belief.run("ann", TAKE.format(*place), senses=senses)
+        if place in (PLACE, PLACES["seen air"]):
+            assert result.ok, result
+            assert result.placed == belief.placed
+            assert belief.state.agents["ann"].inventory == {"diamond": 1}
+            assert belief.state.containers[place].items == {}
+        assert belief.state.blocks[place] == block
+        assert belief.placed[place] == (block, "chest")
+        belief.switch("follow")
+        assert belief.placed == {}
+        assert facts(belief.state)[0] == contents
+        belief.switch("try")
+    with bn.Nest.read(tmp_path / "run.bn") as run:
+        assert run["/ann"].placed[place] == (block, "chest")
+
+
+CHEST = {"at": list(PLACE), "block": "chest"}
+
+
+def test_a_probe_acts_in_a_belief_about_a_chest_that_was_not_seen(tmp_path, capsys):
+    scenario = tmp_path / "probe.yaml"
+    content = {
+        **ROOM,
+        "containers": [CHEST],
+        "initial_beliefs": [
+            {"path": "/ann", "containers": [{"at": list(PLACE), "items": {"diamond": 1}}]}
+        ],
+        "probes": [
+            {
+                "path": "/ann",
+                "acts_in": "/ann",
+                "agent": "ann",
+                "task": "Get a diamond from a chest.",
+                "expect": {"opens": list(PLACE)},
+            }
+        ],
+    }
+    scenario.write_text(json.dumps(content))
+    assert run_command_line(["run", str(scenario), "--json"]) == 0
+    probe = json.loads(capsys.readouterr().out)["runs"][0]["probes"][0]
+    assert probe["opened"] == [list(PLACE)]
+    assert probe["placed"] == {"6,1,7": [None, "chest"]}
+
+
+SWORDS = {"diamond_sword": 20}
+IMPOSSIBLE = {
+    "a sign that holds a diamond": {
+        "blocks": [{"at": [6, 1, 7], "block": "oak_sign"}],
+        "containers": [{"at": [6, 1, 7], "items": {"diamond": 1}}],
+    },
+    "more than fits into a furnace": {
+        "blocks": [{"at": [6, 1, 7], "block": "furnace"}],
+        "containers": [{"at": [6, 1, 7], "items": SWORDS}],
+    },
+    "half a chest": {
+        "blocks": [{"at": [6, 1, 7], "block": "chest[type=left]"}],
+        "containers": [{"at": [6, 1, 7], "items": {"diamond": 1}}],
+    },
+    "half a door": {"blocks": [{"at": [6, 1, 7], "block": "oak_door[half=upper]"}]},
+    "somebody in the chest": {
+        "agents": {"bob": [6.5, 1, 7.5]},
+        "containers": [{"at": [6, 1, 7], "items": {"diamond": 1}}],
+    },
+    "somebody in the outer wall": {"agents": {"bob": [6.5, 1, 0.01]}},
+}
+
+
+@pytest.mark.parametrize("world", ["embedded", "scripted"])
+@pytest.mark.parametrize("believed", IMPOSSIBLE.values(), ids=list(IMPOSSIBLE))
+def test_other_impossible_beliefs_have_bodies_too(worlds, world, believed):
+    lent = {"worlds": worlds} if world == "embedded" else {"world": world}
+    believes = [{"path": "/ann", **believed}]
+    scenario = {**ROOM, "containers": [CHEST], "initial_beliefs": believes}
+    with bn.Nest.open(bn.Scenario.from_mapping(scenario), **lent) as nest:
+        belief = nest["/ann"]
+        before = facts(belief.state)
+        belief.switch("try")
+        belief.switch("other")
+        belief.switch("try")
+        assert belief.run("ann", "bot.setControlState('forward', true); await waitTicks(bot, 5)")
+        for found, expected in zip(facts(belief.state), before, strict=True):
+            assert np.array_equal(found, expected)
+
+
+COLOURS = ("white", "orange", "magenta", "lime", "pink", "gray", "cyan", "purple", "blue", "brown")
+THIRTY = [f"{colour}_{thing}" for colour in COLOURS for thing in ("wool", "dye", "carpet")]
+
+
+def test_what_does_not_fit_into_a_chest_is_left_out_of_the_body_alone(worlds):
+    said = [f"await say(bot, 'More.', [located('{item}', new Vec3{PLACE})])" for item in THIRTY]
+    with bn.Nest.open(telling(), worlds=worlds) as nest:
+        assert nest["/"].run("bob", "\n".join(said)).ok
+        belief = nest["/ann"]
+        belief.switch("try")
+        assert belief.state.containers[PLACE].items == dict.fromkeys(THIRTY, 1)
+        first = min(THIRTY)
+        result = belief.run("ann", TAKE.format(*PLACE).replace("diamond", first))
+        assert result.ok, result
+        assert len(belief.state.containers[PLACE].items) == 26
+
+
+BLOCKS = (
+    *("air", "stone", "chest[type=left]", "barrel", "furnace[lit=true]", "oak_door[half=upper]"),
+    *("red_bed[part=head]", "oak_sign", "water", "sand", "trapped_chest", "fire", "piston_head"),
+    *("hopper", "ender_chest", "scaffolding", "powder_snow", "lever[face=floor]"),
+)
+POSITIONS = st.tuples(st.integers(0, 8), st.integers(0, 4), st.integers(0, 8))
+CLAIMS = st.one_of(
+    st.builds(bn.Claim.located, st.sampled_from(["diamond", "coal", "bow", "iron_ore"]), POSITIONS),
+    st.builds(bn.Claim.absent, st.just("diamond"), POSITIONS),
+    st.builds(bn.Claim.block, POSITIONS, st.sampled_from(BLOCKS)),
+    st.builds(
+        bn.Claim.position,
+        st.sampled_from(["ann", "bob"]),
+        st.tuples(
+            st.floats(0, 8.99).map(lambda x: round(x, 2)),
+            st.sampled_from([0, 0.5, 1, 4]),
+            st.floats(0, 8.99).map(lambda x: round(x, 2)),
+        ),
+    ),
+)
+
+
+def spoken(claim):
+    """The claim as programs make it."""
+    place = None if claim.place is None else f"new Vec3({', '.join(map(str, claim.place))})"
+    call = {
+        "located": f"located('{claim.item}', {place})",
+        "absent": f"absent('{claim.item}', {place})",
+        "position": f"positionOf('{claim.agent}', {place})",
+        "block": f"blockAt({place}, '{claim.state}')",
+    }[claim.kind.value]
+    return f"await say(bot, 'Hear.', [{call}])"
+
+
+@given(claims=st.lists(CLAIMS, min_size=1, max_size=12), path=st.sampled_from(["/ann", "/bob/ann"]))
+@settings(
+    max_examples=at_night(300, 12),
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+def test_every_claim_leaves_a_belief_that_has_a_body(worlds, claims, path):
+    with bn.Nest.open(telling(), worlds=worlds) as nest:
+        for speaker in ("bob", "ann"):
+            assert nest["/"].run(speaker, "\n".join(map(spoken, claims))).ok
+        belief = nest[path]
+        before = facts(belief.state)
+        belief.switch("try")
+        belief.switch("other")
+        belief.switch("try")
+        assert facts(belief.state)[0] == before[0]
+        assert np.array_equal(facts(belief.state)[1], before[1])
+        there = [name for name, each in belief.state.agents.items() if each.position is not None]
+        if there:
+            belief.run_all(dict.fromkeys(there, "bot.setControlState('forward', true)"))
+        belief.switch("other")
+        belief.switch("try")

@@ -5,7 +5,15 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from beliefnest.world.frames import BlockGrid, Frame, Snapshot
-from beliefnest.world.values import AgentState, DroppedItem, Event, EventKind, Point, Position
+from beliefnest.world.values import (
+    AgentState,
+    DroppedItem,
+    Event,
+    EventKind,
+    Placements,
+    Point,
+    Position,
+)
 
 __all__ = [
     "AS_USUAL",
@@ -168,8 +176,7 @@ class ProgramResult:
         unfinished: What was stopped because it was still going on at the program's end.
         aims: What it asked its bot to make for, in order, bounded.
         calls: What it called, in order; empty where that was too much to go on from.
-        placed: Whom the body had to move when it began, agent to from where and to where, because
-            they cannot be where they are believed to be.
+        placed: What the body had to place otherwise than believed; see `Simulator.placed`.
     """
 
     agent: str
@@ -181,13 +188,14 @@ class ProgramResult:
     log: tuple[str, ...] = ()
     unfinished: tuple[Unfinished, ...] = ()
     aims: tuple[Aim, ...] = ()
-    placed: Mapping[str, tuple[Point, Point]] = field(default_factory=dict)
+    placed: Placements = field(default_factory=dict)
     calls: tuple[Called, ...] = ()
 
     def __repr__(self) -> str:
         ended = "ended well" if self.ok else f"failed: {self.error}"
         deeds = f"{len(self.actions)} action{'s' * (len(self.actions) != 1)}"
-        moved = f", {', '.join(self.placed)} moved at first" if self.placed else ""
+        names = [name for name in self.placed if isinstance(name, str)]
+        moved = f", {', '.join(names)} moved at first" if names else ""
         hint = "" if self.hint is None else f"; {self.hint}"
         return f"<program of {self.agent}, {self.ticks} ticks, {deeds}{moved}: {ended}{hint}>"
 

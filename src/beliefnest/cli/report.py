@@ -36,7 +36,7 @@ from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome, ProbeOutco
 from beliefnest.scenarios.records import expectation_json, probe_json, usage_json
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.signs import sign_words
-from beliefnest.world.values import Point
+from beliefnest.world.values import Placements, Point, Position
 
 __all__ = [
     "cost_text",
@@ -183,12 +183,16 @@ def cost_text(cost: float | None) -> str:
     return "not known" if cost is None else f"${cost:.4f}"
 
 
-def placed_lines(placed: Mapping[str, tuple[Point, Point]]) -> list[str]:
-    """Whom a body had to move, for people, a line each."""
-    return [
-        f"{name} begins at {point_text(end)}, could not be at {point_text(start)}"
-        for name, (start, end) in placed.items()
-    ]
+def placed_lines(placed: Placements) -> list[str]:
+    """Say what a body had to place otherwise than believed, for people, a line each."""
+    return [_placed_line(key, start, end) for key, (start, end) in placed.items()]
+
+
+def _placed_line(key: str | Position, start: Point | str | None, end: Point | str) -> str:
+    if isinstance(start, tuple) and isinstance(end, tuple):
+        return f"{key} begins at {point_text(end)}, could not be at {point_text(start)}"
+    believed = "an unknown block" if start is None else start
+    return f"a {end} stands at {key}, in place of {believed}, for what is believed to be in it"
 
 
 def _verb(scenario: Scenario) -> str:

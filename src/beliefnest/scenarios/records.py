@@ -23,7 +23,7 @@ from beliefnest.scenarios.expected import (
     Takes,
 )
 from beliefnest.scenarios.outcome import ExpectationOutcome, ProbeOutcome, Reply
-from beliefnest.world.values import Point
+from beliefnest.world.values import Placements, Point
 
 __all__ = ["expectation_json", "expected_json", "placed_json", "probe_json", "usage_json"]
 
@@ -57,9 +57,16 @@ def expected_json(expected: tuple[Expected, ...]) -> dict[str, object] | None:
     return found or None
 
 
-def placed_json(placed: Mapping[str, tuple[Point, Point]]) -> dict[str, object]:
-    """Whom a body had to move when it began: agent to from where, to where."""
-    return {name: [list(start), list(end)] for name, (start, end) in placed.items()}
+def placed_json(placed: Placements) -> dict[str, object]:
+    """List what a body had to place otherwise than believed; positions are `x,y,z`."""
+    return {
+        key if isinstance(key, str) else ",".join(map(str, key)): [_plain(start), _plain(end)]
+        for key, (start, end) in placed.items()
+    }
+
+
+def _plain(place: Point | str | None) -> object:
+    return list(place) if isinstance(place, tuple) else place
 
 
 def probe_json(outcome: ProbeOutcome, run_dir: Path | str) -> dict[str, object]:

@@ -18,6 +18,7 @@ __all__ = [
     "BODY_CENTRE_HEIGHT",
     "EQUIPMENT_SLOTS",
     "EYE_HEIGHT",
+    "HALF_WIDTH",
     "TICKS_PER_SECOND",
     "AgentState",
     "Block",
@@ -26,6 +27,7 @@ __all__ = [
     "Event",
     "EventKind",
     "Items",
+    "Placements",
     "Point",
     "Position",
     "Sign",
@@ -33,6 +35,8 @@ __all__ = [
 
 TICKS_PER_SECOND = 20
 EYE_HEIGHT = 1.62
+HALF_WIDTH = 0.3
+"""How far an agent's body reaches to each side of its feet, in blocks."""
 BODY_CENTRE_HEIGHT = 0.9
 """Height of an agent's middle above its feet, in blocks."""
 
@@ -45,6 +49,13 @@ Position = tuple[int, int, int]
 
 Point = tuple[float, float, float]
 """A point in space, in blocks, scenario coordinates."""
+
+Placements = Mapping[str | Position, tuple[Point, Point] | tuple[str | None, str]]
+"""Differences between a belief and its body.
+
+Agent to (from where, to where) in feet positions; position of a block to (the believed block or
+None, the block in the body).
+"""
 
 Items = Mapping[str, int]
 """Item name to count; counts are positive."""

@@ -13,7 +13,7 @@ from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.nest.acting.frame_recorder import ChatListener, FrameRecorder
 from beliefnest.nest.acting.hearsay import ClaimReader, Hearsay
 from beliefnest.nest.acting.lives import Lives
-from beliefnest.nest.acting.sensing import Sensing, believer_of
+from beliefnest.nest.acting.sensing import Sensing
 from beliefnest.nest.acting.speculation import SpeculatedBody, Speculation
 from beliefnest.nest.acting.starting import BodyStart, start_of
 from beliefnest.nest.past.body_state import note_internal_state, present
@@ -195,13 +195,10 @@ class Bodies:
             embodied.recorder.flush(embodied.body.tick)
             return recording.journal.info(key).entries
 
-        believer = believer_of(path, agent)
         since = None
         if past is not None:
             since = recording.journal.entries_until(key, past.heard_until)
-        return Sensing(
-            agent, entries, lambda count: recording.history.reading(key, believer, count), since
-        )
+        return Sensing(recording.history, key, agent, entries, since)
 
     @contextmanager
     def changing(

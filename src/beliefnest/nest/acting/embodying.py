@@ -16,6 +16,7 @@ from beliefnest.bodies.realtime import RealtimeWorld
 from beliefnest.bodies.worlds import realtime_of
 from beliefnest.errors import InputError
 from beliefnest.nest.acting.placement import BodySpace
+from beliefnest.nest.past.embodiable import with_chests
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.paths import BeliefPath, path_text
@@ -165,8 +166,9 @@ class Embodying:
 
     def _shown(self, path: BeliefPath, standing: _Embodied) -> tuple[Shown, int]:
         """What a simulator's state is to be shown as, and the tick of its latest change."""
-        reading = self._recording.reading(path)
-        blocks = reading.blocks
+        reading, registry = self._recording.reading(path), self._recording.context.registry
+        contents = {place: held.items for place, held in reading.containers.items()}
+        blocks = with_chests(registry, self._recording.box, reading.blocks, contents)
         agents = {
             standing.names[name]: AgentState(
                 position=agent.position,
@@ -178,11 +180,10 @@ class Embodying:
             for name, agent in reading.agents.items()
             if agent.position is not None
         }
-        contents = reading.containers.items()
         shown = Shown(
             np.where(blocks < 0, np.int32(standing.unknown), blocks),
-            {place: (dict(held.items), held.complete) for place, held in contents},
-            dict(reading.signs),
+            {p: (dict(held.items), held.complete) for p, held in reading.containers.items()},
+            {place: text for place, text in reading.signs.items() if place not in contents},
             agents,
         )
         return shown, reading.tick

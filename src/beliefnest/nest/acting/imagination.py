@@ -21,6 +21,7 @@ from beliefnest.bodies.footpaths import Ground, InReach
 from beliefnest.bodies.scripted_hand import REACH, Doing, Hand
 from beliefnest.bodies.scripted_skills import CALLS, SKILLS
 from beliefnest.errors import BeliefNestError, PathError
+from beliefnest.nest.past.embodiable import embodiable, with_chests
 from beliefnest.programs.calls import Call
 from beliefnest.world.frames import BlockGrid, Frame
 from beliefnest.world.paths import BeliefPath, normalised, path_text, paths_below
@@ -142,7 +143,10 @@ class Imagination:
         forest = forked_forest(source, news, root, root, tick, further=wanted[1:])
         forest.see_now(tick)
         believed = NodeView(forest, root)
-        world = ScriptedWorld.from_snapshot(replace(believed.snapshot(), tick=tick))
+        snapshot, registry = believed.snapshot(), source.context.registry
+        blocks = with_chests(registry, snapshot.box, believed.blocks, snapshot.containers)
+        possible = embodiable(registry, snapshot, blocks)
+        world = ScriptedWorld.from_snapshot(replace(possible, tick=tick))
         known = {} if grounds is None else grounds
         speech = source.context.options.speech_ticks if speech_ticks is None else speech_ticks
         return cls(forest, root, believed.blocks < 0, world, known, news, speech)

@@ -14,7 +14,7 @@ from itertools import product
 from beliefnest.world.doors import is_open
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import BoxBounds, Registry
-from beliefnest.world.values import AgentState, Box, Point, Position
+from beliefnest.world.values import HALF_WIDTH, AgentState, Box, Point, Position
 
 __all__ = ["FARTHEST", "BodySpace", "Placed", "moved_agents", "placed", "unknown_floors"]
 
@@ -24,7 +24,6 @@ Placed = Mapping[str, tuple[Point, Point]]
 FARTHEST = 3.0
 """How far an agent is moved at most, in blocks."""
 
-_HALF_WIDTH = 0.3
 _HEIGHT = 1.8
 _TOUCH = 1e-3
 # A floor so little below the feet is settled on, not fallen to.
@@ -51,9 +50,16 @@ class BodySpace:
         return int(self.blocks[self.box.index(cell)]) if cell in self.box else self.registry.air
 
     def boxes_at(self, cell: Position) -> Iterator[BoxBounds]:
-        """Collision boxes of the block at a cell, in the coordinates of the box."""
+        """Collision boxes of the block at a cell, in the coordinates of the box.
+
+        Invisible walls stand beside the box.
+        """
         state = self.state(cell)
         x, y, z = cell
+        (x_low, _, z_low), (x_high, _, z_high) = self.box.low, self.box.high
+        if not (x_low <= x <= x_high and z_low <= z <= z_high):
+            yield (x, y, z, x + 1, y + 1, z + 1)
+            return
         for x0, y0, z0, x1, y1, z1 in self.registry.boxes(state) if state >= 0 else ():
             yield (x + x0, y + y0, z + z0, x + x1, y + y1, z + z1)
 
@@ -75,8 +81,8 @@ class BodySpace:
     def has_floor(self, place: Point) -> bool:
         """Whether known blocks hold an agent up."""
         x, y, z = place
-        low = (x - _HALF_WIDTH, y - _SETTLES, z - _HALF_WIDTH)
-        return any(True for _ in self.hits((*low, x + _HALF_WIDTH, y, z + _HALF_WIDTH)))
+        low = (x - HALF_WIDTH, y - _SETTLES, z - HALF_WIDTH)
+        return any(True for _ in self.hits((*low, x + HALF_WIDTH, y, z + HALF_WIDTH)))
 
     def unknown_floor(self, place: Point) -> Position | None:
         """The unknown block that an agent would fall into; None if it stands or falls on others."""
@@ -94,8 +100,8 @@ class BodySpace:
     def heights(self, cell: Position) -> list[float]:
         """Where in a cell the feet of one in its middle can be, lowest first, on known floors."""
         x, y, z = cell
-        column = (x + 0.5 - _HALF_WIDTH, y - 1.0, z + 0.5 - _HALF_WIDTH)
-        room = (*column, x + 0.5 + _HALF_WIDTH, y + 1.0, z + 0.5 + _HALF_WIDTH)
+        column = (x + 0.5 - HALF_WIDTH, y - 1.0, z + 0.5 - HALF_WIDTH)
+        room = (*column, x + 0.5 + HALF_WIDTH, y + 1.0, z + 0.5 + HALF_WIDTH)
         tops = {box[4] for box in self.hits(room) if y <= box[4] < y + 1}
         return [top for top in sorted(tops) if self.is_free((x + 0.5, top, z + 0.5))]
 
@@ -243,10 +249,10 @@ def _body(*places: Point) -> BoxBounds:
     """The room that an agent takes up at places and between them."""
     xs, ys, zs = zip(*places, strict=True)
     return (
-        min(xs) - _HALF_WIDTH,
+        min(xs) - HALF_WIDTH,
         min(ys),
-        min(zs) - _HALF_WIDTH,
-        max(xs) + _HALF_WIDTH,
+        min(zs) - HALF_WIDTH,
+        max(xs) + HALF_WIDTH,
         max(ys) + _HEIGHT,
-        max(zs) + _HALF_WIDTH,
+        max(zs) + HALF_WIDTH,
     )

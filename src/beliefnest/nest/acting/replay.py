@@ -8,7 +8,7 @@ import msgspec
 
 from beliefnest.bodies.protocol import Body, ProgramPast, RunRules, Sense, World
 from beliefnest.nest.acting.hearsay import recalled
-from beliefnest.nest.acting.sensing import Sensing, believer_of
+from beliefnest.nest.acting.sensing import Sensing
 from beliefnest.nest.acting.starting import start_of
 from beliefnest.nest.past.body_state import internal_state_at
 from beliefnest.nest.past.history import History
@@ -76,13 +76,13 @@ class _RecordedTimeline:
         return {agent: self._sense(call, body, agent) for agent in call.programs}
 
     def _sense(self, call: _RecordedCall, body: Body, agent: str) -> Sense:
-        key, believer = self.info.key, believer_of(self.info.key.path, agent)
+        key = self.info.key
 
         def entries() -> int:
             # Edits between two calls lie before the later one.
             return max(call.entries, self.journal.entries_until(key, body.tick))
 
-        return Sensing(agent, entries, lambda count: self.history.reading(key, believer, count))
+        return Sensing(self.history, key, agent, entries)
 
     def wait_until(self, body: Body, tick: int) -> None:
         """Let time pass in a body, in the calls in which it passed.

@@ -5,6 +5,10 @@ from collections.abc import Callable
 
 from beliefnest.belief.node_view import NodeView
 from beliefnest.bodies.protocol import Sensed
+from beliefnest.nest.past.embodiable import chest_places, with_chests_at
+from beliefnest.nest.past.history import History
+from beliefnest.timeline.journal import TimelineKey
+from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import AgentState, EventKind, Point, Position
 
@@ -23,25 +27,28 @@ class Sensing:
     """A `Sense`: the belief of an agent, as of what has been recorded.
 
     Args:
+        history: States of timelines.
+        key: The timeline that it acts in.
         agent: Who it is.
-        entries: How many entries of the timeline that it acts in are over by now.
-        reading: The agent's belief after that many entries.
+        entries: How many entries of that timeline are over by now.
         since: The first call gives what was heard after so many entries; None: nothing that was
             heard before.
     """
 
     def __init__(
         self,
+        history: History,
+        key: TimelineKey,
         agent: str,
         entries: Callable[[], int],
-        reading: Callable[[int], NodeView],
         since: int | None = None,
     ) -> None:
+        self._history = history
+        self._key = key
         self._agent = agent
         self._entries = entries
-        self._reading = reading
         self._read = -1
-        self._events = None if since is None else reading(since).count_of_events
+        self._events = None if since is None else self._reading(since).count_of_events
         self._last: Sensed | None = None
 
     def __call__(self) -> Sensed:
@@ -49,10 +56,37 @@ class Sensing:
         entries = self._entries()
         if self._last is None or entries != self._read:
             self._read = entries
-            self._last = self._sensed(self._reading(entries))
+            self._last = self._sensed(self._reading(entries), entries)
         return self._last
 
-    def _sensed(self, seen: NodeView) -> Sensed:
+    def _reading(self, entries: int) -> NodeView:
+        """The agent's belief after so many entries."""
+        believer = believer_of(self._key.path, self._agent)
+        return self._history.reading(self._key, believer, entries)
+
+    def _blocks(self, seen: NodeView, entries: int) -> BlockGrid:
+        """What the agent knows of blocks.
+
+        Where it believes contents that its believed block cannot hold, it reads the chest that
+        the body has put there, as it could not open it otherwise.
+        """
+        if not self._key.path or not seen.containers:
+            return seen.blocks
+        context = self._history.context
+        acted_in = self._history.reading(self._key, self._key.path, entries)
+        put, missing = (
+            chest_places(
+                context.registry,
+                context.box,
+                each.blocks,
+                {place: held.items for place, held in each.containers.items()},
+            )
+            for each in (acted_in, seen)
+        )
+        places = [place for place in missing if place in put]
+        return with_chests_at(context.registry, context.box, seen.blocks, places)
+
+    def _sensed(self, seen: NodeView, entries: int) -> Sensed:
         agents = {
             name: AgentState(
                 each.position, each.yaw, each.pitch, each.on_ground, each.equipment or {}
@@ -74,4 +108,6 @@ class Sensing:
             pitch = math.atan2(away[1], math.hypot(away[0], away[2]))
             return bool(seen.geometry.sees_blocks(eye, yaw, pitch, [block])[0])
 
-        return Sensed(seen.blocks, agents, dict(seen.items), heard, seen.signs, has_free_line)
+        return Sensed(
+            self._blocks(seen, entries), agents, dict(seen.items), heard, seen.signs, has_free_line
+        )

@@ -9,6 +9,7 @@ from beliefnest.belief.entries import Source
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.acting.placement import BodySpace, moved_agents, placed, unknown_floors
 from beliefnest.nest.past.body_state import internal_state_at
+from beliefnest.nest.past.embodiable import embodiable, with_chests
 from beliefnest.nest.past.history import History
 from beliefnest.nest.past.placing import fork_of_belief
 from beliefnest.timeline.journal import ForkPoint, Journal
@@ -51,28 +52,41 @@ def start_of(
     reading = history.reading(moment.timeline, path, moment.entries)
     is_own = moment.timeline.path == path
     state = internal_state_at(journal, moment) if is_own else b""
-    snapshot = replace(reading.snapshot(), tick=moment.tick, internal_state=state)
+    snapshot, blocks = _filled(reading, history)
+    snapshot = replace(snapshot, tick=moment.tick, internal_state=state)
     if not has_physics:
         return BodyStart(snapshot)
     if not is_own:
-        return _begun(snapshot, reading, history)
+        return _begun(snapshot, blocks, reading, history)
     fork = fork_of_belief(journal, moment.timeline)
     if fork is None:
         return BodyStart(snapshot)
     # Floors stay where they were when the body began, for as long as nothing is known of them.
-    blocks = reading.blocks
     if not (blocks < 0).any():
         return BodyStart(snapshot)
     _, base = fork
     believed = history.reading(base.timeline, path, base.entries)
-    begun = _begun(believed.snapshot(), believed, history).snapshot.agents
-    space = BodySpace(history.context.registry, snapshot.box, believed.blocks)
+    before, known = _filled(believed, history)
+    begun = _begun(before, known, believed, history).snapshot.agents
+    space = BodySpace(history.context.registry, snapshot.box, known)
     return BodyStart(_floored(snapshot, blocks, unknown_floors(space, begun), history))
 
 
-def _begun(snapshot: Snapshot, believed: NodeView, history: History) -> BodyStart:
+def _filled(reading: NodeView, history: History) -> tuple[Snapshot, BlockGrid]:
+    """What a body of a state can be filled with, and its blocks, -1 unknown."""
+    snapshot, blocks = reading.snapshot(), reading.blocks
+    if not reading.path:
+        return snapshot, blocks
+    registry = history.context.registry
+    known = with_chests(registry, snapshot.box, blocks, snapshot.containers)
+    return embodiable(registry, snapshot, known), known
+
+
+def _begun(
+    snapshot: Snapshot, blocks: BlockGrid, believed: NodeView, history: History
+) -> BodyStart:
     """A body of a belief, with agents where they can be and unknown floors that hold them."""
-    space = BodySpace(history.context.registry, snapshot.box, believed.blocks)
+    space = BodySpace(history.context.registry, snapshot.box, blocks)
     seen_at = {}
     for name in snapshot.agents:
         basis = believed.agents[name].basis
@@ -82,7 +96,7 @@ def _begun(snapshot: Snapshot, believed: NodeView, history: History) -> BodyStar
     moved = moved_agents(snapshot.agents, placed(space, snapshot.agents, seen_at, seen_now))
     agents: dict[str, AgentState] = {**snapshot.agents, **moved}
     floors = unknown_floors(space, agents)
-    filled = _floored(replace(snapshot, agents=agents), believed.blocks, floors, history)
+    filled = _floored(replace(snapshot, agents=agents), blocks, floors, history)
     return BodyStart(filled, Frame(snapshot.tick, agents=moved) if moved else None)
 
 

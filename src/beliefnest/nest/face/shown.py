@@ -20,7 +20,7 @@ from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.words import place_words, state_words
 from beliefnest.prompts import Template
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
-from beliefnest.world.values import Point, Position
+from beliefnest.world.values import Placements, Position
 
 if TYPE_CHECKING:  # What draws takes long to import, and few nests are drawn.
     from beliefnest.pictures.figure import Figure
@@ -102,12 +102,18 @@ class ShownSimulator(ABC):
 
     @property
     @in_turn
-    def placed(self) -> Mapping[str, tuple[Point, Point]]:
-        """Whom its body had to move when it began: agent to (from where, to where), feet in blocks.
+    def placed(self) -> Placements:
+        """List what its body had to place otherwise than believed.
 
         A belief may be impossible: somebody in a doorway that is now believed shut, two in one
-        place. Its body begins with them at the nearest place where they can stand; the belief is
-        left as it is. Empty in follow mode and where nobody had to be moved.
+        place, a diamond in a block that is unknown or no container. The belief is left as it is.
+        Its body begins with agents at the nearest place where they can stand, and has a chest
+        wherever contents are believed that the block cannot hold. Empty in follow mode and where
+        nothing had to be changed.
+
+        Returns:
+            Agent to (from where, to where), feet in blocks, as of when the body began; and
+            position to (the believed block or None, "chest"), as of now.
         """
         return placed_in(self._recording, self._path, self._tick)
 

@@ -1,16 +1,16 @@
-"""Where bodies of impossible beliefs began, as it was recorded.
+"""Differences between an impossible belief and its body (semantics, section 7).
 
 A fork of a belief whose body had to move somebody begins with a frame of the fork's own tick: the
-moved agents where they stand in the body (semantics, section 7). Any other frame lies later.
+moved agents where they stand in the body. Any other frame lies later. Chests that the body puts
+are recorded nowhere: they follow from the state.
 """
 
-from collections.abc import Mapping
-
+from beliefnest.nest.past.embodiable import CHEST, chest_places
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint, Journal, TimelineInfo, TimelineKey
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath
-from beliefnest.world.values import Point
+from beliefnest.world.values import Placements, Point, Position
 
 __all__ = ["fork_of_belief", "placed_in", "placing_frame"]
 
@@ -31,12 +31,14 @@ def placing_frame(journal: Journal, info: TimelineInfo) -> Frame | None:
     return first if isinstance(first, Frame) and first.tick == info.start else None
 
 
-def placed_in(
-    recording: Recording, path: BeliefPath, tick: int | None = None
-) -> Mapping[str, tuple[Point, Point]]:
-    """Whom the body of a simulator had to move when it began: agent to from where, to where.
+def placed_in(recording: Recording, path: BeliefPath, tick: int | None = None) -> Placements:
+    """List what the body of a simulator had to place otherwise than believed.
 
     Empty in follow mode, in the real world, and at ticks before the fork.
+
+    Returns:
+        Agent to from where and to where, as of when the body began; then position of a chest to
+        the block that is believed to be there, None: unknown, and "chest".
     """
     if not path:
         return {}
@@ -47,14 +49,30 @@ def placed_in(
     fork = fork_of_belief(journal, key) if key.path == path else None
     if fork is None:
         return {}
-    info, base = fork
-    frame = placing_frame(journal, info)
+    return {**_moves(recording, path, *fork), **_chests(recording, path, tick)}
+
+
+def _moves(
+    recording: Recording, path: BeliefPath, info: TimelineInfo, base: ForkPoint
+) -> Placements:
+    frame = placing_frame(recording.journal, info)
     if frame is None:
         return {}
     believed = recording.history.reading(base.timeline, path, base.entries).agents
-    moves: dict[str, tuple[Point, Point]] = {}
+    moves: dict[str | Position, tuple[Point, Point]] = {}
     for name, agent in sorted(frame.agents.items()):
         start = believed[name].position
         assert agent is not None and start is not None
         moves[name] = (start, agent.position)
     return moves
+
+
+def _chests(recording: Recording, path: BeliefPath, tick: int | None) -> Placements:
+    reading, box = recording.reading(path, tick), recording.box
+    registry = recording.context.registry
+    contents = {place: held.items for place, held in reading.containers.items()}
+    chests: dict[str | Position, tuple[str | None, str]] = {}
+    for place in chest_places(registry, box, reading.blocks, contents):
+        state = int(reading.blocks[box.index(place)])
+        chests[place] = (None if state < 0 else registry.text(state), CHEST)
+    return chests

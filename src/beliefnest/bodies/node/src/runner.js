@@ -8,6 +8,8 @@ const { ruleSpeech } = require('./bots/speech')
 const { Memory } = require('./memory')
 
 const MOST_AIMS = 100
+// Ticks after the end of its program in which an agent may come down to the ground; who swims never does.
+const LANDING_TICKS = 100
 const USUAL = { speechTicks: 0, remembers: false, past: {} }
 
 class Runner {
@@ -66,7 +68,7 @@ class Runner {
 
   start (region, agent, { bot, view, rules }, code) {
     const abort = new AbortController()
-    const run = { agent, view, abort, result: null, endTick: null, end: null, crash: null }
+    const run = { agent, view, abort, result: null, endTick: null, end: null, crash: null, isBrokenOff: false, rests: false }
     const aims = []
     const aim = made => { if (aims.length < MOST_AIMS) aims.push({ tick: region.tick, ...made }) }
     const emit = event => region.report(agent, event)
@@ -94,17 +96,35 @@ class Runner {
     let over = false
     const look = async () => {
       region.faults = region.faults.filter(fault => !this.blame(region, runs, fault))
-      for (const run of runs) if (run.result !== null) run.endTick ??= region.tick
-      over = runs.every(({ result, crash }) => (result ?? crash) !== null) || region.tick >= lastTick
+      for (const run of runs) await this.bringToRest(region, run)
+      over = runs.some(({ crash }) => crash !== null) || runs.every(({ rests }) => rests) || region.tick >= lastTick
       if (!over) return
       await this.endAll(region, runs, timeoutTicks)
-      const clean = runs.every(({ result }) => result.unfinished.length === 0)
-      await this.regions.bodies.rest(region, runs.map(({ agent }) => agent), clean)
+      for (const run of runs) await this.breakOff(region, run)
+      await this.regions.bodies.finish(region, runs.map(({ agent }) => agent))
     }
     while (!over) {
       const changed = await this.regions.tick(region, look)
       if (!over && !await this.look(region, runs, changed)) lastTick = region.tick
     }
+  }
+
+  /**
+   * Brings the body of an agent whose program has ended to rest: what it does from then on must not depend on how long
+   * others' programs go on.
+   */
+  async bringToRest (region, run) {
+    if (run.result === null || run.rests) return
+    await this.breakOff(region, run)
+    run.rests = await this.regions.bodies.stand(region, run.agent, region.tick < run.endTick + LANDING_TICKS)
+  }
+
+  /** Ends, once, what a program that has ended left under way. */
+  async breakOff (region, run) {
+    if (run.isBrokenOff) return
+    run.isBrokenOff = true
+    run.endTick ??= region.tick
+    await this.regions.bodies.rest(region, run.agent, run.result.unfinished.length === 0)
   }
 
   /**

@@ -30,6 +30,7 @@ function startBot (client, clock) {
     brand: 'vanilla'
   })
   bot.setMaxListeners(0)
+  keepSecond(bot, client)
   bot.once('inject_allowed', () => {
     bot.loadPlugin(pathfinder)
     chargePathfinder(bot, clock)
@@ -37,6 +38,20 @@ function startBot (client, clock) {
     refuseUnreachable(bot)
   })
   return bot
+}
+
+/**
+ * Gives a bot `beginSecond()`. A bot that stands tells where it is, and emits `move`, a second after it last did so. It keeps
+ * that time in the object that it hands over with each packet, and no snapshot has it.
+ */
+function keepSecond (bot, client) {
+  const { write } = client
+  let told = { time: 0 }
+  client.write = (name, params) => {
+    if (name === 'position_look') told = params
+    return write.call(client, name, params)
+  }
+  bot.beginSecond = () => { told.time = performance.now() }
 }
 
 /**

@@ -17,16 +17,22 @@ class LiveBodies extends Bodies {
     return started
   }
 
-  /** Programs end here while time goes on; only whose bot still waits for something is made anew. */
-  async rest (region, agents, clean) {
-    const resting = agents.map(agent => region.bodies.get(agent))
-    for (const { bot } of resting) stopBot(bot)
+  /** Ends what a program left under way; a bot that still waits for something is made anew at once. */
+  async rest (region, agent, clean) {
+    const { bot, player } = region.bodies.get(agent)
+    stopBot(bot)
     await this.clock.advance(0)
-    for (const { player } of resting) player.emit('rest')
+    player.emit('rest')
     await this.clock.advance(0)
-    if (clean) return
-    for (const agent of agents) await this.standIn(region, agent)
+    if (!clean) await this.standIn(region, agent)
   }
+
+  /** Lets bodies be: time goes on between the calls, too. */
+  async stand () {
+    return true
+  }
+
+  async finish () {}
 
   /** Puts a new bot in the place of whoever an agent's body is: nobody sees a difference. */
   async standIn (region, agent) {

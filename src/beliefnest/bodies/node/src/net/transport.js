@@ -10,6 +10,9 @@ const { End, handOver } = require('./end')
 // which is closed meanwhile would go on without letting time pass.
 const MOST_AT_ONCE = 5000
 
+// Packets that say where a bot is.
+const MOVES = ['position', 'position_look']
+
 class MemoryEnd extends End {
   /**
    * @param {object} link what both ends share: `version`, `supportFeature`, `report(error)`
@@ -62,6 +65,17 @@ class MemoryEnd extends End {
 
 class ClientEnd extends MemoryEnd {
   most = MOST_AT_ONCE
+  isCut = false
+
+  /** Lets nothing through any more but where the bot is, which falls as long as it is in the air. */
+  cut () {
+    this.isCut = true
+  }
+
+  write (name, params) {
+    if (!this.isCut) super.write(name, params)
+    else if (MOVES.includes(name)) super.write('position', params)
+  }
 
   /** Lets an action of the host send on, however much the bot has sent: what stops a bot must reach the server. */
   beyond (action) {

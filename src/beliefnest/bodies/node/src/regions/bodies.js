@@ -90,9 +90,14 @@ class Bodies {
     await this.add(region, Object.fromEntries(wanted))
   }
 
-  /** Puts agents exactly where the channel says they are; those who stand stop gliding. */
-  async settle (region) {
-    const settling = [...region.bodies.values()].map(({ bot, player }) => {
+  /**
+   * Puts agents exactly where the channel says they are; those who stand stop gliding.
+   * @param {import('./region').Region} region
+   * @param {Iterable<string>} [agents] names; by default everybody
+   */
+  async settle (region, agents = region.bodies.keys()) {
+    const settling = Array.from(agents, agent => {
+      const { bot, player } = region.bodies.get(agent)
       const state = agentState(region, player)
       return { bot, player, state, velocity: bot.entity.velocity.clone() }
     })
@@ -104,21 +109,37 @@ class Bodies {
     for (const { bot, player, state, velocity } of settling) {
       if (!state.on_ground) bot.entity.velocity.update(velocity)
       stand(bot, player, state)
+      bot.beginSecond()
     }
   }
 
   /**
-   * Ends what is under way with agents, so that nothing of it needs to be told.
-   * @param {boolean} clean whether nothing that a bot was asked to do is still waited for; what is
-   *   would go on whenever time does, so that all bots are made anew
+   * Lets an agent stand where it is, unless it is in the air and may take its time to come down.
+   * @returns {Promise<boolean>} whether it does
    */
-  async rest (region, agents, clean) {
-    const resting = agents.map(agent => region.bodies.get(agent))
-    for (const { bot } of resting) stopBot(bot)
+  async stand (region, agent, hasTime) {
+    if (hasTime && !region.bodies.get(agent).player.onGround) return false
+    await this.settle(region, [agent])
+    return true
+  }
+
+  /**
+   * Ends what is under way with an agent, so that nothing of it needs to be told.
+   * @param {boolean} clean whether nothing that its bot was asked to do is still waited for; what is would go on
+   *   whenever time does, so that from now on nothing but the bot's fall reaches the server
+   */
+  async rest (region, agent, clean) {
+    const { bot, player } = region.bodies.get(agent)
+    stopBot(bot)
     await this.clock.advance(0)
-    for (const { player } of resting) player.emit('rest')
+    player.emit('rest')
     await this.clock.advance(0)
-    if (clean) return
+    if (!clean) bot._client.cut()
+  }
+
+  /** Ends a run: makes all bots of the region anew if one was cut off from the server. */
+  async finish (region) {
+    if (![...region.bodies.values()].some(({ bot }) => bot._client.isCut)) return
     const goesOn = this.serv.internalState(region)
     await this.replace(region, {})
     this.serv.restoreState(region, goesOn)

@@ -43,7 +43,11 @@ class RemoteRegions {
     // Why the place was given up, if it was.
     this.failure = null
     // What a Runner asks of regions.
-    this.bodies = { rest: (_, agents) => this.open.agents.rest(agents).catch(error => this.fail(error)) }
+    this.bodies = {
+      async rest () {},
+      stand: async () => true,
+      finish: (_, agents) => this.open.agents.rest(agents).catch(error => this.fail(error))
+    }
     this.clock = { advance: () => new Promise(resolve => { setImmediate(resolve) }), charge () {} }
   }
 

@@ -45,7 +45,7 @@ function programsOf ({ bots, nextTick }, emitted) {
       region.tick += 1
       await before()
     },
-    bodies: { rest: (_, agents) => agents.forEach(name => stopBot(bots[name])) },
+    bodies: { rest: async (_, name) => stopBot(bots[name]), stand: async () => true, async finish () {} },
     clock: { advance: nextTick }
   }
   const sandbox = createSandbox()

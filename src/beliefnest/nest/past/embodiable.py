@@ -1,0 +1,152 @@
+"""Beliefs made such that a body can be filled with them.
+
+A belief may hold what no world can: items in a block that is unknown or no container, more of them
+than fit. The belief is left as it is; its body differs (semantics, section 7). Everything here is
+a pure function of the believed state, so that a body made again is as it was.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from beliefnest.world.frames import BlockGrid, Snapshot
+from beliefnest.world.limits import AGENT_SLOTS, container_slots, items_fault
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import EQUIPMENT_SLOTS, HALF_WIDTH, AgentState, Box, Items, Position
+
+__all__ = ["CHEST", "chest_places", "embodiable", "with_chests", "with_chests_at"]
+
+CHEST = "chest"
+"""Block that holds what is believed to be where no other block can hold it."""
+
+_HANDS = ("main_hand", "off_hand")
+_WORN = frozenset(EQUIPMENT_SLOTS) - frozenset(_HANDS)
+
+
+def chest_places(
+    registry: Registry, box: Box, blocks: BlockGrid, contents: Mapping[Position, Items]
+) -> list[Position]:
+    """Positions of believed contents whose believed block is unknown or cannot hold them.
+
+    Args:
+        registry: Knows the blocks.
+        box: Where the blocks lie.
+        blocks: Believed block states, -1 unknown.
+        contents: Believed items by position.
+    """
+    return [
+        place
+        for place, items in contents.items()
+        if not _holds(registry, int(blocks[box.index(place)]), items)
+    ]
+
+
+def with_chests(
+    registry: Registry, box: Box, blocks: BlockGrid, contents: Mapping[Position, Items]
+) -> BlockGrid:
+    """Believed blocks, -1 unknown, with the chests that a body puts; see `chest_places`."""
+    return with_chests_at(registry, box, blocks, chest_places(registry, box, blocks, contents))
+
+
+def with_chests_at(
+    registry: Registry, box: Box, blocks: BlockGrid, places: Iterable[Position]
+) -> BlockGrid:
+    """Believed blocks with chests at some places; the same array if there are none."""
+    cells = [box.index(place) for place in places]
+    if not cells:
+        return blocks
+    filled = np.array(blocks)
+    for cell in cells:
+        filled[cell] = registry.state_id(CHEST)
+    return filled
+
+
+def embodiable(registry: Registry, snapshot: Snapshot, blocks: BlockGrid) -> Snapshot:
+    """Make a believed snapshot one that a body can be filled with.
+
+    What does not fit into a chest or an inventory is left out, the last names first. An agent
+    outside the box begins inside.
+
+    Args:
+        registry: Knows blocks and items.
+        snapshot: What is believed.
+        blocks: Its blocks by `with_chests`, -1 unknown.
+    """
+    held = {
+        place: _fitting(registry, items, container_slots(_name(registry, blocks, snapshot, place)))
+        for place, items in snapshot.containers.items()
+    }
+    return replace(
+        snapshot,
+        blocks=np.maximum(blocks, 0),
+        containers=held,
+        agents={
+            name: _laden(registry, _inside(snapshot.box, agent))
+            for name, agent in snapshot.agents.items()
+        },
+        signs={p: text for p, text in snapshot.signs.items() if p not in held},
+    )
+
+
+def _holds(registry: Registry, state: int, items: Items) -> bool:
+    if state < 0:
+        return False
+    name = registry.name(state)
+    if not registry.is_container(name):
+        return False
+    # A chest in place of a full chest would hold no more.
+    slots = container_slots(name)
+    return slots == container_slots(CHEST) or items_fault(items, registry, slots, name) is None
+
+
+def _name(registry: Registry, blocks: BlockGrid, snapshot: Snapshot, place: Position) -> str:
+    return registry.name(int(blocks[snapshot.box.index(place)]))
+
+
+def _fitting(registry: Registry, items: Items, slots: int) -> Items:
+    """As many of the items as fit into so many slots, in order of their names."""
+    if items_fault(items, registry, slots, "") is None:
+        return items
+    fitting: dict[str, int] = {}
+    for name, count in sorted(items.items()):
+        stack = registry.item_stack(name)
+        fits = min(count, slots * stack)
+        if fits > 0:
+            fitting[name] = fits
+            slots -= -(-fits // stack)
+    return fitting
+
+
+def _inside(box: Box, agent: AgentState) -> AgentState:
+    (x0, y0, z0), (x1, y1, z1) = box.low, box.high
+    x, y, z = agent.position
+    # One who stands on the topmost blocks has its feet above them.
+    if x0 <= x < x1 + 1 and y0 <= y < y1 + 2 and z0 <= z < z1 + 1:
+        return agent
+    side = HALF_WIDTH
+    place = (
+        min(max(x, x0 + side), x1 + 1 - side),
+        min(max(y, y0), y1 + 1),
+        min(max(z, z0 + side), z1 + 1 - side),
+    )
+    return replace(agent, position=place)
+
+
+def _laden(registry: Registry, agent: AgentState) -> AgentState:
+    """The agent with as much as it can carry; what it wears or holds comes first."""
+    worn = [name for slot, name in agent.equipment.items() if slot in _WORN]
+    carried = _without(agent.inventory, worn)
+    off_hand = int("off_hand" in agent.equipment)
+    if items_fault(carried, registry, AGENT_SLOTS + off_hand, "") is None:
+        return agent
+    held = [agent.equipment[slot] for slot in _HANDS if slot in agent.equipment]
+    rest = _fitting(registry, _without(carried, held), AGENT_SLOTS - len(held))
+    return replace(agent, inventory=dict(Counter(rest) + Counter(worn) + Counter(held)))
+
+
+def _without(items: Items, others: Iterable[str]) -> dict[str, int]:
+    left = Counter(items)
+    left.subtract(others)
+    return {name: count for name, count in left.items() if count > 0}
