@@ -310,3 +310,42 @@ def test_a_bot_waits_as_the_page_says(is_on):
     ]
     with Nest.open(Scenario.from_mapping(room), world="scripted") as nest:
         assert nest["/"].run("sally", wait, timeout_ticks=50).ok == is_on
+
+
+BEHIND_A_WALL = """
+name: behind-a-wall
+box: [[0, 0, 0], [10, 4, 10]]
+blocks:
+  - {block: stone, fill: [[0, 0, 0], [10, 0, 10]]}
+  - {block: bricks, fill: [[0, 1, 6], [7, 3, 6]]}
+agents:
+  bob: {position: [2.5, 1, 8.5], inventory: {dirt: 1}}
+  anne: {position: [2.5, 1, 2.5], type: human}
+static_blocks: [stone, bricks]
+"""
+OUT_OF_SIGHT = "bot.chat('A secret.'); bot.whisper('anne', 'For you.'); await bot.waitForTicks(5)"
+IN_SIGHT = "await goToPosition(bot, new Vec3(9, 1, 3), 0); bot.chat('Here I am.')"
+
+
+@pytest.mark.parametrize("hearing", ["sight", {"radius": 8}, "global"])
+def test_a_person_hears_what_their_agent_hears_and_nothing_else(hearing, tmp_path):
+    path = tmp_path / "wall.yaml"
+    path.write_text(f"{BEHIND_A_WALL}perception: {{hearing: {hearing}}}\n", encoding="utf-8")
+    options = {"realtime": True, "listen": 0}
+    with (
+        Nest.open(Scenario.load(str(path)), **options) as nest,
+        Person(nest.address, "anne") as anne,
+    ):
+        nest.wait_for_people(LONG_S)
+        assert nest["/"].run("bob", OUT_OF_SIGHT).ok
+        assert nest["/"].run("bob", IN_SIGHT).ok
+        anne.does("bot.chat('I see you.')")
+        assert nest.wait(lambda: "<anne> I see you." in anne.read, LONG_S)
+        assert nest.wait(lambda: "<bob> Here I am." in anne.read, LONG_S)
+        heard = [text for _, speaker, text in nest["/anne"].state.chat if speaker == "bob"]
+        whispered = "bob whispers to you: For you."
+        shown = [line for line in anne.read if "bob" in line and "Here are" not in line]
+        aloud = [f"<bob> {text}" for text in heard if text != "For you."]
+        assert sorted(shown) == sorted([*aloud, whispered])
+        assert ("<bob> A secret." in shown) == (hearing != "sight")
+        assert shown.count("<bob> Here I am.") == 1

@@ -100,6 +100,10 @@ class NodeView:
         """Perceived events but for the timeline's first `count` ones, oldest first."""
         return tuple(self._forest.heard(self._node, self.count_of_events, count))
 
+    def perceived_since(self, count: int) -> npt.NDArray[np.bool_]:
+        """Which of the timeline's events but for the first `count` ones were perceived."""
+        return self._forest.hearing.of(self._node, self.count_of_events)[count:]
+
     def visible_from(self, agent: str) -> npt.NDArray[np.bool_]:
         """Which blocks an agent sees from its believed pose; none if that is unknown."""
         viewer = self.agents[agent]

@@ -1,5 +1,6 @@
 """The embedded world in real time, where people are agents as well; beliefs in another process."""
 
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Self
@@ -66,6 +67,19 @@ class HostedWorld(RealtimeWorld):
         """Let time stand still in the real world, or go on."""
         self._paused = paused
         self._live().request("pause", paused=paused)
+
+    def hearing(self, *, everybody: bool) -> None:
+        """Say whether all people hear whatever is said aloud, so that nothing has to wait."""
+        self._live().post("hearing", **{"global": everybody})
+
+    def heard(self, tick: int, agents: Sequence[Sequence[str]]) -> None:
+        """Say who heard what was said aloud in a tick; people are told no more than that.
+
+        Args:
+            tick: The tick.
+            agents: For each thing said in it, in order, the names of who heard it.
+        """
+        self._live().post("hear", tick=tick, heard=[list(names) for names in agents])
 
     def close(self) -> None:
         """End both processes; people are told that it is over."""

@@ -19,6 +19,7 @@ __all__ = [
     "LazyWorld",
     "Worlds",
     "check_world",
+    "hosted_of",
     "is_real_time",
     "joined_of",
     "open_world",
@@ -133,6 +134,16 @@ def realtime_of(world: World) -> RealtimeWorld | None:
             return realtime_of(world.inner)
         case _:
             return None
+
+
+def hosted_of(world: World) -> HostedWorld | None:
+    """The embedded world that people join, also if it is lent; None if it is of another kind.
+
+    Raises:
+        BodyError: As for `realtime_of`.
+    """
+    found = realtime_of(world)
+    return found if isinstance(found, HostedWorld) else None
 
 
 def is_real_time(world: World) -> bool:

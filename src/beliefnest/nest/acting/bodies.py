@@ -8,7 +8,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from beliefnest.bodies.protocol import Body, ProgramPast, Sense, World
+from beliefnest.bodies.worlds import hosted_of
 from beliefnest.errors import BodyError, BranchError, WorldError
+from beliefnest.nest.acting.earshot import Earshot
 from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.nest.acting.frame_recorder import ChatListener, FrameRecorder
 from beliefnest.nest.acting.hearsay import ClaimReader, Hearsay
@@ -90,6 +92,8 @@ class Bodies:
         body = self.world.open_body(path_text(key.path), self.seed_of(key.path), snapshot, recorder)
         self._embodied[key.path] = _RecordedBody(body, recorder)
         self._recording.records.add_versions(self.world.versions)
+        if recorder.earshot is not None:
+            recorder.earshot.begin()
 
     def _recorder(self, key: TimelineKey) -> FrameRecorder:
         recording = self._recording
@@ -97,8 +101,20 @@ class Bodies:
         # Of reality alone: what goes on faster than real time nobody could watch.
         follower = self._embodying if key.path == () else None
         return FrameRecorder(
-            recording.journal, recording.history, key, self._hearsay, on_chat, follower
+            recording.journal,
+            recording.history,
+            key,
+            self._hearsay,
+            on_chat,
+            follower,
+            self._earshot() if key.path == () else None,
         )
+
+    def _earshot(self) -> Earshot | None:
+        people, world = self._recording.setting.people, hosted_of(self.world)
+        if world is None or not people:
+            return None
+        return Earshot(self._recording.history, people, world)
 
     def _tell_chat(self, tick: int, speaker: str, text: str) -> None:
         for listener in self.chat_listeners:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 
+from beliefnest.nest.acting.earshot import Earshot
 from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.nest.acting.hearsay import Hearsay, has_unread
 from beliefnest.nest.past.history import History
@@ -33,6 +34,7 @@ class FrameRecorder:
         on_chat: Is called with what was said, once it is recorded; None: nobody is.
         follower: What people are shown, kept up to date with every frame, also while a call is
             under way; None: nothing is.
+        earshot: Tells people what the agents they play hear; None: nobody is told.
     """
 
     def __init__(
@@ -43,8 +45,10 @@ class FrameRecorder:
         hearsay: Hearsay | None = None,
         on_chat: ChatListener | None = None,
         follower: Embodying | None = None,
+        earshot: Earshot | None = None,
     ) -> None:
         self.key = key
+        self.earshot = earshot
         self._follower = follower
         self._on_chat = on_chat
         self._said: list[Utterance] = []
@@ -66,13 +70,16 @@ class FrameRecorder:
         if self._on_chat is not None:
             self._said.extend(_said_in(frame))
         followed = self._follower is not None and self._follower.follows
+        awaited = self.earshot is not None and self.earshot.awaits(frame)
         if not self.batched:
             self.flush()
             self.keep_up()
-        elif followed or len(self._frames) >= _BATCH:
+        elif followed or awaited or len(self._frames) >= _BATCH:
             self.flush()
         if self._follower is not None and followed:
             self._follower.keep_up()
+        if self.earshot is not None and awaited:
+            self.earshot.tell(self.key, frame, self._journal.info(self.key).entries)
 
     def flush(self, tick: int | None = None) -> None:
         """Write what was taken; `tick` is the body's tick by now."""

@@ -7,6 +7,7 @@ const { Vec3 } = require('vec3')
 const { TcpEnd } = require('../net/tcpEnd')
 const versions = require('../versions')
 const { CannotListen } = require('./cannotListen')
+const { Earshot } = require('./earshot')
 const { ease } = require('./ease')
 const { Gallery } = require('./gallery')
 const { Standstill } = require('./standstill')
@@ -23,6 +24,8 @@ const TURNS = ['look', 'position_look']
 const REALITY = '/'
 const GOODBYE_MS = 500
 const NO_LONGER_SHOWN = 'What you looked at is no longer shown'
+// Makes the sound of a thing being picked up, wherever that is.
+const PICKED_UP = 'collect'
 // The game's own `/tp`, of oneself.
 const TRAVEL = /^(?:minecraft:)?(?:tp|teleport)(?: @s| (?<who>\w+))? (?<x>-?\d+(?:\.\d+)?) (?<y>-?\d+(?:\.\d+)?) (?<z>-?\d+(?:\.\d+)?)$/
 
@@ -38,6 +41,11 @@ class PersonEnd extends TcpEnd {
     this.standstill = standstill
     this.mayBeAt = mayBeAt
     this.player = null
+  }
+
+  /** Others' deeds are not heard: what makes a sound in the game is told of the person's own alone. */
+  write (name, params) {
+    if (name !== PICKED_UP || params.collectorEntityId === this.player?.id) super.write(name, params)
   }
 
   /** What a client says of where it is and looks holds only within the box, where a way leads, and if it is a place and a direction. */
@@ -60,6 +68,9 @@ class Door {
     regions.onTick = region => this.watch(region)
     this.gallery = new Gallery(regions.serv)
     this.standstill = new Standstill()
+    this.earshot = new Earshot(regions.serv, agent => this.present.get(agent)?.player ?? null)
+    regions.onFrame = frame => this.earshot.framed(frame)
+    regions.onForget = () => this.earshot.forget()
     const refuse = regions.serv.command
     regions.serv.command = (player, command) => {
       const end = this.endOf(player)

@@ -37,7 +37,9 @@ class LiveHandler extends RealtimeHandler {
   }
 
   note (message) {
-    this.door.gallery.show(message, this.tick)
+    if (message.op === 'hear') this.door.earshot.hear(message)
+    else if (message.op === 'hearing') this.door.earshot.isGlobal = message.global
+    else this.door.gallery.show(message, this.tick)
   }
 }
 

@@ -33,12 +33,16 @@ class LiveRegions extends Regions {
     this.standstill = null
     // Called at every tick with the region.
     this.onTick = () => {}
+    // Called with every frame, and when what was told has not happened.
+    this.onFrame = () => {}
+    this.onForget = () => {}
     // Ends when nobody is about to enter or to leave.
     this.door = Promise.resolve()
     serv.on('tick', (_, __, region) => this.onTick(region))
   }
 
   take (frame) {
+    this.onFrame(frame)
     if (this.isDriven) this.tell(frame)
     else this.waiting.push(frame)
   }
@@ -122,6 +126,7 @@ class LiveRegions extends Regions {
     return this.alone(async () => {
       const made = await super.apply(request)
       this.waiting.length = 0
+      this.onForget()
       if (this.failure !== null) {
         this.failure = null
         this.goOn(this.open)
@@ -136,6 +141,7 @@ class LiveRegions extends Regions {
     return this.alone(async () => {
       this.open = null
       this.waiting.length = 0
+      this.onForget()
       for (const { player } of region.bodies.values()) player._client.end('What was played here is over')
       await super.destroy(region.name)
     })

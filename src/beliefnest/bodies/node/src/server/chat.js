@@ -16,7 +16,8 @@ module.exports.server = serv => {
   serv._createNetworkEncodedChatComponent = text => serv._createChatComponent(text).toNetworkFormat()
   /** What a player types that begins with a slash and is no whisper. */
   serv.command = (player, command) => player.system(`Agents have no commands: /${command.split(' ')[0]} was not run.`)
-  serv.broadcast = text => { for (const player of serv.players) player.system(text) }
+  /** Tells the players what one of them has said. */
+  serv.tellSaid = (speaker, text) => { for (const player of serv.players) player.system(text) }
 }
 
 module.exports.player = (player, serv) => {
@@ -28,7 +29,7 @@ module.exports.player = (player, serv) => {
 
   player._client.on('chat_message', ({ message }) => {
     player.utter(message)
-    serv.broadcast(`<${player.username}> ${message}`)
+    serv.tellSaid(player, `<${player.username}> ${message}`)
     serv.region.emit({ kind: 'chat', actor: player.agent, detail: { text: message } })
   })
 

@@ -1,0 +1,55 @@
+"""People in Minecraft hear what the agents they play hear (semantics, section 3)."""
+
+from collections.abc import Collection
+
+from beliefnest.bodies.hosted import HostedWorld
+from beliefnest.nest.past.history import History
+from beliefnest.timeline.journal import TimelineKey
+from beliefnest.world.frames import Frame
+from beliefnest.world.values import Event, EventKind
+
+__all__ = ["Earshot"]
+
+
+class Earshot:
+    """Tells the process that people have joined who of them hears what is said.
+
+    Args:
+        history: Works out who perceives what.
+        people: Names of the agents that people play.
+        world: The people's world.
+    """
+
+    def __init__(self, history: History, people: Collection[str], world: HostedWorld) -> None:
+        self._history = history
+        self._people = sorted(people)
+        self._world = world
+
+    @property
+    def is_global(self) -> bool:
+        """Whether everybody hears everything."""
+        return self._history.context.options.hearing == "global"
+
+    def begin(self) -> None:
+        """Say how people hear, to a process that has just begun."""
+        self._world.hearing(everybody=self.is_global)
+
+    def awaits(self, frame: Frame) -> bool:
+        """Whether somebody has to be told of what is said in a frame."""
+        return not self.is_global and any(map(_is_aloud, frame.events))
+
+    def tell(self, key: TimelineKey, frame: Frame, entries: int) -> None:
+        """Say who hears what is said in a frame, the last of so many entries of the timeline."""
+        heard: list[list[str]] = [[] for event in frame.events if _is_aloud(event)]
+        for name in self._people:
+            reading = self._history.reading(key, (name,), entries)
+            perceived = reading.perceived_since(reading.count_of_events - len(frame.events))
+            spoken = [p for p, e in zip(perceived, frame.events, strict=True) if _is_aloud(e)]
+            for names, hears in zip(heard, spoken, strict=True):
+                if hears:
+                    names.append(name)
+        self._world.heard(frame.tick, heard)
+
+
+def _is_aloud(event: Event) -> bool:
+    return event.kind is EventKind.CHAT and "to" not in event.detail
