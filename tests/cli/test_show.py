@@ -173,6 +173,25 @@ def test_claims_are_shown_for_every_belief(talk: Path, capsys: pytest.CaptureFix
     ]
 
 
+@pytest.mark.parametrize("width", ["80", "30"])
+def test_claims_are_readable_where_a_column_for_each_belief_has_no_room(
+    width: str, talk: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", width)
+    depth = "3" if width == "30" else "6"
+    assert run_command_line(["show", str(talk), "--claims", "--depth", depth]) == 0
+    printed = capsys.readouterr().out
+    lines = printed.splitlines()
+    assert " ".join(printed.split()).startswith("tick 22, ann: diamond is in (1, 0, 1) (a lie)")
+    assert max(map(len, lines)) <= int(width)
+    # No path is broken, and none is missing.
+    words = {word.strip(",") for word in printed.split() if word.startswith("/")}
+    assert {"/ann", "/bob", "/ann/bob", "/ann/bob/ann"} <= words
+    assert all(word.strip("/").replace("/", "").isalpha() for word in words)
+    if width == "80":
+        assert "not taken up (4) /ann" in " ".join(printed.split())
+
+
 def test_a_table_says_how_things_are_known(talk: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command_line(["show", str(talk), "--path", "/bob", "--tick", "22"]) == 0
     assert "heard from ann 0 s ago" in capsys.readouterr().out

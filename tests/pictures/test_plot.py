@@ -6,6 +6,7 @@ import pytest
 from tests.pictures.measuring import faults, texts
 
 import beliefnest as bn
+from beliefnest.pictures.marks import Rectangle
 from beliefnest.pictures.plot import Band, NotedAct, NotedClaim, PlotRow, belief_plot
 
 CHEST = (3, 1, 3)
@@ -181,3 +182,19 @@ def test_claims_stand_above_what_became_of_them_and_items_and_blocks_are_followe
     assert [band.words for band in doors[1].bands] == ["oak door, shut", "oak door, open"]
     assert doors[1].told == (NotedClaim(23, True),)
     assert said == [NotedAct(23, "nora: (4, 0, 7) is oak_door[open=true] (a lie)")]
+
+
+def test_values_that_speak_of_a_colour_are_painted_in_it() -> None:
+    words = ("in the blue box", "in the green box", "left of the green box", "nowhere")
+    bands = tuple(Band(5 * n, 5 * n + 5, each, False) for n, each in enumerate(words))
+    drawing = belief_plot([PlotRow("/", bands)], [], "the apple").drawing()
+    fills = [mark.fill for mark in drawing.marks if isinstance(mark, Rectangle) and mark.fill]
+    blue, green, other_green, neutral = fills[:4]
+    assert len({blue, green, other_green, neutral}) == 4
+    assert _strongest(blue) == 2
+    assert _strongest(green) == _strongest(other_green) == 1
+
+
+def _strongest(colour: str) -> int:
+    parts = bytes.fromhex(colour[1:])
+    return parts.index(max(parts))

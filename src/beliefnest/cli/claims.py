@@ -3,8 +3,12 @@
 from collections.abc import Collection, Sequence
 
 from rich import box
+from rich.console import Console
+from rich.measure import Measurement
 from rich.table import Table
+from rich.text import Text
 
+from beliefnest.cli.console import folded
 from beliefnest.cli.pictures import container_name, place_text
 from beliefnest.cli.text import printable
 from beliefnest.nest.explain.made_claims import MadeClaim
@@ -12,7 +16,7 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.claims import Claim, ClaimKind
 from beliefnest.world.paths import parse_path, path_text, paths_below
 
-__all__ = ["claims_json", "claims_matrix", "claims_table", "paths_of_beliefs"]
+__all__ = ["claims_json", "claims_table", "paths_of_beliefs", "print_claims"]
 
 
 def claims_json(claims: Sequence[MadeClaim], paths: Collection[str]) -> list[dict[str, object]]:
@@ -51,17 +55,47 @@ def claims_table(claims: Sequence[MadeClaim], path: str, scenario: Scenario) -> 
         table.add_column(f"in {path}")
     for told in claims:
         hearers = printable(", ".join(told.hearers))
-        table.add_row(*_cells(told, scenario), hearers, *([told.why(path)] if is_belief else []))
+        why = [told.why(path)] if is_belief else []
+        table.add_row(*map(Text, (*_cells(told, scenario), hearers, *why)))
     return table
 
 
-def claims_matrix(claims: Sequence[MadeClaim], paths: Sequence[str], scenario: Scenario) -> Table:
-    """Every claim, and for each of some beliefs whether it took it up, and by which condition."""
+def print_claims(
+    console: Console, claims: Sequence[MadeClaim], paths: Sequence[str], scenario: Scenario
+) -> None:
+    """Print every claim, and for each of some beliefs whether it took it up, and why.
+
+    A table has a column for each belief. Where the console is too narrow for their paths, each
+    claim has a line, and below it a line for each verdict with the beliefs that came to it.
+    """
     table = _begun()
     for path in paths:
         table.add_column(path)
     for told in claims:
-        table.add_row(*_cells(told, scenario), *(_verdict(told, path) for path in paths))
+        table.add_row(
+            *map(Text, (*_cells(told, scenario), *(_verdict(told, path) for path in paths)))
+        )
+    # Rich's measure is no wider than the room it is told of.
+    least = Measurement.get(console, console.options.update(max_width=10_000), table).minimum
+    if least <= console.width:
+        console.print(table)
+        return
+    for told in claims:
+        tick, speaker, claim, kind = _cells(told, scenario)
+        suffix = f" ({kind})" if kind else ""
+        console.print(Text(f"tick {tick}, {speaker}: {claim}{suffix}"))
+        console.print(folded(_by_verdict(told, paths)))
+
+
+def _by_verdict(told: MadeClaim, paths: Sequence[str]) -> Table:
+    """Return a row for each verdict on a claim, with the beliefs that came to it."""
+    found: dict[str, list[str]] = {}
+    for path in paths:
+        taken = _verdict(told, path).replace("yes", "taken up").replace("no (", "not taken up (")
+        found.setdefault(taken, []).append(path)
+    table = Table(box=None, show_header=False, padding=(0, 0, 0, 2))
+    for verdict in sorted(found):
+        table.add_row(verdict, Text(", ".join(found[verdict])))
     return table
 
 

@@ -15,7 +15,7 @@ from rich.text import Text
 from beliefnest.belief.entries import Basis
 from beliefnest.belief.plain import state_json
 from beliefnest.belief.view import State
-from beliefnest.cli.claims import claims_json, claims_matrix, claims_table, paths_of_beliefs
+from beliefnest.cli.claims import claims_json, claims_table, paths_of_beliefs, print_claims
 from beliefnest.cli.console import folded, stdout
 from beliefnest.cli.folder import store_in, stores_in
 from beliefnest.cli.pictures import container_name, place_text, titled
@@ -143,7 +143,7 @@ def _show(options: ShowOptions, store: Path) -> None:
             _print_state(state, simulator.path, scenario)
             if claims:
                 stdout().print("Claims")
-                stdout().print(claims_table(claims, simulator.path, scenario))
+                stdout().print(folded(claims_table(claims, simulator.path, scenario)))
             for line in placed_lines(simulator.placed):
                 stdout().print(_foreign(line), highlight=False)
             _print_programs(programs)
@@ -160,7 +160,7 @@ def _show_claims(options: ShowOptions, store: Path) -> None:
         if options.as_json:
             sys.stdout.write(json.dumps(claims_json(claims, paths), indent=2) + "\n")
         elif claims:
-            stdout().print(folded(claims_matrix(claims, paths, scenario)))
+            print_claims(stdout(), claims, paths, scenario)
         else:
             stdout().print(f"nothing was claimed in {simulator.path}", highlight=False)
 

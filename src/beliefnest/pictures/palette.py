@@ -5,9 +5,12 @@ Colours are those of Okabe and Ito ("Color Universal Design", 2008), which eyes 
 tell apart; none of them is ever the only mark.
 """
 
+import re
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import cycle
 
 __all__ = [
     "AGENT_COLOURS",
@@ -20,6 +23,7 @@ __all__ = [
     "MarkLook",
     "age_text",
     "agent_looks",
+    "colours_of",
     "mix",
     "told_text",
 ]
@@ -31,7 +35,29 @@ QUIET = "#6a6870"
 AGENT_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#F0E442", "#4D4D4D")
 """Blue, orange, bluish green, purple, sky blue, yellow, grey. Vermillion is left for falsehood."""
 
-_DARK = frozenset({"#0072B2", "#009E73", "#4D4D4D"})
+_DARK = frozenset({"#0072B2", "#009E73", "#4D4D4D", "#1A1A1A", "#8C510A", "#9E1B32"})
+_NAMED: Mapping[str, str] = {
+    "light blue": "#56B4E9",
+    "light gray": "#4D4D4D",
+    "black": "#1A1A1A",
+    "blue": "#0072B2",
+    "brown": "#8C510A",
+    "cyan": "#56B4E9",
+    "gray": "#4D4D4D",
+    "green": "#009E73",
+    "grey": "#4D4D4D",
+    "lime": "#009E73",
+    "magenta": "#CC79A7",
+    "orange": "#E69F00",
+    "pink": "#CC79A7",
+    "purple": "#CC79A7",
+    "red": "#9E1B32",
+    "white": "#FFFFFF",
+    "yellow": "#F0E442",
+}
+"""Colours by their words, two words before one; where there is one, a colour of `AGENT_COLOURS`."""
+
+_COLOUR_WORD = re.compile(rf"\b({'|'.join(_NAMED)})\b")
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +69,7 @@ class AgentLook:
         colour: `#RRGGBB`.
         ink: The colour of letters on `colour`.
         badge: The shortest beginning of its name that no other agent has, capitalised.
-        rings: Rings around its disc, which tell agents of one colour apart; 0 for the first seven.
+        rings: Rings around its disc, which tell agents of one colour apart; none for the first.
     """
 
     name: str
@@ -94,17 +120,38 @@ MARKS: Mapping[Mark, MarkLook] = {
 def agent_looks(agents: Iterable[str]) -> dict[str, AgentLook]:
     """Agent to look; give all agents of the run, so that a look is the same in all of it."""
     names = sorted(set(agents))
+    colours, before = colours_of(names), Counter[str]()
     looks = {}
-    for number, name in enumerate(names):
-        colour = AGENT_COLOURS[number % len(AGENT_COLOURS)]
+    for name in names:
+        colour = colours[name]
         looks[name] = AgentLook(
             name=name,
             colour=colour,
             ink="#FFFFFF" if colour in _DARK else "#000000",
             badge=_badge(name, names),
-            rings=number // len(AGENT_COLOURS),
+            rings=before[colour],
         )
+        before[colour] += 1
     return looks
+
+
+def colours_of(names: Iterable[str]) -> dict[str, str]:
+    """Return a colour for each name, which contradicts no colour word in any of them.
+
+    A name with one colour word, as "the blue box", gets that colour. The others get colours of
+    `AGENT_COLOURS` in turn that no name calls for.
+    """
+    wanted = {name: _named_colour(name) for name in names}
+    free = [colour for colour in AGENT_COLOURS if colour not in wanted.values()]
+    rest = cycle(free or AGENT_COLOURS)
+    return {name: colour or next(rest) for name, colour in wanted.items()}
+
+
+def _named_colour(name: str) -> str | None:
+    """Return the colour that a name speaks of; None: it speaks of none, or of several."""
+    words = " ".join(re.findall("[a-z]+", name.lower()))
+    found = {_NAMED[word] for word in _COLOUR_WORD.findall(words)}
+    return found.pop() if len(found) == 1 else None
 
 
 def age_text(ticks: int) -> str:

@@ -1,7 +1,8 @@
 """Beliefs over time: a row for each simulator, a band for each value it held."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from beliefnest.pictures import icons
@@ -9,7 +10,7 @@ from beliefnest.pictures.figure import MARGIN, TEXT_SIZE, Figure
 from beliefnest.pictures.lettering import ASCENT, ellipsis, text_width, wrap
 from beliefnest.pictures.marks import XY, Drawing, Lines, Rectangle, Text
 from beliefnest.pictures.marks import Mark as Drawn
-from beliefnest.pictures.palette import AGENT_COLOURS, INK, MARKS, PAPER, QUIET, Mark, mix
+from beliefnest.pictures.palette import INK, MARKS, PAPER, QUIET, Mark, colours_of, mix
 from beliefnest.pictures.panel import Block, paragraph
 from beliefnest.pictures.plan import hatching
 
@@ -19,6 +20,7 @@ _HIGH = 15.0
 _STEP = 21.0
 _ACT = TEXT_SIZE * 0.95
 _BALLOON = 2.1
+_SHADES = (0.45, 0.2, 0.7)
 _ABOVE = 5.5
 """Room for balloons above a row."""
 
@@ -133,10 +135,7 @@ class _Chart:
         self.end = max(self.start + 1, *(row.bands[-1].end for row in rows))
         self._span = span
         words = dict.fromkeys(band.words for row in rows for band in row.bands if band.words)
-        self.fills: Mapping[str, str] = {
-            value: mix(PAPER, AGENT_COLOURS[n % len(AGENT_COLOURS)], 0.45)
-            for n, value in enumerate(words)
-        }
+        self.fills = _fills(words)
         self.false = any(band.false for row in rows for band in row.bands)
         self.told = {each.believed for row in rows for each in row.told}
         self.unknown = any(not band.words for row in rows for band in row.bands)
@@ -145,6 +144,16 @@ class _Chart:
         """Where a tick is."""
         low, high = self._span
         return low + (high - low) * (tick - self.start) / (self.end - self.start)
+
+
+def _fills(words: Iterable[str]) -> Mapping[str, str]:
+    """Return a fill for each value; values that speak of one colour get shades of it."""
+    before = Counter[str]()
+    fills = {}
+    for value, colour in colours_of(words).items():
+        fills[value] = mix(PAPER, colour, _SHADES[before[colour] % len(_SHADES)])
+        before[colour] += 1
+    return fills
 
 
 def _acts(chart: _Chart, acts: Sequence[NotedAct], top: float, marks: list[Drawn]) -> float:
