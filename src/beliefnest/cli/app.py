@@ -288,7 +288,8 @@ def capture(
 
 @app.command()
 def replay(
-    run: Annotated[Path, typer.Argument(help="A run folder, or a run file.")], json: Json = False
+    run: Annotated[Path, typer.Argument(help="The folder of a run or of a study, or a run file.")],
+    json: Json = False,
 ) -> int:
     """Run the recorded programs again; say which tick and field differ, if any."""
     from beliefnest.cli.replay import replay_runs

@@ -13,6 +13,7 @@ from beliefnest.files import read_regular_text
 from beliefnest.scenarios.outcome import ProbeOutcome
 from beliefnest.scenarios.reading import templates_file
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.studies.store import StudyFolder
 
 __all__ = [
     "PICTURE",
@@ -30,6 +31,8 @@ PAGE = "report.html"
 _REPORT = "run.json"
 _RESULT = "result.json"
 _SCENARIO = "scenario.yaml"
+_ANSWERS = "answers"
+_MOST_NAMED = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +112,8 @@ class RunFolder:
         )
         try:
             path.mkdir(parents=True, exist_ok=True)
-            if any(path.iterdir()):
+            # Kept answers alone are where a run begins that is to repeat another one.
+            if any(each.name != _ANSWERS for each in path.iterdir()):
                 _check_same(path, settings, scenario)
             else:
                 report = {"scenario": name, "status": "running", "settings": settings, "runs": []}
@@ -128,7 +132,7 @@ class RunFolder:
     @property
     def answers(self) -> Path:
         """Where the answers of models are kept."""
-        return self.path / "answers"
+        return self.path / _ANSWERS
 
     @property
     def exchanges(self) -> Path:
@@ -164,21 +168,41 @@ def store_in(run: Path) -> Path:
         return run
     if (run / STORE).is_file():
         return run / STORE
-    found = sorted(run.rglob(STORE))
+    found = _below(run)
     if len(found) == 1:
         return found[0]
     if found:
-        names = ", ".join(str(store.parent) for store in found)
-        raise InputError(f"{run} holds several runs; name one of {names}")
-    raise InputError(f"there is no run at {run}: it is no run folder and no {STORE} file")
+        each = [str(store.parent if store.name == STORE else store) for store in found]
+        more = f" and {len(each) - _MOST_NAMED} more" if len(each) > _MOST_NAMED else ""
+        names = ", ".join(each[:_MOST_NAMED])
+        raise InputError(f"{run} holds several runs; name one of {names}{more}")
+    raise _no_store(run)
 
 
 def stores_in(run: Path) -> tuple[Path, ...]:
-    """All stores of a run: itself, or those in its folder; InputError if there is none."""
-    found = (run,) if run.is_file() else tuple(sorted(run.rglob(STORE)))
+    """All stores of a run or of a study: itself, or those in its folder.
+
+    Raises:
+        InputError: There is none.
+    """
+    found = (run,) if run.is_file() else _below(run)
     if not found:
-        raise InputError(f"there is no run at {run}: it is no run folder and no {STORE} file")
+        raise _no_store(run)
     return found
+
+
+def _below(folder: Path) -> tuple[Path, ...]:
+    """The stores in a folder, those of a study's cells included."""
+    return tuple(sorted({*folder.rglob(STORE), *StudyFolder(folder).stores()}))
+
+
+def _no_store(run: Path) -> InputError:
+    if StudyFolder(run).cells.is_dir():
+        return InputError(
+            f"{run} holds a study whose runs were not recorded; run it again with --record in a "
+            f"new folder, to which you copy {run / _ANSWERS} so that no model is asked again"
+        )
+    return InputError(f"there is no run at {run}: it is no run folder and no {STORE} file")
 
 
 def kept_scenario_file(out: Path | None, wanted: str) -> Path | None:

@@ -3,7 +3,6 @@
 import json
 import sys
 from collections.abc import Iterator
-from contextlib import ExitStack
 from pathlib import Path
 
 import msgspec
@@ -22,7 +21,7 @@ __all__ = ["replay_runs"]
 
 
 def replay_runs(run: Path, *, as_json: bool) -> int:
-    """Run everything in a run folder again, in a fresh world with the same seed.
+    """Run everything in the folder of a run or a study again, in a fresh world with the same seeds.
 
     Returns:
         0 if every frame is as recorded, else 1.
@@ -32,10 +31,10 @@ def replay_runs(run: Path, *, as_json: bool) -> int:
     """
     same = True
     told = []
-    with ExitStack() as ended:
-        worlds: dict[int, Worlds] = {}
+    # One for all seeds: each nest has its own, and a study one for each of many runs.
+    with Worlds(0) as worlds:
         for store in stores_in(run):
-            for replayed in _replayed(store, worlds, ended):
+            for replayed in _replayed(store, worlds):
                 same = same and replayed.difference is None
                 row = _row(store, replayed)
                 told.append(row)
@@ -46,9 +45,7 @@ def replay_runs(run: Path, *, as_json: bool) -> int:
     return 0 if same else 1
 
 
-def _replayed(
-    store: Path, worlds: dict[int, Worlds], ended: ExitStack
-) -> Iterator[ReplayedTimeline]:
+def _replayed(store: Path, worlds: Worlds) -> Iterator[ReplayedTimeline]:
     with SqliteJournal.read(store) as journal, journal.unchanging():
         run = journal.records.run()
         setting, name = decode_start(run.setting)
@@ -64,9 +61,7 @@ def _replayed(
                 f"{store} was played in real time, which is not repeated; "
                 "only runs in the embedded and the scripted world can be replayed"
             )
-        if run.seed not in worlds:
-            worlds[run.seed] = ended.enter_context(Worlds(run.seed))
-        world = worlds[run.seed].lend(name)
+        world = worlds.lend(name)
         try:
             yield from replay(setting, journal, programs, world, run.seed)
         finally:

@@ -6,6 +6,7 @@ import os
 import sys
 import time
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
@@ -31,8 +32,9 @@ from beliefnest.llm.budget import RunLimits, RunSpending
 from beliefnest.llm.cache import CacheMode
 from beliefnest.llm.hearsay import claims_from_model
 from beliefnest.llm.messages import Model, Sampling, Usage
-from beliefnest.llm.resolve import Connection, open_model, resolve_model
+from beliefnest.llm.resolve import Connection, check_model, open_model
 from beliefnest.nest.face.nest import Nest
+from beliefnest.nest.past.versions import own_versions
 from beliefnest.pictures.overview import ConditionPicture, overview
 from beliefnest.scenarios.outcome import Outcome
 from beliefnest.scenarios.running import Asking, run_scenario
@@ -132,7 +134,7 @@ def run_scenarios(options: RunOptions) -> int:
     check_visits(options.embody, options.world)
     _check_numbers(options)
     for name in options.named_models:
-        resolve_model(name, os.environ)
+        check_model(name, os.environ, _connection(options, RunSpending(), options.out))
     first = scenarios[0]
     settings = options.settings
     # A condition may have a template of its own.
@@ -156,13 +158,21 @@ def run_scenarios(options: RunOptions) -> int:
         raise
     finally:
         report = report_json(first.name, settings, status, run.results, run.failures)
+        report["versions"] = _versions(cells, folder)
         report["scores"] = scores_json(score_runs(run.results, run.failures))
         folder.write_report(report)
-        folder.write_page(_page(report, options, first, cells, folder))
+        folder.write_page(_page(report, options, first))
     _print(run, cells, report, as_json=options.as_json)
     if run.failures:
         raise ModelError(_failures_text(run.failures, len(cells), folder))
     return 0 if all(result["ok"] for result in run.results) else 1
+
+
+def _connection(options: RunOptions, budget: RunSpending, folder: Path | None) -> Connection:
+    """What is put around models; answers are kept in the run's folder, unless in another one."""
+    kept = None if folder is None else RunFolder(folder).answers
+    asking = options.asking
+    return Connection(budget=budget, cache=asking.answers or kept, cache_mode=asking.cache)
 
 
 class _Run:
@@ -172,11 +182,8 @@ class _Run:
         self._options = options
         self.folder = folder
         self.budget = RunSpending(options.asking.limits)
-        connection = Connection(
-            budget=self.budget,
-            cache=options.asking.answers or folder.answers,
-            cache_mode=options.asking.cache,
-            record=folder.exchanges,
+        connection = replace(
+            _connection(options, self.budget, folder.path), record=folder.exchanges
         )
         self._models = {
             name: open_model(name, os.environ, connection) for name in options.named_models
@@ -303,30 +310,26 @@ def _readings(nest: Nest) -> dict[str, object]:
     return {"asked": len(asked), "failed": len(failed), "first": next(iter(failed), None)}
 
 
-def _page(
-    report: Mapping[str, object],
-    options: RunOptions,
-    scenario: Scenario,
-    cells: Sequence[RunCell],
-    folder: RunFolder,
-) -> str:
-    """The page of the run, with the versions that the first of its stores keeps."""
-    stores = [store for cell in cells if (store := folder.cell(cell.folder).store).is_file()]
+def _page(report: Mapping[str, Any], options: RunOptions, scenario: Scenario) -> str:
     return report_html(
         report,
         about={"name": options.scenario, "description": scenario.description},
         conditions=scenario.conditions,
-        versions=_versions(stores[0]) if stores else {},
+        versions=report["versions"],
     )
 
 
-def _versions(store: Path) -> Mapping[str, str]:
-    try:
-        with SqliteJournal.read(store) as journal:
-            return journal.records.run().versions
-    except NotBegunError:
-        # Its world could not be opened, which is what there is to tell.
-        return {}
+def _versions(cells: Sequence[RunCell], folder: RunFolder) -> Mapping[str, str]:
+    """Program to version, as the first store of the run keeps them; without any, of this process.
+
+    A store is not begun where its world could not be opened.
+    """
+    for cell in cells:
+        store = folder.cell(cell.folder).store
+        if store.is_file():
+            with suppress(NotBegunError), SqliteJournal.read(store) as journal:
+                return journal.records.run().versions
+    return own_versions()
 
 
 def _failures_text(failures: Sequence[Mapping[str, object]], total: int, folder: RunFolder) -> str:

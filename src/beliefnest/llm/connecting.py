@@ -21,13 +21,16 @@ class TooManyBytesError(ModelError):
     """A server sends more than an answer can take."""
 
 
-def bounded_client(seconds: float, longest: int) -> "httpx2.AsyncClient":
+def bounded_client(
+    seconds: float, longest: int, user: tuple[str, str] | None = None
+) -> "httpx2.AsyncClient":
     """A client that gives up a response of more than `longest` bytes; the caller closes it.
 
     Args:
         seconds: What one step of a request may take.
         longest: Bytes of a response, as they are sent. Responses are asked for uncompressed, and
             compressed ones refused: a few bytes of them may stand for any number.
+        user: User and password for the server, if it wants any.
     """
     import httpx2
 
@@ -57,6 +60,7 @@ def bounded_client(seconds: float, longest: int) -> "httpx2.AsyncClient":
             await self._inner.aclose()
 
     return httpx2.AsyncClient(
+        auth=user,
         timeout=httpx2.Timeout(seconds, connect=min(seconds, _SECONDS_TO_CONNECT)),
         headers={"accept-encoding": "identity"},
         event_hooks={"response": [bound]},

@@ -1,12 +1,10 @@
 """How a model's failures are told: short, without secrets, with what to do."""
 
-from collections.abc import Iterable
-
 from beliefnest.errors import ModelError
 from beliefnest.llm.messages import Usage
 from beliefnest.world.texts import on_one_line
 
-__all__ = ["TransientModelError", "UnusableAnswerError", "excerpt", "without_secrets"]
+__all__ = ["TransientModelError", "UnusableAnswerError", "excerpt"]
 
 _LONGEST_EXCERPT = 300
 
@@ -40,11 +38,3 @@ def excerpt(text: str) -> str:
     line = on_one_line(text[: 2 * _LONGEST_EXCERPT])
     cut = len(text) > 2 * _LONGEST_EXCERPT or len(line) > _LONGEST_EXCERPT
     return f"{line[:_LONGEST_EXCERPT]}..." if cut else line
-
-
-def without_secrets(text: str, secrets: Iterable[str]) -> str:
-    """A text in which every secret is replaced by `***`."""
-    for secret in secrets:
-        if secret:
-            text = text.replace(secret, "***")
-    return text

@@ -1,12 +1,14 @@
 """The providers of chat models: where they are, and which variables hold their keys."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from ipaddress import ip_address
 from typing import Literal
-from urllib.parse import urlsplit
+from urllib.parse import unquote, urlsplit, urlunsplit
 
 from beliefnest.errors import ModelError
+from beliefnest.llm.secrets import Secrets, secrets_in, without_password
 
 __all__ = ["PROVIDERS", "Endpoint", "Provider", "endpoint"]
 
@@ -36,21 +38,48 @@ class Provider:
     free: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Endpoint:
     """Where a provider is spoken to and with which key.
 
     Attributes:
         provider: The provider.
-        url: Base URL.
+        url: Base URL, perhaps with a password in it; `place` is what may be shown.
         key: Never printed; None where none is needed.
         key_variable: The variable the key came from, for messages.
     """
 
     provider: Provider
-    url: str
+    url: str = field(repr=False)
     key: "_Key"
     key_variable: str
+
+    @cached_property
+    def place(self) -> str:
+        """The base URL without user, password or key."""
+        return without_password(self.url)
+
+    @property
+    def address(self) -> str:
+        """The base URL without user and password, to be asked with `user`.
+
+        Libraries write the address that they ask into logs and errors.
+        """
+        parts = urlsplit(self.url)
+        return urlunsplit(parts._replace(netloc=parts.netloc.rpartition("@")[2]))
+
+    @property
+    def user(self) -> tuple[str, str] | None:
+        """User and password that the base URL holds; None: none."""
+        parts = urlsplit(self.url)
+        if not parts.username and not parts.password:
+            return None
+        return unquote(parts.username or ""), unquote(parts.password or "")
+
+    @cached_property
+    def secrets(self) -> Secrets:
+        """What nothing that is shown or kept may hold."""
+        return Secrets([self.key.value or "", *secrets_in(self.url)])
 
     def cost(self, listed: float | None) -> float | None:
         """US dollars that an answer costs, None where that is not known.
@@ -149,6 +178,14 @@ def _is_near(url: str) -> bool:
         return False
 
 
+def _is_address(url: str) -> bool:
+    try:
+        parts = urlsplit(url)
+        return bool(parts.hostname) and parts.port != 0
+    except ValueError:
+        return False
+
+
 def endpoint(provider: Provider, environment: Mapping[str, str]) -> Endpoint:
     """Where a provider is, and the key, from the environment.
 
@@ -160,6 +197,11 @@ def endpoint(provider: Provider, environment: Mapping[str, str]) -> Endpoint:
         raise ModelError(
             f"{provider.name} needs the server's address: "
             f"set {provider.url_variable}, as http://localhost:8000/v1"
+        )
+    if not _is_address(url):
+        raise ModelError(
+            f"{provider.url_variable} is no address of a server; write it as "
+            "http://localhost:8000/v1, with special characters of a password as %40"
         )
     for variable in provider.key_variables:
         if environment.get(variable):

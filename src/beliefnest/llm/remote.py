@@ -4,18 +4,13 @@ import math
 import warnings
 from collections.abc import Callable, Coroutine, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from beliefnest.errors import BeliefNestError, ModelError
 from beliefnest.llm.clock import Clock
 from beliefnest.llm.connecting import TooManyBytesError, bounded_client
-from beliefnest.llm.failures import (
-    TransientModelError,
-    UnusableAnswerError,
-    excerpt,
-    without_secrets,
-)
+from beliefnest.llm.failures import TransientModelError, UnusableAnswerError, excerpt
 from beliefnest.llm.messages import Answer, Message, Sampling, Usage
 from beliefnest.llm.providers import Endpoint
 from beliefnest.world.texts import is_well_formed
@@ -82,6 +77,16 @@ class RemoteModel:
             TransientModelError: It may answer later.
             ModelError: It will not answer this, or the answer exceeds a limit.
         """
+        secrets = self.endpoint.secrets
+        try:
+            answer = self._answered(messages, sampling)
+        except ModelError as error:
+            error.args = (secrets.masked(str(error)),)
+            raise
+        return replace(answer, text=secrets.masked_answer(answer.text))
+
+    def _answered(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
+        """Ask once; what comes back may hold secrets."""
         _require_library()
         from pydantic_ai.exceptions import AgentRunError, UserError
 
@@ -101,7 +106,7 @@ class RemoteModel:
             found = found.__cause__ or found.__context__
         what = str(found) if found else f"{type(error).__name__}: {error}"
         return UnusableAnswerError(
-            f"{self.name} at {self.endpoint.url} gave an answer that cannot be read "
+            f"{self.name} at {self.endpoint.place} gave an answer that cannot be read "
             f"({excerpt(_clean(self, what))}); ask again or use another model",
             _guessed_usage(self, messages, 0),
         )
@@ -119,7 +124,7 @@ class RemoteModel:
             # A stream without an event would never reach the clock.
             async with (
                 asyncio.timeout(seconds),
-                bounded_client(seconds, longest) as client,
+                bounded_client(seconds, longest, self.endpoint.user) as client,
                 _chat_model(self.endpoint, self.model, client) as model,
                 model_request_stream(model, _history(messages), model_settings=settings) as stream,
             ):
@@ -181,7 +186,7 @@ def _run(ask: Callable[[], Coroutine[Any, Any, Answer]]) -> Answer:
 
 
 def _chat_model(endpoint: Endpoint, model: str, client: "httpx2.AsyncClient") -> "ChatModel":
-    key, url = endpoint.key.value, endpoint.url
+    key, url = endpoint.key.value, endpoint.address
     match endpoint.provider.protocol:
         case "anthropic":
             from pydantic_ai.models.anthropic import AnthropicModel
@@ -342,7 +347,7 @@ def _too_slow(model: RemoteModel) -> str:
 
 
 def _clean(model: RemoteModel, text: str) -> str:
-    return without_secrets(text, [model.endpoint.key.value or ""])
+    return model.endpoint.secrets.masked(text)
 
 
 def _is_nobody_there(error: BaseException | None) -> bool:
@@ -360,7 +365,7 @@ def _refuse(model: RemoteModel, error: Exception) -> NoReturn:
     """Raise the project's error for one of the library's, without its cause: it holds headers."""
     from pydantic_ai import exceptions as library
 
-    where = f"{model.name} at {model.endpoint.url}"
+    where = f"{model.name} at {model.endpoint.place}"
     said = excerpt(_clean(model, str(error)))
     match error:
         case library.ModelRequestTimeout():
@@ -377,7 +382,7 @@ def _refuse(model: RemoteModel, error: Exception) -> NoReturn:
             raise TransientModelError(f"{where} limits the rate of requests", seconds) from None
         case library.ModelConnectionError() if _is_nobody_there(error):
             variable = model.endpoint.provider.url_variable
-            told = f"no server for {model.name} at {model.endpoint.url}"
+            told = f"no server for {model.name} at {model.endpoint.place}"
             raise TransientModelError(f"{told}: start it, or set {variable}") from None
         case library.ModelConnectionError():
             raise TransientModelError(f"{where} dropped the connection ({said})") from None

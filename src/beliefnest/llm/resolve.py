@@ -1,22 +1,29 @@
 """From the name of a model to the model, and with it all that a run puts around it."""
 
 import difflib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.errors import InputError, ModelError, UnknownNameError
 from beliefnest.llm.budget import MeteredModel, RunSpending
 from beliefnest.llm.cache import CachedModel, CacheMode
 from beliefnest.llm.clock import Clock, SystemClock
-from beliefnest.llm.messages import Model
+from beliefnest.llm.messages import Answer, Message, Model, Sampling
 from beliefnest.llm.offline import OfflineModel
 from beliefnest.llm.providers import PROVIDERS, endpoint
 from beliefnest.llm.recorded import FileRecordingModel, load_replay, load_script
 from beliefnest.llm.remote import AnswerLimits, RemoteModel
 from beliefnest.llm.retrying import RetryingModel, RetryPolicy
 
-__all__ = ["Connection", "model_names", "open_model", "resolve_model"]
+__all__ = [
+    "Connection",
+    "check_model",
+    "is_of_provider",
+    "model_names",
+    "open_model",
+    "resolve_model",
+]
 
 
 @dataclass(frozen=True)
@@ -40,6 +47,13 @@ class Connection:
     cache_mode: CacheMode = "read"
     record: Path | None = None
     clock: Clock = field(default_factory=SystemClock)
+
+    @property
+    def holds_answers(self) -> bool:
+        """Whether any kept answer may be used."""
+        if self.cache is None or self.cache_mode != "read":
+            return False
+        return next(self.cache.glob("*.json"), None) is not None
 
 
 def model_names() -> tuple[str, ...]:
@@ -87,6 +101,40 @@ def resolve_model(
     )
 
 
+@dataclass(frozen=True)
+class _Unreachable:
+    """A model that lacks a key or an address; kept answers may stand in for all it is asked."""
+
+    name: str
+    why: str
+
+    def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
+        """Refuse; ModelError says what is missing."""
+        raise ModelError(f"no answer of {self.name} to this prompt is kept, and {self.why}")
+
+
+def check_model(name: str, environment: Mapping[str, str], connection: Connection) -> None:
+    """Refuse a model that cannot answer, before anything is played.
+
+    A model without a key or an address passes where answers are kept; see `open_model`.
+
+    Raises:
+        BeliefNestError: There is no such model, as `resolve_model` says.
+    """
+    _resolved(name, environment, connection)
+
+
+def _resolved(name: str, environment: Mapping[str, str], connection: Connection) -> Model:
+    try:
+        return resolve_model(
+            name, environment, limits=connection.answer_limits, clock=connection.clock
+        )
+    except ModelError as error:
+        if not is_of_provider(name) or not connection.holds_answers:
+            raise
+        return _Unreachable(name, str(error))
+
+
 def is_of_provider(name: str) -> bool:
     """Whether a model is a provider's, which may answer the same question in several ways."""
     return name.partition(":")[0] in PROVIDERS
@@ -96,15 +144,14 @@ def open_model(name: str, environment: Mapping[str, str], connection: Connection
     """The model of a name with retries, limits, cache and recording around it.
 
     A kept answer costs nothing and is recorded like any other; only models of providers
-    are retried, metered and kept.
+    are retried, metered and kept. Where answers are kept, a model may lack its key and address:
+    it fails only when it is asked what none of them answers.
 
     Raises:
         BeliefNestError: There is no such model, as `resolve_model` says.
     """
-    model = resolve_model(
-        name, environment, limits=connection.answer_limits, clock=connection.clock
-    )
-    if isinstance(model, RemoteModel):
+    model = _resolved(name, environment, connection)
+    if is_of_provider(name):
         model = RetryingModel(model, connection.retries, connection.clock)
         model = MeteredModel(model, connection.budget)
         if connection.cache is not None and connection.cache_mode != "off":

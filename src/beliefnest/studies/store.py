@@ -41,7 +41,9 @@ class StudyFolder:
         folder = StudyFolder(Path(path))
         try:
             folder.path.mkdir(parents=True, exist_ok=True)
-            strange = any(folder.path.iterdir()) and not (folder.path / _PLAN).is_file()
+            # Kept answers alone are where a study begins that is to repeat another one.
+            strange = any(each != folder.answers for each in folder.path.iterdir())
+            strange = strange and not (folder.path / _PLAN).is_file()
             if strange and not (folder.path / "cells").is_dir():
                 raise InputError(f"{path} is not empty and holds no study; name another folder")
             folder.cells.mkdir(exist_ok=True)
@@ -79,6 +81,10 @@ class StudyFolder:
     def run(self, cell: str) -> Path:
         """The recorded run of a cell."""
         return self.path / "runs" / f"{cell}.bn"
+
+    def stores(self) -> list[Path]:
+        """The recorded runs of all cells."""
+        return sorted((self.path / "runs").glob("*.bn"))
 
     def names(self) -> set[str]:
         """Names of the cells that have ended."""

@@ -1,6 +1,5 @@
 """A study as a person asks for it: from what is combined to a folder of results."""
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -9,7 +8,8 @@ from typing import Any, Self
 from filelock import Timeout
 
 from beliefnest.errors import InputError, ModelError
-from beliefnest.llm.resolve import resolve_model
+from beliefnest.llm.resolve import check_model
+from beliefnest.nest.past.versions import own_versions
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import read_document
 from beliefnest.studies.checking import (
@@ -233,7 +233,6 @@ class Study:
         part = plan if shard is None else plan.shard(*checked_shard(shard))
         if not plan.cells and plan.invalid:
             raise InputError(f"no combination makes a scenario; the first: {plan.invalid[0].why}")
-        self._check_models(backend)
         place.check_subjects(self._plan_json(plan))
         terms = Terms(
             answers=place.answers.absolute(),
@@ -241,9 +240,10 @@ class Study:
             runs=(place.path / "runs").absolute() if record else None,
             limits=self._design.limits,
         )
+        self._check_models(terms, backend)
         try:
             with place.lock():
-                place.write_plan(self._plan_json(part))
+                place.write_plan({**self._plan_json(part), "versions": own_versions()})
                 run_cells(part.cells, place, terms, jobs, backend, on_progress or _say_nothing)
         except Timeout:
             raise InputError(f"another process runs the study in {folder}") from None
@@ -265,13 +265,16 @@ class Study:
         with place.lock():
             return place.take_over([Path(other) for other in others], planned)
 
-    def _check_models(self, backend: str) -> None:
-        """Refuse a model that there is not, or that lacks a key, before anything is played."""
+    def _check_models(self, terms: Terms, backend: str) -> None:
+        """Refuse a model that there is not, or that lacks a key, before anything is played.
+
+        Answers that the study's folder keeps may do without a key.
+        """
         design = self._design
         reader = design.claims_from if isinstance(design, Design) else None
         for name in (*design.models, *(() if reader is None else (reader,))):
             try:
-                resolve_model(name, os.environ)
+                check_model(name, terms.surroundings, terms.connection())
             except ModelError:
                 # The machines of a cluster may have keys that this one has not.
                 if backend == "loky":

@@ -11,8 +11,7 @@ from beliefnest.bodies.worlds import Worlds
 from beliefnest.errors import BeliefNestError
 from beliefnest.llm.hearsay import claims_from_model
 from beliefnest.llm.messages import Sampling
-from beliefnest.llm.remote import RemoteModel
-from beliefnest.llm.resolve import open_model, resolve_model
+from beliefnest.llm.resolve import is_of_provider, open_model
 from beliefnest.nest.face.nest import Nest
 from beliefnest.prompts import Renderer
 from beliefnest.scenarios.records import expectation_json, probe_json
@@ -70,7 +69,7 @@ class Worker:
         key, scenario = cell.key, cell.scenario
         environment = terms.surroundings
         connection = terms.connection()
-        if isinstance(resolve_model(key.model, environment), RemoteModel):
+        if is_of_provider(key.model):
             # Before the script: it would be played for nothing.
             connection.budget.check()
         model = open_model(key.model, environment, connection)
