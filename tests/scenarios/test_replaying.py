@@ -19,8 +19,7 @@ def others():
     with Worlds(2) as opened:
 
         @contextmanager
-        def lend(seed):
-            assert seed == 2
+        def lend(_):
             yield opened
 
         yield lend

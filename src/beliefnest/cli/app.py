@@ -1,5 +1,6 @@
 """The commands, their options, and what the process ends with."""
 
+import errno
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -8,13 +9,15 @@ from typing import Annotated, Any, Literal
 import typer
 
 from beliefnest.cli.text import printable
-from beliefnest.errors import BeliefNestError
+from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.version import VERSION
+from beliefnest.world.texts import is_well_formed
 
 __all__ = ["app", "run_command_line"]
 
 _INTERRUPTED = 130
 _BAD_USAGE = 2
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 # Click's ClickException. Typer may have its own copy of click and exports only what derives
 # from it: BadParameter, then UsageError, then this.
 _UsageFault: Any = typer.BadParameter.__mro__[2]
@@ -35,27 +38,47 @@ Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 
 def run_command_line(arguments: Sequence[str]) -> int:
     """Run a command; every fault becomes one line on stderr and an exit status."""
-    command = typer.main.get_command(app)
     try:
-        status: Any = command.main(
-            list(arguments) or ["--help"], prog_name="beliefnest", standalone_mode=False
-        )
+        status = _run_command(arguments)
     except _UsageFault as error:
         context = getattr(error, "ctx", None)
         asked = "beliefnest" if context is None else context.command_path
         return _fail(f"{error.format_message()} (see {asked} --help)", _BAD_USAGE)
     except BeliefNestError as error:
         return _fail(str(error), error.exit_status)
-    except (KeyboardInterrupt, typer.Abort):
-        return _fail("interrupted", _INTERRUPTED)
     except BrokenPipeError:
         # Whoever read our output has left; there is nobody to tell.
         sys.stderr.close()
         return 0
+    except OSError as error:
+        return _fail(_system_fault(error), _BAD_USAGE)
+    except (KeyboardInterrupt, typer.Abort):
+        status = _INTERRUPTED
     if status == _INTERRUPTED:
         # Newer versions of typer turn the interrupt into this status themselves, silently.
         return _fail("interrupted", _INTERRUPTED)
     return status if isinstance(status, int) else 0
+
+
+def _run_command(arguments: Sequence[str]) -> Any:
+    for argument in arguments:
+        if "\0" in argument or not is_well_formed(argument):
+            raise InputError(f"the argument {argument!a} is no text; give whole characters")
+    return typer.main.get_command(app).main(
+        list(arguments) or ["--help"], prog_name="beliefnest", standalone_mode=False
+    )
+
+
+def _system_fault(error: OSError) -> str:
+    """What the operating system refused, where, and what to do."""
+    where = "" if error.filename is None else f"{error.filename}: "
+    what = error.strerror or str(error) or type(error).__name__
+    if error.errno in _FULL:
+        return (
+            f"{where}{what}; free some space or give another folder, and run the same command "
+            "again: what was kept before stays"
+        )
+    return f"{where}{what}; check the path and its permissions"
 
 
 def _print_version(asked: bool) -> None:

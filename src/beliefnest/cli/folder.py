@@ -8,10 +8,19 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular_text
 from beliefnest.scenarios.outcome import ProbeOutcome
 from beliefnest.scenarios.reading import templates_file
+from beliefnest.scenarios.record_forms import (
+    ExpectationForm,
+    ProbeForm,
+    UsageForm,
+    checked_form,
+    read_json,
+)
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.store import StudyFolder
 
@@ -33,6 +42,25 @@ _RESULT = "result.json"
 _SCENARIO = "scenario.yaml"
 _ANSWERS = "answers"
 _MOST_NAMED = 10
+_OTHER = "name another folder"
+
+
+class _ResultForm(msgspec.Struct):
+    """What came of a condition, as `outcome_json` writes it."""
+
+    condition: int | None
+    model: str
+    seed: int
+    ok: bool
+    ticks: int
+    seconds: float
+    reality: dict[str, Any]
+    beliefs: dict[str, dict[str, Any]]
+    expectations: list[ExpectationForm]
+    probes: list[ProbeForm]
+    failures: list[str]
+    usage: UsageForm
+    run_dir: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +87,11 @@ class ConditionFolder:
     def result(self) -> dict[str, Any] | None:
         """What came of the condition in an earlier part of the run; None: it has not ended."""
         file = self.path / _RESULT
-        return _read(file) if file.is_file() else None
+        if not file.is_file():
+            return None
+        content = read_json(file, _OTHER)
+        checked_form(content, _ResultForm, file, _OTHER)
+        return content
 
     def begin(self) -> None:
         """Make the folder, without what an interrupted run left in it."""
@@ -234,8 +266,8 @@ def _unused(parent: Path, name: str) -> Path:
 def _check_same(path: Path, settings: Mapping[str, object], scenario: Scenario) -> None:
     """Refuse a folder that is not that of the same run, or of one that has ended."""
     file = path / _REPORT
-    found = _read(file) if file.is_file() else {}
-    if "settings" not in found:
+    found = read_json(file, _OTHER) if file.is_file() else {}
+    if not isinstance(found.get("settings"), dict):
         raise InputError(f"{path} is not empty; name another folder with --out")
     if found.get("status") == "done":
         raise InputError(f"{path} holds a run that has ended; name another folder with --out")
@@ -245,23 +277,13 @@ def _check_same(path: Path, settings: Mapping[str, object], scenario: Scenario) 
     differing = [key for key in asked if found["settings"].get(key) != asked[key]]
     if not kept.is_file() or kept.read_text(encoding="utf-8") != scenario.text:
         differing.append("scenario")
-    if (_read(templates) if templates.is_file() else {}) != scenario.templates:
+    if (read_json(templates, _OTHER) if templates.is_file() else {}) != scenario.templates:
         differing.append("template")
     if differing:
         raise InputError(
             f"{path} holds a run with another {' and '.join(differing)}; "
             "go on with the same, or name another folder with --out"
         )
-
-
-def _read(file: Path) -> dict[str, Any]:
-    try:
-        content = json.loads(read_regular_text(file))
-    except (OSError, ValueError, RecursionError) as error:
-        raise InputError(f"{file} cannot be read: {error}; name another folder") from None
-    if not isinstance(content, dict):
-        raise InputError(f"{file} is not the report of a run; name another folder")
-    return content
 
 
 def _json(value: Mapping[str, object]) -> str:

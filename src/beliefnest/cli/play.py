@@ -157,7 +157,7 @@ def _value(text: str) -> Any:
     """The value of a parameter: a number, a list and the like as in JSON, else the text."""
     try:
         return json.loads(text)
-    except ValueError:
+    except (ValueError, RecursionError):
         return text
 
 

@@ -40,6 +40,7 @@ from beliefnest.scenarios.outcome import Outcome
 from beliefnest.scenarios.running import Asking, run_scenario
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.world.limits import checked_seed
 from beliefnest.world.nameable import ClaimsFrom
 
 __all__ = ["ModelOptions", "RunOptions", "run_scenarios"]
@@ -264,8 +265,8 @@ def _check_numbers(options: RunOptions) -> None:
         if number is not None and not low <= number <= high:
             above = f"at least {low}" if high == math.inf else f"from {low} to {high}"
             raise InputError(f"{name} is {number}; it must be {above}")
-    if not -(2**63) <= options.seed < 2**63 - options.repeat:
-        raise InputError(f"--seed is {options.seed}; it must be a number of 64 bits")
+    checked_seed(options.seed, "--seed")
+    checked_seed(options.seed + options.repeat, "--seed with --repeat")
     twice = [name for name in options.models if options.models.count(name) > 1]
     if twice:
         raise InputError(f"the model {twice[0]} is named twice; use --repeat to ask it again")

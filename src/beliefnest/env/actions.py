@@ -12,6 +12,9 @@ from beliefnest.world.values import Position
 
 __all__ = ["MOST_ITEMS", "Call", "Calls"]
 
+_LONGEST = 200
+"""Characters of an action in a message."""
+
 MOST_ITEMS = 64
 """Most items of one kind that one call moves."""
 
@@ -94,14 +97,18 @@ class Calls:
 
     def _numbered(self, part: str, value: Any) -> Any:
         if part == "position":
-            place = (int(value[0]), int(value[1]), int(value[2]))
+            try:
+                x, y, z = map(int, value)
+            except (TypeError, ValueError, OverflowError):
+                raise InputError(f"position is {value!r}; give three whole numbers") from None
+            place = (x, y, z)
             if place not in self._layout.box:
                 box = self._layout.box
                 raise InputError(f"{place} lies outside the box {box.low}..{box.high}")
             return np.array(self._layout.box.index(place), dtype=np.int64)
         if part == "count":
-            if not 1 <= value <= MOST_ITEMS:
-                raise InputError(f"count is {value}; give 1 to {MOST_ITEMS}")
+            if not isinstance(value, int | np.integer) or not 1 <= value <= MOST_ITEMS:
+                raise InputError(f"count is {value!r}; give 1 to {MOST_ITEMS}")
             return np.int64(value)
         return np.int64(self._layout.number(_KINDS[part], value))
 
@@ -114,9 +121,10 @@ class Calls:
         try:
             skill = self.skills[_index(action["skill"])]
             return Call(skill, self._args(skill, action))
-        except (KeyError, IndexError, TypeError, ValueError) as error:
+        except (KeyError, IndexError, TypeError, ValueError, OverflowError) as error:
             raise InputError(
-                f"{action!r} is no action here ({error!r}); sample action_space() or use action()"
+                f"{repr(action)[:_LONGEST]} is no action here ({error!r}); "
+                "sample action_space() or use action()"
             ) from None
 
     def _args(self, skill: str, action: Mapping[str, Any]) -> tuple[Any, ...]:

@@ -20,6 +20,7 @@ from beliefnest.errors import InputError, PathError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.setting import Senses
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.world.limits import checked_seed
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 
 __all__ = ["BeliefEnv", "BeliefSpace", "Options"]
@@ -59,12 +60,14 @@ class Options:
             raise InputError(f"actions is {self.actions!r}; it is 'skills' or 'programs'")
         if self.observations not in ("arrays", "dict"):
             raise InputError(f"observations is {self.observations!r}; it is 'arrays' or 'dict'")
+        checked_seed(self.seed)
         for name, number in (("max_steps", self.max_steps), ("timeout_ticks", self.timeout_ticks)):
-            if number < 1:
-                raise InputError(f"{name} is {number}; it must be at least 1")
+            _check_count(name, number, "at least 1")
+        for name, function in (("reward", self.reward), ("ends", self.ends)):
+            if function is not None and not callable(function):
+                raise InputError(f"{name} is {function!r}; give a function, or None")
         if self.step_ticks is not None:
-            if self.step_ticks < 1:
-                raise InputError(f"step_ticks is {self.step_ticks}; it must be at least 1, or None")
+            _check_count("step_ticks", self.step_ticks, "at least 1, or None")
             if self.actions == "programs" or self.world != "scripted":
                 raise InputError(
                     "step_ticks is for calls of skills in the scripted world; elsewhere a step "
@@ -77,6 +80,11 @@ class Options:
         if isinstance(self.phrases, Mapping):
             return self.phrases
         return dict.fromkeys(self.phrases, ())
+
+
+def _check_count(name: str, number: object, wanted: str) -> None:
+    if not isinstance(number, int) or number < 1:
+        raise InputError(f"{name} is {number!r}; it must be {wanted}")
 
 
 class BeliefSpace(spaces.Space[dict[str, Any]]):
@@ -198,10 +206,11 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             options: Play no part.
 
         Raises:
+            InputError: The seed is no whole number of 64 bits; the episode goes on.
             BodyError: The world could not be started.
             ProgramError: The script cannot be played.
         """
-        self._seed = self._seed + 1 if seed is None else seed
+        self._seed = self._seed + 1 if seed is None else checked_seed(seed)
         self._end_episode()
         if self._worlds is None:
             self._worlds = Worlds(0)
@@ -230,6 +239,10 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         """
         if self._acting is None:
             raise InputError("no episode has begun; call reset() first")
+        if not isinstance(actions, Mapping):
+            raise InputError(
+                f"actions are {type(actions).__name__}; give a dict of agents' names and actions"
+            )
         for agent in actions:
             if agent not in self.agents:
                 raise InputError(f"{agent!r} does not act now; agents are {self.agents}")

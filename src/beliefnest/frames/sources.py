@@ -1,13 +1,14 @@
 """Where tables come from: run files, folders of runs, folders of studies."""
 
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from beliefnest.errors import InputError
-from beliefnest.files import read_regular_text
+from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm, checked_form, read_json
 from beliefnest.studies.result import StudyResult
 
 __all__ = ["RecordedCell", "Source", "cells_of", "study_of"]
@@ -17,6 +18,22 @@ Source = str | Path | StudyResult
 
 _RUN_FILE = "run.bn"
 _REPORT = "run.json"
+_AGAIN = "move it away to read the recorded runs alone"
+
+
+class _RunForm(msgspec.Struct):
+    """What came of one condition."""
+
+    run_dir: str
+    probes: list[ProbeForm]
+    expectations: list[ExpectationForm]
+
+
+class _ReportForm(msgspec.Struct):
+    """The report of a run."""
+
+    scenario: str = ""
+    runs: list[_RunForm] = []
 
 
 @dataclass(frozen=True)
@@ -84,8 +101,6 @@ def _report(path: Path) -> dict[str, Any]:
     file = path / _REPORT
     if not file.is_file():
         return {}
-    try:
-        content = json.loads(read_regular_text(file))
-    except (OSError, ValueError) as error:
-        raise InputError(f"{file} cannot be read: {error}") from None
-    return content if isinstance(content, dict) else {}
+    content = read_json(file, _AGAIN)
+    checked_form(content, _ReportForm, file, _AGAIN)
+    return content

@@ -40,9 +40,10 @@ def read_yaml(path: Path) -> Document:
     Raises:
         ScenarioError: The file cannot be read, or is not one YAML mapping.
     """
+    document = parse_yaml(_text(path), str(path))
     kept = templates_file(path)
     templates = _templates(kept) if kept.is_file() else {}
-    return replace(parse_yaml(_text(path), str(path)), folder=path.parent, templates=templates)
+    return replace(document, folder=path.parent, templates=templates)
 
 
 def templates_file(path: Path) -> Path:

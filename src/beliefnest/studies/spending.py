@@ -8,6 +8,7 @@ from filelock import FileLock
 
 from beliefnest.llm.budget import RunLimits, RunSpending
 from beliefnest.llm.messages import Usage
+from beliefnest.scenarios.record_forms import UsageForm, read_lines
 from beliefnest.studies.store import append_line
 
 __all__ = ["SharedBudget", "spent_in"]
@@ -50,12 +51,7 @@ class SharedBudget(RunSpending):
 
 def spent_in(file: Path) -> Usage:
     """What is counted in a file; the cost of known prices only."""
-    if not file.is_file():
-        return Usage()
     total = Usage()
-    for line in file.read_text(encoding="utf-8").splitlines():
-        # A process that was ended while it wrote leaves a part of a line.
-        if line.endswith("}"):
-            noted = json.loads(line)
-            total += Usage(**{**noted, "cost": noted["cost"] or 0.0})
+    for noted in read_lines(file, UsageForm):
+        total += Usage(noted.requests, noted.input_tokens, noted.output_tokens, noted.cost or 0.0)
     return total

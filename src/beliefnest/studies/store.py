@@ -12,12 +12,15 @@ import msgspec
 from filelock import FileLock
 
 from beliefnest.errors import InputError
-from beliefnest.files import read_regular_text
+from beliefnest.scenarios.record_forms import checked_form, read_json, read_lines
+from beliefnest.studies.forms import SecondsForm, cell_form, plan_form
 
 __all__ = ["StudyFolder", "append_line"]
 
 _PLAN = "study.json"
 _FORM = "beliefnest study 1"
+_AGAIN = "delete it to run it again"
+_PLAN_AGAIN = "delete it and run the study again, which keeps the cells that have ended"
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +100,11 @@ class StudyFolder:
             InputError: Its file is damaged.
         """
         file = self.cells / f"{name}.json"
-        return _read(file) if file.is_file() else None
+        if not file.is_file():
+            return None
+        content = read_json(file, _AGAIN)
+        checked_form(content, cell_form(content), file, _AGAIN)
+        return content
 
     def write_cell(self, name: str, content: Mapping[str, Any]) -> None:
         """Keep what came of a cell, whole or not at all."""
@@ -109,14 +116,7 @@ class StudyFolder:
 
     def seconds(self) -> dict[str, float]:
         """How long cells took, as far as it is known."""
-        lines = self._times.read_text("utf-8").splitlines() if self._times.is_file() else []
-        found = {}
-        for line in lines:
-            # A process that was ended while it wrote leaves a part of a line.
-            if line.endswith("}"):
-                noted = json.loads(line)
-                found[noted["cell"]] = noted["seconds"]
-        return found
+        return {noted.cell: noted.seconds for noted in read_lines(self._times, SecondsForm)}
 
     def write_plan(self, plan: Mapping[str, Any]) -> None:
         """Keep what was planned last."""
@@ -124,9 +124,11 @@ class StudyFolder:
 
     def plan(self) -> dict[str, Any]:
         """What was planned last; InputError if there is nothing, or it is damaged."""
-        found = _read(self.path / _PLAN)
+        file = self.path / _PLAN
+        found = read_json(file, _PLAN_AGAIN)
         if found.get("form") != _FORM:
-            raise InputError(f"{self.path / _PLAN} is not that of a study of this version")
+            raise InputError(f"{file} is not that of a study of this version; {_PLAN_AGAIN}")
+        checked_form(found, plan_form(found), file, _PLAN_AGAIN)
         return found
 
     def check_subjects(self, plan: Mapping[str, Any]) -> None:
@@ -210,16 +212,6 @@ def _json(content: Mapping[str, Any]) -> str:
     # The library's own encoder takes five times as long where it sets lines.
     flat = json.dumps(content, sort_keys=True, ensure_ascii=False)
     return msgspec.json.format(flat, indent=1) + "\n"
-
-
-def _read(file: Path) -> dict[str, Any]:
-    try:
-        content = json.loads(read_regular_text(file))
-    except (OSError, ValueError, RecursionError) as error:
-        raise InputError(f"{file} cannot be read: {error}; delete it to run it again") from None
-    if not isinstance(content, dict):
-        raise InputError(f"{file} is not part of a study; delete it to run it again")
-    return content
 
 
 def append_line(file: Path, line: str) -> None:

@@ -4,6 +4,7 @@ Each function says what is wrong, None if nothing is; whoever calls it knows whe
 """
 
 import math
+import operator
 import re
 from collections.abc import Mapping, Sequence
 
@@ -21,6 +22,7 @@ __all__ = [
     "WORN_SLOTS",
     "agent_name_fault",
     "box_fault",
+    "checked_seed",
     "container_slots",
     "items_fault",
     "point_fault",
@@ -47,6 +49,21 @@ _AGENT_NAME = re.compile(r"[A-Za-z0-9_]{1,16}", re.ASCII)
 _FURNACES = frozenset({"furnace", "blast_furnace", "smoker"})
 _FURNACE_SLOTS = 3
 _CHEST_SLOTS = 27
+
+
+def checked_seed(seed: object, name: str = "seed") -> int:
+    """Return a seed as it is recorded, numbers of NumPy as Python's.
+
+    Raises:
+        InputError: It is no whole number of 64 bits; the message calls it `name`.
+    """
+    try:
+        number = operator.index(seed)  # type: ignore[arg-type] # whatever a caller gives
+    except TypeError:
+        number = None
+    if number is None or not -(2**63) <= number < 2**63:
+        raise InputError(f"{name} is {str(seed)[:50]!r}; give a whole number of 64 bits")
+    return number
 
 
 def agent_name_fault(name: object) -> str | None:

@@ -27,6 +27,7 @@ from beliefnest.nest.past.setting import Setting
 from beliefnest.perception.options import Perception
 from beliefnest.prompts import Renderer
 from beliefnest.timeline.records import Senses
+from beliefnest.world.limits import checked_seed
 from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.world.paths import parse_path
 from beliefnest.world.scripted import ScriptedWorld
@@ -109,10 +110,11 @@ class Nest(Joining, Visiting):
         Raises:
             BodyError: The world could not be started.
             UnknownNameError: There is no such world.
-            InputError: There are people in the scenario and none can join the world.
+            InputError: There are people in the scenario and none can join the world; or the seed
+                is no whole number of 64 bits.
             StoreError: The store exists already, or cannot be written.
         """
-        world = world_name(world, realtime=realtime, listen=listen)
+        world, seed = world_name(world, realtime=realtime, listen=listen), checked_seed(seed)
         started = as_scenario(scenario)
         opened = open_world(world, seed, limits) if worlds is None else worlds.lend(world)
         try:

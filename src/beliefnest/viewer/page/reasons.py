@@ -1,5 +1,6 @@
 """Explanations and looks: one when it is asked for, or many ahead, for a page without a server."""
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
@@ -21,6 +22,8 @@ from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.values import EventKind, Position
 
 __all__ = ["ahead", "explanation_of", "look_of", "name_of", "sight_of"]
+
+_THING = re.compile(r"([abci])(\d{1,9})", re.ASCII)
 
 _DEEDS = frozenset(
     {
@@ -68,13 +71,11 @@ def explanation_of(
         TickError: The timeline has no such tick.
     """
     shown = reader.simulator(key, path, tick)
-    kind, number = thing[:1], thing[1:]
-    if kind not in {"a", "b", "c", "i"} or not number.isdecimal():
-        raise InputError(f"{thing!r} is no thing; write a, b or c and a number")
+    kind, number = _named(thing)
     if kind in "ai":
-        told = shown.explain(agent=_agent(reader, int(number)))
+        told = shown.explain(agent=_agent(reader, number))
     else:
-        place = _place(reader, int(number))
+        place = _place(reader, number)
         told = shown.explain(container=place) if kind == "c" else shown.explain(block=place)
     return {"t": tick, "lines": str(told).splitlines()}
 
@@ -95,9 +96,17 @@ def look_of(
     Returns:
         None where the viewer's pose is unknown.
     """
-    number = int(target[1:]) if target[1:].isdecimal() else -1
-    what = _agent(reader, number) if target[:1] == "a" else _place(reader, number)
+    kind, number = _named(target)
+    what = _agent(reader, number) if kind == "a" else _place(reader, number)
     return _told(reader.look(key, path, tick, viewer, what))
+
+
+def _named(thing: str) -> tuple[str, int]:
+    """Return the kind and the number of a thing; InputError if it is none."""
+    found = _THING.fullmatch(thing)
+    if found is None:
+        raise InputError(f"{thing[:50]!r} is no thing; write a, b or c and a number")
+    return found[1], int(found[2])
 
 
 def sight_of(

@@ -114,21 +114,36 @@ def page_app(
     routes = [
         Route("/", lambda request: _page(host)),
         Route("/api/live", live),
-        Route("/api/explain", _answer(lambda q: host.explain(*_place(q), *_when(q), q["thing"]))),
+        Route(
+            "/api/explain",
+            _answer(lambda q: host.explain(*_place(q), *_when(q), _text(q, "thing"))),
+        ),
         Route(
             "/api/look",
             _answer(
-                lambda q: {"answer": host.look(*_place(q), *_when(q), q["viewer"], q["thing"])}
+                lambda q: _told(
+                    host.look(*_place(q), *_when(q), _text(q, "viewer"), _text(q, "thing"))
+                )
             ),
         ),
         Route(
             "/api/sight",
-            _answer(lambda q: _told(host.sight(*_place(q), *_when(q), q["viewer"]))),
+            _answer(lambda q: _told(host.sight(*_place(q), *_when(q), _text(q, "viewer")))),
         ),
         Route("/api/deepen", _answer(lambda q: _told(host.deepen(*_place(q))))),
     ]
     guard = Middleware(Guard, hosts=hosts, token=token)
-    return Starlette(routes=routes, middleware=[guard], lifespan=lifespan)
+    return Starlette(
+        routes=routes,
+        middleware=[guard],
+        exception_handlers={BeliefNestError: _refused},
+        lifespan=lifespan,
+    )
+
+
+def _refused(_: Request, error: Exception) -> Response:
+    """Say in one line what is wrong with a question."""
+    return JSONResponse({"error": str(error)}, 400)
 
 
 def _page(host: Host) -> Response:
@@ -151,15 +166,10 @@ async def _updates(host: Host, news: _News, first: int) -> AsyncIterator[str]:
 
 
 def _answer(ask: Callable[[Mapping[str, str]], Any]) -> Callable[[Request], Response]:
-    """A route that asks in a thread, and tells what is wrong with a question."""
+    """Return a route that asks in a thread."""
 
     def answer(request: Request) -> Response:
-        try:
-            return JSONResponse(ask(request.query_params))
-        except KeyError as missing:
-            return JSONResponse({"error": f"the question has no {missing}"}, 400)
-        except BeliefNestError as error:
-            return JSONResponse({"error": str(error)}, 400)
+        return JSONResponse(ask(request.query_params))
 
     return answer
 
@@ -169,11 +179,17 @@ def _told(answer: object) -> dict[str, object]:
 
 
 def _place(query: Mapping[str, str]) -> tuple[int, int, str]:
-    return _number(query, "run"), _number(query, "on"), query["path"]
+    return _number(query, "run"), _number(query, "on"), _text(query, "path")
 
 
 def _when(query: Mapping[str, str]) -> tuple[int]:
     return (_number(query, "tick"),)
+
+
+def _text(query: Mapping[str, str], name: str) -> str:
+    if name not in query:
+        raise InputError(f"the question has no {name}")
+    return query[name]
 
 
 def _number(query: Mapping[str, str], name: str) -> int:

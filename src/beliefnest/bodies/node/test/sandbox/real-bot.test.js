@@ -3,6 +3,7 @@
 const assert = require('node:assert/strict')
 const { after, before, describe, it } = require('node:test')
 const { agent, floor, Node, region } = require('../harness')
+const { kinds } = require('../../src/sandbox/policy/kinds')
 
 const CHEST = 2955
 const CHECK = 'const check = (what, found, wanted) => { if (found !== wanted) throw new Error(`${what}: ${found}, not ${wanted}`) };'
@@ -29,6 +30,36 @@ describe('a program with a real bot', () => {
     await node.request('destroy_region', { region: name })
     return results.sally
   }
+
+  it('can read every property that it may, of every kind of object', async () => {
+    const names = Object.fromEntries(Object.entries(kinds).map(([kind, { get }]) => [kind, Object.keys(get)]))
+    const { ok, error } = await run(`
+      const names = ${JSON.stringify(names)}
+      const chest = await bot.openContainer(bot.blockAt(new Vec3(3, -51, 0)))
+      check('title', chest.title, 'Chest')
+      const recipe = bot.recipesAll(mcData.itemsByName.stick.id, null, null)[0]
+      const objects = { bot: [bot], entity: [bot.entity, bot.players.anne.entity], window: [chest, bot.inventory], recipe: [recipe], pathfinder: [bot.pathfinder] }
+      check('kinds', Object.keys(objects).sort().join(), Object.keys(names).sort().join())
+      const faults = []
+      for (const [kind, several] of Object.entries(objects)) {
+        for (const object of several) {
+          for (const name of names[kind]) {
+            try { JSON.stringify(object[name]) } catch (error) { faults.push(kind + '.' + name + ': ' + error.message) }
+          }
+        }
+      }
+      check('faults', faults.join('; '), '')`)
+    assert.equal(ok, true, JSON.stringify(error))
+  })
+
+  it('reads the titles of windows however a server writes them', () => {
+    const bot = { registry: require('prismarine-registry')('1.20.4') }
+    const { title } = kinds.window.get
+    const nbt = { type: 'compound', value: { text: { type: 'string', value: 'Large Chest' } } }
+    const all = ['Inventory', '"Chest"', '{"translate":"container.chest"}', nbt, { type: 'string', value: 'Barrel' }, null, undefined]
+    const found = ['Inventory', 'Chest', 'Chest', 'Large Chest', 'Barrel', '', '']
+    assert.deepEqual(all.map(each => title.toGuest({ bot }, each)), found)
+  })
 
   const WORKS = {
     'its own body': 'check("position", String(bot.entity.position), "(0.5, -51, 0.5)"); check("name", bot.username, "sally"); check("health", bot.health, 20); check("version", bot.version, "1.20.4")',

@@ -23,6 +23,7 @@ const time = t.record({ time: t.number, timeOfDay: t.number, day: t.number, isDa
 const game = t.record({ gameMode: t.text, dimension: t.text, difficulty: t.text, minY: t.number, height: t.number })
 const player = t.record({ username: t.text, entity: t.maybe(entity), ping: t.number, gamemode: t.number })
 const recipe = t.live('recipe')
+const part = t.record({ id: t.number, metadata: t.maybe(t.number), count: t.number })
 const transferred = [t.count, t.maybe(t.count), t.maybe(t.count)]
 
 const bot = {
@@ -98,7 +99,7 @@ const kinds = {
   },
   window: {
     get: {
-      id: t.number, type: t.text, title: t.plain, slots: t.list(t.maybe(t.item)), selectedItem: t.maybe(t.item),
+      id: t.number, type: t.text, title: t.words, slots: t.list(t.maybe(t.item)), selectedItem: t.maybe(t.item),
       inventoryStart: t.number, inventoryEnd: t.number, hotbarStart: t.number, fuel: t.maybe(t.number),
       fuelSeconds: t.maybe(t.number), progress: t.maybe(t.number), progressSeconds: t.maybe(t.number)
     },
@@ -125,7 +126,7 @@ const kinds = {
     }
   },
   recipe: {
-    get: { result: t.plain, ingredients: t.plain, inShape: t.plain, delta: t.plain, requiresTable: t.boolean },
+    get: { result: part, ingredients: t.maybe(t.list(part)), inShape: t.maybe(t.list(t.list(part))), delta: t.list(part), requiresTable: t.boolean },
     call: {}
   },
   pathfinder: {

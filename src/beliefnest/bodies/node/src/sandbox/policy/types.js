@@ -12,6 +12,7 @@ const { flawOf, signFlawOf } = require('../../../../../programs/skills/lib/text'
 const MAX_DISTANCE = 128
 const MAX_BLOCKS = 10_000
 const MAX_TICKS = 1_000_000
+const LONGEST_WORDS = 1000
 const LEGAL_NAME = /^\w{1,16}$/
 
 const plain = { toHost: (x, wire, where) => x.toHost(wire, where), toGuest: (x, value, where) => x.toGuest(value, where) }
@@ -28,6 +29,8 @@ const number = {
   toGuest: (x, value, where) => x.toGuest(value, where)
 }
 const text = { toHost: (x, wire, where) => x.text(wire, where), toGuest: (x, value) => String(value) }
+/** A text that a server sent as one of its messages, as a client shows it. */
+const words = { toGuest: (x, value) => messageText(x.bot.registry, value) }
 const vector = { toHost: (x, wire, where) => x.vector(wire, where), toGuest: (x, value) => vectorToGuest(value) }
 const block = { toHost: (x, wire, where) => x.block(wire, where), toGuest: (x, value) => x.blockToGuest(value) }
 const item = { toHost: (x, wire, where) => x.item(wire, where), toGuest: (x, value) => itemToGuest(value) }
@@ -204,7 +207,13 @@ const search = {
   }
 }
 
+function messageText (registry, message) {
+  if (message === undefined || message === null) return ''
+  const ChatMessage = require('prismarine-chat')(registry)
+  return ChatMessage.fromNotch(message).toString().slice(0, LONGEST_WORDS)
+}
+
 module.exports = {
-  plain, nothing, boolean, number, text, vector, block, item, goal, movements, within, whole, count, ticks, slot, choice,
+  plain, nothing, boolean, number, text, words, vector, block, item, goal, movements, within, whole, count, ticks, slot, choice,
   live, maybe, list, dictionary, record, either, later, chatText, signText, playerName, entityFilter, search, stateOf
 }

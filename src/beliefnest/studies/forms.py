@@ -1,0 +1,113 @@
+"""The form of a study's files."""
+
+from typing import Any
+
+import msgspec
+
+from beliefnest.episodes.measures import Measures
+from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm
+
+__all__ = ["SecondsForm", "cell_form", "plan_form"]
+
+
+class _Failed(msgspec.Struct):
+    error: str
+
+
+class _StudyProbe(ProbeForm, kw_only=True):
+    seconds: float
+
+
+class _Played(msgspec.Struct):
+    error: None
+    ticks: int
+    expectations: list[ExpectationForm]
+    probes: list[_StudyProbe]
+    run: str = ""
+
+
+class _Episode(msgspec.Struct):
+    error: None
+    why_not: str
+    measures: Measures
+    run: str = ""
+
+
+class _ScenarioKey(msgspec.Struct):
+    scenario: str
+    condition: int | None
+    variation: dict[str, Any]
+    model: str
+    template: str
+    repeat: int
+
+
+class _TaskKey(msgspec.Struct):
+    task: str
+    condition: int | None
+    variation: dict[str, Any]
+    player: str
+    order: str | int | None
+    instance: int
+    repeat: int
+
+
+class _PlannedProbe(msgspec.Struct):
+    label: str
+    path: str
+    acts_in: str
+    agent: str
+    task: str
+    expected: dict[str, Any] | None
+
+
+class _PlannedScenario(msgspec.Struct):
+    name: str
+    seed: int
+    key: _ScenarioKey
+    probes: list[_PlannedProbe]
+    alike: str | None = None
+
+
+class _PlannedEpisode(msgspec.Struct):
+    name: str
+    seed: int
+    key: _TaskKey
+    alike: str | None = None
+
+
+class _Invalid(msgspec.Struct):
+    scenario: str
+    condition: int | None
+    variation: dict[str, Any]
+    why: str
+
+
+class _ScenariosPlan(msgspec.Struct):
+    cells: list[_PlannedScenario]
+    invalid: list[_Invalid]
+
+
+class _EpisodesPlan(msgspec.Struct):
+    cells: list[_PlannedEpisode]
+    invalid: list[_Invalid]
+    tasks: Any
+
+
+class SecondsForm(msgspec.Struct):
+    """A line that says how long a cell took."""
+
+    cell: str
+    seconds: float
+
+
+def cell_form(content: dict[str, Any]) -> type[Any]:
+    """Return the form that the content of a cell's file has to have."""
+    if content.get("error") is not None:
+        return _Failed
+    return _Episode if "measures" in content else _Played
+
+
+def plan_form(content: dict[str, Any]) -> type[Any]:
+    """Return the form that a study's plan has to have."""
+    return _EpisodesPlan if "tasks" in content else _ScenariosPlan
