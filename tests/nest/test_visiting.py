@@ -167,6 +167,42 @@ def test_a_visitor_sees_what_is_tried_out_and_can_come_again_after_a_crash():
             assert nest.wait(lambda: guest.is_done, LONG_S)
 
 
+SAID = "await say(bot, 'There.', [located('diamond', new Vec3(-2, -51, -4))])"
+# Where nothing is known but that a diamond is there.
+IN_THE_CHEST = """
+const chest = () => bot.blockAt(new Vec3(X - 2, -51, -4))
+while (chest()?.name !== 'chest') await waitTicks(bot, 1)
+await goToPosition(bot, new Vec3(X, -51, -2), 1)
+const items = await bot.openContainer(chest())
+await waitTicks(bot, 5)
+const found = items.containerItems().map(({name}) => name).join()
+if (found !== 'diamond') throw new Error(found)
+"""
+
+
+def test_a_chest_stands_where_contents_are_believed_in_an_unknown_block():
+    scenario = Scenario.from_mapping(
+        {
+            "name": "unseen",
+            "box": [[-6, -52, -6], [6, -49, 6]],
+            "blocks": [{"block": "stone", "fill": [[-6, -52, -6], [6, -52, 6]]}],
+            "agents": {"ann": {"position": [0.5, -51, 3.5]}, "bob": {"position": [0.5, -51, -3.5]}},
+            "static_blocks": ["stone"],
+            "perception": {"testimony": "accept", "max_visible_distance": 3},
+        }
+    )
+    with Nest.open(scenario, realtime=True, listen=0) as nest:
+        belief = nest["/ann"]
+        belief.embody()
+        assert nest["/"].run("bob", SAID).ok
+        assert belief.state.blocks[LEFT] is None
+        with Person(nest.address, "guest") as guest:
+            guest.does(script(IN_THE_CHEST, where(nest, "/ann")))
+            assert nest.wait(lambda: guest.is_done, LONG_S)
+        belief.switch("try")
+        assert belief.placed == {LEFT: (None, "chest")}
+
+
 # How somebody on a server waits to find this and no more, where a line of the layout leads.
 FIND = """
 const seen = async () => {
