@@ -66,6 +66,23 @@ def test_limits_are_on_by_default():
             metered.answer(ASK, Sampling())
 
 
+def test_the_default_limit_of_tokens_does_not_stop_a_free_server():
+    free, paid = Usage(1, 2_000_000, 0, 0.0), Usage(1, 600_000, 0, None)
+    spending = RunSpending()
+    for usage in (free, paid, free):
+        MeteredModel(Priced(usage), spending).answer(ASK, Sampling())
+    MeteredModel(Priced(paid), spending).answer(ASK, Sampling())
+    with pytest.raises(ModelError, match=r"used 1,200,000 tokens .*: --max-tokens, or max_tokens"):
+        MeteredModel(Priced(free), spending).answer(ASK, Sampling())
+
+
+def test_a_limit_of_tokens_that_somebody_set_stops_a_free_server_too():
+    metered = MeteredModel(Priced(Usage(1, 500, 0, 0.0)), RunSpending(RunLimits(tokens=400)))
+    metered.answer(ASK, Sampling())
+    with pytest.raises(ModelError, match="may use 400"):
+        metered.answer(ASK, Sampling())
+
+
 def test_an_answer_that_cannot_be_used_is_paid_all_the_same(fake, clock):
     fake.will(fake.refuses, fake.floods)
     budget = RunSpending()

@@ -147,7 +147,11 @@ def run(
         Path | None, typer.Option(help="Folder of kept answers; OUT/answers if none.")
     ] = None,
     max_tokens: Annotated[
-        int, typer.Option(help="What the run may use in all.", min=1)
+        int,
+        typer.Option(
+            help="Tokens the run may use in all; by default those of free models are left out.",
+            min=1,
+        ),
     ] = 1_000_000,
     max_cost: Annotated[
         float, typer.Option(help="US dollars the run may cost in all.", min=0)

@@ -7,7 +7,10 @@ from beliefnest.errors import InputError, ModelError
 from beliefnest.llm.failures import UnusableAnswerError
 from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 
-__all__ = ["MeteredModel", "RunLimits", "RunSpending"]
+__all__ = ["MeteredModel", "RunLimits", "RunSpending", "tokens_of_free"]
+
+
+_TOKENS = 1_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,11 +18,12 @@ class RunLimits:
     """What all answers of a run together may take; None: no limit.
 
     Attributes:
-        tokens: Sent and received.
+        tokens: Sent and received. The default guards against costs: it leaves out answers that
+            cost nothing, as those of a server of one's own. Any other number counts all answers.
         cost: US dollars. Answers whose price is not known are held by `tokens` alone.
     """
 
-    tokens: int | None = 1_000_000
+    tokens: int | None = _TOKENS
     cost: float | None = 5.0
 
     def __post_init__(self) -> None:
@@ -35,10 +39,12 @@ class RunSpending:
     Attributes:
         limits: What it may spend.
         spent: What it has spent; the cost counts known prices only.
+        free: Tokens in it of answers that cost nothing.
     """
 
     limits: RunLimits = field(default_factory=RunLimits)
     spent: Usage = field(default_factory=Usage)
+    free: int = 0
 
     def check(self) -> None:
         """Refuse a further request when nothing is left.
@@ -47,21 +53,28 @@ class RunSpending:
             ModelError: A limit is reached.
         """
         tokens, cost = self.limits.tokens, self.limits.cost
-        if tokens is not None and self.spent.tokens >= tokens:
+        used = self.spent.tokens - (self.free if tokens == _TOKENS else 0)
+        if tokens is not None and used >= tokens:
             raise ModelError(
-                f"the run has used {self.spent.tokens:,} tokens and may use {tokens:,}; "
-                "raise the limit to go on"
+                f"the run has used {used:,} tokens and may use {tokens:,}; "
+                "raise the limit to go on: --max-tokens, or max_tokens of a study"
             )
         if cost is not None and (self.spent.cost or 0.0) >= cost:
             raise ModelError(
                 f"the run has cost {self.spent.cost:.2f} US dollars and may cost {cost:.2f}; "
-                "raise the limit to go on"
+                "raise the limit to go on: --max-cost, or max_cost of a study"
             )
 
     def add(self, usage: Usage) -> None:
         """Count what an answer took."""
         priced = Usage(usage.requests, usage.input_tokens, usage.output_tokens, usage.cost or 0.0)
         self.spent = self.spent + priced
+        self.free += tokens_of_free(usage)
+
+
+def tokens_of_free(usage: Usage) -> int:
+    """Return the tokens of an answer that cost nothing; 0 for one that did, or may have."""
+    return usage.tokens if usage.cost == 0 else 0
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,13 @@
 """What a study may spend and has spent, over all its workers."""
 
 import json
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from filelock import FileLock
 
-from beliefnest.llm.budget import RunLimits, RunSpending
+from beliefnest.llm.budget import RunLimits, RunSpending, tokens_of_free
 from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.record_forms import UsageForm, read_lines
 from beliefnest.studies.store import append_line
@@ -30,6 +31,7 @@ class SharedBudget(RunSpending):
     def check(self) -> None:
         """Refuse a further request when nothing is left; ModelError says so."""
         self.spent = spent_in(self.file)
+        self.free = sum(map(tokens_of_free, _answers(self.file)))
         super().check()
 
     def add(self, usage: Usage) -> None:
@@ -50,8 +52,11 @@ class SharedBudget(RunSpending):
 
 
 def spent_in(file: Path) -> Usage:
-    """What is counted in a file; the cost of known prices only."""
-    total = Usage()
+    """Return what is counted in a file; the cost of known prices only."""
+    return sum((replace(each, cost=each.cost or 0.0) for each in _answers(file)), Usage())
+
+
+def _answers(file: Path) -> Iterator[Usage]:
+    """Yield what each answer took that is counted in a file."""
     for noted in read_lines(file, UsageForm):
-        total += Usage(noted.requests, noted.input_tokens, noted.output_tokens, noted.cost or 0.0)
-    return total
+        yield Usage(noted.requests, noted.input_tokens, noted.output_tokens, noted.cost)

@@ -66,7 +66,8 @@ class Study:
         world: Name of the world; None: `embedded`, or with tasks `scripted`.
         attempts: How often a model is asked for one probe at most.
         temperature: How answers are drawn; None leaves it to the provider.
-        max_tokens: What the whole study may use; None: no limit.
+        max_tokens: What the whole study may use; None: no limit. By default answers that cost
+            nothing are left out.
         max_cost: US dollars that it may cost; None: no limit.
         claims_from: Name of a model that reads claims out of what is said; None: nobody.
         tasks: In place of scenarios: names of tasks or scenarios that are played as episodes, or
