@@ -37,7 +37,7 @@ pages: ## The pictures of docs/page.md, taken in a real browser
 picture: ## The pictures of README and docs, by the program itself
 	python tools/pictures.py
 
-notebooks: ## What the notebook of a study shows, by executing it
+notebooks: ## What the notebooks of the docs show, by executing them
 	python tools/notebooks.py
 
 baselines: ## docs/tasks.md: all tasks by all baselines, over 50 seeds; takes half an hour

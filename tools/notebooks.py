@@ -1,4 +1,4 @@
-"""Execute the study's notebook, and keep what it shows in it. Run by `make notebooks`."""
+"""Execute the notebooks of the docs, and keep in them what they show. Run by `make notebooks`."""
 
 import tempfile
 from pathlib import Path
@@ -6,10 +6,12 @@ from pathlib import Path
 import nbclient
 import nbformat
 
-NOTEBOOK = Path(__file__).parents[1] / "docs" / "notebooks" / "study.ipynb"
+NOTEBOOKS = Path(__file__).parents[1] / "docs" / "notebooks"
 
-if __name__ == "__main__":
-    notebook = nbformat.read(NOTEBOOK, as_version=4)  # type: ignore[no-untyped-call]  # nbformat has no types here
+
+def execute(file: Path) -> None:
+    """Execute a notebook in an empty folder, and write it with its outputs."""
+    notebook = nbformat.read(file, as_version=4)  # type: ignore[no-untyped-call]  # nbformat has no types here
     with tempfile.TemporaryDirectory() as folder:
         resources = {"metadata": {"path": folder}}
         client = nbclient.NotebookClient(notebook, resources=resources, record_timing=False)
@@ -24,4 +26,9 @@ if __name__ == "__main__":
                     output.execution_count = None
     notebook.metadata.pop("language_info", None)
     written = nbformat.writes(notebook)  # type: ignore[no-untyped-call]  # as above
-    NOTEBOOK.write_text(written + "\n", encoding="utf-8")
+    file.write_text(written + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    for each in sorted(NOTEBOOKS.glob("*.ipynb")):
+        execute(each)

@@ -56,3 +56,10 @@ def test_links_between_papers_lead_somewhere(paper: str) -> None:
     for target in re.findall(r"\]\(([^)#]+)\)", file.read_text(encoding="utf-8")):
         if "://" not in target:
             assert (file.parent / target).exists(), target
+
+
+def test_the_first_page_leads_to_every_other_page() -> None:
+    folder = ROOT / "docs"
+    first = (folder / "index.md").read_text("utf-8")
+    pages = {file.name for file in folder.glob("*.md")} - {"index.md"}
+    assert {name for name in pages if f"]({name})" not in first} == set()

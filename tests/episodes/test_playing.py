@@ -117,7 +117,7 @@ def test_the_command_plays_and_goes_on(tmp_path: Path, capsys: pytest.CaptureFix
     assert run_command_line(["play", "help-find", "--agent", "anne=search:0", "--seed", "1"]) == 1
     assert run_command_line(["show", str(tmp_path / "run" / "run.bn"), "--path", "/anne"]) == 0
     assert run_command_line([*arguments, "--measure-help"]) == 0
-    told = "help: needed by sally; given to sally; superfluous: 0 of 1 programs with help"
+    told = "help: needed by sally; given to sally; superfluous: 0 of 1 program in which "
     assert told in capsys.readouterr().out
     for wrong in (
         ["play"],

@@ -208,13 +208,13 @@ def _verdict(outcome: Outcome) -> str:
 
 
 def failure_lines(outcome: Outcome) -> list[str]:
-    """Return what was not as expected, and why programs failed all the same, a line each."""
+    """Return what was not as expected, and why programs failed of which nothing was expected."""
     number = outcome.scenario.condition
     where = "" if number is None else f"condition {number}: "
     failed = [
         f"{where}{probe.probe.label or f'probe {count}'}: the program failed: {probe.error}"
         for count, probe in enumerate(outcome.probes, start=1)
-        if probe.error is not None and probe.ok is not False
+        if probe.error is not None and probe.ok is None
     ]
     return [*(f"NO: {where}{failure}" for failure in outcome.failures), *failed]
 
