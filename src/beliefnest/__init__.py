@@ -34,6 +34,8 @@ if TYPE_CHECKING:  # Each name is imported when it is first used.
         UnknownNameError,
         WorldError,
     )
+    from beliefnest.minds.inference import Inference
+    from beliefnest.minds.model import MindModel, simplex_grid
     from beliefnest.nest.explain.comparison import Difference, Pose
     from beliefnest.nest.explain.explanation import Explanation
     from beliefnest.nest.explain.parts import Contents
@@ -64,8 +66,10 @@ __all__ = [
     "Episode",
     "Explanation",
     "ForkedError",
+    "Inference",
     "InitialBelief",
     "InputError",
+    "MindModel",
     "ModelError",
     "Nest",
     "PathError",
@@ -89,6 +93,7 @@ __all__ = [
     "UnknownNameError",
     "WorldError",
     "__version__",
+    "simplex_grid",
 ]
 
 _HOMES = {
@@ -102,7 +107,9 @@ _HOMES = {
     "Difference": "beliefnest.nest.explain.comparison",
     "Episode": "beliefnest.episodes.episode",
     "Explanation": "beliefnest.nest.explain.explanation",
+    "Inference": "beliefnest.minds.inference",
     "InitialBelief": "beliefnest.belief.entries",
+    "MindModel": "beliefnest.minds.model",
     "Nest": "beliefnest.nest.face.nest",
     "Perception": "beliefnest.perception.options",
     "Pose": "beliefnest.nest.explain.comparison",
@@ -115,6 +122,7 @@ _HOMES = {
     "Study": "beliefnest.studies.study",
     "StudyResult": "beliefnest.studies.result",
     "Task": "beliefnest.episodes.task",
+    "simplex_grid": "beliefnest.minds.model",
 }
 
 

@@ -97,7 +97,7 @@ def begun(
             # Nobody makes a nest again that was in memory.
             start = b"" if store is None else encode_start(setting, name)
             journal.records.set_run(_record(scenario, world, seed, start))
-            recording = Recording(setting, journal, seed, renderer)
+            recording = Recording(setting, journal, seed, renderer, name)
             return Engine(recording, world, reader_of(claims_from, recording)).begin()
     except BaseException:
         journal.close()

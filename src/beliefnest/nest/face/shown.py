@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +22,9 @@ from beliefnest.prompts import Template
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 from beliefnest.world.values import Placements, Position
 
-if TYPE_CHECKING:  # What draws takes long to import, and few nests are drawn.
+if TYPE_CHECKING:  # What draws or infers takes long to import, and few nests are asked to.
+    from beliefnest.minds.inference import Inference
+    from beliefnest.minds.model import MindModel
     from beliefnest.pictures.figure import Figure
     from beliefnest.pictures.scene import Scene
 
@@ -99,6 +101,77 @@ class ShownSimulator(ABC):
         """
         element = element_of(self._recording, container, agent, block)
         return explain(self._recording, self._path, self._tick, element)
+
+    @in_turn
+    def infer(
+        self,
+        model: "MindModel",
+        since: int = 0,
+        until: int | None = None,
+        *,
+        ended: bool = False,
+        smooth: bool = False,
+    ) -> "Inference":
+        """Infer what an agent wants and believes from what this simulator holds of its course.
+
+        Args:
+            model: The hypotheses.
+            since: The tick from which on evidence counts; its percept is the first.
+            until: The last tick; None: the tick that the simulator shows.
+            ended: Whether the agent acted, after the last tick, on the goal at its place.
+            smooth: Whether marginals of `cell` and `credence_now` use later evidence too.
+
+        Raises:
+            InputError: The model does not fit: no goal can be reached in any alternative, no
+                alternative agrees with what the simulator holds, or the agent was never seen.
+            PathError: There is no such agent.
+            TickError: A tick lies in the future or before the start.
+        """
+        from beliefnest.nest.inferring.asking import infer_in
+
+        last = self._tick if until is None else until
+        recording, path = self._recording, self._path
+        return infer_in(recording, path, model, since, last, ended=ended, smooth=smooth)
+
+    @in_turn
+    def credence(
+        self,
+        agent: str,
+        doubt: "Mapping[str, Mapping[str, Any]]",
+        initial: "npt.ArrayLike | None" = None,
+        tick: int | None = None,
+        *,
+        since: int = 0,
+        actual: str | Mapping[str, float] | None = None,
+        lapse: float = 0.0,
+    ) -> dict[str, float]:
+        """Return the credence that this simulator attributes to an agent, from its percepts alone.
+
+        Args:
+            agent: The agent.
+            doubt: Alternatives by name, as for `MindModel`.
+            initial: Probabilities of the alternatives just before the percept at `since`; None:
+                the uniform ones.
+            tick: When; None: the tick that the simulator shows.
+            since: The tick whose percept is the first to count.
+            actual: What is the case, as for `MindModel`.
+            lapse: As for `MindModel`.
+
+        Returns:
+            Probability by name of the alternative.
+
+        Raises:
+            InputError, PathError, TickError: As for `infer`.
+        """
+        from beliefnest.minds.model import MindModel
+        from beliefnest.nest.inferring.asking import credence_in
+
+        rows: Any = None if initial is None else [initial]
+        model = MindModel(
+            agent, {"any": {"at": (0, 0, 0)}}, {"any": 0}, doubt, rows, actual, lapse=lapse
+        )
+        last = self._tick if tick is None else tick
+        return credence_in(self._recording, self._path, model, since, last)
 
     @property
     @in_turn

@@ -38,6 +38,7 @@ class Recording:
         history: From the journal to any node.
         selected: The timeline of every simulator in control mode.
         turn: Held by the thread that is in the nest.
+        world: Name of the world that the nest was opened in.
     """
 
     def __init__(
@@ -46,8 +47,10 @@ class Recording:
         journal: RunJournal,
         seed: int = 0,
         renderer: Renderer | None = None,
+        world: str = "scripted",
     ) -> None:
         self.setting = setting
+        self.world = world
         self.journal = journal
         self.seed = seed
         self.renderer = Renderer() if renderer is None else renderer
@@ -179,7 +182,7 @@ def read_recording(journal: SqliteJournal) -> tuple[Recording, str]:
     """
     run = journal.records.run()
     setting, world = decode_start(run.setting)
-    recording = Recording(setting, journal, run.seed)
+    recording = Recording(setting, journal, run.seed, world=world)
     recording.selected = {
         path: journal.info(TimelineKey(path, branch)).key
         for path, branch in journal.records.selected().items()

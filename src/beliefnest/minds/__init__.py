@@ -1,0 +1,1 @@
+"""Minds read from behaviour: models of what agents want and believe, and posteriors over them."""

@@ -1,0 +1,458 @@
+"""The result of an inference: a posterior over hypotheses at every tick, and questions to it."""
+
+import math
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.errors import InputError, TickError
+from beliefnest.minds.model import MindModel
+from beliefnest.minds.tracking import Step, Tracker, log_sum
+from beliefnest.world.values import Position
+
+if TYPE_CHECKING:  # Few results become tables.
+    import pandas as pd
+
+__all__ = ["Change", "Impossible", "Inference", "reported_credence"]
+
+Floats = npt.NDArray[np.float64]
+Value = Hashable
+
+_AXES = "actual, rationality, utility, credence"
+
+
+@dataclass(frozen=True, slots=True)
+class Impossible:
+    """The first piece of evidence that no hypothesis explains.
+
+    Attributes:
+        tick: When.
+        text: What the agent did.
+    """
+
+    tick: int
+    text: str
+
+    def __str__(self) -> str:
+        return f"tick {self.tick}: the agent {self.text}, which no hypothesis explains"
+
+
+@dataclass(frozen=True)
+class Change:
+    """What one piece of evidence changed.
+
+    Attributes:
+        tick: When.
+        text: The evidence in words.
+        bits: By factor, the divergence of its marginal after the step from that before
+            (Kullback and Leibler), in bits.
+    """
+
+    tick: int
+    text: str
+    bits: Mapping[str, float]
+
+    def __str__(self) -> str:
+        told = sorted(self.bits.items(), key=lambda pair: -pair[1])
+        words = ", ".join(f"{name} by {bits:.2f} bits" for name, bits in told if bits >= 0.005)
+        return f"tick {self.tick}: the agent {self.text}; this changes {words or 'nothing'}"
+
+
+def reported_credence(row: Floats, possible: int, believed: int, lapse: float) -> Floats:
+    """Return the credence that is reported for a knowledge, `lapse` of what is contradicted left.
+
+    Args:
+        row: float64 (..., alternatives), the initial credence.
+        possible: Alternatives that no percept contradicts.
+        believed: Those of them that claims allow.
+        lapse: Factor on the initial credence in the others.
+    """
+    count = row.shape[-1]
+    allowed = np.array([believed >> a & 1 for a in range(count)], dtype=np.bool_)
+    refuted = np.array([not possible >> a & 1 for a in range(count)], dtype=np.bool_)
+    kept = np.where(allowed, row, 0.0)
+    nothing = kept.sum(axis=-1, keepdims=True) <= 0
+    kept = np.where(nothing, allowed / allowed.sum(), kept)
+    kept = kept + np.where(refuted, lapse * row, 0.0)
+    shares: Floats = kept / kept.sum(axis=-1, keepdims=True)
+    return shares
+
+
+class Inference:
+    """Probabilities of hypotheses about one agent, after each piece of evidence.
+
+    Factors are `utility.GOAL`, `credence.ALTERNATIVE` (the initial one),
+    `credence_now.ALTERNATIVE`, `actual.ALTERNATIVE` (1 if it is the case), `rationality` if the
+    model lists several, and `cell`.
+
+    Attributes:
+        model: The hypotheses.
+        since: The tick from which on evidence counts.
+        until: The last tick.
+    """
+
+    def __init__(
+        self,
+        model: MindModel,
+        since: int,
+        until: int,
+        trackers: Sequence[Tracker],
+        rerun: Callable[[int], "Inference"],
+        smoothed: "Sequence[Step] | None" = None,
+    ) -> None:
+        self.model, self.since, self.until = model, since, until
+        self._trackers, self._rerun = tuple(trackers), rerun
+        self._steps = _merged([tracker.steps for tracker in trackers])
+        self._smoothed = smoothed
+        possible = [bool(np.isfinite(step.weights).any()) for step in self._steps]
+        self._failed = None if all(possible) else possible.index(False)
+        if self._failed is not None:
+            self._known = self._steps[: self._failed] or self._steps[:1]
+        else:
+            self._known = self._steps
+
+    @property
+    def factors(self) -> tuple[str, ...]:
+        """Names of all factors."""
+        model = self.model
+        names = [f"utility.{goal}" for goal in model.goals]
+        if model.doubt is not None:
+            for kind in ("credence", "credence_now", "actual"):
+                names += [f"{kind}.{name}" for name in model.alternative_names]
+        if len(model.rationalities) > 1:
+            names.append("rationality")
+        return (*names, "cell")
+
+    @property
+    def impossible(self) -> Impossible | None:
+        """The first evidence that no hypothesis explains; the posterior is the one before it."""
+        if self._failed is None:
+            return None
+        step = self._steps[self._failed]
+        return Impossible(step.tick, step.text)
+
+    @property
+    def ticks(self) -> tuple[int, ...]:
+        """Ticks at which evidence came, in order."""
+        return tuple(dict.fromkeys(step.tick for step in self._known))
+
+    @property
+    def log_evidence(self) -> float:
+        """Natural logarithm of the probability of all evidence; -inf if it is impossible."""
+        if self._failed is not None:
+            return -math.inf
+        step = self._steps[-1]
+        return float(log_sum((self._log_prior(step) + step.weights).reshape(-1)))
+
+    def posterior(self, tick: int | None = None) -> Floats:
+        """Return the probabilities of all hypotheses at a tick.
+
+        Returns:
+            float64 (actuals, rationalities, utilities, credences), sums to 1.
+        """
+        return self._posterior_of(self._step(tick))
+
+    def mean(self, factor: str, tick: int | None = None) -> float:
+        """Return the posterior mean of a factor at a tick; None: at the last one.
+
+        Raises:
+            InputError: There is no such factor, or its values are no numbers.
+            TickError: The tick lies before the first evidence or after the last tick.
+        """
+        if factor == "cell":
+            raise InputError("cells have no mean; ask for marginal('cell')")
+        marginal = self.marginal(factor, tick)
+        return math.fsum(float(value) * share for value, share in marginal.items())
+
+    def marginal(self, factor: str, tick: int | None = None) -> dict[Any, float]:
+        """Return the probability of each value of a factor at a tick; None: at the last one.
+
+        Raises:
+            InputError, TickError: As for `mean`.
+        """
+        return self._marginal_of(factor, self._number(tick))
+
+    def joint(self, *factors: str, tick: int | None = None) -> dict[tuple[Any, ...], float]:
+        """Return the probability of each combination of values of some factors.
+
+        Raises:
+            InputError: A factor is unknown, or is none of the hypotheses' own: `cell` and
+                `credence_now` change from step to step.
+            TickError: As for `mean`.
+        """
+        posterior = self.posterior(tick)
+        shares: dict[tuple[Any, ...], float] = {}
+        columns = [np.broadcast_to(self._values(name), posterior.shape) for name in factors]
+        flat = [column.reshape(-1).tolist() for column in columns]
+        for values, share in zip(
+            zip(*flat, strict=True), posterior.reshape(-1).tolist(), strict=True
+        ):
+            shares[values] = shares.get(values, 0.0) + share
+        return dict(sorted(shares.items()))
+
+    def map(self, tick: int | None = None) -> dict[str, Any]:
+        """Return the most probable hypothesis with its probability; of equal ones the first."""
+        posterior = self.posterior(tick)
+        return self._told(posterior, int(np.argmax(posterior)))
+
+    def hypotheses(self, tick: int | None = None) -> list[dict[str, Any]]:
+        """Return all hypotheses with their probabilities, in the order of the model."""
+        posterior = self.posterior(tick)
+        return [self._told(posterior, number) for number in range(posterior.size)]
+
+    def frame(self) -> "pd.DataFrame":
+        """Return the marginals of all factors at every tick with evidence.
+
+        Returns:
+            Columns tick, factor, value, probability.
+        """
+        import pandas as pd
+
+        rows = [
+            (tick, factor, value, share)
+            for tick in self.ticks
+            for factor in self.factors
+            for value, share in self.marginal(factor, tick).items()
+        ]
+        return pd.DataFrame(rows, columns=["tick", "factor", "value", "probability"])
+
+    def explain(self, tick: int | None = None) -> list[Change]:
+        """Return which evidence changed which factor, by how much; None: at all ticks.
+
+        Raises:
+            TickError: As for `mean`.
+        """
+        if tick is not None:
+            self._number(tick)
+        names = [
+            name for name in self.factors if name != "cell" and not name.startswith("credence_now.")
+        ]
+        changes = []
+        before = {name: self._prior_marginal(name) for name in names}
+        for number, step in enumerate(self._known):
+            after = {name: self._marginal_of(name, number) for name in names}
+            if tick is None or step.tick == tick:
+                bits = {name: _divergence(after[name], before[name]) for name in names}
+                changes.append(Change(step.tick, step.text, bits))
+            before = after
+        return changes
+
+    def predict(self, steps: int = 1, tick: int | None = None) -> list[dict[Position, float]]:
+        """Return where the agent will be after 1, 2, ... actions, by the posterior at a tick.
+
+        Whoever has acted on a goal stays where it is.
+
+        Raises:
+            InputError: The number of steps is none.
+            TickError: As for `mean`.
+        """
+        if isinstance(steps, bool) or not isinstance(steps, int) or steps < 1:
+            raise InputError(f"steps is {steps!r}; give a whole number from 1")
+        if self._failed is not None and tick is None:
+            tick = self._known[-1].tick
+        if tick is not None:
+            self._number(tick)
+            if tick < self.until:
+                return self._rerun(tick).predict(steps)
+        step = self._known[-1]
+        actual = self._log_actual(step)
+        found = []
+        trackers = [tracker.again() for tracker in self._trackers]
+        for _ in range(steps):
+            shares: dict[Position, list[float]] = {}
+            for tracker in trackers:
+                tracker.foresee()
+                for a, masses in enumerate(tracker.masses()):
+                    for state, mass in masses.items():
+                        shares.setdefault(state[0], []).append(float(actual[a] + log_sum(mass)))
+            found.append(_shares(shares))
+        return found
+
+    def at(self, tick: int) -> "Inference":
+        """Return the inference as it was at a tick: nothing after it counts."""
+        self._number(tick)
+        return self._rerun(tick)
+
+    def __repr__(self) -> str:
+        head = f"<inference about {self.model.agent}"
+        if self._failed is not None:
+            return f"{head}: impossible from {self.impossible}>"
+        means = [
+            f"{name} {self.mean(name):.3g}"
+            for name in self.factors
+            if name != "cell" and not name.startswith("credence_now.")
+        ]
+        return f"{head}, ticks {self.since} to {self.until}: {', '.join(means)}>"
+
+    # What stands behind them
+
+    def _number(self, tick: int | None) -> int:
+        if tick is None:
+            return len(self._known) - 1
+        if not self.since <= tick <= self.until:
+            raise TickError(
+                f"tick {tick} is not in this inference, which is of ticks {self.since} to "
+                f"{self.until}"
+            )
+        numbers = [number for number, step in enumerate(self._known) if step.tick <= tick]
+        return numbers[-1] if numbers else -1
+
+    def _step(self, tick: int | None) -> Step | None:
+        number = self._number(tick)
+        return None if number < 0 else self._known[number]
+
+    def _log_actual(self, step: Step | None) -> Floats:
+        """Log weights of what may be the case, of those that agree with the node."""
+        weights = self.model.actual_weights
+        names = self.model.alternative_names
+        agrees = -1 if step is None else step.agrees
+        given = [1.0 if weights is None else weights[name] for name in names]
+        if weights is None:
+            given = [weight * (agrees >> a & 1) for a, weight in enumerate(given)]
+        with np.errstate(divide="ignore"):
+            logs: Floats = np.log(np.array(given)) - np.log(sum(given))
+        return logs
+
+    @cached_property
+    def _log_weights(self) -> Floats:
+        """Log prior (rationalities, utilities, credences)."""
+        count = len(self.model.rationalities)
+        with np.errstate(divide="ignore"):
+            prior = np.log(self.model.prior_weights) - math.log(count)
+        return np.broadcast_to(prior, (count, *prior.shape))
+
+    def _log_prior(self, step: Step | None) -> Floats:
+        prior: Floats = self._log_actual(step)[:, None, None, None] + self._log_weights
+        return prior
+
+    def _posterior_of(self, step: Step | None) -> Floats:
+        logs = self._log_prior(step)
+        if step is not None:
+            logs = logs + step.weights
+        shares: Floats = np.exp(logs - log_sum(logs.reshape(-1)))
+        return shares
+
+    def _prior_marginal(self, factor: str) -> dict[Any, float]:
+        return self._grouped(factor, self._posterior_of(None))
+
+    def _marginal_of(self, factor: str, number: int) -> dict[Any, float]:
+        if factor not in self.factors:
+            raise InputError(f"no factor {factor!r}; there are {', '.join(self.factors)}")
+        step = None if number < 0 else self._known[number]
+        kind, _, name = factor.partition(".")
+        if kind in ("cell", "credence_now"):
+            if step is None:
+                raise TickError("the agent had not been seen at that tick; ask from its first one")
+            return self._changing(kind, name, self._smooth_step(number))
+        return self._grouped(factor, self._posterior_of(step))
+
+    def _smooth_step(self, number: int) -> Step:
+        if self._smoothed is None:
+            return self._known[number]
+        return self._smoothed[number]
+
+    def _grouped(self, factor: str, posterior: Floats) -> dict[Any, float]:
+        values = self._values(factor)
+        axes = tuple(axis for axis, size in enumerate(values.shape) if size == 1)
+        shares: dict[Any, float] = {}
+        summed = posterior.sum(axis=axes).reshape(-1).tolist()
+        for value, share in zip(values.reshape(-1).tolist(), summed, strict=True):
+            shares[value] = shares.get(value, 0.0) + share
+        return dict(sorted(shares.items()))
+
+    def _changing(self, kind: str, name: str, step: Step) -> dict[Any, float]:
+        actual = self._log_actual(step)
+        logs: dict[Any, list[float]] = {}
+        rows = self.model.credence_rows
+        for a, masses in enumerate(step.states):
+            for (cell, possible, believed, _), mass in masses.items():
+                if kind == "cell":
+                    logs.setdefault(cell, []).append(float(actual[a] + log_sum(mass)))
+                    continue
+                reported = reported_credence(rows, possible, believed, self.model.lapse)
+                column = reported[:, self.model.alternative_names.index(name)]
+                for value, weight in zip(column.tolist(), mass.tolist(), strict=True):
+                    logs.setdefault(value, []).append(float(actual[a] + weight))
+        return _shares(logs)
+
+    def _values(self, factor: str) -> npt.NDArray[np.float64]:
+        """Values of a factor, on the axes (actual, rationality, utility, credence)."""
+        if factor not in self.factors:
+            raise InputError(f"no factor {factor!r}; there are {', '.join(self.factors)}")
+        kind, _, name = factor.partition(".")
+        model = self.model
+        if kind == "utility":
+            number = list(model.goals).index(name)
+            return model.utility_rows[:, number].reshape(1, 1, -1, 1)
+        if kind == "credence":
+            number = model.alternative_names.index(name)
+            return model.credence_rows[:, number].reshape(1, 1, 1, -1)
+        if kind == "actual":
+            flags = [float(other == name) for other in model.alternative_names]
+            return np.array(flags).reshape(-1, 1, 1, 1)
+        if kind == "rationality":
+            return np.array(model.rationalities).reshape(1, -1, 1, 1)
+        raise InputError(
+            f"{factor} is no part of a hypothesis: it changes from step to step; ask for its "
+            "marginal"
+        )
+
+    def _told(self, posterior: Floats, number: int) -> dict[str, Any]:
+        a, b, u, w = (int(part) for part in np.unravel_index(number, posterior.shape))
+        model = self.model
+        names = model.alternative_names
+        told: dict[str, Any] = {
+            f"utility.{goal}": float(model.utility_rows[u, n]) for n, goal in enumerate(model.goals)
+        }
+        if model.doubt is not None:
+            told |= {
+                f"credence.{name}": float(model.credence_rows[w, n]) for n, name in enumerate(names)
+            }
+            told["actual"] = names[a]
+        if len(model.rationalities) > 1:
+            told["rationality"] = model.rationalities[b]
+        return {**told, "probability": float(posterior[a, b, u, w])}
+
+
+def _merged(parts: Sequence[Sequence[Step]]) -> list[Step]:
+    """Join the steps of chunks of utilities."""
+    if len(parts) == 1:
+        return list(parts[0])
+    return list(_joined_steps(parts))
+
+
+def _joined_steps(parts: Sequence[Sequence[Step]]) -> Iterator[Step]:
+    longest = max(parts, key=len)
+    for number, told in enumerate(longest):
+        at = [steps[min(number, len(steps) - 1)] for steps in parts]
+        weights = np.concatenate([step.weights for step in at], axis=2)
+        states = []
+        for a in range(len(told.states)):
+            logs: dict[Any, list[Floats]] = {}
+            for step in at:
+                for state, mass in step.states[a].items():
+                    logs.setdefault(state, []).append(mass)
+            states.append({state: log_sum(np.stack(each)) for state, each in logs.items()})
+        yield Step(told.tick, told.text, weights, tuple(states), told.agrees, told.is_movement)
+
+
+def _shares(logs: Mapping[Any, Sequence[float]]) -> dict[Any, float]:
+    """Probabilities of values from logarithms of their parts."""
+    values = sorted(logs)
+    totals = np.array([float(log_sum(np.array(logs[value]))) for value in values])
+    shares = np.exp(totals - log_sum(totals))
+    return {value: share for value, share in zip(values, shares.tolist(), strict=True) if share > 0}
+
+
+def _divergence(after: Mapping[Any, float], before: Mapping[Any, float]) -> float:
+    """Kullback and Leibler's divergence of one distribution from another, in bits."""
+    terms = [
+        share * math.log2(share / before[value])
+        for value, share in after.items()
+        if share > 0 and before.get(value, 0) > 0
+    ]
+    return max(0.0, math.fsum(terms))

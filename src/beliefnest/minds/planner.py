@@ -1,0 +1,235 @@
+"""The planner: exact values of cells and knowledge, for many hypotheses at once.
+
+A state is a cell and a knowledge: the alternatives that are possible by percepts, and those of
+them that claims allow, which are believed. Knowledge only shrinks, so that values are computed
+set by set, smaller sets first, each by value iteration over the cells at which nothing more is
+perceived; from any other cell the next percept leads to a smaller set. What is certain has one
+value for all credences.
+"""
+
+import hashlib
+from collections import OrderedDict
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.minds.relaxing import relax
+from beliefnest.minds.stage import Stage, numbers_in
+
+__all__ = ["Knowledge", "PlanRules", "Planner", "planner_for"]
+
+Floats = npt.NDArray[np.float64]
+
+Knowledge = tuple[int, int]
+"""Alternatives that are possible by percepts, and those that are believed: a part of them."""
+
+_ROOM = 256 * 2**20
+"""Bytes of values that all planners keep together."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlanRules:
+    """Costs and discount of a model."""
+
+    discount: float
+    step_cost: float
+    stay_cost: float
+    act_cost: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Values:
+    """Values of one knowledge.
+
+    Attributes:
+        rows: By cell its row in the table, or -1.
+        table: float64 (rows, utilities, credences or 1).
+    """
+
+    rows: npt.NDArray[np.int64]
+    table: Floats
+
+
+class Planner:
+    """Values of one stage for utilities (u, goals) and credences (w, alternatives)."""
+
+    def __init__(
+        self, stage: Stage, rules: PlanRules, utilities: Floats, credences: Floats
+    ) -> None:
+        self.stage, self.rules = stage, rules
+        self._utilities, self._credences = utilities, credences
+        self._solved: dict[Knowledge, _Values] = {}
+        self._weights: dict[int, Floats] = {}
+
+    @property
+    def size(self) -> int:
+        """Bytes that its values take."""
+        return sum(each.table.nbytes for each in self._solved.values())
+
+    def actions(self, cell: int, knowledge: Knowledge) -> npt.NDArray[np.bool_]:
+        """Which actions there are: stay, steps, openings, acts on goals."""
+        stage, possible = self.stage, knowledge[0]
+        free = np.ones(1 + stage.moves.shape[2], dtype=np.bool_)
+        opens = [
+            bool(stage.reach[box, cell]) and self._differs(box, possible)
+            for box in range(len(stage.boxes))
+        ]
+        acts = np.logical_and.reduce(stage.acts[numbers_in(possible), :, cell], axis=0)
+        return np.concatenate([free, np.array(opens, dtype=np.bool_), acts])
+
+    def q(self, cell: int, knowledge: Knowledge) -> Floats:
+        """Q of all actions: (actions, utilities, credences or 1); -inf where there is none."""
+        stage, rules = self.stage, self.rules
+        possible, believed = knowledge
+        weights = self.weights(believed)
+        available = self.actions(cell, knowledge)
+        shape = (len(self._utilities), weights.shape[1])
+        q = np.full((len(available), *shape), -np.inf)
+        members = numbers_in(believed)
+        steps = stage.moves.shape[2]
+        for action in range(1 + steps):
+            cost = rules.stay_cost if action == 0 else rules.step_cost
+            total = np.zeros(shape)
+            for number, a in enumerate(members):
+                to = cell if action == 0 else int(stage.moves[a, cell, action - 1])
+                kept = int(stage.same[a, to])
+                total += weights[number] * self._value(to, possible & kept, believed & kept)
+            q[action] = rules.discount * total - cost
+        for box in range(len(stage.boxes)):
+            action = 1 + steps + box
+            if available[action]:
+                total = np.zeros(shape)
+                for number, a in enumerate(members):
+                    kept = int(stage.content[box, a]) & int(stage.same[a, cell])
+                    total += weights[number] * self._value(cell, possible & kept, believed & kept)
+                q[action] = rules.discount * total - rules.act_cost
+        first = 1 + steps + len(stage.boxes)
+        for goal in range(stage.acts.shape[1]):
+            if available[first + goal]:
+                q[first + goal] = self._utilities[:, goal, None] - rules.act_cost
+        return q
+
+    def weights(self, believed: int) -> Floats:
+        """Credence in each member of a set: (members, credences), or (1, 1) if there is one."""
+        found = self._weights.get(believed)
+        if found is None:
+            members = numbers_in(believed)
+            if len(members) == 1:
+                found = np.ones((1, 1))
+            else:
+                part = self._credences[:, members].T
+                total = part.sum(axis=0)
+                found = np.where(total > 0, part / np.where(total > 0, total, 1), 1 / len(members))
+            self._weights[believed] = found
+        return found
+
+    def _differs(self, box: int, possible: int) -> bool:
+        first = numbers_in(possible)[0]
+        return int(self.stage.content[box, first]) & possible != possible
+
+    def _value(self, cell: int, possible: int, believed: int) -> Floats:
+        values = self._solve((possible, believed))
+        table: Floats = values.table[values.rows[cell]]
+        return table
+
+    def _solve(self, knowledge: Knowledge) -> _Values:
+        found = self._solved.get(knowledge)
+        if found is None:
+            found = self._solved[knowledge] = self._computed(knowledge)
+        return found
+
+    def _computed(self, knowledge: Knowledge) -> _Values:
+        stage, rules = self.stage, self.rules
+        possible, believed = knowledge
+        members, everyone = numbers_in(believed), numbers_in(possible)
+        weights = self.weights(believed)
+        shape = (len(self._utilities), weights.shape[1])
+        # Only where all that is possible looks the same can the agent be with this knowledge.
+        cells = np.flatnonzero(stage.same[everyone[0]] & possible == possible)
+        rows = np.full(len(stage.cells), -1, dtype=np.int64)
+        rows[cells] = np.arange(len(cells))
+        start = 0.0 if rules.stay_cost == 0 else -rules.stay_cost / (1 - rules.discount)
+        table = np.full((len(cells), *shape), start)
+        acts = np.logical_and.reduce(stage.acts[everyone], axis=0)
+        for goal in range(stage.acts.shape[1]):
+            at = np.flatnonzero(acts[goal, cells])
+            worth = self._utilities[:, goal, None] - rules.act_cost
+            table[at] = np.maximum(table[at], worth)
+        for box in range(len(stage.boxes)):
+            at = np.flatnonzero(stage.reach[box, cells])
+            if len(at) and self._differs(box, possible):
+                total = np.zeros((len(at), *shape))
+                for number, a in enumerate(members):
+                    kept = int(stage.content[box, a])
+                    after = self._solve((possible & kept, believed & kept))
+                    total += weights[number] * after.table[after.rows[cells[at]]]
+                table[at] = np.maximum(table[at], rules.discount * total - rules.act_cost)
+        steps = stage.moves.shape[2]
+        inner = np.full((len(cells), steps), -1, dtype=np.int32)
+        mixes: list[tuple[int, Floats, list[tuple[int, Floats]]]] = []
+        for step in range(steps):
+            to: npt.NDArray[np.int64] = stage.moves[members][:, cells, step].astype(np.int64)
+            left = np.take_along_axis(stage.same[members], to, axis=1) & possible
+            stays_in = left == possible
+            plain = np.logical_and.reduce(stays_in & (to == to[0]), axis=0)
+            inner[plain, step] = rows[to[0, plain]]
+            at = np.flatnonzero(~plain)
+            if not len(at):
+                continue
+            total = np.zeros((len(at), *shape))
+            for number in range(len(members)):
+                for smaller in np.unique(left[number, at]).tolist():
+                    if smaller == possible:
+                        continue
+                    which = np.flatnonzero(left[number, at] == smaller)
+                    after = self._solve((smaller, smaller & believed))
+                    total[which] += weights[number] * after.table[after.rows[to[number, at[which]]]]
+            leaves = ~np.logical_or.reduce(stays_in[:, at], axis=0)
+            out = at[leaves]
+            table[out] = np.maximum(table[out], rules.discount * total[leaves] - rules.step_cost)
+            for row in np.flatnonzero(~leaves).tolist():
+                within = [
+                    (int(rows[to[n, at[row]]]), np.broadcast_to(weights[n], shape).reshape(-1))
+                    for n in range(len(members))
+                    if stays_in[n, at[row]]
+                ]
+                mixes.append((int(at[row]), total[row].reshape(-1), within))
+        flat = table.reshape(len(cells), -1)
+        relax(flat, inner, mixes, rules.discount, rules.step_cost)
+        return _Values(rows, table)
+
+
+class _Cache:
+    """Planners by content, the oldest dropped when their values take too much room."""
+
+    def __init__(self) -> None:
+        self._planners: OrderedDict[bytes, Planner] = OrderedDict()
+
+    def planner(
+        self, stage: Stage, rules: PlanRules, utilities: Floats, credences: Floats
+    ) -> Planner:
+        digest = hashlib.blake2b(stage.key)
+        digest.update(repr((rules, utilities.shape, credences.shape)).encode())
+        digest.update(np.ascontiguousarray(utilities).tobytes())
+        digest.update(np.ascontiguousarray(credences).tobytes())
+        key = digest.digest()
+        found = self._planners.pop(key, None) or Planner(stage, rules, utilities, credences)
+        room = _ROOM - found.size
+        for other in reversed(list(self._planners)):
+            room -= self._planners[other].size
+            if room < 0:
+                del self._planners[other]
+        self._planners[key] = found
+        return found
+
+
+@lru_cache(maxsize=1)
+def _cache() -> _Cache:
+    return _Cache()
+
+
+def planner_for(stage: Stage, rules: PlanRules, utilities: Floats, credences: Floats) -> Planner:
+    """Return the planner of a stage and hypotheses; equal ones are worked out once."""
+    return _cache().planner(stage, rules, utilities, credences)

@@ -1,0 +1,772 @@
+"""The filter: how well each hypothesis explains what an observer perceived of an agent.
+
+For each alternative that may be actual, and each hypothesis, a weight is kept for every state in
+which the agent may be: its cell, its knowledge, and whether its course has ended. While the agent
+is in sight there is one state or few; in a gap the weights spread as the policy says, and those of
+states in which the observer would have seen the agent, or would not, vanish. Weights are logarithms
+of probabilities of all evidence so far; -inf stands for what is impossible alone.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import ceil
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.minds.evidence import Moment
+from beliefnest.minds.model import MindModel
+from beliefnest.minds.planner import Knowledge, Planner, PlanRules, planner_for
+from beliefnest.minds.scene import Scene
+from beliefnest.minds.stage import Stage, shortest
+from beliefnest.minds.worlds import middle_of
+from beliefnest.world.values import Position
+
+__all__ = ["Hypotheses", "State", "States", "Step", "Tracker", "known_after", "log_sum"]
+
+Floats = npt.NDArray[np.float64]
+
+State = tuple[Position, int, int, bool]
+"""A cell, the knowledge (possible, believed), and whether the course has ended."""
+
+States = tuple[Mapping[State, Floats], ...]
+"""By actual alternative and state, log weights (rationalities, utilities, credences)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Hypotheses:
+    """The part of a model's hypotheses that is worked on at once.
+
+    Attributes:
+        rules: Costs and discount.
+        utilities: float64 (utilities, goals).
+        credences: float64 (credences, alternatives).
+        rationalities: Inverse temperatures.
+        step_ticks: Ticks without movement that are a stay.
+        stays: Whether these are evidence.
+    """
+
+    rules: PlanRules
+    utilities: Floats
+    credences: Floats
+    rationalities: tuple[float, ...]
+    step_ticks: int
+    stays: bool
+
+    @classmethod
+    def of(
+        cls,
+        model: MindModel,
+        step_ticks: int,
+        utilities: slice = slice(None),
+        credences: slice = slice(None),
+        rationalities: slice = slice(None),
+    ) -> "Hypotheses":
+        """Return some of the hypotheses of a model."""
+        rules = PlanRules(
+            float(model.discount),
+            float(model.step_cost),
+            float(model.stay_cost),
+            float(model.act_cost),
+        )
+        return cls(
+            rules,
+            model.utility_rows[utilities],
+            model.credence_rows[credences],
+            model.rationalities[rationalities],
+            step_ticks,
+            model.stays,
+        )
+
+    @property
+    def alternatives(self) -> int:
+        """Number of alternatives."""
+        return int(self.credences.shape[1])
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Numbers of rationalities, utilities and credences."""
+        return len(self.rationalities), len(self.utilities), len(self.credences)
+
+    def planner(self, stage: Stage) -> Planner:
+        """Return the planner of a stage."""
+        return planner_for(stage, self.rules, self.utilities, self.credences)
+
+    def log_policy(self, stage: Stage, cell: Position, knowledge: Knowledge) -> Floats:
+        """Log probabilities (actions, rationalities, utilities, credences or 1) in a state."""
+        q = self.planner(stage).q(stage.index[cell], knowledge)
+        betas = np.array(self.rationalities)[:, None, None]
+        # An action that there is not has no probability, however irrational the agent is.
+        there = np.logical_or.reduce(np.isfinite(q), axis=(1, 2))
+        scaled = np.where(there[:, None, None], q, 0.0)[:, None] * betas
+        scaled[~there] = -np.inf
+        policy: Floats = scaled - log_sum(scaled)
+        return policy
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """The filter after a piece of evidence.
+
+    Attributes:
+        tick: When.
+        text: The evidence in words.
+        weights: float64 (actuals, rationalities, utilities, credences), log probability of all
+            evidence so far.
+        states: By actual alternative and state, the same summed with the prior over rationalities
+            and utilities: log weights (credences,).
+        agrees: The alternatives that have agreed with the node until then.
+        is_movement: Whether it is something that the agent did.
+    """
+
+    tick: int
+    text: str
+    weights: Floats
+    states: tuple[Mapping[State, Floats], ...]
+    agrees: int
+    is_movement: bool
+
+
+def log_sum(parts: Floats) -> Floats:
+    """Log of the sum of exponentials along the first axis; -inf where all are."""
+    top = parts.max(axis=0)
+    safe = np.where(np.isfinite(top), top, 0.0)
+    with np.errstate(divide="ignore"):
+        total: Floats = safe + np.log(np.exp(parts - safe).sum(axis=0))
+    return total
+
+
+def _joined(parts: Iterable[Floats]) -> Floats:
+    listed = list(parts)
+    return listed[0] if len(listed) == 1 else log_sum(np.stack(listed))
+
+
+class _Sums:
+    """Weights being added up by state."""
+
+    def __init__(self) -> None:
+        self._parts: dict[State, list[Floats]] = {}
+
+    def add(self, state: State, weights: Floats) -> None:
+        self._parts.setdefault(state, []).append(weights)
+
+    def total(self) -> dict[State, Floats]:
+        return {state: _joined(parts) for state, parts in self._parts.items()}
+
+
+@dataclass
+class _Gap:
+    """The agent out of sight.
+
+    Attributes:
+        start: The last tick at which it was seen.
+        cell: Where it was then.
+        before: The states then.
+        seen: The moments since, and the one before.
+        count: Actions that have ended since then.
+    """
+
+    start: int
+    cell: Position
+    before: States
+    moments: list[Moment]
+    count: int = 0
+
+
+@dataclass
+class Tracker:
+    """A filter under way; `again` makes a copy that goes on by itself.
+
+    Attributes:
+        hypotheses: What is tracked.
+        log_prior: float64 (utilities, credences), with which `Step.states` are summed.
+        states: Weights after the latest evidence.
+        steps: The filter after each piece of evidence.
+        tick: The last tick that was taken into account.
+        kept: The states before each action and after it, if these are to be kept.
+    """
+
+    hypotheses: Hypotheses
+    log_prior: Floats
+    states: States = ()
+    steps: list[Step] = field(default_factory=list)
+    tick: int = -1
+    keeps: bool = False
+    trail: list[tuple[int, Stage | None, States]] = field(default_factory=list)
+    _agrees: int = -1
+    _moment: Moment | None = None
+    _cell: Position | None = None
+    _quiet: int = 0
+    _gap: _Gap | None = None
+    _over: bool = False
+    _claims: tuple[int, ...] = ()
+
+    def again(self) -> "Tracker":
+        """Return a copy that goes on by itself."""
+        gap = self._gap
+        copied = (
+            None
+            if gap is None
+            else _Gap(gap.start, gap.cell, gap.before, list(gap.moments), gap.count)
+        )
+        return Tracker(
+            self.hypotheses,
+            self.log_prior,
+            self.states,
+            list(self.steps),
+            self.tick,
+            self.keeps,
+            list(self.trail),
+            self._agrees,
+            self._moment,
+            self._cell,
+            self._quiet,
+            copied,
+            self._over,
+            self._claims,
+        )
+
+    @property
+    def is_over(self) -> bool:
+        """Whether no further evidence counts: the agent acted, or nothing explains its course."""
+        return self._over
+
+    def follow(self, moments: Sequence[Moment], until: int) -> None:
+        """Take moments into account that follow the latest one, and quiet ticks up to one."""
+        for moment in moments:
+            if self._moment is None:
+                if moment.cell is None:
+                    self._claims += moment.claims
+                else:
+                    self._begin(moment)
+                continue
+            self._pass_to(moment.tick - 1)
+            self._take(moment)
+        self._pass_to(until)
+
+    def finished(self, until: int, *, ended: bool) -> "Tracker":
+        """Return the filter as it is at a tick, with what counts only if it is the last one."""
+        last = self.again()
+        gap = last._gap
+        if gap is not None and not last._over:
+            due = round((until - gap.start) / last.hypotheses.step_ticks)
+            if due > gap.count:
+                last._act_unseen(until)
+        if ended and not last._over:
+            last._end(until)
+        return last
+
+    # Moments in sight
+
+    def _begin(self, moment: Moment) -> None:
+        everyone = (1 << self.hypotheses.alternatives) - 1
+        assert moment.cell is not None
+        zeros = np.zeros(self.hypotheses.shape)
+        knowledge = (everyone, everyone)
+        for mask in self._claims:
+            knowledge = _told(knowledge, mask)
+        start: State = (moment.cell, *knowledge, False)
+        self.states = tuple({start: zeros} for _ in range(self.hypotheses.alternatives))
+        self._cell = moment.cell
+        self._perceive(moment)
+        self._note(moment.tick, f"is first seen at {moment.cell}", is_movement=False)
+
+    def _take(self, moment: Moment) -> None:
+        if self._over:
+            self._moment, self.tick = moment, moment.tick
+            self._agree(moment)
+            return
+        if moment.cell is None:
+            if self._gap is None:
+                assert self._cell is not None and self._moment is not None
+                self._gap = _Gap(moment.tick - 1, self._cell, self.states, [self._moment])
+                self._quiet = 0
+            self._gap.moments.append(moment)
+            self._moment = moment
+            self._agree(moment)
+            due = self._due(moment.tick)
+            if due:
+                self._act_unseen(moment.tick)
+            self._hear(moment)
+            if not due:
+                self.states = self._planned(moment.scene, self.states)
+            self.tick = moment.tick
+            return
+        if self._gap is not None:
+            self._reappear(moment)
+            return
+        self._see(moment)
+
+    def _see(self, moment: Moment) -> None:
+        """Explain what the agent does in sight."""
+        assert moment.cell is not None and self._cell is not None
+        before, cell = self._cell, moment.cell
+        text, is_movement = "", True
+        if cell != before:
+            self._quiet = 0
+            self.states = self._moved(moment, before, cell)
+            text = f"moves from {before} to {cell}"
+        elif moment.act is not None or moment.opened is not None:
+            self._quiet = 0
+            stage = self._stage(before)
+            self.states = self._did(stage, moment)
+            if moment.act is not None:
+                text = f"acts on goal number {moment.act + 1} at {cell}"
+                self._over = True
+            else:
+                text = f"opens the container at {moment.opened}"
+        elif not moment.deed and self._stays_now():
+            self.states = self._stayed(self._stage(before))
+            text = f"stays at {cell}"
+        else:
+            is_movement = False
+        self._keep(moment.tick)
+        self._cell = cell
+        changed = self._perceive(moment)
+        if text or changed:
+            self._note(moment.tick, text or f"perceives at {cell}", is_movement=is_movement)
+
+    def _stays_now(self) -> bool:
+        """Count a tick without movement; whether it completes a stay."""
+        if not self.hypotheses.stays:
+            return False
+        self._quiet += 1
+        if self._quiet < self.hypotheses.step_ticks:
+            return False
+        self._quiet = 0
+        return True
+
+    def _pass_to(self, tick: int) -> None:
+        """Let quiet ticks pass up to one: nothing changes in them."""
+        while self.tick < tick and not self._over and self._moment is not None:
+            self.tick += 1
+            if self._gap is not None:
+                if self._due(self.tick):
+                    self._act_unseen(self.tick)
+            elif self._stays_now():
+                assert self._cell is not None
+                self.states = self._stayed(self._stage(self._cell))
+                self._keep(self.tick)
+                self._note(self.tick, f"stays at {self._cell}", is_movement=True)
+        self.tick = max(self.tick, tick)
+
+    def _stayed(self, stage: Stage) -> States:
+        assert self._cell is not None
+        return self._seen(stage, self.states, self._cell)
+
+    def _moved(self, moment: Moment, before: Position, cell: Position) -> States:
+        """A change of cell: a step, or in one tick a way of several."""
+        stage = self._stage(before)
+        if cell not in stage.index:
+            # The observer did not know until now that one can stand there.
+            stage = self._stage_of(moment.scene, before, cell)
+        found: list[Mapping[State, Floats]] = []
+        for actual, weights in enumerate(self.states):
+            steps = shortest(stage, actual, before, cell)
+            found.append({} if steps is None else self._way(stage, actual, weights, cell, steps))
+        return tuple(found)
+
+    def _way(
+        self,
+        stage: Stage,
+        actual: int,
+        weights: Mapping[State, Floats],
+        cell: Position,
+        steps: int,
+    ) -> Mapping[State, Floats]:
+        """Several actions of which only the last one's end is seen."""
+        for _ in range(steps - 1):
+            weights = self._perceived_by_plan(stage, actual, self._spread(stage, actual, weights))
+        return self._arrived(stage, actual, weights, cell)
+
+    def _seen(self, stage: Stage, states: States, cell: Position) -> States:
+        return tuple(
+            self._arrived(stage, actual, weights, cell) for actual, weights in enumerate(states)
+        )
+
+    def _arrived(
+        self, stage: Stage, actual: int, weights: Mapping[State, Floats], cell: Position
+    ) -> Mapping[State, Floats]:
+        """One action without a perceived event, after which the agent is seen in a cell."""
+        sums = _Sums()
+        for state, weight in weights.items():
+            place, possible, believed, has_ended = state
+            if has_ended or place not in stage.index:
+                if place == cell:
+                    sums.add(state, weight)
+                continue
+            number = stage.index[place]
+            moves = stage.moves[actual, number].tolist()
+            goal = stage.index.get(cell, -1)
+            leading = [step + 1 for step, to in enumerate(moves) if to == goal]
+            if place == cell:
+                leading.insert(0, 0)
+            policy = None
+            if leading:
+                policy = self.hypotheses.log_policy(stage, place, (possible, believed))
+                sums.add((cell, possible, believed, False), weight + log_sum(policy[leading]))
+            if place == cell and policy is not None:
+                acts = self._unmarked(stage, policy)
+                if acts:
+                    ended = (cell, possible, believed, True)
+                    sums.add(ended, weight + log_sum(policy[acts]))
+        return sums.total()
+
+    def _unmarked(self, stage: Stage, policy: Floats) -> list[int]:
+        """Acts on goals that there are, and that nobody perceives as events."""
+        first = 1 + stage.moves.shape[2] + len(stage.boxes)
+        return [
+            first + goal
+            for goal in range(stage.acts.shape[1])
+            if not stage.marked[goal] and np.isfinite(policy[first + goal]).any()
+        ]
+
+    def _did(self, stage: Stage, moment: Moment) -> States:
+        """A perceived opening or act on a goal."""
+        steps = stage.moves.shape[2]
+        if moment.act is not None:
+            action = 1 + steps + len(stage.boxes) + moment.act
+        elif moment.opened is not None and moment.opened in stage.box_index:
+            action = 1 + steps + stage.box_index[moment.opened]
+        else:
+            return tuple({} for _ in self.states)
+        found = []
+        for weights in self.states:
+            sums = _Sums()
+            for state, weight in weights.items():
+                place, possible, believed, has_ended = state
+                if has_ended or place not in stage.index:
+                    continue
+                policy = self.hypotheses.log_policy(stage, place, (possible, believed))[action]
+                if np.isfinite(policy).any():
+                    after = (place, possible, believed, moment.act is not None)
+                    sums.add(after, weight + policy)
+            found.append(sums.total())
+        return tuple(found)
+
+    def _end(self, tick: int) -> None:
+        """The act after the last tick."""
+        found = []
+        for weights in self.states:
+            sums = _Sums()
+            for state, weight in weights.items():
+                place, possible, believed, has_ended = state
+                stage = self._stage(place)
+                if has_ended or place not in stage.index:
+                    continue
+                policy = self.hypotheses.log_policy(stage, place, (possible, believed))
+                first = 1 + stage.moves.shape[2] + len(stage.boxes)
+                if np.isfinite(policy[first:]).any():
+                    ended = (place, possible, believed, True)
+                    sums.add(ended, weight + log_sum(policy[first:]))
+            found.append(sums.total())
+        self.states = tuple(found)
+        self._note(tick, "acts on a goal where it is, and ends", is_movement=True)
+
+    # Gaps
+
+    def _due(self, tick: int) -> bool:
+        """Whether the next action of a gap has ended at a tick."""
+        assert self._gap is not None
+        return tick >= self._gap.start + (self._gap.count + 1) * self.hypotheses.step_ticks
+
+    def _act_unseen(self, tick: int) -> None:
+        """One action of an agent that is not seen at its end."""
+        assert self._gap is not None and self._moment is not None
+        before = self._gap.moments[-2] if self._moment.tick == tick else self._moment
+        self.states = self._unseen_action(before.scene, self._moment, self.states)
+        self._gap.count += 1
+        self._keep(tick)
+        self._note(tick, "is out of sight", is_movement=True)
+
+    def _unseen_action(self, scene: Scene, moment: Moment, states: States) -> States:
+        found = []
+        for actual, weights in enumerate(states):
+            spread: dict[State, Floats] = {}
+            for stage, part in self._by_stage(scene, weights):
+                spread.update(self._spread(stage, actual, part))
+            hidden = self._hidden(moment, actual, spread)
+            found.append(self._look_round(moment.scene, actual, hidden))
+        return tuple(found)
+
+    def _by_stage(
+        self, scene: Scene, weights: Mapping[State, Floats]
+    ) -> list[tuple[Stage, dict[State, Floats]]]:
+        parts: dict[int, tuple[Stage, dict[State, Floats]]] = {}
+        for state, weight in weights.items():
+            stage = self._stage_of(scene, state[0])
+            parts.setdefault(id(stage), (stage, {}))[1][state] = weight
+        return list(parts.values())
+
+    def _spread(
+        self, stage: Stage, actual: int, weights: Mapping[State, Floats]
+    ) -> Mapping[State, Floats]:
+        """One action of an agent out of sight."""
+        sums = _Sums()
+        steps = stage.moves.shape[2]
+        for state, weight in weights.items():
+            place, possible, believed, has_ended = state
+            if has_ended or place not in stage.index:
+                sums.add(state, weight)
+                continue
+            number = stage.index[place]
+            policy = self.hypotheses.log_policy(stage, place, (possible, believed))
+            leading: dict[int, list[int]] = {number: [0]}
+            for step, to in enumerate(stage.moves[actual, number].tolist()):
+                leading.setdefault(to, []).append(step + 1)
+            for to, actions in leading.items():
+                part = policy[actions[0]] if len(actions) == 1 else log_sum(policy[actions])
+                sums.add((stage.cells[to], possible, believed, False), weight + part)
+            there = np.isfinite(policy[1 + steps :]).any(axis=(1, 2, 3))
+            for action in (np.flatnonzero(there) + 1 + steps).tolist():
+                box = action - 1 - steps
+                if box < len(stage.boxes):
+                    after = _conditioned((possible, believed), int(stage.content[box, actual]))
+                    sums.add((place, *after, False), weight + policy[action])
+                else:
+                    sums.add((place, possible, believed, True), weight + policy[action])
+        return sums.total()
+
+    def _hidden(
+        self, moment: Moment, actual: int, weights: Mapping[State, Floats]
+    ) -> Mapping[State, Floats]:
+        """The states in which the observer, if it is present, does not see the agent."""
+        if moment.watch is None or not weights:
+            return weights
+        feet, yaw, pitch = moment.watch
+        cells = sorted({state[0] for state in weights})
+        eye = (feet[0], feet[1] + _EYE, feet[2])
+        geometry = moment.scene.worlds.geometry(actual)
+        seen = geometry.sees_agents(eye, yaw, pitch, [middle_of(cell) for cell in cells])
+        visible = {cell for cell, is_seen in zip(cells, seen.tolist(), strict=True) if is_seen}
+        return {state: weight for state, weight in weights.items() if state[0] not in visible}
+
+    def _reappear(self, moment: Moment) -> None:
+        """Explain where the agent is when it is seen again."""
+        gap = self._gap
+        assert gap is not None and moment.cell is not None
+        ticks = moment.tick - gap.start
+        usual = round(ticks / self.hypotheses.step_ticks)
+        last = gap.moments[-1]
+        found: list[Mapping[State, Floats]] = []
+        for actual in range(self.hypotheses.alternatives):
+            stage = self._stage_of(last.scene, gap.cell, moment.cell)
+            steps = shortest(stage, actual, gap.cell, moment.cell)
+            if steps is None:
+                found.append({})
+            elif steps <= usual and usual == gap.count + 1:
+                found.append(self._arrived_from(last.scene, actual, self.states[actual], moment))
+            else:
+                found.append(self._again_through(gap, actual, max(usual, steps), moment))
+        self.states = tuple(found)
+        self._gap = None
+        self._quiet = 0
+        self._cell = moment.cell
+        if (moment.act is not None or moment.opened is not None) and not self._is_impossible():
+            self.states = self._did(self._stage_of(moment.scene, moment.cell), moment)
+            self._over = moment.act is not None
+        self._keep(moment.tick)
+        self._perceive(moment)
+        self._note(moment.tick, f"is seen again at {moment.cell}", is_movement=True)
+
+    def _arrived_from(
+        self, scene: Scene, actual: int, weights: Mapping[State, Floats], moment: Moment
+    ) -> Mapping[State, Floats]:
+        assert moment.cell is not None
+        sums = _Sums()
+        for stage, part in self._by_stage(scene, weights):
+            for state, weight in self._arrived(stage, actual, part, moment.cell).items():
+                sums.add(state, weight)
+        return sums.total()
+
+    def _again_through(
+        self, gap: _Gap, actual: int, count: int, moment: Moment
+    ) -> Mapping[State, Floats]:
+        """A gap with as many actions as are given, spread evenly over its ticks."""
+        assert moment.cell is not None
+        weights = gap.before[actual]
+        if count == 0:
+            return {state: weight for state, weight in weights.items() if state[0] == moment.cell}
+        ticks = moment.tick - gap.start
+        ends = [gap.start + ceil(ticks * number / count) for number in range(1, count + 1)]
+        heard = 1
+        for number in range(count - 1):
+            before = _last_until(gap.moments, ends[number] - 1)
+            spread: dict[State, Floats] = {}
+            for stage, part in self._by_stage(before.scene, weights):
+                spread.update(self._spread(stage, actual, part))
+            weights = spread
+            now = _last_until(gap.moments, ends[number])
+            if ends[number] < moment.tick and ends[number] != ends[number + 1]:
+                weights = self._hidden(now, actual, weights)
+            weights = self._look_round(now.scene, actual, weights)
+            while heard < len(gap.moments) and gap.moments[heard].tick <= ends[number]:
+                weights = _heard(weights, gap.moments[heard].claims)
+                heard += 1
+        return self._arrived_from(gap.moments[-1].scene, actual, weights, moment)
+
+    # Percepts
+
+    def _perceive(self, moment: Moment) -> bool:
+        """Let the agent in sight perceive; whether that changed what it may know."""
+        before = [set(weights) for weights in self.states]
+        found = []
+        for actual, weights in enumerate(self.states):
+            sums = _Sums()
+            for (place, possible, believed, has_ended), weight in weights.items():
+                knowledge = (possible, believed)
+                if not has_ended:
+                    for learnt in moment.learnt:
+                        knowledge = _conditioned(knowledge, learnt[actual])
+                    knowledge = _conditioned(knowledge, moment.alike[actual])
+                sums.add((place, *knowledge, has_ended), weight)
+            found.append(_heard(sums.total(), moment.claims))
+        self.states = tuple(found)
+        self._moment, self.tick = moment, max(self.tick, moment.tick)
+        self._agree(moment)
+        return before != [set(weights) for weights in self.states]
+
+    def _agree(self, moment: Moment) -> None:
+        """Drop the alternatives that do not agree with what the observer's node holds."""
+        self._agrees &= moment.agrees
+        self.states = tuple(
+            weights if self._agrees >> actual & 1 else {}
+            for actual, weights in enumerate(self.states)
+        )
+
+    def _hear(self, moment: Moment) -> None:
+        self.states = tuple(_heard(weights, moment.claims) for weights in self.states)
+
+    def _planned(self, scene: Scene, states: States) -> States:
+        return tuple(
+            self._look_round(scene, actual, weights) for actual, weights in enumerate(states)
+        )
+
+    def _look_round(
+        self, scene: Scene, actual: int, weights: Mapping[State, Floats]
+    ) -> Mapping[State, Floats]:
+        """Let an agent out of sight perceive from the middle of its cell."""
+        sums = _Sums()
+        for stage, part in self._by_stage(scene, weights):
+            for state, weight in self._perceived_by_plan(stage, actual, part).items():
+                sums.add(state, weight)
+        return sums.total()
+
+    def _perceived_by_plan(
+        self, stage: Stage, actual: int, weights: Mapping[State, Floats]
+    ) -> Mapping[State, Floats]:
+        sums = _Sums()
+        for state, weight in weights.items():
+            place, possible, believed, has_ended = state
+            if has_ended or place not in stage.index:
+                sums.add(state, weight)
+                continue
+            same = int(stage.same[actual, stage.index[place]])
+            sums.add((place, *_conditioned((possible, believed), same), False), weight)
+        return sums.total()
+
+    # Records
+
+    def foresee(self) -> None:
+        """Let the agent act once more, with nobody looking."""
+        assert self._moment is not None
+        found = []
+        for actual, weights in enumerate(self.states):
+            spread: dict[State, Floats] = {}
+            for stage, part in self._by_stage(self._moment.scene, weights):
+                spread.update(self._spread(stage, actual, part))
+            found.append(self._look_round(self._moment.scene, actual, spread))
+        self.states = tuple(found)
+
+    def masses(self) -> tuple[Mapping[State, Floats], ...]:
+        """Return log weights of the states by credence, summed with the prior over the rest."""
+        count = len(self.hypotheses.credences)
+        return tuple(
+            {
+                state: log_sum((weight + self.log_prior).reshape(-1, count))
+                for state, weight in weights.items()
+            }
+            for weights in self.states
+        )
+
+    def _stage(self, cell: Position) -> Stage:
+        assert self._moment is not None
+        return self._stage_of(self._moment.scene, cell)
+
+    def _stage_of(self, scene: Scene, *cells: Position) -> Stage:
+        inside = [cell for cell in cells if cell in scene.worlds.box]
+        return scene.stage(*inside)
+
+    def _is_impossible(self) -> bool:
+        return not any(
+            np.isfinite(weight).any() for weights in self.states for weight in weights.values()
+        )
+
+    def _keep(self, tick: int) -> None:
+        if self.keeps:
+            self.trail.append((tick, None, self.states))
+
+    def _note(self, tick: int, text: str, *, is_movement: bool) -> None:
+        shape = (self.hypotheses.alternatives, *self.hypotheses.shape)
+        total = np.full(shape, -np.inf)
+        for actual, weights in enumerate(self.states):
+            if weights:
+                total[actual] = _joined(weights.values())
+        self.steps.append(Step(tick, text, total, self.masses(), self._agrees, is_movement))
+        if not np.isfinite(total).any():
+            self._over = True
+
+
+_EYE = 1.62
+
+
+def _conditioned(knowledge: Knowledge, mask: int) -> Knowledge:
+    """Knowledge after a percept that a set of alternatives agrees with; it overrides claims."""
+    possible = knowledge[0] & mask
+    return possible, knowledge[1] & mask or possible
+
+
+def _told(knowledge: Knowledge, mask: int) -> Knowledge:
+    """Knowledge after a claim was taken up that is true in a set of alternatives."""
+    possible, believed = knowledge
+    return possible, believed & mask or possible & mask or believed
+
+
+def _heard(weights: Mapping[State, Floats], claims: Sequence[int]) -> Mapping[State, Floats]:
+    if not claims:
+        return weights
+    sums = _Sums()
+    for (place, possible, believed, has_ended), weight in weights.items():
+        knowledge = (possible, believed)
+        for mask in () if has_ended else claims:
+            knowledge = _told(knowledge, mask)
+        sums.add((place, *knowledge, has_ended), weight)
+    return sums.total()
+
+
+def _last_until(moments: Sequence[Moment], tick: int) -> Moment:
+    found = moments[0]
+    for moment in moments:
+        if moment.tick <= tick:
+            found = moment
+    return found
+
+
+def known_after(moments: Sequence[Moment], alternatives: int) -> list[Knowledge]:
+    """Return by actual alternative what an agent knows after moments, from its percepts alone.
+
+    While it is out of the observer's sight it is credited with no percepts (semantics, section 5).
+    """
+    everyone = (1 << alternatives) - 1
+    found = []
+    for actual in range(alternatives):
+        knowledge = (everyone, everyone)
+        for moment in moments:
+            for learnt in moment.learnt:
+                knowledge = _conditioned(knowledge, learnt[actual])
+            if moment.alike:
+                knowledge = _conditioned(knowledge, moment.alike[actual])
+            for mask in moment.claims:
+                knowledge = _told(knowledge, mask)
+        found.append(knowledge)
+    return found

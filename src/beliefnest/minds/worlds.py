@@ -1,0 +1,251 @@
+"""Alternatives as worlds: forks of one simulator, and what an eye tells of them apart.
+
+A percept is all that semantics, section 3, says of a look: blocks that are seen, agents and dropped
+items, contents where these are transparent, and what is absent. Two alternatives are alike from a
+place if the percept is the same in both. They differ in few elements, so that only what these can
+change is looked at: the elements, and what lies behind a block whose shape is in doubt.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.perception.sight import Geometry, Sight
+from beliefnest.world.frames import BlockGrid
+from beliefnest.world.values import EYE_HEIGHT, Box, DroppedItem, Items, Point, Position
+
+__all__ = ["Pose", "World", "Worlds", "middle_of"]
+
+Pose = tuple[Point, float, float]
+"""Feet, yaw and pitch."""
+
+# A block's cube, with shapes that reach half a block out of it, lies within this distance.
+_REACH = 1.75
+
+
+@dataclass(frozen=True, eq=False)
+class World:
+    """One alternative at one moment.
+
+    Attributes:
+        blocks: Block states, -1 unknown.
+        contents: What containers hold, as far as it is known.
+        agents: Feet, yaw and pitch of agents whose pose is known.
+    """
+
+    blocks: BlockGrid
+    contents: Mapping[Position, Items]
+    agents: Mapping[str, Pose]
+
+
+def middle_of(cell: Position) -> Point:
+    """Feet of an agent that stands in the middle of a cell."""
+    return (cell[0] + 0.5, float(cell[1]), cell[2] + 0.5)
+
+
+@lru_cache(maxsize=8)
+def _all_round(sight: Sight) -> Sight:
+    return replace(sight, field_of_view=360.0)
+
+
+class Worlds:
+    """All alternatives of a doubt at one moment.
+
+    Args:
+        sight: How agents see.
+        box: The part of space.
+        worlds: The alternatives; where blocks are equal the same grid.
+        items: Dropped items.
+        agent: The agent that looks.
+        transparent: Whether contents are perceived with the container's block.
+    """
+
+    def __init__(
+        self,
+        sight: Sight,
+        box: Box,
+        worlds: Sequence[World],
+        items: Mapping[int, DroppedItem],
+        agent: str,
+        *,
+        transparent: bool,
+    ) -> None:
+        self.box, self.worlds, self.items = box, tuple(worlds), items
+        self._sight, self._agent, self._transparent = sight, agent, transparent
+
+    def geometry(self, actual: int) -> Geometry:
+        """The blocks of an alternative, prepared for lines of sight."""
+        return self._geometry_of[actual]
+
+    @cached_property
+    def _geometry_of(self) -> list[Geometry]:
+        by_grid: dict[int, Geometry] = {}
+        by_codes: dict[bytes, Geometry] = {}
+        found = []
+        for world in self.worlds:
+            key = id(world.blocks)
+            if key not in by_grid:
+                made = self._sight.geometry(world.blocks, self.box.low)
+                by_grid[key] = by_codes.setdefault(made.codes.tobytes(), made)
+            found.append(by_grid[key])
+        return found
+
+    @cached_property
+    def _round(self) -> dict[int, Geometry]:
+        sight = _all_round(self._sight)
+        return {id(each): Geometry(sight, each.origin, each.codes) for each in self._geometry_of}
+
+    @cached_property
+    def has_one_view(self) -> bool:
+        """Whether all alternatives let the same lines of sight through."""
+        return len({id(each) for each in self._geometry_of}) == 1
+
+    @cached_property
+    def _doubted(self) -> npt.NDArray[np.int64]:
+        """Indices of the cells whose blocks differ."""
+        first = self.worlds[0].blocks
+        others = {id(world.blocks): world.blocks for world in self.worlds}.values()
+        differs = np.logical_or.reduce([each != first for each in others])
+        return np.argwhere(differs)
+
+    @cached_property
+    def _hiding(self) -> npt.NDArray[np.float64]:
+        """Middles of the cells whose shapes differ."""
+        first = self._geometry_of[0].codes
+        others = {id(each): each.codes for each in self._geometry_of}.values()
+        differs = np.logical_or.reduce([each != first for each in others])
+        cells = np.argwhere(differs[1:-1, 1:-1, 1:-1])
+        middles: npt.NDArray[np.float64] = cells + 0.5 + np.array(self.box.low)
+        return middles
+
+    @cached_property
+    def _middles(self) -> npt.NDArray[np.float64]:
+        cells = np.argwhere(np.ones(self.box.shape, dtype=np.bool_))
+        middles: npt.NDArray[np.float64] = cells + 0.5 + np.array(self.box.low)
+        return middles
+
+    @cached_property
+    def _doubted_contents(self) -> list[Position]:
+        if not self._transparent:
+            return []
+        places = {place for world in self.worlds for place in world.contents}
+        kept = [
+            place
+            for place in places
+            if len({_items_key(world.contents.get(place)) for world in self.worlds}) > 1
+        ]
+        return sorted(kept)
+
+    @cached_property
+    def _doubted_agents(self) -> list[str]:
+        names = {name for world in self.worlds for name in world.agents} - {self._agent}
+        if not self.has_one_view:
+            return sorted(names)
+        poses = {name: {world.agents.get(name) for world in self.worlds} for name in names}
+        return sorted(name for name, known in poses.items() if len(known) > 1)
+
+    @property
+    def can_differ(self) -> bool:
+        """Whether any look at all can tell alternatives apart."""
+        return bool(len(self._doubted) or self._doubted_contents or self._doubted_agents)
+
+    def alike(self, feet: Point, yaw: float, pitch: float, *, all_round: bool) -> list[int]:
+        """Return by alternative those with the same percept from a pose, itself included.
+
+        Args:
+            feet: Where the agent stands.
+            yaw: Radians.
+            pitch: Radians.
+            all_round: Whether it looks in all directions, whatever the field of view is.
+        """
+        count = len(self.worlds)
+        everyone = (1 << count) - 1
+        if not self.can_differ:
+            return [everyone] * count
+        eye = (feet[0], feet[1] + EYE_HEIGHT, feet[2])
+        cells = self._candidates(eye)
+        seen: dict[int, npt.NDArray[np.bool_]] = {}
+        percepts = []
+        for world, plain in zip(self.worlds, self._geometry_of, strict=True):
+            seeing = self._round[id(plain)] if all_round else plain
+            if id(plain) not in seen:
+                places = cells + np.array(self.box.low, dtype=np.int64)
+                seen[id(plain)] = seeing.sees_blocks(eye, yaw, pitch, places)
+            percepts.append(self._percept(world, seeing, (eye, yaw, pitch), cells, seen[id(plain)]))
+        masks: dict[object, int] = {}
+        for number, percept in enumerate(percepts):
+            masks[percept] = masks.get(percept, 0) | 1 << number
+        return [masks[percept] for percept in percepts]
+
+    def _candidates(self, eye: Point) -> npt.NDArray[np.int64]:
+        """Indices of cells whose sight from a place can depend on the alternative."""
+        if self.has_one_view:
+            return self._doubted
+        far = self._sight.max_visible_distance
+        middles, place = self._middles, np.array(eye)
+        wanted = np.zeros(len(middles), dtype=np.bool_)
+        shape = np.array(self.box.shape)
+        flat = self._doubted @ np.array([shape[1] * shape[2], shape[2], 1])
+        wanted[flat] = True
+        away = middles - place
+        distance = np.sqrt((away**2).sum(axis=1))
+        for hiding in self._hiding - place:
+            length = float(np.sqrt((hiding**2).sum()))
+            if far is not None and length > far + 2 * _REACH:
+                continue
+            if length <= 2 * _REACH:
+                wanted[:] = True
+                break
+            # Lines from the eye to a cell that come near the hiding one: within two cones.
+            with np.errstate(divide="ignore", invalid="ignore"):
+                cosine = np.clip(away @ hiding / (distance * length), -1, 1)
+                spread = math.asin(_REACH / length) + np.arcsin(
+                    np.minimum(1, _REACH / np.maximum(distance, _REACH))
+                )
+            wanted |= (np.arccos(cosine) <= spread) | (distance <= _REACH)
+        if far is not None:
+            wanted &= distance <= far + 1e-6
+        found: npt.NDArray[np.int64] = np.argwhere(wanted.reshape(self.box.shape))
+        return found
+
+    def _percept(
+        self,
+        world: World,
+        seeing: Geometry,
+        look: Pose,
+        cells: npt.NDArray[np.int64],
+        seen: npt.NDArray[np.bool_],
+    ) -> tuple[object, ...]:
+        """What is perceived of the candidates in an alternative, as a value to compare."""
+        states = world.blocks[tuple(cells.T)]
+        blocks = np.where(seen & (states >= 0), states, -1).tobytes()
+        contents: list[object] = []
+        if self._doubted_contents:
+            sees = seeing.sees_blocks(*look, np.array(self._doubted_contents, dtype=np.int64))
+            contents = [
+                (place, _items_key(world.contents.get(place)))
+                for place, is_seen in zip(self._doubted_contents, sees.tolist(), strict=True)
+                if is_seen
+            ]
+        names = [name for name in self._doubted_agents if name in world.agents]
+        agents: list[object] = []
+        if names:
+            sees = seeing.sees_agents(*look, [world.agents[name][0] for name in names])
+            agents = [
+                (name, world.agents[name])
+                for name, is_seen in zip(names, sees.tolist(), strict=True)
+                if is_seen
+            ]
+        items = b""
+        if self.items and not self.has_one_view:
+            places = [item.position for item in self.items.values()]
+            items = seeing.sees_points(*look, places).tobytes()
+        return blocks, tuple(contents), tuple(agents), items
+
+
+def _items_key(items: Items | None) -> object:
+    return None if items is None else tuple(sorted(items.items()))

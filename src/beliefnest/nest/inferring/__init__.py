@@ -1,0 +1,1 @@
+"""Reading from one node and its timeline what inference needs."""

@@ -1,0 +1,255 @@
+"""The alternatives of a doubt laid over what a node holds, entry by entry.
+
+Edits hold until the node perceives a change of the element, which is then the same in all
+alternatives: a block that becomes another, items that are seen to go in or out, an agent that
+moves in sight.
+"""
+
+import hashlib
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from beliefnest.belief.entries import AgentBelief, ContainerBelief, PerceivedEvent
+from beliefnest.belief.node_view import NodeView
+from beliefnest.errors import InputError
+from beliefnest.minds.model import Alternative
+from beliefnest.minds.worlds import Pose, World
+from beliefnest.world.claims import Claim, ClaimKind
+from beliefnest.world.frames import BlockGrid
+from beliefnest.world.registry import Registry, parse_state
+from beliefnest.world.values import Box, EventKind, Items, Point, Position
+
+__all__ = ["Overlay"]
+
+_NEAR = 0.5
+"""From so far on a place is another one, in blocks."""
+
+
+@dataclass(frozen=True)
+class _Held:
+    """What the node held of the doubted elements."""
+
+    blocks: Mapping[Position, int]
+    contents: Mapping[Position, ContainerBelief | None]
+    poses: Mapping[str, tuple[Pose | None, bool]]
+
+
+class Overlay:
+    """The doubted elements in each alternative, as they are at one entry of a timeline.
+
+    Args:
+        alternatives: The alternatives.
+        registry: Names and shapes of blocks.
+        box: The part of space.
+        agents: Names of all agents.
+        agent: The modelled agent.
+
+    Raises:
+        InputError: An alternative moves the modelled agent, or an unknown one.
+        PositionError: A place lies outside the box.
+    """
+
+    def __init__(
+        self,
+        alternatives: Sequence[Alternative],
+        registry: Registry,
+        box: Box,
+        agents: Sequence[str],
+        agent: str,
+    ) -> None:
+        self._registry, self._box, self._agent = registry, box, agent
+        self._names = [each.name for each in alternatives]
+        first = alternatives[0]
+        for place in (*first.blocks, *first.containers):
+            box.check(place)
+        for name in first.agents:
+            if name not in agents or name == agent:
+                raise InputError(
+                    f"the doubt is about the place of {name!r}; name another agent than the "
+                    f"modelled one, of {', '.join(agents)}"
+                )
+        self._texts = {at: [each.blocks[at] for each in alternatives] for at in first.blocks}
+        self._blocks: dict[Position, list[int]] = {
+            at: [registry.state_id(text) for text in texts] for at, texts in self._texts.items()
+        }
+        self._contents: dict[Position, list[Items]] = {
+            at: [each.containers[at] for each in alternatives] for at in first.containers
+        }
+        self._feet: dict[str, list[Point]] = {
+            name: [each.agents[name] for each in alternatives] for name in first.agents
+        }
+        self._held: _Held | None = None
+        self._claimed = tuple(first.containers)
+
+    @property
+    def containers(self) -> tuple[Position, ...]:
+        """Containers whose contents are in doubt."""
+        return self._claimed
+
+    def content_masks(self, place: Position) -> tuple[int, ...]:
+        """By alternative, those in which a container in doubt holds the same."""
+        contents = self._contents[place]
+        return tuple(
+            sum(1 << b for b, other in enumerate(contents) if other == mine) for mine in contents
+        )
+
+    def truth(self, claim: Claim) -> int:
+        """The alternatives in which a claim about a doubted element is true; -1: it is of none."""
+        x, y, z = (math.floor(part) for part in claim.place)
+        place = (x, y, z)
+        if claim.kind in (ClaimKind.LOCATED, ClaimKind.ABSENT):
+            if place not in self._contents:
+                return -1
+            wanted = claim.kind is ClaimKind.LOCATED
+            true = [(claim.item in items) is wanted for items in self._contents[place]]
+        elif claim.kind is ClaimKind.POSITION:
+            if claim.agent not in self._feet:
+                return -1
+            true = [_cell(feet) == place for feet in self._feet[claim.agent]]
+        else:
+            if place not in self._blocks:
+                return -1
+            true = [self._is(str(claim.state), state) for state in self._blocks[place]]
+        return sum(1 << a for a, is_true in enumerate(true) if is_true)
+
+    def follow(self, view: NodeView, events: Sequence[PerceivedEvent]) -> None:
+        """Take over what the node perceived to change since it was looked at last."""
+        now = self._read(view)
+        before = self._held
+        self._held = now
+        if before is None:
+            return
+        for place, state in now.blocks.items():
+            if before.blocks[place] not in (-1, state):
+                self._blocks[place] = [state] * len(self._names)
+        moved: set[Position] = set()
+        for event in events:
+            if event.kind not in (EventKind.GET_ITEM_FROM_CHEST, EventKind.DEPOSIT_ITEM_INTO_CHEST):
+                continue
+            used = event.detail.get("position")
+            spot = (int(used[0]), int(used[1]), int(used[2])) if used else None
+            if spot is not None and spot in self._contents:
+                moved.add(spot)
+                sign = 1 if event.kind is EventKind.DEPOSIT_ITEM_INTO_CHEST else -1
+                items = event.detail.get("items", {})
+                self._contents[spot] = [
+                    _changed(each, items, sign) for each in self._contents[spot]
+                ]
+        for place, held in now.contents.items():
+            old = before.contents[place]
+            if place in moved or held is None or old is None:
+                continue
+            if old.complete and held.complete and dict(old.items) != dict(held.items):
+                self._contents[place] = [dict(held.items)] * len(self._names)
+        for name, (pose, is_current) in now.poses.items():
+            known, was_current = before.poses[name]
+            if pose is not None and is_current and was_current and pose != known:
+                self._feet.pop(name, None)
+
+    def agreeing(self) -> int:
+        """The alternatives that agree with what the node holds."""
+        assert self._held is not None
+        agrees = [True] * len(self._names)
+        for place, state in self._held.blocks.items():
+            if state >= 0:
+                for a, mine in enumerate(self._blocks[place]):
+                    agrees[a] &= mine == state or self._is(self._texts[place][a], state)
+        for place, held in self._held.contents.items():
+            if held is not None:
+                for a, items in enumerate(self._contents[place]):
+                    agrees[a] &= _fits(items, held)
+        for name, (pose, _) in self._held.poses.items():
+            if pose is not None and name in self._feet:
+                for a, feet in enumerate(self._feet[name]):
+                    agrees[a] &= math.dist(feet, pose[0]) < _NEAR
+        return sum(1 << a for a, does in enumerate(agrees) if does)
+
+    def worlds(self, view: NodeView) -> list[World]:
+        """What the node holds, with the edits of each alternative."""
+        count = len(self._names)
+        contents: dict[Position, Items] = {
+            place: dict(held.items)
+            for place, held in view.containers.items()
+            if held.items or held.complete
+        }
+        poses: dict[str, Pose] = {
+            name: (agent.position, agent.yaw, agent.pitch)
+            for name, agent in view.agents.items()
+            if agent.position is not None and name != self._agent
+        }
+        grids: dict[tuple[int, ...], BlockGrid] = {}
+        found = []
+        for a in range(count):
+            key = tuple(states[a] for states in self._blocks.values())
+            if key not in grids:
+                grids[key] = view.blocks.copy()
+                for place, state in zip(self._blocks, key, strict=True):
+                    grids[key][self._box.index(place)] = state
+            mine = {place: items[a] for place, items in self._contents.items()}
+            feet = {name: (known[a], 0.0, 0.0) for name, known in self._feet.items()}
+            found.append(World(grids[key], {**contents, **mine}, {**poses, **feet}))
+        return found
+
+    def digest(self, view: NodeView) -> bytes:
+        """Digest of what `worlds` and the items of a node depend on."""
+        digest = hashlib.blake2b(np.ascontiguousarray(view.blocks).tobytes())
+        parts = (
+            self._box,
+            list(self._blocks.items()),
+            [(at, [sorted(i.items()) for i in items]) for at, items in self._contents.items()],
+            list(self._feet.items()),
+            [
+                (at, sorted(held.items.items()), held.complete)
+                for at, held in view.containers.items()
+            ],
+            [
+                (name, agent.position, agent.yaw, agent.pitch)
+                for name, agent in view.agents.items()
+                if name != self._agent
+            ],
+            [(item.name, item.position) for item in view.items.values()],
+        )
+        digest.update(repr(parts).encode())
+        return digest.digest()
+
+    def _read(self, view: NodeView) -> _Held:
+        agents = view.agents
+        return _Held(
+            {place: int(view.blocks[self._box.index(place)]) for place in self._blocks},
+            {place: view.containers.get(place) for place in self._contents},
+            {name: (_pose_of(agents[name]), agents[name].current) for name in self._feet},
+        )
+
+    def _is(self, text: str, state: int) -> bool:
+        """Whether a state is the one that a text names, with the properties that it names."""
+        if state < 0:
+            return False
+        name, chosen = parse_state(text)
+        if self._registry.name(state) != name:
+            return False
+        properties = self._registry.properties(state)
+        return all(properties.get(key) == value for key, value in chosen.items())
+
+
+def _fits(items: Items, held: ContainerBelief) -> bool:
+    if held.complete:
+        return dict(items) == dict(held.items)
+    return all(items.get(name, 0) >= count for name, count in held.items.items())
+
+
+def _changed(items: Items, moved: Mapping[str, int], sign: int) -> Items:
+    changed = dict(items)
+    for name, count in moved.items():
+        changed[name] = changed.get(name, 0) + sign * count
+    return {name: count for name, count in changed.items() if count > 0}
+
+
+def _pose_of(agent: AgentBelief) -> Pose | None:
+    return None if agent.position is None else (agent.position, agent.yaw, agent.pitch)
+
+
+def _cell(feet: Point) -> Position:
+    return (math.floor(feet[0]), math.floor(feet[1]), math.floor(feet[2]))
