@@ -276,10 +276,10 @@ def model_of(film: Film, parameters: FilmParameters, lesion: Lesion | None = Non
     rewards = list(parameters.rewards)
     names = list(film.alternatives)
     credences = simplex_grid(len(names), parameters.grid, parameters.smoothing)
-    if lesion == "true_belief":
-        known = [float(name == film.actual) for name in names]
-        credences = np.array([known if film.actual else [1 / len(names)] * len(names)])
-    cost = 0.0 if lesion == "no_cost" else parameters.step_cost
+    if lesion == "true_belief" and film.actual is not None:
+        # The corner of the grid at which the agent is surest of what is the case.
+        credences = credences[[int(credences[:, names.index(film.actual)].argmax())]]
+    costs = lesion != "no_cost"
     return MindModel(
         agent=AGENT,
         goals={goal: {"block": _block(film, goal)} for goal in film.goals},
@@ -295,10 +295,11 @@ def model_of(film: Film, parameters: FilmParameters, lesion: Lesion | None = Non
         credences=credences,
         actual=None if film.actual is not None else "unknown",
         rationality=parameters.rationality,
-        discount=parameters.discount,
-        step_cost=cost,
-        stay_cost=0.0 if lesion == "no_cost" else parameters.stay_cost,
-        act_cost=cost,
+        # To wait for a reward costs as well.
+        discount=parameters.discount if costs else 1.0,
+        step_cost=parameters.step_cost if costs else 0.0,
+        stay_cost=parameters.stay_cost if costs else 0.0,
+        act_cost=parameters.step_cost if costs else 0.0,
     )
 
 
