@@ -8,5 +8,5 @@ module.exports = {
   fails: 'never',
   parameters: [{ name: 'bot', type: 'Bot', description: 'your own bot' }],
   example: 'await doNothing(bot)',
-  run: () => ticks(1)
+  run: context => ticks(context, 1)
 }

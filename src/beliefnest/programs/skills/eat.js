@@ -24,7 +24,7 @@ module.exports = {
     if (bot.food >= FULL) fail('you are not hungry: your food level is full.')
     const before = countOf(bot, item)
     bot.activateItem()
-    const eaten = await until(() => countOf(bot, item) < before, EATING_TICKS)
+    const eaten = await until(context, () => countOf(bot, item) < before, EATING_TICKS)
     if (!eaten) fail(`${name} was not eaten. Try again.`)
   }
 }

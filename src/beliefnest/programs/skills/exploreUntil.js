@@ -33,7 +33,7 @@ module.exports = {
       if (found) return found
       if (gone >= limit) break
     }
-    await settle(bot)
+    await settle(context)
     return null
   }
 }

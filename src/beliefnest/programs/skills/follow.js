@@ -35,9 +35,9 @@ module.exports = {
     const duration = checkCount(context, 'number', number)
     const near = distance(context, 'dist', dist)
     bot.pathfinder.setGoal(closely(new goals.GoalFollow(body, near)), true)
-    await ticks(duration)
+    await ticks(context, duration)
     bot.pathfinder.setGoal(null)
-    await settle(bot)
+    await settle(context)
     // The pathfinder, too, counts from block to block.
     const away = bot.entity.position.floored().distanceTo(body.position.floored())
     if (away > near + SLACK) fail(`${otherName} is ${away.toFixed(1)} blocks away after ${duration} ticks. Follow longer, or there is no way on foot.`)

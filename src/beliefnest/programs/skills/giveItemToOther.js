@@ -49,14 +49,14 @@ module.exports = {
     const wanted = checkCount(context, 'num', num)
     if (countOf(bot, item) < wanted) fail(`${wanted} ${item.name} to be given, the inventory holds ${countOf(bot, item)}; there is: ${contents(bot)}.`)
     await walkNear(context, body.position.clone(), NEAR, otherName)
-    if (bot.entity.position.distanceTo(body.position) < TOO_NEAR) await stepBack(bot, body)
+    if (bot.entity.position.distanceTo(body.position) < TOO_NEAR) await stepBack(context, body)
     await bot.lookAt(body.position.offset(0, CHEST_HEIGHT, 0), true)
     // The server hears of the look one tick later.
-    await ticks(2)
+    await ticks(context, 2)
     const watcher = watch(context, item)
     try {
       await bot.toss(item.id, null, wanted)
-      await until(() => watcher.over(wanted), PICKUP_TICKS)
+      await until(context, () => watcher.over(wanted), PICKUP_TICKS)
     } finally {
       watcher.stop()
     }
@@ -66,9 +66,10 @@ module.exports = {
 }
 
 /** Who stands too near would pick up its own toss. */
-async function stepBack (bot, body) {
+async function stepBack (context, body) {
+  const { bot } = context
   await bot.lookAt(body.position.offset(0, CHEST_HEIGHT, 0), true)
   bot.setControlState('back', true)
-  await until(() => bot.entity.position.distanceTo(body.position) >= TOO_NEAR, 20)
+  await until(context, () => bot.entity.position.distanceTo(body.position) >= TOO_NEAR, 20)
   bot.setControlState('back', false)
 }

@@ -7,7 +7,7 @@
 const { numbers } = require('./lib/answers')
 const { show, shortened } = require('./lib/arguments')
 const { SkillError } = require('./lib/errors')
-const { turns } = require('./lib/waiting')
+const { byTimer, turns } = require('./lib/waiting')
 
 const LONGEST_MESSAGE = 2000
 
@@ -56,11 +56,13 @@ const SKILLS = [
  * @param {Function} body.Vec3
  * @param {object} body.goals of mineflayer-pathfinder
  * @param {AbortSignal} [body.signal] once it is aborted, a skill that still runs does nothing more
+ * @param {(number: number, signal?: AbortSignal) => Promise<void>} [body.wait] resolves after so many ticks of the world; never
+ *   once its signal is aborted
  * @param {object | null} [body.memory] `call(name, args, act)` does what a skill does, or gives what came of it before
  * @returns {Object<string, Function>} by name; each rejects with an Error that has `skill`
  */
-function bindSkills ({ bot, emit, Vec3, goals, signal, memory = null }) {
-  const body = { bot, emit, Vec3, goals, nextNumber: numbers(), inTurn: turns() }
+function bindSkills ({ bot, emit, Vec3, goals, signal, wait = byTimer, memory = null }) {
+  const body = { bot, emit, Vec3, goals, wait, nextNumber: numbers(), inTurn: turns(wait) }
   return Object.fromEntries(SKILLS.map(skill => [skill.name, bind(skill, body, signal, memory)]))
 }
 

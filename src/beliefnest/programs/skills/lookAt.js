@@ -14,6 +14,6 @@ module.exports = {
   example: 'await lookAt(bot, new Vec3(2.5, -50, -3.5))',
   async run (context, position) {
     await context.bot.lookAt(checkPosition(context, 'position', position), true)
-    await ticks(1)
+    await ticks(context, 1)
   }
 }

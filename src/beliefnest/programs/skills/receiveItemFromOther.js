@@ -24,7 +24,7 @@ module.exports = {
     const wanted = checkCount(context, 'num', num)
     const before = countOf(bot, item)
     const received = () => countOf(bot, item) - before
-    const done = await until(() => received() >= wanted, PATIENCE_TICKS)
+    const done = await until(context, () => received() >= wanted, PATIENCE_TICKS)
     if (!done) fail(`${received()} of ${wanted} ${item.name} came from ${other} within ${PATIENCE_TICKS} ticks. Ask ${other} to give it at the same time.`)
   }
 }

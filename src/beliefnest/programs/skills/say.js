@@ -20,6 +20,6 @@ module.exports = {
     const told = checked(context, claims)
     if (told.length > 0) context.emit({ kind: 'claims', detail: { text, claims: told } })
     await context.bot.chat(text)
-    await ticks(1)
+    await ticks(context, 1)
   }
 }

@@ -31,7 +31,7 @@ module.exports = {
     await bot.activateBlock(bed())
     await answered(context)
     if (!bot.isSleeping) fail(`the bed at ${show(position)} cannot be slept in now.`)
-    await ticks(duration)
+    await ticks(context, duration)
     await bot.wake()
     await answered(context)
   }

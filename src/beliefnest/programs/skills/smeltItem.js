@@ -34,7 +34,7 @@ function checkEmpty ({ fail }, furnace, item, fuel) {
 /** The furnace has had time to light or go out, and the bot knows. */
 async function nextTicks (context) {
   await answered(context)
-  await ticks(LIGHTING_TICKS)
+  await ticks(context, LIGHTING_TICKS)
   await answered(context)
 }
 
@@ -60,7 +60,7 @@ async function smelt (context, furnace, position, item, fuel, wanted) {
     if (!lit() && furnace.fuelItem()) fail(`${item.name} cannot be smelted in a ${bot.blockAt(position).name}. Try another kind of furnace.`)
     if (!lit()) return
     const before = done()
-    const went = await until(() => done() > before || needsFuel() || !lit(), ITEM_TICKS)
+    const went = await until(context, () => done() > before || needsFuel() || !lit(), ITEM_TICKS)
     if (!went) fail(`nothing came out of the furnace for ${ITEM_TICKS} ticks.`)
     if (!lit()) await nextTicks(context)
   }

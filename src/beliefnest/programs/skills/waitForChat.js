@@ -22,7 +22,7 @@ module.exports = {
     }
     const stops = [listen('chat', hear(false)), listen('whisper', hear(true))]
     try {
-      await until(() => heard !== null, limit)
+      await until(context, () => heard !== null, limit)
     } finally {
       for (const stop of stops) stop()
     }

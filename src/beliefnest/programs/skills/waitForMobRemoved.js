@@ -19,7 +19,7 @@ module.exports = {
     const { bot, fail } = context
     if (!Number.isInteger(entity?.id)) fail(`entity must be an entity, like bot.nearestEntity(); it is ${show(entity)}`)
     const seconds = distance(context, 'timeout', timeout)
-    const gone = await until(() => !bot.entities[entity.id], seconds * TICKS_PER_SECOND)
+    const gone = await until(context, () => !bot.entities[entity.id], seconds * TICKS_PER_SECOND)
     if (!gone) fail(`${entity.name ?? 'the entity'} is still there after ${seconds} seconds.`)
   }
 }

@@ -12,5 +12,5 @@ module.exports = {
     { name: 'number', type: 'number', description: 'how many ticks' }
   ],
   example: 'await waitTicks(bot, 20)',
-  run: async (context, number) => ticks(count(context, 'number', number))
+  run: async (context, number) => ticks(context, count(context, 'number', number))
 }

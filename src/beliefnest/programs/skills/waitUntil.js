@@ -20,7 +20,7 @@ module.exports = {
       const result = await condition()
       if (result) return result
       if (passed >= limit) context.fail(`condition did not come true within ${limit} ticks.`)
-      await ticks(1)
+      await ticks(context, 1)
     }
   }
 }

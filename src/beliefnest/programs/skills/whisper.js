@@ -25,6 +25,6 @@ module.exports = {
     const told = checked(context, claims)
     if (told.length > 0) context.emit({ kind: 'claims', detail: { text, to, claims: told } })
     await context.bot.whisper(to, text)
-    await ticks(1)
+    await ticks(context, 1)
   }
 }

@@ -74,7 +74,7 @@ class Runner {
     const emit = event => region.report(agent, event)
     const past = rules.past[agent] ?? null
     const memory = rules.remembers ? new Memory(past?.calls ?? [], () => region.tick, abort.signal) : null
-    const request = { code, bot, scope: this.scopeOf(bot, emit, abort.signal, memory), signal: abort.signal, aim }
+    const request = { code, bot, scope: this.scopeOf(bot, emit, abort.signal, memory, this.regions.waitOf?.(region, bot, abort.signal)), signal: abort.signal, aim }
     // Numbers that others draw, too, would tell of what they do.
     if (view !== null) request.random = randomOf(region, agent, past?.tick ?? region.tick)
     const isRuled = rules.speechTicks > 0 || memory !== null

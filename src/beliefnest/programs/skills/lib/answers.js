@@ -4,8 +4,6 @@
  * it mined is gone, an item it clicked has moved. On a server that is far away that may be undone
  * later, and what comes of it (what a block drops) is not there yet.
  */
-const { TICK_MS } = require('./waiting')
-
 const ANSWER_TICKS = 600
 const CANCEL_DIGGING = 1
 const FACE_DOWN = 0
@@ -19,15 +17,16 @@ function numbers () {
 }
 
 /** @returns {Promise<boolean>} whether the server acknowledged what has this number, or a later one, in time */
-function acknowledged (client, number) {
+function acknowledged ({ bot: { _client: client }, wait }, number) {
+  const ended = new AbortController()
   return new Promise(resolve => {
     const end = outcome => {
       client.removeListener('acknowledge_player_digging', onAcknowledged)
-      clearTimeout(timer)
+      ended.abort()
       resolve(outcome)
     }
     const onAcknowledged = ({ sequenceId }) => { if (sequenceId >= number) end(true) }
-    const timer = setTimeout(() => end(false), ANSWER_TICKS * TICK_MS)
+    wait(ANSWER_TICKS, ended.signal).then(() => end(false))
     client.on('acknowledge_player_digging', onAcknowledged)
   })
 }
@@ -37,9 +36,10 @@ function acknowledged (client, number) {
  * came of it. Servers acknowledge acts on blocks at the end of the tick in which they come, after
  * all else that came of that tick; this act is one that does nothing.
  */
-async function answered ({ bot, fail, nextNumber }) {
+async function answered (context) {
+  const { bot, fail, nextNumber } = context
   const number = nextNumber()
-  const answer = acknowledged(bot._client, number)
+  const answer = acknowledged(context, number)
   const location = bot.entity.position.floored()
   bot._client.write('block_dig', { status: CANCEL_DIGGING, location, face: FACE_DOWN, sequence: number })
   if (!await answer) fail(`the server did not answer within ${ANSWER_TICKS} ticks.`)

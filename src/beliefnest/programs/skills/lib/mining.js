@@ -45,7 +45,7 @@ async function pickUp (context, entity) {
   const at = entity.position.floored()
   const near = () => gone() || bot.entity.position.distanceTo(entity.position) < 1
   await walk(context, new goals.GoalNear(at.x, at.y, at.z, 0.5), near, entity.position, 'what was dropped')
-  if (await until(gone, PICKUP_TICKS)) return answered(context)
+  if (await until(context, gone, PICKUP_TICKS)) return answered(context)
   fail(`${entity.getDroppedItem()?.name ?? 'an item'} was left lying at ${show(at)}: the inventory has no room for it. Put something away first.`)
 }
 

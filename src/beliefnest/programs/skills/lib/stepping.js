@@ -7,7 +7,8 @@ const { until } = require('./waiting')
  * steps at once, and who looks after them is far beyond.
  * @returns {Promise<boolean>} whether it came to hold within `limit` ticks
  */
-async function stepUntil ({ bot, listen }, condition, limit) {
+async function stepUntil (context, condition, limit) {
+  const { bot, listen } = context
   let arrived = false
   let fault = null
   // Whoever makes the steps must not get what is thrown to a program that has ended.
@@ -22,7 +23,7 @@ async function stepUntil ({ bot, listen }, condition, limit) {
   })
   try {
     bot.setControlState('forward', true)
-    await until(() => arrived || fault !== null, limit)
+    await until(context, () => arrived || fault !== null, limit)
   } finally {
     stop()
   }

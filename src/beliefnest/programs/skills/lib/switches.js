@@ -27,7 +27,7 @@ async function pressButton (context, buttonPosition) {
   const { bot, fail } = context
   const { position, block } = await goTo(context, buttonPosition, BUTTON)
   const pressed = () => block().getProperties().powered
-  if (!await until(() => !pressed(), PRESSED_TICKS)) fail(`the button at ${show(position)} stays pressed. Try again later.`)
+  if (!await until(context, () => !pressed(), PRESSED_TICKS)) fail(`the button at ${show(position)} stays pressed. Try again later.`)
   let moved = false
   // A button that the server is slow to tell of may be out again by then.
   const stop = context.listen(`blockUpdate:${position}`, () => { moved ||= pressed() })

@@ -2,25 +2,34 @@
 
 const TICK_MS = 50
 
+/** Resolves after a number of ticks of a clock that counts milliseconds; never once the signal is aborted. */
+function byTimer (number, signal) {
+  return new Promise(resolve => {
+    const timer = setTimeout(resolve, number * TICK_MS)
+    signal?.addEventListener('abort', () => clearTimeout(timer))
+  })
+}
+
 /** Resolves after a number of ticks of the world's time. */
-function ticks (number) {
-  return new Promise(resolve => { setTimeout(resolve, number * TICK_MS) })
+function ticks ({ wait }, number) {
+  return wait(number)
 }
 
 /** Looks at a condition every tick; @returns {Promise<boolean>} whether it held within `limit` ticks */
-async function until (condition, limit) {
+async function until ({ wait }, condition, limit) {
   for (let passed = 0; !condition(); passed++) {
     if (passed >= limit) return false
-    await ticks(1)
+    await wait(1)
   }
   return true
 }
 
 /**
+ * @param {(number: number) => Promise<void>} wait for ticks
  * @returns {(action: () => any) => Promise<any>} runs actions one after the other, each that had to wait in a tick of its
  *   own; who waits for nobody is not held up
  */
-function turns () {
+function turns (wait) {
   let last = null
   return async action => {
     const before = last
@@ -29,7 +38,7 @@ function turns () {
     try {
       if (before !== null) {
         await before
-        await ticks(1)
+        await wait(1)
       }
       return await action()
     } finally {
@@ -39,4 +48,4 @@ function turns () {
   }
 }
 
-module.exports = { ticks, turns, until, TICK_MS }
+module.exports = { byTimer, ticks, turns, until }

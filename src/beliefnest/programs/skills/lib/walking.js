@@ -26,22 +26,23 @@ const rounded = ({ x, y, z }) => show({ x: Math.round(x * 10) / 10, y: Math.roun
 const centreOf = block => block.offset(0.5, 0.5, 0.5)
 
 /** Stands still: what is left of the last step would carry on. */
-async function settle (bot) {
+async function settle (context) {
+  const { bot } = context
   bot.clearControlStates()
   const { velocity } = bot.entity
-  await until(() => Math.abs(velocity.x) < STILL && Math.abs(velocity.z) < STILL && bot.entity.onGround, SETTLE_TICKS)
+  await until(context, () => Math.abs(velocity.x) < STILL && Math.abs(velocity.z) < STILL && bot.entity.onGround, SETTLE_TICKS)
 }
 
 /** One search for a way, and the walk along it; @returns {Promise<Error | null>} why it ended early */
-async function attempt (bot, goal) {
+async function attempt (context, goal) {
   try {
-    await bot.pathfinder.goto(goal)
+    await context.bot.pathfinder.goto(goal)
     return null
   } catch (error) {
     if (!(error.name in REASONS)) throw error
     return error
   } finally {
-    await settle(bot)
+    await settle(context)
   }
 }
 
@@ -58,7 +59,7 @@ async function walk (context, goal, arrived, target, what, doors = ANY_DOOR) {
   const tried = new Set()
   let fault = null
   while (!arrived()) {
-    fault = await attempt(bot, goal)
+    fault = await attempt(context, goal)
     if (arrived()) return
     const walled = fault === null || fault.name === 'NoPath'
     if (!walled || !await passDoors(context, goal, target, tried, doors)) break
@@ -119,7 +120,7 @@ async function stepToView (context, block) {
   const near = () => bot.entity.position.xzDistanceTo(middle) < MIDDLE || hindranceOf(bot, block) === null
   await bot.lookAt(middle.offset(0, EYE_HEIGHT, 0), true)
   await stepUntil(context, near, STEP_TICKS)
-  await settle(bot)
+  await settle(context)
 }
 
 /** Walks to where a block can be used. */

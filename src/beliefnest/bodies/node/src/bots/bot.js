@@ -13,12 +13,15 @@ const INJECTION_MS = 1
 // What gravity leaves of the vertical speed of one who stands: (0 - 0.08) * 0.98 a tick.
 const STANDING_VELOCITY = -0.0784
 
+/** A clock that nobody has to pay: searches for paths are limited by the nodes they look at. */
+const REAL_TIME = {}
+
 const CONTROLS = ['forward', 'back', 'left', 'right', 'jump', 'sprint', 'sneak']
 
 /**
  * Starts a bot; it is usable `INJECTION_MS` of virtual time later.
  * @param {object} client a connection's client end
- * @param {import('../time/clock').Clock} clock
+ * @param {{charge?: (ms: number) => void}} clock pays for searches for paths; without `charge` time is real
  */
 function startBot (client, clock) {
   const bot = mineflayer.createBot({
@@ -96,4 +99,4 @@ function agentUuid (agent) {
   return [hex.slice(0, 8), hex.slice(8, 12), hex.slice(12, 16), hex.slice(16, 20), hex.slice(20)].join('-')
 }
 
-module.exports = { agentUuid, ground, INJECTION_MS, startBot, stopBot }
+module.exports = { agentUuid, ground, INJECTION_MS, REAL_TIME, startBot, stopBot }

@@ -1,15 +1,17 @@
 'use strict'
-/** Path finding under a clock that stands still while code runs. */
+/** Path finding whose limits are numbers of nodes, so that a slow machine finds the same ways. */
 
-// What looking at one node of a path costs in virtual time; with the pathfinder's 40 ms a tick
-// that is 427 nodes a tick, and 53,000 until it gives up. Sums of it are exact, at any time of day.
+// Time that looking at one node of a path counts as. With the pathfinder's 40 ms a tick that is
+// 427 nodes a tick, and 53,000 until it gives up. Sums of it are exact, at any time of day.
 const NODE_MS = 3 / 32
 
 /**
- * Charges the bot's pathfinder for its search, and keeps it from changing the world on its
+ * Limits the bot's searches for paths by the nodes they look at, and keeps it from changing the world on its
  * way: agents walk around walls, they do not dig through them. `bot.pathfinder.reset()` undoes what
  * a program has set.
  *
+ * @param {object} bot
+ * @param {{charge?: (ms: number) => void}} clock pays for each node; without `charge` time is real, and nodes are counted
  * @param {(x: number, y: number, z: number, isBelow: boolean) => object | undefined} [unknownAt] what to make of a block
  *   that the bot does not know; undefined where it knows
  */
@@ -18,13 +20,14 @@ function chargePathfinder (bot, clock, unknownAt) {
   const charged = movements => {
     const getNeighbors = movements.getNeighbors
     movements.getNeighbors = node => {
-      clock.charge(NODE_MS)
+      clock.charge?.(NODE_MS)
       return getNeighbors.call(movements, node)
     }
     rememberBlocks(movements, bot, unknownAt)
     rememberEntities(movements)
     return movements
   }
+  if (clock.charge === undefined) countNodes(bot.pathfinder)
   const standard = charged(bot.pathfinder.movements)
   standard.canDig = false
   standard.allow1by1towers = false
@@ -37,6 +40,40 @@ function chargePathfinder (bot, clock, unknownAt) {
   bot.pathfinder.reset = () => {
     Object.assign(bot.pathfinder, { thinkTimeout, tickTimeout, searchRadius })
     if (bot.pathfinder.movements !== standard) setMovements(standard)
+  }
+}
+
+/**
+ * Lets searches end after as many nodes as their limits of time stand for. A search that ends a tick without a
+ * path counts as one without a way, so that a process that gets no processor for 40 ms would lose its way.
+ */
+function countNodes (pathfinder) {
+  const { getPathFromTo } = pathfinder
+  pathfinder.getPathFromTo = function * (movements, from, goal, options = {}) {
+    const { timeout = pathfinder.thinkTimeout, tickTimeout = pathfinder.tickTimeout } = options
+    // A search that may take no time at all has looked at nothing yet.
+    const results = getPathFromTo(movements, from, goal, { ...options, timeout: Infinity, tickTimeout: -1 })
+    limit(results.next().value.astarContext, nodesIn(tickTimeout), nodesIn(timeout))
+    yield * results
+  }
+}
+
+/** A search goes on until more time has passed than it may take. */
+const nodesIn = milliseconds => Math.max(Math.floor(milliseconds / NODE_MS) + 1, 1)
+
+/** Limits an A* search to so many nodes each time it is continued, and in all. */
+function limit (search, atOnce, inAll) {
+  const { openHeap } = search
+  const isExhausted = openHeap.isEmpty.bind(openHeap)
+  const compute = search.compute.bind(search)
+  let left = 0
+  search.tickTimeout = Infinity
+  openHeap.isEmpty = () => isExhausted() || left-- <= 0
+  search.compute = () => {
+    left = Math.min(atOnce, inAll - search.closedDataSet.size)
+    const result = compute()
+    if (result.status !== 'noPath' || isExhausted()) return result
+    return { ...result, status: search.closedDataSet.size < inAll ? 'partial' : 'timeout' }
   }
 }
 

@@ -21,9 +21,6 @@ class LiveClock {
     return action()
   }
 
-  /** Real time needs no paying for. */
-  charge () {}
-
   /** Resolves when that much more time has passed, and what follows at once has happened. A tick's ends when it is due. */
   async advance (ms) {
     if (ms === TICK_MS) await this.tickEnds()

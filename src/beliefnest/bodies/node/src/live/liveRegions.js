@@ -3,6 +3,7 @@
  * The real world of the embedded server in real time: one region, which goes on between the calls and which people can
  * enter. What happens there meanwhile is told with the next call.
  */
+const { waitFor } = require('../bots/ticking')
 const { BadRequest } = require('../channel/errors')
 const { Regions } = require('../regions/regions')
 const { LiveBodies } = require('./liveBodies')
@@ -39,6 +40,11 @@ class LiveRegions extends Regions {
     // Ends when nobody is about to enter or to leave.
     this.door = Promise.resolve()
     serv.on('tick', (_, __, region) => this.onTick(region))
+  }
+
+  /** @returns {Function} by which skills wait for ticks of the region (bots/ticking.js) */
+  waitOf (region, bot, ended) {
+    return waitFor(bot, () => region.tick, ended)
   }
 
   take (frame) {

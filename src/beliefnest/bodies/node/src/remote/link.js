@@ -2,18 +2,15 @@
 /** One player's connection to a server: begun, and begun again with growing pauses when it is lost. */
 const { EventEmitter, once } = require('node:events')
 const { setTimeout: sleep } = require('node:timers/promises')
-const { startBot } = require('../bots/bot')
+const { REAL_TIME, startBot } = require('../bots/bot')
 const reasons = require('./reasons')
 
-const REAL_TIME = { charge () {} }
 const FIRST_PAUSE_MS = 250
 const POLL_MS = 20
 const LONGEST_PAUSE_MS = 8000
 // As long as a code for logging in holds.
 const ACCOUNT_MS = 900_000
 const GOODBYE_MS = 1000
-// Milliseconds a bot may search for a way: on a busy machine most of them pass without it.
-const THINKING_MS = 60_000
 // What the game says to a player when another one of the same name comes in.
 const ANOTHER = 'multiplayer.disconnect.duplicate_login'
 
@@ -55,7 +52,6 @@ class Link extends EventEmitter {
     const ended = reason => this.lost(told?.text ?? reason, told?.key)
     try {
       await this.spawned(bot, client)
-      bot.pathfinder.thinkTimeout = THINKING_MS
       this.bot = bot
       this.isHere = true
       bot.once('end', ended)

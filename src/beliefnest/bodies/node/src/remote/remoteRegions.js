@@ -5,6 +5,7 @@
  */
 const { setTimeout: sleep } = require('node:timers/promises')
 const { BadRequest } = require('../channel/errors')
+const { waitFor } = require('../bots/ticking')
 const { Box, statesOf } = require('../regions/box')
 const { Recorder } = require('../regions/recorder')
 const { vecOf } = require('../server/plugins/lib/positions')
@@ -48,7 +49,12 @@ class RemoteRegions {
       stand: async () => true,
       finish: (_, agents) => this.open.agents.rest(agents).catch(error => this.fail(error))
     }
-    this.clock = { advance: () => new Promise(resolve => { setImmediate(resolve) }), charge () {} }
+    this.clock = { advance: () => new Promise(resolve => { setImmediate(resolve) }) }
+  }
+
+  /** @returns {Function} by which skills wait for ticks of the server (bots/ticking.js) */
+  waitOf (region, bot, ended) {
+    return waitFor(bot, () => region.now(), ended)
   }
 
   /** @throws {BadRequest} if there is no such region */

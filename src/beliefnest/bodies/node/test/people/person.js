@@ -8,12 +8,11 @@ require('../../src/prepare').prepare()
 const readline = require('node:readline')
 const minecraft = require('minecraft-protocol')
 const { rememberBlocks } = require('../../src/blocks')
-const { startBot } = require('../../src/bots/bot')
+const { REAL_TIME, startBot } = require('../../src/bots/bot')
 const { scopeOf } = require('../../src/scope')
 const versions = require('../../src/versions')
 
 const AsyncFunction = (async () => {}).constructor
-const REAL_TIME = { charge () {} }
 
 const tell = message => process.stdout.write(`${JSON.stringify(message)}\n`)
 

@@ -29,6 +29,23 @@ test('goToPosition to a place without a way fails, says how near, and does not c
   })
 })
 
+test('goToPosition arrives, also where each step of the search for a way takes longer than a tick', async () => {
+  // Every first step leads away from where the bot is to go.
+  const wall = [-2, -1, 0, 1, 2].flatMap(z => [0, 1, 2].map(up => [1, FLOOR + up, z, 'stone']))
+  await withSkills({ blocks: wall }, async world => {
+    const { bots: { sally }, skills } = world
+    const { movements } = sally.pathfinder
+    const { getNeighbors } = movements
+    const stopped = new Int32Array(new SharedArrayBuffer(4))
+    movements.getNeighbors = node => {
+      Atomics.wait(stopped, 0, 0, 60)
+      return getNeighbors(node)
+    }
+    await world.during(skills.sally.goToPosition(sally, new Vec3(4, FLOOR, 0), 1))
+    assert.ok(sally.entity.position.distanceTo(new Vec3(4.5, FLOOR, 0.5)) <= 2)
+  })
+})
+
 test('goToPosition refuses what is no position', async () => {
   await withSkills({}, async world => {
     const { bots: { sally }, skills } = world

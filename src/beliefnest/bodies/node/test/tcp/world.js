@@ -9,15 +9,12 @@ const { once } = require('node:events')
 const path = require('node:path')
 const { setTimeout: sleep } = require('node:timers/promises')
 const { rememberBlocks } = require('../../src/blocks')
-const { startBot } = require('../../src/bots/bot')
+const { REAL_TIME, startBot } = require('../../src/bots/bot')
 const versions = require('../../src/versions')
 const { connect } = require('../../src/remote/connection')
 
 const TICK_MS = 50
 const LIMIT_MS = 180_000
-const REAL_TIME = { charge () {} }
-// Milliseconds a bot may search for a way. On a busy machine most of them pass without it.
-const PATIENCE_MS = 60_000
 
 class Server {
   /** @param {number} latency milliseconds every byte takes each way */
@@ -76,7 +73,6 @@ async function inWorld (server, { agents, blocks, containers, box }, body) {
       bots[agent] = bot
       bot.on('error', error => faults.push(error))
       await once(bot, 'spawn')
-      bot.pathfinder.thinkTimeout = PATIENCE_MS
     }))
     const world = worldOf(server, place, bots)
     await world.ticks(1)
