@@ -1,8 +1,10 @@
 """What a server lacks is said before anything is played, with what to do about it."""
 
+import re
 import socket
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +20,8 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, Box, EventKind
 
 BOX = Box((0, 0, 0), (6, 4, 6))
+LONG = 3600
+SOON = {"patience": 3}
 CHEST, FOREIGN = (2, 1, 2), (5, 2, 5)
 
 
@@ -56,8 +60,12 @@ def opened(world: World, snapshot: Snapshot | None = None) -> None:
 @pytest.mark.parametrize(
     ("lines", "query", "said"),
     [
-        (("deop BeliefNest", "op BeliefNest"), {}, r"not use /fill, /setblock.*: op BeliefNest"),
-        (("lack item", "lack"), {}, r"BeliefNest may not use /item"),
+        (
+            ("deop BeliefNest", "op BeliefNest"),
+            {"patience": 3},
+            r"not use /fill, /setblock.*: op BeliefNest",
+        ),
+        (("lack item", "lack"), SOON, r"BeliefNest may not use /item"),
         (("verify BeliefNest", "trust BeliefNest"), {}, r"asks Microsoft.*online-mode=false"),
         (("room 0", "room 9"), {}, r"is full.*raise max-players"),
         (None, {"version": "1.16.5"}, r"\?version=1\.16\.5 asks.* 1\.20\.4, .*1\.21\.8.*pip"),
@@ -66,6 +74,29 @@ def opened(world: World, snapshot: Snapshot | None = None) -> None:
 def test_what_the_operator_lacks_is_said(server, lines, query, said):
     with on_console(server, lines), pytest.raises(BodyError, match=said):
         open_world(server.address(**query), 0)
+
+
+def test_commands_that_are_told_late_are_waited_for(capsys):
+    with GameServer(commandsLate=80) as server:
+        open_world(server.address(), 0).close()
+    said = capsys.readouterr().err
+    assert re.search(r"does not let BeliefNest use /fill, .* yet; .*: op BeliefNest", said)
+    assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize("packet", [4, 5, 8, 20, 60, 100])
+def test_a_server_that_dies_during_the_set_up_is_the_cause_that_is_told(packet):
+    """The packets are those of the operator's login, of its first commands, and of agents."""
+    with GameServer(diesAt=packet) as server:
+        started = time.perf_counter()
+        lost = r"connection of .* was lost|does not answer"
+        with (
+            pytest.raises(BodyError, match=lost),
+            closing(open_world(server.address(patience=LONG), 0)) as world,
+        ):
+            opened(world)
+        # The loss is seen at once, and not when patience is at its end.
+        assert time.perf_counter() - started < LONG
 
 
 def test_what_a_server_lacks_and_can_do_without_is_named_at_the_start(server, capsys):

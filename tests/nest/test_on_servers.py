@@ -237,6 +237,25 @@ def test_a_program_whose_bot_is_sent_away_fails_and_the_next_one_runs(console):
         assert nest["/"].run("sally", PUT).ok
 
 
+def test_a_server_that_is_stopped_under_a_program_is_the_cause_that_is_told(tmp_path, capsys):
+    with GameServer() as server:
+        server.type("after 1120 stop")
+        world = server.address(patience=3)
+        out = ["run", "sally-anne", "--condition", "1", "--out", str(tmp_path / "run")]
+        assert run_command_line([*out, "--world", world]) == BodyError.exit_status
+    said = capsys.readouterr().err
+    assert "was lost" in said
+    assert "--out" in said
+    assert "own code" not in said
+
+
+def test_a_bot_that_does_nothing_loses_its_connection_and_others_go_on(console):
+    with Nest.open(Scenario.load("sally-anne", 1), console.address(patience=PATIENCE)) as nest:
+        console.type("after 20 drop anne")
+        result = nest["/"].run("sally", PUT)
+        assert result.ok, result.error
+
+
 def test_a_server_that_stands_still_for_a_moment_is_waited_for(console):
     with Nest.open(Scenario.load("sally-anne", 1), console.address(patience=PATIENCE)) as nest:
         console.type("stall 1500")

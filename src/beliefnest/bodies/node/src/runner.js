@@ -145,11 +145,15 @@ class Runner {
    * Lets the program of the agent in whose bot something was thrown fail with it, or the only one there is.
    * @returns {boolean} whether there is such a program
    */
-  blame (region, runs, { error, agent }) {
-    const run = runs.length === 1 ? runs[0] : runs.find(each => each.agent === agent)
+  blame (region, runs, { error, agent, lost }) {
+    const own = runs.find(each => each.agent === agent)
+    // Others go on without a bot that lost its connection.
+    if (lost !== undefined && own === undefined) return true
+    const run = runs.length === 1 ? runs[0] : own
     if (run === undefined) return false
     if (run.result !== null || run.end !== null) return true
-    run.end = { kind: 'bot', message: `the bot of ${run.agent} failed in the game's own code: ${error?.message ?? error}` }
+    const what = lost === undefined ? `failed in the game's own code: ${error?.message ?? error}` : `lost its connection to the server (${lost})`
+    run.end = { kind: 'bot', message: `the bot of ${run.agent} ${what}` }
     run.endTick = region.tick
     run.abort.abort()
     return true

@@ -7,7 +7,6 @@ const { layOut, possessionsOf } = require('../server/plugins/lib/slots')
 const { wrap } = require('../server/angles')
 const { rounded, sorted } = require('../regions/facts')
 const { Link } = require('./link')
-const { hasColumns, until } = require('./waiting')
 const { Witness } = require('./witness')
 
 const NEAR = 0.02
@@ -18,11 +17,11 @@ const NOBODY = { position: [0, 0, 0], yaw: 0, pitch: 0, on_ground: true, equipme
 const SLOTS = 46
 const AT_ONCE = 8
 const FIRST_HOTBAR = 36
-const PLACING_MS = 10_000
-const ASKED_EVERY_MS = 500
-const COLUMNS_MS = 5000
+// Ticks of the server.
+const PLACING_TICKS = 200
+const ASKED_EVERY_TICKS = 10
+const COLUMNS_TICKS = 100
 const RESULT = 0
-const ANSWER_MS = 1000
 
 class Agents {
   /**
@@ -69,7 +68,7 @@ class Agents {
     witness.on('event', fact => { if (witness.person === null) this.scene.lids.account(fact) })
     const link = new Link(agent, () => this.connect(agent), operator.server, patienceMs, () => this.stand(agent))
     link.on('begun', (bot, client) => witness.attach(bot, client))
-    link.on('lost', reason => region.faults.push({ agent, error: new Error(`it lost its connection to the server (${reason})`) }))
+    link.on('lost', reason => region.faults.push({ agent, lost: reason }))
     link.on('yielded', () => this.yield(agent))
     link.isForPerson = this.invited.has(agent)
     this.links.set(agent, link)
@@ -176,9 +175,10 @@ class Agents {
     const there = () => position().distanceTo({ x, y, z }) < (person === null ? NEAR : NEAR_PERSON)
     const has = () => isDeepStrictEqual(this.look(agent).inventory, sorted(state.inventory))
     const isDone = person === null || this.operator.can('data') ? () => there() && has() : there
-    const end = performance.now() + PLACING_MS
+    const { operator, operator: { clock } } = this
+    const due = clock.age + PLACING_TICKS
     await person?.ask()
-    while (!await this.operator.until(isDone, ASKED_EVERY_MS) && performance.now() < end) await (person?.ask() ?? this.askSlots(agent))
+    while (!await operator.until(isDone, ASKED_EVERY_TICKS) && clock.age < due) await (person?.ask() ?? this.askSlots(agent))
     if (isDone()) {
       // Before anything else is waited for: it may lose its connection meanwhile.
       witnesses.get(agent).stoodAt = position().floored()
@@ -197,9 +197,9 @@ class Agents {
 
   /** Resolves when a bot has been shown the box, or the part of it that the server shows from there. */
   async sees (bot) {
-    await until(() => hasColumns(bot, this.region.box), COLUMNS_MS)
-    const [x, y, z] = bot.entity.position.toArray().map(Math.floor)
-    await until(() => hasColumns(bot, { low: [x, y, z], high: [x, y, z] }), PLACING_MS)
+    await this.operator.shown(bot, this.region.box, COLUMNS_TICKS)
+    const here = bot.entity.position.toArray().map(Math.floor)
+    await this.operator.shown(bot, { low: here, high: here }, PLACING_TICKS)
   }
 
   slots (agent, state) {
@@ -244,8 +244,13 @@ class Agents {
     }
   }
 
-  /** Ends what agents were doing; resolves when all they did has been handled and seen. */
+  /**
+   * Ends what agents were doing; resolves when all they did has been handled and seen. Bots that were cut off are waited for:
+   * whether a program failed with its bot alone, or the server has ended, shows only then.
+   * @throws {Unplayable} if one does not come back
+   */
   async rest (agents) {
+    await this.present()
     for (const agent of agents) if (this.links.get(agent).isHere) stopBot(this.bot(agent))
     await this.settled()
     for (const agent of agents) this.scene.witnesses.get(agent).rest()
@@ -255,14 +260,14 @@ class Agents {
     const here = [...this.links.values()].filter(({ isHere }) => isHere)
     await Promise.all(here.map(({ name }) => this.answered(name)))
     const from = this.region.now()
-    await this.operator.until(() => this.region.now() >= from + 2 || !this.operator.link.isHere, ANSWER_MS)
+    await this.operator.until(() => this.region.now() >= from + 2 || !this.operator.link.isHere)
     await this.operator.settled()
     await this.operator.until(() => this.scene.isQuiet)
   }
 
   /** Resolves when the server has handled what an agent's client has sent, and the client what was sent to it before. */
   async answered (agent) {
-    await this.operator.settling.settled(this.bot(agent), ANSWER_MS)
+    await this.operator.hasSettled(this.bot(agent), this.operator.patienceTicks)
   }
 
   /** Resolves when all agents and the operator are connected. @throws {Unplayable} if one was given up */

@@ -29,18 +29,26 @@ async function capture ({ operator, clock, theirs, registry }, origin, corners) 
   const commands = commandsFor(region, state => mapping.textForServer(state), theirs.version)
   const scene = new Scene(region, mapping, operator, commands, position => setup.read(position))
   const setup = new Setup(scene, operator, commands, theirs)
-  await setup.arrive()
-  try {
-    const present = setup.present()
-    scene.settle(present)
-    const found = await contents(setup, present)
-    await setup.goAbove()
-    return {
-      tick: 0, blocks: new Uint8Array(present.buffer), items: {}, internal_state: new Uint8Array(0), signs: signs(operator.bot, scene, present), ...found, ...await players(operator, commands, region), strange: [...mapping.strange].sort()
+  return operator.attended(async () => {
+    await setup.arrive()
+    try {
+      return { ...await look(setup, commands), strange: [...mapping.strange].sort() }
+    } finally {
+      operator.type(commands.load('remove'))
+      await operator.settled()
     }
-  } finally {
-    operator.type(commands.load('remove'))
-    await operator.settled()
+  })
+}
+
+/** @returns {Promise<object>} all that there is in the place of a set-up */
+async function look (setup, commands) {
+  const { operator, scene, region } = setup
+  const present = setup.present()
+  scene.settle(present)
+  const found = await contents(setup, present)
+  await setup.goAbove()
+  return {
+    tick: 0, blocks: new Uint8Array(present.buffer), items: {}, internal_state: new Uint8Array(0), signs: signs(operator.bot, scene, present), ...found, ...await players(operator, commands, region)
   }
 }
 

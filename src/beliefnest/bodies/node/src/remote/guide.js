@@ -8,7 +8,7 @@ class Guide extends Operator {
    * @param {Operator} operator
    */
   constructor (link, operator) {
-    super(link, operator.server, operator.settling)
+    super(link, operator.server, operator.clock, operator.settling)
     this.operator = operator
   }
 

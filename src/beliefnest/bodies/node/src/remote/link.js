@@ -52,6 +52,8 @@ class Link extends EventEmitter {
     const ended = reason => this.lost(told?.text ?? reason, told?.key)
     try {
       await this.spawned(bot, client)
+      // It may have ended while that was found out.
+      if (client.ended) throw reasons.unreachable(this.server, 'it ended the connection')
       this.bot = bot
       this.isHere = true
       bot.once('end', ended)

@@ -1,15 +1,20 @@
 'use strict'
 /** The bot that serves a place on a server elsewhere: it types commands, and its client is what the place looks like. */
-const { once } = require('node:events')
+const { setTimeout: sleep } = require('node:timers/promises')
 const { Vec3 } = require('vec3')
 const { EYE_HEIGHT } = require('../../../../programs/skills/lib/sight')
 const { NEEDED } = require('./commands')
 const reasons = require('./reasons')
 const { ByCompletions } = require('./settling')
 const { parseSnbt } = require('./snbt')
-const { until } = require('./waiting')
+const { columnsLacking } = require('./shown')
 
-const ANSWER_MS = 5000
+const POLL_MS = 10
+// Ticks that go on on the server until what was asked of it counts as not to come.
+const ANSWER_TICKS = 100
+const TICKS_PER_SECOND = 20
+// Ticks after which the user is told what is waited for.
+const PATIENT_TICKS = 40
 const MOST_LINES = 20
 const TOP = 1
 // How many commands are typed before the server's answer is awaited: the more, the sooner it answers.
@@ -25,11 +30,13 @@ class Operator {
   /**
    * @param {import('./link').Link} link
    * @param {object} server what reasons.js tells of it
+   * @param {import('./serverClock').ServerClock} clock told by the operator's connection
    * @param {object} [settling] of settling.js
    */
-  constructor (link, server, settling = new ByCompletions()) {
+  constructor (link, server, clock, settling = new ByCompletions()) {
     this.link = link
     this.server = server
+    this.clock = clock
     this.settling = settling
     this.lines = []
     // The question that is asked last: answers do not say to which one they are.
@@ -72,11 +79,22 @@ class Operator {
     return this.commandNames?.has(name) ?? false
   }
 
-  /** @throws {Unplayable} if what is needed cannot be typed */
-  async requireRights () {
-    if (!await this.until(() => this.commandNames !== null)) throw reasons.noCommands(this.server)
-    const lacking = NEEDED.filter(name => !this.can(name))
-    if (lacking.length > 0) throw reasons.noOperator(this.server, lacking)
+  /** Ticks in which the server has to do what it is waited for. */
+  get patienceTicks () {
+    return this.server.patience * TICKS_PER_SECOND
+  }
+
+  /**
+   * Waits for the commands that are needed: a server may tell of some first, and of all later.
+   * @param {(text: string) => void} tell shows something to the user
+   * @throws {Unplayable} if they do not come within the patience
+   */
+  async requireRights (tell) {
+    const lacking = () => NEEDED.filter(name => !this.can(name))
+    const isComplete = () => lacking().length === 0
+    if (!await this.until(isComplete, Math.min(PATIENT_TICKS, this.patienceTicks))) tell(reasons.waitingForCommands(this.server, lacking()))
+    if (await this.until(isComplete, this.patienceTicks)) return
+    throw this.commandNames === null ? reasons.noCommands(this.server) : reasons.noOperator(this.server, lacking())
   }
 
   /**
@@ -84,13 +102,17 @@ class Operator {
    * @throws {Unplayable} if the server does not answer within its patience
    */
   async settled () {
-    const patience = this.server.patience * 1000
-    const end = performance.now() + patience
-    while (performance.now() < end) {
+    const due = this.clock.age + this.patienceTicks
+    while (this.clock.age <= due) {
       if (!this.link.isHere) await this.link.present()
-      if (await this.settling.settled(this.bot, Math.min(patience, ANSWER_MS))) return
+      if (await this.hasSettled(this.bot, ANSWER_TICKS)) return
     }
     throw reasons.stalled(this.server, this.server.patience)
+  }
+
+  /** @returns {Promise<boolean>} whether the server has done within so many ticks what a player's client has sent */
+  hasSettled (bot, ticks) {
+    return this.settling.settled(bot, (condition, limit) => this.until(condition, limit), ticks)
   }
 
   /**
@@ -122,9 +144,58 @@ class Operator {
     }
   }
 
-  /** @returns {Promise<boolean>} whether the condition held in time */
-  async until (condition, milliseconds = ANSWER_MS) {
-    return until(condition, milliseconds)
+  /**
+   * Waits for what the server does in its own time: a slow one, or a slow machine, is waited for longer.
+   * @param {() => boolean} condition
+   * @param {number} [ticks] of the server
+   * @returns {Promise<boolean>} whether the condition came to hold before the server had gone on by so many ticks
+   * @throws {Unplayable} if the server stands still, or the operator's connection is given up
+   */
+  async until (condition, ticks = ANSWER_TICKS) {
+    const due = this.clock.age + ticks
+    while (!condition()) {
+      this.requireServer()
+      if (this.clock.age > due) return false
+      await sleep(POLL_MS)
+    }
+    return true
+  }
+
+  /** @throws {Unplayable} if the server does not go on, or the operator's connection was given up */
+  requireServer () {
+    const { link, server, clock } = this
+    if (link.failure !== null) throw link.failure
+    if (link.closed) throw reasons.left(server, link.name)
+    if (link.isHere && clock.isSilentFor(server.patience * 1000)) throw reasons.stalled(server, server.patience)
+  }
+
+  /**
+   * Does what needs the operator's connection all the time; what it has typed may be lost with that.
+   * @param {() => Promise} action
+   * @throws {Unplayable} as soon as the connection is lost
+   */
+  async attended (action) {
+    const { link, server } = this
+    const { promise, reject } = Promise.withResolvers()
+    const fail = reason => reject(reasons.cutOff(server, link.name, reason))
+    link.on('lost', fail)
+    try {
+      return await Promise.race([link.present().then(action), promise])
+    } finally {
+      link.off('lost', fail)
+    }
+  }
+
+  /**
+   * Waits until a player has been shown a box, as long as the server shows it more of that.
+   * @returns {Promise<boolean>} whether it has been shown all
+   */
+  async shown (bot, box, ticks) {
+    for (let lacking = columnsLacking(bot, box); lacking > 0; lacking = columnsLacking(bot, box)) {
+      const before = lacking
+      if (!await this.until(() => columnsLacking(bot, box) < before, ticks)) return false
+    }
+    return true
   }
 
   /**
@@ -158,13 +229,14 @@ class Operator {
     const { bot } = this
     const place = [x + 0.5, y + 1.5 - EYE_HEIGHT, z + 0.5]
     await this.go(commands.go(this.link.name, place, { yaw: 0, pitch: -Math.PI / 2 }), place)
-    const opened = once(bot, 'windowOpen', { signal: AbortSignal.timeout(ANSWER_MS) }).catch(() => null)
+    let window = null
+    const open = opened => { window = opened }
+    bot.once('windowOpen', open)
     bot._client.write('block_place', {
       location: new Vec3(x, y, z), direction: TOP, hand: 0, cursorX: 0.5, cursorY: 1, cursorZ: 0.5, insideBlock: false, sequence: 0
     })
-    const answer = await opened
-    if (answer === null) return null
-    const [window] = answer
+    await this.until(() => window !== null).finally(() => bot.off('windowOpen', open))
+    if (window === null) return null
     const stacks = window.slots.slice(0, window.inventoryStart)
     bot.closeWindow(window)
     return stacks

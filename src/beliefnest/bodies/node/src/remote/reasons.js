@@ -68,6 +68,18 @@ const noCompletions = server =>
   `${where(server)} does not answer requests for completions of commands, as vanilla ones do; commands are typed singly, and 3 ticks waited for where its answer would say ` +
   'that all is done: what comes later is told later'
 
+const waitingForCommands = (server, lacking) =>
+  `${where(server)} does not let ${server.operator} use ${lacking.map(name => `/${name}`).join(', ')} yet; this is waited for during ${server.patience} s. ` +
+  `On its console: op ${server.operator}`
+
+/** What is done when a server runs again. */
+const GO_ON = 'what was recorded until the last call is kept: when the server runs again, go on with the same command and --out, or with Nest.resume'
+
+const cutOff = (server, player, why) => new Unplayable(
+  `the connection of ${player} to ${where(server)} was lost (${why}) before everything was set up there; look whether the server runs, and run the command again`)
+
+const left = (server, player) => new Unplayable(`${player} has left ${where(server)}`)
+
 const tooFar = (server, { low, high }) => new Unplayable(
   `${where(server)} does not show all of the box from (${low.join(', ')}) to (${high.join(', ')}); raise view-distance in server.properties and restart it`)
 
@@ -76,10 +88,10 @@ const spawnProtected = server => new Unplayable(
   'or play farther from its spawn: ?at=X,Z (multiples of 16)')
 
 const stalled = (server, seconds) => new Unplayable(
-  `${where(server)} has not gone on for ${seconds} s; what was recorded until the last call is kept: when the server runs again, go on with Nest.resume`)
+  `${where(server)} has not gone on for ${seconds} s; ${GO_ON}`)
 
 const gone = (server, player, why, seconds) => new Unplayable(
   `the connection of ${player} to ${where(server)} was lost (${why}) and did not come back within ${seconds} s; ` +
-  'what was recorded until the last call is kept: when the server runs again, go on with Nest.resume')
+  GO_ON)
 
-module.exports = { gone, lesser, noCommands, noCompletions, noLogin, noOperator, notHeld, onlineMode, refusal, spawnProtected, stalled, tooFar, unreachable, Unplayable, wrongVersion }
+module.exports = { cutOff, gone, left, lesser, noCommands, noCompletions, noLogin, noOperator, notHeld, onlineMode, refusal, spawnProtected, stalled, tooFar, unreachable, Unplayable, waitingForCommands, wrongVersion }

@@ -19,7 +19,7 @@ class RemoteExhibits {
     if (this.byName.has(told.exhibit)) throw new BadRequest(`${told.exhibit} is shown already`)
     const exhibit = new RemoteExhibit(told, this.guideName(), this.regions)
     try {
-      await exhibit.build()
+      await this.regions.operator.attended(() => exhibit.build())
     } catch (error) {
       await exhibit.close()
       throw error

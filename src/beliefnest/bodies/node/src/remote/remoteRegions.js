@@ -15,7 +15,6 @@ const { connect } = require('./connection')
 const { RemotePlace } = require('./remotePlace')
 const { Scene } = require('./scene')
 const { Setup } = require('./setup')
-const reasons = require('./reasons')
 const { BlockMapping } = require('./versions')
 
 const POLL_MS = 5
@@ -72,13 +71,23 @@ class RemoteRegions {
     this.server.agents = Object.keys(agents)
     this.open = this.equip(region)
     try {
-      await this.fill(this.open, { blocks, containers, agents, items, signs })
+      await this.make(() => this.fill(this.open, { blocks, containers, agents, items, signs }))
       this.begin(this.open, tick, agents)
     } catch (error) {
       await this.giveUp(this.open).catch(() => {})
       throw error
     }
     return this.snapshot(region)
+  }
+
+  /** Makes the place so; after a lost connection nothing more is made. @throws {Unplayable} as soon as it is lost */
+  async make (action) {
+    try {
+      return await this.operator.attended(action)
+    } catch (error) {
+      if (!this.operator.link.isReady) this.failure ??= error
+      throw error
+    }
   }
 
   /** Begins a player's connection. @param {{x: number, z: number}} origin of what it is to take for the world's middle */
@@ -206,10 +215,12 @@ class RemoteRegions {
 
   /** The next tick; what happened in it is sent. @returns {Promise<boolean>} whether anything has */
   async tick (region, before) {
-    const { operator: { link }, server } = this
     while (region.now() <= region.tick) {
-      if (link.failure !== null) this.fail(link.failure)
-      if (link.isHere && this.serverClock.silence > server.patience * 1000) this.fail(reasons.stalled(server, server.patience))
+      try {
+        this.operator.requireServer()
+      } catch (error) {
+        this.fail(error)
+      }
       await sleep(POLL_MS)
     }
     region.tick = region.now()
@@ -240,18 +251,10 @@ class RemoteRegions {
   /** Makes the place so; what happened there since the last call is forgotten with what it led to. */
   async apply ({ region: name, blocks, containers, agents, items, tick, signs = [] }) {
     const region = this.get(name)
-    const { scene, setup } = this.open
     region.isDriven = true
     try {
       await this.present()
-      const wanted = scene.blocks.slice()
-      for (const [x, y, z, state] of blocks) wanted[region.box.index(x, y, z)] = state
-      scene.settle(await setup.build(wanted))
-      for (const position of blocks.map(([x, y, z]) => vecOf({ x, y, z }))) scene.replaced(position, scene.at(position))
-      await setup.stock(containers.filter(([, , , held]) => held !== null))
-      await setup.write(signs)
-      await setup.lay(items)
-      await this.moveAgents(this.open, agents)
+      await this.make(() => this.change(this.open, { blocks, containers, agents, items, signs }))
       region.waiting.length = 0
       region.rebase(tick)
       this.know(this.open, agents)
@@ -261,7 +264,18 @@ class RemoteRegions {
     return this.snapshot(region)
   }
 
-  async moveAgents ({ agents: present }, agents) {
+  async change ({ region, scene, setup, agents: present }, { blocks, containers, agents, items, signs }) {
+    const wanted = scene.blocks.slice()
+    for (const [x, y, z, state] of blocks) wanted[region.box.index(x, y, z)] = state
+    scene.settle(await setup.build(wanted))
+    for (const position of blocks.map(([x, y, z]) => vecOf({ x, y, z }))) scene.replaced(position, scene.at(position))
+    await setup.stock(containers.filter(([, , , held]) => held !== null))
+    await setup.write(signs)
+    await setup.lay(items)
+    await this.moveAgents(present, agents)
+  }
+
+  async moveAgents (present, agents) {
     const gone = Object.keys(agents).filter(agent => agents[agent] === null)
     for (const agent of gone) await present.remove(agent)
     const wanted = Object.entries(agents).filter(([, state]) => state !== null)
@@ -279,16 +293,20 @@ class RemoteRegions {
 
   /** Lets agents leave and puts back what was there, unless it is to be kept. */
   async giveUp (open) {
-    const { region, setup, agents, saved } = open
+    const { region, agents, saved } = open
     clearInterval(region.pulse)
     this.operator.link.arrive = async () => {}
     this.operator.link.off('begun', open.attach)
     this.open = null
     await agents.close()
     if (saved === null || this.failure !== null || !this.operator.link.isHere) return
+    await this.operator.attended(() => this.putBack(open))
+  }
+
+  async putBack ({ scene, setup, saved }) {
     if (!this.server.keep) {
       await setup.lay({})
-      open.scene.settle(await setup.build(saved.states))
+      scene.settle(await setup.build(saved.states))
       await setup.stock(saved.containers)
     }
     this.operator.type(setup.commands.load('remove'))

@@ -6,6 +6,8 @@
 const TICK_MS = 50
 // Vanilla tells its age every 20 ticks.
 const TELLS_EVERY = 20
+// Milliseconds that count at most between two looks at whether the server is silent.
+const MOST_BETWEEN_LOOKS = 1000
 
 class ServerClock {
   /** @param {() => number} now milliseconds */
@@ -17,6 +19,8 @@ class ServerClock {
     this.tickMs = TICK_MS
     this.offset = 0
     this.latest = 0
+    this.waited = 0
+    this.lookedAt = now()
   }
 
   /** Takes what the server says; one whose age has fallen was set up anew, and is counted on from here. */
@@ -25,6 +29,7 @@ class ServerClock {
     if (this.told !== null && age > this.told) this.tickMs = Math.max(TICK_MS, this.silence / (age - this.told))
     this.told = age
     this.toldAt = this.now()
+    this.waited = 0
   }
 
   /** Whether the server has ever told its age. */
@@ -35,6 +40,17 @@ class ServerClock {
   /** Milliseconds since the server told its age. */
   get silence () {
     return this.now() - this.toldAt
+  }
+
+  /**
+   * Return whether the server has told nothing for so many milliseconds of those who look again and again. Time in which this
+   * process itself was stopped is not the server's silence.
+   */
+  isSilentFor (milliseconds) {
+    const now = this.now()
+    this.waited += Math.min(now - this.lookedAt, MOST_BETWEEN_LOOKS)
+    this.lookedAt = now
+    return this.waited > milliseconds
   }
 
   get age () {

@@ -12,7 +12,6 @@ const { answersCompletions, ByWaiting } = require('./settling')
 const ours = require('../versions')
 const { held, heldFor, registryOf } = require('./versions')
 
-const PING_MS = 5000
 
 /**
  * @param {object} server as RemoteRegions has it; `version` if the server is not to be asked for it
@@ -30,22 +29,28 @@ async function beginSession (server, tell = () => {}) {
   const link = new Link(username, () => connect({ host, port, version, username, origin: { x, z }, login: server.loginOf(username) }), server, server.patience * 1000)
   const clock = new ServerClock()
   link.on('begun', bot => bot.on('time', () => clock.tell(bot.time.age)))
-  const operator = new Operator(link, server)
+  const operator = new Operator(link, server, clock)
   await link.open()
   try {
-    await operator.requireRights()
-    const lacking = Object.entries(USEFUL).filter(([name]) => !operator.can(name))
-    if (lacking.length > 0) tell(reasons.lesser(server, lacking))
-    if (!await operator.until(() => clock.isSet)) throw reasons.stalled(server, PING_MS / 1000)
-    if (!await answersCompletions(operator.bot, clock, server.patience * 1000, () => reasons.stalled(server, server.patience))) {
-      operator.settling = new ByWaiting(clock)
-      tell(reasons.noCompletions(server))
-    }
+    await operator.attended(() => look(operator, tell))
   } catch (error) {
     await link.close()
     throw error
   }
   return { operator, clock, version, theirs }
+}
+
+/** Looks whether the operator can do what is needed, and tells what is lacking besides. @throws {Unplayable} if it cannot */
+async function look (operator, tell) {
+  const { clock, server } = operator
+  await operator.until(() => clock.isSet)
+  await operator.requireRights(tell)
+  const lacking = Object.entries(USEFUL).filter(([name]) => !operator.can(name))
+  if (lacking.length > 0) tell(reasons.lesser(server, lacking))
+  const answers = await answersCompletions(operator)
+  if (answers || !operator.link.isHere) return
+  operator.settling = new ByWaiting(clock)
+  tell(reasons.noCompletions(server))
 }
 
 /** @returns {Promise<string>} the version held that the server speaks, as the address or its answer to a ping says */
@@ -58,7 +63,7 @@ async function versionOf (server) {
 }
 
 async function pinged (server, where) {
-  const { version: { name, protocol } } = await minecraft.ping({ ...where, version: ours.minecraft, closeTimeout: PING_MS, noPongTimeout: 500 })
+  const { version: { name, protocol } } = await minecraft.ping({ ...where, version: ours.minecraft, closeTimeout: server.patience * 1000, noPongTimeout: 500 })
     .catch(error => { throw reasons.unreachable(server, error.code ?? error.message) })
   return { name, key: protocol }
 }

@@ -1,24 +1,40 @@
 'use strict'
 /**
- * How one knows that a server has done what a player's client has sent: two ways with one interface, `type` for commands
- * and `settled`.
+ * Two ways to know that a server has done what a player's client has sent, with one interface: `type` for commands, and
+ * `settled`, which takes `until` of an Operator to wait with.
  */
-const { until } = require('./waiting')
+const { setTimeout: sleep } = require('node:timers/promises')
 
-const ANSWER_MS = 5000
+const POLL_MS = 10
 const TICKS = 3
 // Ticks that go on there until what is not answered counts as done, or as never to be.
 const SILENT_TICKS = 60
+const MOST_NUMBERS = 1_000_000
 
 /** The server is asked for completions of a command: its answer comes after all that was sent before is done. */
 class ByCompletions {
+  constructor () {
+    this.last = 0
+  }
+
   type (bot, command) {
     bot._client.chat(`/${command}`)
   }
 
-  /** @returns {Promise<boolean>} whether the server has done in time what the client has sent */
-  settled (bot, milliseconds) {
-    return bot.tabComplete('/', true, false, milliseconds).then(() => true, () => false)
+  /** @returns {Promise<boolean>} whether the server has done within so many ticks what the client has sent */
+  async settled ({ _client: client }, until, ticks) {
+    const number = this.last = this.last % MOST_NUMBERS + 1
+    let isAnswered = false
+    // An answer to an earlier question says nothing about what was sent since.
+    const hear = ({ transactionId }) => { isAnswered ||= transactionId === number }
+    client.on('tab_complete', hear)
+    client.write('tab_complete', { transactionId: number, text: '/' })
+    try {
+      await until(() => isAnswered || client.ended, ticks)
+    } finally {
+      client.off('tab_complete', hear)
+    }
+    return isAnswered
   }
 }
 
@@ -45,35 +61,27 @@ class ByWaiting {
     bot.on('messagestr', hear)
     bot._client.chat(`/${command}`)
     const due = this.clock.age + SILENT_TICKS
-    await until(() => isSaid || this.clock.age >= due, ANSWER_MS)
+    while (!isSaid && !bot._client.ended && this.clock.age < due) await sleep(POLL_MS)
     bot.off('messagestr', hear)
     this.done += 1
   }
 
-  /** @returns {Promise<boolean>} false if nothing goes on for so long */
-  async settled (_, milliseconds) {
+  /** @returns {Promise<boolean>} false if nothing is done for so many ticks */
+  async settled (_, until, ticks) {
     let isTyped = false
     this.typed.then(() => { isTyped = true })
     while (!isTyped) {
       const { done } = this
-      if (!await until(() => isTyped || this.done > done, milliseconds)) return false
+      if (!await until(() => isTyped || this.done > done, ticks)) return false
     }
     const due = this.clock.age + TICKS
-    return until(() => this.clock.age >= due, milliseconds)
+    return until(() => this.clock.age >= due, ticks)
   }
 }
 
-/**
- * Finds out whether a server answers.
- * @returns {Promise<boolean>} false if its time has gone on, and no answer came
- * @throws {Error} what `stalled` makes, if neither comes in time
- */
-async function answersCompletions (bot, clock, milliseconds, stalled) {
-  const asked = clock.told
-  let isAnswered = false
-  new ByCompletions().settled(bot, milliseconds).then(answered => { isAnswered ||= answered })
-  if (!await until(() => isAnswered || clock.told >= asked + SILENT_TICKS, milliseconds)) throw stalled()
-  return isAnswered
+/** @returns {Promise<boolean>} whether a server answers requests for completions; false if its time goes on without an answer */
+function answersCompletions (operator) {
+  return new ByCompletions().settled(operator.bot, (condition, ticks) => operator.until(condition, ticks), SILENT_TICKS)
 }
 
 module.exports = { answersCompletions, ByCompletions, ByWaiting }

@@ -11,14 +11,14 @@ const { halvesAt } = require('../server/plugins/lib/doubleChest')
 const { slotsIn, slotted } = require('./kinds')
 const { planFills } = require('./plan')
 const reasons = require('./reasons')
-const { hasColumns } = require('./waiting')
 
 const ATTEMPTS = 3
-const COLUMNS_MS = 20_000
+const COLUMNS_TICKS = 400
+const BUILT_TICKS = 10
 const MOST_TOLD = 5
 const ABOVE = 3
 const LINES = 4
-const USE_MS = 3000
+const USE_TICKS = 60
 const BESIDE = [[0, -1], [1, 0], [0, 1], [-1, 0]]
 
 class Setup {
@@ -43,7 +43,7 @@ class Setup {
     operator.type(commands.mode(operator.link.name, 'spectator'))
     operator.type(commands.load('add'))
     await this.goAbove()
-    if (!await operator.until(() => hasColumns(operator.bot, box), COLUMNS_MS)) throw reasons.tooFar(operator.server, box)
+    if (!await operator.shown(operator.bot, box, COLUMNS_TICKS)) throw reasons.tooFar(operator.server, box)
     await operator.settled()
   }
 
@@ -78,7 +78,7 @@ class Setup {
     let present = this.present()
     for (let attempt = 0; attempt < ATTEMPTS && this.flaws(present, wanted).length > 0; attempt++) {
       await operator.typeAll(planFills(box, present, wanted, state => this.rank(state)).map(cuboid => this.commands.blocks(cuboid)))
-      await operator.until(() => this.flaws(this.present(), wanted).length === 0, 500)
+      await operator.until(() => this.flaws(this.present(), wanted).length === 0, BUILT_TICKS)
       present = this.present()
     }
     const flaws = this.flaws(present, wanted)
@@ -199,11 +199,11 @@ class Setup {
     const isGate = () => scene.at(cell).name === 'oak_fence_gate'
     operator.type(this.commands.blocks({ state: shut, low, high }))
     await operator.until(isGate)
-    await operator.settling.settled(bot, USE_MS)
+    await operator.hasSettled(bot, USE_TICKS)
     bot._client.write('block_place', {
       location: cell, direction: 1, hand: 0, cursorX: 0.5, cursorY: 0.5, cursorZ: 0.5, insideBlock: false, sequence: 0
     })
-    const opened = await operator.until(() => scene.at(cell).properties.open === true, USE_MS)
+    const opened = await operator.until(() => scene.at(cell).properties.open === true, USE_TICKS)
     operator.type(this.commands.blocks({ state: air, low, high }))
     await operator.settled()
     await operator.until(() => !isGate())

@@ -2,7 +2,8 @@
 /**
  * A Minecraft server of the project's own plugins that does what an operator bot asks of a vanilla one, as a process of
  * its own: `node server.js [OPTIONS]`, a JSON object: `port` (0: any), `ops`, `age`,
- * `latency` (milliseconds each way), `tickMs`, `version` of Minecraft. It prints `{"port": N}` and then
+ * `latency` (milliseconds each way), `tickMs`, `version` of Minecraft, `diesAt` (which packet of players kills it), `commandsLate`
+ * (ticks after which operators are told their own commands). It prints `{"port": N}` and then
  * takes lines on its standard input as a console does (world.js); it ends with that input.
  */
 require('../../src/prepare').prepare()
@@ -16,7 +17,7 @@ const { openDelayed } = require('../tcp/delay')
 const { OpenWorld, TICK_MS } = require('./world')
 
 const DEFAULTS = {
-  port: 0, ops: ['BeliefNest'], age: 1000, latency: 0, tickMs: TICK_MS, version: versions.minecraft
+  port: 0, ops: ['BeliefNest'], age: 1000, latency: 0, tickMs: TICK_MS, version: versions.minecraft, diesAt: Infinity, commandsLate: 0
 }
 
 async function main (options) {

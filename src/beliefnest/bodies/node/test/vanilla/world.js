@@ -29,9 +29,13 @@ class OpenWorld {
    * @param {object} options
    * @param {string[]} options.ops names of the operators
    * @param {number} options.age in ticks
+   * @param {number} options.diesAt which packet of players kills the process
+   * @param {number} options.commandsLate ticks after which operators are told their own commands
    */
-  constructor (serv, { ops, age }) {
+  constructor (serv, { ops, age, diesAt, commandsLate }) {
     this.serv = serv
+    this.packets = { heard: 0, diesAt }
+    this.commandsLate = commandsLate
     this.ops = new Set(ops)
     // Set on the console: commands (or `completions`) that are not there, whether only operators may use blocks, how many may come in, who is to be verified.
     this.lacking = new Set()
@@ -72,7 +76,9 @@ class OpenWorld {
     player.gameMode = state.gameMode
     showWorld(player, region.columns)
     player.updateHealth(state.health)
+    player.knowsCommandsAt = region.tick + this.commandsLate
     this.tellCommands(player)
+    if (this.commandsLate > 0) this.later.push({ tick: player.knowsCommandsAt, line: `tell ${player.username}` })
     this.tellAge([player])
     end.on('tab_complete', ({ transactionId }) => {
       if (!this.lacking.has('completions')) end.write('tab_complete', { transactionId, start: 1, length: 0, matches: [] })
@@ -84,11 +90,12 @@ class OpenWorld {
 
   /** Refuses who does not find room, as the game does. */
   admit (client) {
+    client.on('packet', () => { if (++this.packets.heard === this.packets.diesAt) process.kill(process.pid, 'SIGKILL') })
     if (this.serv.players.length >= this.room) client.end('full', JSON.stringify({ translate: 'multiplayer.disconnect.server_full' }))
   }
 
-  commandsOf ({ username }) {
-    const own = this.ops.has(username) ? Object.keys(COMMANDS) : []
+  commandsOf ({ username, knowsCommandsAt }) {
+    const own = this.ops.has(username) && this.region.tick >= knowsCommandsAt ? Object.keys(COMMANDS) : []
     return [...ALL_MAY, ...own].filter(name => !this.lacking.has(name))
   }
 
@@ -126,6 +133,16 @@ class OpenWorld {
     if (region.tick % AGE_EVERY === 0) this.tellAge(serv.players)
   }
 
+  /** Sends everybody away and ends, as the game does. */
+  stop () {
+    let here = this.serv.players.length
+    if (here === 0) process.exit(0)
+    for (const player of [...this.serv.players]) {
+      player.once('disconnected', () => { if (--here === 0) process.exit(0) })
+      player._client.end(JSON.stringify({ translate: 'multiplayer.disconnect.server_shutdown' }))
+    }
+  }
+
   /** What is typed on the console: one line. */
   console (line) {
     const [word, name, ...more] = line.split(' ')
@@ -135,6 +152,10 @@ class OpenWorld {
     }
     if (word === 'stall') {
       stall(Number(name))
+      return
+    }
+    if (word === 'stop') {
+      this.stop()
       return
     }
     const player = this.serv.players.find(({ username }) => username === name)
@@ -148,7 +169,7 @@ class OpenWorld {
     else if (word === 'kick') player?._client.end(JSON.stringify({ text: 'Kicked by an operator' }))
     else if (word === 'drop') player?._client.client.socket.destroy()
     else if (player === undefined) runCommand(this.serv, line, null)
-    if (player !== undefined && word.endsWith('op')) this.tellCommands(player)
+    if (player !== undefined && (word.endsWith('op') || word === 'tell')) this.tellCommands(player)
   }
 }
 
