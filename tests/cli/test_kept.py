@@ -203,3 +203,22 @@ def test_a_damaged_run_is_refused_or_read_as_it_was(
         assert str(store) in line
     else:
         assert found == whole
+
+
+def test_a_run_that_goes_on_prints_the_whole_table(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    room = ROOM.replace("    template: ../texts/short.txt\n", "")
+    Path("room.yaml").write_text(
+        f"{room}conditions: {{1: {{description: first}}, 2: {{description: second}}}}\n",
+        encoding="utf-8",
+    )
+    answers = Path("answers.json")
+    command = ["run", "room.yaml", "--model", f"scripted:{answers}", "--cache", "off"]
+    answers.write_text(json.dumps([TAKE, *["I cannot."] * 3]), encoding="utf-8")
+    assert run_command_line([*command, "--out", "run"]) == 3
+    capsys.readouterr()
+    answers.write_text(json.dumps([TAKE]), encoding="utf-8")
+    assert run_command_line([*command, "--out", "run"]) == 0
+    printed = capsys.readouterr().out
+    assert "predicted bob opens" in printed
+    assert printed.count("apple box") == 2

@@ -237,16 +237,13 @@ def test_a_program_whose_bot_is_sent_away_fails_and_the_next_one_runs(console):
         assert nest["/"].run("sally", PUT).ok
 
 
-def test_a_server_that_is_stopped_under_a_program_is_the_cause_that_is_told(tmp_path, capsys):
+def test_a_server_that_is_stopped_under_a_program_is_the_cause_that_is_told():
     with GameServer() as server:
-        server.type("after 1120 stop")
-        world = server.address(patience=3)
-        out = ["run", "sally-anne", "--condition", "1", "--out", str(tmp_path / "run")]
-        assert run_command_line([*out, "--world", world]) == BodyError.exit_status
-    said = capsys.readouterr().err
-    assert "was lost" in said
-    assert "--out" in said
-    assert "own code" not in said
+        nest = Nest.open(Scenario.load("sally-anne", 1), server.address(patience=3))
+        server.type("after 20 stop")
+        with pytest.raises(BodyError, match=r"was lost .*with the same command and --out"):
+            nest["/"].run("sally", FAR)
+        nest.close()
 
 
 def test_a_bot_that_does_nothing_loses_its_connection_and_others_go_on(console):

@@ -3,6 +3,7 @@
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from beliefnest.belief.plain import state_json
 from beliefnest.belief.view import State
 from beliefnest.cli.pictures import container_name, point_text
 from beliefnest.cli.text import printable
+from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.expected import (
     Arrives,
     Believes,
@@ -39,8 +41,8 @@ from beliefnest.world.signs import sign_words
 from beliefnest.world.values import Placements, Point, Position
 
 __all__ = [
+    "OutcomeRow",
     "cost_text",
-    "failure_lines",
     "outcome_json",
     "outcome_table",
     "placed_lines",
@@ -79,6 +81,7 @@ def outcome_json(
         "failures": list(outcome.failures),
         "usage": usage_json(outcome.usage),
         "run_dir": str(run_dir),
+        "table": {"cells": _cells(outcome), "notes": _notes(outcome)},
     }
 
 
@@ -121,60 +124,95 @@ def _counted(
     return {outcome: found[outcome] for outcome in OUTCOMES}
 
 
-def outcome_table(outcomes: Sequence[Outcome], console: Console) -> Table:
-    """What is where, what was predicted, whether it is as expected, in each condition.
+@dataclass(frozen=True, slots=True)
+class OutcomeRow:
+    """What came of one condition, as `outcome_json` keeps it, beside the scenario that was run.
 
-    One row for each condition, or one column where there is too much to tell for a row of the
-    console.
+    Attributes:
+        scenario: In that condition.
+        cells: Heading to text, for everything that is expected or asked.
+        notes: What was not as expected, and which programs failed, a line each.
+        failures: What was not as expected.
+        usage: What models took.
+        ticks: How long it lasted.
+        seconds: How long it took.
     """
-    wide = _wide_table(outcomes)
+
+    scenario: Scenario
+    cells: Mapping[str, str]
+    notes: Sequence[str]
+    failures: Sequence[str]
+    usage: Usage
+    ticks: int
+    seconds: float
+
+    @classmethod
+    def of(cls, scenario: Scenario, result: Mapping[str, Any]) -> "OutcomeRow | None":
+        """Return the row of a result; None: an earlier version wrote it, without the texts."""
+        if "table" not in result:
+            return None
+        return cls(
+            scenario,
+            result["table"]["cells"],
+            result["table"]["notes"],
+            result["failures"],
+            Usage(**result["usage"]),
+            result["ticks"],
+            result["seconds"],
+        )
+
+
+def outcome_table(rows: Sequence[OutcomeRow], console: Console) -> Table:
+    """Tabulate what is where, what was predicted, and whether it is as expected.
+
+    The table has one row for each condition, or one column where there is too much to tell for
+    a row of the console.
+    """
+    wide = _wide_table(rows)
     # Rich's measure is no wider than the room it is told of.
     least = Measurement.get(console, console.options.update(max_width=10_000), wide).minimum
-    if len(_headings(outcomes)) > _WIDEST or least > console.width:
-        return _tall_table(outcomes)
+    if len(_headings(rows)) > _WIDEST or least > console.width:
+        return _tall_table(rows)
     return wide
 
 
-def _wide_table(outcomes: Sequence[Outcome]) -> Table:
-    scenario = outcomes[0].scenario
+def _wide_table(rows: Sequence[OutcomeRow]) -> Table:
+    scenario = rows[0].scenario
     table = Table(title=scenario.name, title_justify="left", box=box.SIMPLE_HEAVY)
     if scenario.conditions:
         table.add_column("condition", justify="right")
-    for heading in _headings(outcomes):
+    for heading in _headings(rows):
         table.add_column(heading)
     table.add_column(f"as {scenario.reported_by or 'expected'}{_verb(scenario)}")
-    asked = any(outcome.usage.requests for outcome in outcomes)
+    asked = any(row.usage.requests for row in rows)
     for heading in ("tokens", "cost") if asked else ():
         table.add_column(heading, justify="right")
     table.add_column("ticks", justify="right")
     table.add_column("seconds", justify="right")
-    for outcome in outcomes:
-        row = [str(outcome.scenario.condition)] if scenario.conditions else []
-        cells = _cells(outcome)
-        row += [cells.get(heading, "") for heading in _headings(outcomes)]
-        verdict = _verdict(outcome)
-        spent = [f"{outcome.usage.tokens:,}", cost_text(outcome.usage.cost)] if asked else []
-        table.add_row(*row, verdict, *spent, str(outcome.ticks), f"{outcome.seconds:.2f}")
+    for row in rows:
+        cells = [str(row.scenario.condition)] if scenario.conditions else []
+        cells += [row.cells.get(heading, "") for heading in _headings(rows)]
+        spent = [f"{row.usage.tokens:,}", cost_text(row.usage.cost)] if asked else []
+        table.add_row(*cells, _verdict(row), *spent, str(row.ticks), f"{row.seconds:.2f}")
     return table
 
 
-def _tall_table(outcomes: Sequence[Outcome]) -> Table:
-    scenario = outcomes[0].scenario
+def _tall_table(rows: Sequence[OutcomeRow]) -> Table:
+    scenario = rows[0].scenario
     table = Table(title=scenario.name, title_justify="left", box=box.SIMPLE_HEAVY)
     table.add_column("condition" if scenario.conditions else "")
-    for outcome in outcomes:
-        number = outcome.scenario.condition
+    for row in rows:
+        number = row.scenario.condition
         table.add_column("" if number is None else str(number))
-    cells = [_cells(outcome) for outcome in outcomes]
-    for heading in _headings(outcomes):
-        table.add_row(heading, *(each.get(heading, "") for each in cells))
-    verdicts = [_verdict(each) for each in outcomes]
+    for heading in _headings(rows):
+        table.add_row(heading, *(row.cells.get(heading, "") for row in rows))
+    verdicts = [_verdict(row) for row in rows]
     table.add_row(f"as {scenario.reported_by or 'expected'}{_verb(scenario)}", *verdicts)
-    if any(outcome.usage.requests for outcome in outcomes):
-        table.add_row("tokens", *(f"{each.usage.tokens:,}" for each in outcomes))
-        table.add_row("cost", *(cost_text(each.usage.cost) for each in outcomes))
-    table.add_row("ticks", *(str(each.ticks) for each in outcomes))
-    table.add_row("seconds", *(f"{each.seconds:.2f}" for each in outcomes))
+    if any(row.usage.requests for row in rows):
+        table.add_row("tokens", *(f"{row.usage.tokens:,}" for row in rows))
+        table.add_row("cost", *(cost_text(row.usage.cost) for row in rows))
+    table.add_row("ticks", *(str(row.ticks) for row in rows))
+    table.add_row("seconds", *(f"{row.seconds:.2f}" for row in rows))
     return table
 
 
@@ -199,15 +237,15 @@ def _verb(scenario: Scenario) -> str:
     return " reports" if scenario.reported_by else ""
 
 
-def _verdict(outcome: Outcome) -> str:
-    """Whether all was as expected, and if not, what was not; `failure_lines` says why."""
-    if outcome.ok:
+def _verdict(row: OutcomeRow) -> str:
+    """Whether all was as expected, and if not, what was not; `notes` say why."""
+    if not row.failures:
         return "[green]yes[/green]"
-    names = (failure.partition(": ")[0] for failure in outcome.failures)
+    names = (failure.partition(": ")[0] for failure in row.failures)
     return "\n".join(["[bold red]NO[/bold red]", *map(escape, names)])
 
 
-def failure_lines(outcome: Outcome) -> list[str]:
+def _notes(outcome: Outcome) -> list[str]:
     """Return what was not as expected, and why programs failed of which nothing was expected."""
     number = outcome.scenario.condition
     where = "" if number is None else f"condition {number}: "
@@ -219,8 +257,8 @@ def failure_lines(outcome: Outcome) -> list[str]:
     return [*(f"NO: {where}{failure}" for failure in outcome.failures), *failed]
 
 
-def _headings(outcomes: Iterable[Outcome]) -> list[str]:
-    return list(dict.fromkeys(heading for outcome in outcomes for heading in _cells(outcome)))
+def _headings(rows: Iterable[OutcomeRow]) -> list[str]:
+    return list(dict.fromkeys(heading for row in rows for heading in row.cells))
 
 
 def _cells(outcome: Outcome) -> dict[str, str]:

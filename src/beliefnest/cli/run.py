@@ -22,7 +22,12 @@ from beliefnest.cli.folder import ConditionFolder, RunFolder, kept_scenario_file
 from beliefnest.cli.matrix import score_runs, score_table, scores_json
 from beliefnest.cli.pictures import read_condition
 from beliefnest.cli.plan import RunCell, plan_run_cells
-from beliefnest.cli.report import failure_lines, outcome_json, outcome_table, report_json
+from beliefnest.cli.report import (
+    OutcomeRow,
+    outcome_json,
+    outcome_table,
+    report_json,
+)
 from beliefnest.cli.run_report import report_html
 from beliefnest.cli.text import printable
 from beliefnest.cli.visits import check_visits, visited
@@ -36,7 +41,6 @@ from beliefnest.llm.resolve import Connection, check_model, open_model
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.pictures.overview import ConditionPicture, overview
-from beliefnest.scenarios.outcome import Outcome
 from beliefnest.scenarios.running import Asking, run_scenario
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
@@ -189,7 +193,7 @@ class _Run:
         self._models = {
             name: open_model(name, os.environ, connection) for name in options.named_models
         }
-        self.outcomes: list[Outcome] = []
+        self.rows: list[OutcomeRow] = []
         self.pictures: list[ConditionPicture] = []
         self.results: list[dict[str, Any]] = []
         self.failures: list[dict[str, object]] = []
@@ -200,13 +204,13 @@ class _Run:
         known = place.result()
         if known is not None:
             self.budget.add(Usage(**known["usage"]))
-            self.results.append(known)
+            self._keep(cell, known)
             return
         place.begin()
         try:
             model = self._models[cell.model]
             hook = self._hook(cell.seed)
-            outcome, picture = _run(cell, place, model, hook, self._options, worlds)
+            picture = _run(cell, place, model, hook, self._options, worlds)
         except ModelError as error:
             self.failures.append(
                 {
@@ -220,11 +224,16 @@ class _Run:
                 }
             )
             return
-        self.outcomes.append(outcome)
         self.pictures.append(picture)
         written = place.result()
         assert written is not None
-        self.results.append(written)
+        self._keep(cell, written)
+
+    def _keep(self, cell: RunCell, result: dict[str, Any]) -> None:
+        self.results.append(result)
+        row = OutcomeRow.of(cell.scenario, result)
+        if row is not None:
+            self.rows.append(row)
 
     def _hook(self, seed: int) -> ClaimsFrom | None:
         """What reads claims out of what is said, if anything does."""
@@ -279,7 +288,7 @@ def _run(
     claims_from: ClaimsFrom | None,
     options: RunOptions,
     worlds: Worlds,
-) -> tuple[Outcome, ConditionPicture]:
+) -> ConditionPicture:
     scenario = cell.scenario
     asking = Asking(options.asking.attempts, Sampling(options.asking.temperature, cell.seed))
     started = time.perf_counter()
@@ -301,7 +310,7 @@ def _run(
         place.picture_svg.write_text(figure._repr_html_(), encoding="utf-8")
         readings = {} if claims_from is None else {"readings": _readings(nest)}
     place.write_result({**outcome_json(outcome, cell.model, place.path, told), **readings})
-    return outcome, picture
+    return picture
 
 
 def _readings(nest: Nest) -> dict[str, object]:
@@ -352,7 +361,7 @@ def _print(
                 console.print(f"condition {number}: {about}", highlight=False)
         console.print(folded(_table(run, cells, console)))
         if _is_one_round(run, cells):
-            for line in (line for outcome in run.outcomes for line in failure_lines(outcome)):
+            for line in (line for row in run.rows for line in row.notes):
                 console.print(printable(line), highlight=False, markup=False, soft_wrap=True)
         for line in _unread(run.results):
             console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
@@ -378,10 +387,10 @@ def _unread(results: Sequence[Mapping[str, Any]]) -> list[str]:
 def _table(run: _Run, cells: Sequence[RunCell], console: Console) -> Table:
     """Of one round what was found in each condition, of several how often it was as expected."""
     if _is_one_round(run, cells):
-        return outcome_table(run.outcomes, console)
+        return outcome_table(run.rows, console)
     return score_table(cells[0].scenario.name, score_runs(run.results, run.failures))
 
 
 def _is_one_round(run: _Run, cells: Sequence[RunCell]) -> bool:
     flat = len(cells[0].folder.parts) == 1
-    return flat and bool(run.outcomes) and len(run.outcomes) == len(cells)
+    return flat and bool(run.rows) and len(run.rows) == len(cells)
