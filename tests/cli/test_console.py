@@ -8,7 +8,7 @@ import pytest
 from rich.table import Table
 
 from beliefnest.cli.app import run_command_line
-from beliefnest.cli.console import folded, progress_on, stdout
+from beliefnest.cli.console import folded, print_table, progress_on, stdout
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
 
@@ -80,3 +80,19 @@ def test_cells_are_folded(
     table.add_row("x" * 30, "y" * 30)
     stdout().print(folded(table))
     assert capsys.readouterr().out.count("x") == 30
+
+
+def test_a_table_without_room_for_its_words_is_printed_as_lists(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    headings = [f"/believer/of/{name}" for name in ("ann", "bob", "cid", "dan", "eve", "flo")]
+    for columns, is_list in (("80", True), ("140", False)):
+        monkeypatch.setenv("COLUMNS", columns)
+        table = Table(*headings, title="beliefs")
+        table.add_row(*(f"diamond {number}" for number in range(len(headings))))
+        print_table(stdout(), table)
+        printed = capsys.readouterr().out
+        assert "diamond 5" in " ".join(printed.split())
+        assert max(map(len, printed.splitlines())) <= int(columns)
+        assert ("/believer/of/ann  diamond 0" in printed) is is_list
+        assert all(heading in printed for heading in headings)

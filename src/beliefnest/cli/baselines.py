@@ -12,7 +12,7 @@ from typing import Any
 from rich import box
 from rich.table import Table
 
-from beliefnest.cli.console import folded, progress_on, stdout
+from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.tasks import parameters_of, source_of
@@ -172,4 +172,4 @@ def _print(found: Sequence[Group]) -> None:
         table.add_column(column)
     for each in found:
         table.add_row(*_cells(each))
-    stdout().print(folded(table))
+    print_table(stdout(), table)

@@ -7,15 +7,17 @@ from contextlib import contextmanager
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-from rich.table import Table
+from rich.table import Column, Table
 
 from beliefnest.cli.text import printable
 from beliefnest.nest.face.nest import Progress as OnProgress
 
-__all__ = ["folded", "progress_on", "stdout"]
+__all__ = ["folded", "print_table", "progress_on", "stdout"]
 
 _PLAIN_WIDTH = 140
 _NARROWEST = 20
+_WORD = 12
+"""Letters of a word that a column has to have room for."""
 
 
 def stdout() -> Console:
@@ -33,6 +35,33 @@ def folded(table: Table) -> Table:
     for column in table.columns:
         column.overflow, column.no_wrap = "fold", False
     return table
+
+
+def print_table(console: Console, table: Table) -> None:
+    """Print a table; where its columns have no room for words, print each row as a list.
+
+    Args:
+        console: Where it is printed.
+        table: The table; its cells are folded and never cut.
+    """
+    if sum(map(_least, table.columns)) + 3 * len(table.columns) <= console.width:
+        console.print(folded(table))
+        return
+    if table.title is not None:
+        console.print(table.title)
+    for row in zip(*(column.cells for column in table.columns), strict=True):
+        listed = Table.grid(padding=(0, 2, 0, 0))
+        for column, cell in zip(table.columns, row, strict=True):
+            listed.add_row(column.header, cell)
+        console.print(folded(listed))
+        console.print()
+
+
+def _least(column: Column) -> int:
+    """Return the columns of a terminal in which words of usual length are not broken."""
+    texts = [str(each) for each in (column.header, *column.cells)]
+    longest = max((len(word) for text in texts for word in text.split()), default=0)
+    return min(longest, _WORD)
 
 
 def _width(*, terminal: bool) -> int | None:

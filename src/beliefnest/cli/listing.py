@@ -8,7 +8,7 @@ from rich.table import Table
 
 from beliefnest.bodies.address import SCHEME
 from beliefnest.bodies.worlds import WORLDS
-from beliefnest.cli.console import folded, stdout
+from beliefnest.cli.console import print_table, stdout
 from beliefnest.cli.suite import SUITES
 from beliefnest.episodes.tasks import builtin_tasks
 from beliefnest.llm.resolve import model_names
@@ -49,7 +49,7 @@ def print_installed(*, as_json: bool) -> None:
         for number, text in scenario.conditions.items():
             table.add_row("", str(number), text)
     console = stdout()
-    console.print(folded(table))
+    print_table(console, table)
     further = {
         "tasks": builtin_tasks(),
         "suites": SUITES,

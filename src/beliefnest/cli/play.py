@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from beliefnest.bodies.worlds import check_world
-from beliefnest.cli.console import folded, progress_on, stdout
+from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.cli.text import counted, printable
 from beliefnest.episodes.episode import Budget, Episode
 from beliefnest.episodes.helping import Help
@@ -227,7 +227,7 @@ def _print(report: Mapping[str, Any]) -> None:
             cells = (str(part["round"]), agent, told["program"].strip(), ended)
             table.add_row(*(Text(printable(cell)) for cell in cells))
     console = stdout()
-    console.print(folded(table))
+    print_table(console, table)
     lines = [f"failed in {failure}" for failure in report["measures"]["failures"]]
     lines += [_goal_line(each) for each in report["goal"]]
     if "help" in report:

@@ -13,7 +13,7 @@ from typing import Any
 from rich import box
 from rich.table import Table
 
-from beliefnest.cli.console import folded, progress_on, stdout
+from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.errors import InputError
 from beliefnest.studies.running import StudyProgress
 from beliefnest.studies.study import Study
@@ -191,7 +191,7 @@ def _print(lines: Sequence[Mapping[str, Any]], about: str) -> None:
     for line in lines:
         table.add_row(*_cells(line))
     console = stdout()
-    console.print(folded(table))
+    print_table(console, table)
     for line in dict.fromkeys(line["command"] for line in lines):
         console.print(line, highlight=False)
     console.print(about, highlight=False)

@@ -17,7 +17,7 @@ from rich.table import Table
 
 from beliefnest.bodies.worlds import Worlds, check_world
 from beliefnest.cli.accounts import accounts
-from beliefnest.cli.console import folded, progress_on, stdout
+from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.cli.folder import ConditionFolder, RunFolder, kept_scenario_file
 from beliefnest.cli.matrix import score_runs, score_table, scores_json
 from beliefnest.cli.pictures import read_condition
@@ -359,7 +359,7 @@ def _print(
         for number, about in cells[0].scenario.conditions.items():
             if any(cell.scenario.condition == number for cell in cells):
                 console.print(f"condition {number}: {about}", highlight=False)
-        console.print(folded(_table(run, cells, console)))
+        print_table(console, _table(run, cells, console))
         if _is_one_round(run, cells):
             for line in (line for row in run.rows for line in row.notes):
                 console.print(printable(line), highlight=False, markup=False, soft_wrap=True)

@@ -16,7 +16,7 @@ from beliefnest.belief.entries import Basis
 from beliefnest.belief.plain import state_json
 from beliefnest.belief.view import State
 from beliefnest.cli.claims import claims_json, claims_table, paths_of_beliefs, print_claims
-from beliefnest.cli.console import folded, stdout
+from beliefnest.cli.console import print_table, stdout
 from beliefnest.cli.folder import store_in, stores_in
 from beliefnest.cli.pictures import container_name, place_text, titled
 from beliefnest.cli.report import placed_lines
@@ -143,7 +143,7 @@ def _show(options: ShowOptions, store: Path) -> None:
             _print_state(state, simulator.path, scenario)
             if claims:
                 stdout().print("Claims")
-                stdout().print(folded(claims_table(claims, simulator.path, scenario)))
+                print_table(stdout(), claims_table(claims, simulator.path, scenario))
             for line in placed_lines(simulator.placed):
                 stdout().print(_foreign(line), highlight=False)
             _print_programs(programs)
@@ -282,7 +282,8 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
         seen = "yes" if agent.current else "no"
         known = _how_known(state, agent.basis, current=agent.current)
         agents.add_row(titled(name), _foreign(where), seen, holds, *known)
-    console.print(folded(containers), folded(agents))
+    print_table(console, containers)
+    print_table(console, agents)
     for (tick, speaker, text), to in zip(state.chat, state.addressees, strict=True):
         said = speaker if to is None else f"{speaker} whispers to {to}"
         console.print(_foreign(f"{tick} {said}: {text}"), highlight=False)
@@ -335,7 +336,7 @@ def _print_prompts(prompts: Sequence[PromptRecord]) -> None:
             given.strip(),
         )
         table.add_row(*map(_foreign, cells))
-    stdout().print(folded(table))
+    print_table(stdout(), table)
 
 
 def _foreign(text: str) -> Text:

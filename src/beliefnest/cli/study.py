@@ -12,7 +12,7 @@ from typing import Any
 from rich import box
 from rich.table import Table
 
-from beliefnest.cli.console import progress_on, stdout
+from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.cli.report import cost_text
 from beliefnest.cli.text import printable
 from beliefnest.errors import InputError, ModelError, UnknownNameError
@@ -131,7 +131,7 @@ def _report(result: StudyResult) -> dict[str, Any]:
 
 def _print(result: StudyResult) -> None:
     console = stdout()
-    console.print(_table(result.groups, result.counted(result.groups)))
+    print_table(console, _table(result.groups, result.counted(result.groups)))
     failed = {row["cell"]: row["why_not"] for row in result.rows if row["outcome"] == "error"}
     told = [f"no result: {why}" for why in dict.fromkeys(failed.values())]
     told += [f"left out: {_invalid_text(each)}" for each in result.invalid]

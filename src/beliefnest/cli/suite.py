@@ -14,7 +14,7 @@ from rich import box
 from rich.table import Table
 
 from beliefnest.bodies.worlds import check_world
-from beliefnest.cli.console import folded, progress_on, stdout
+from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.scenarios.stories.data import StoryItems, read_items
 from beliefnest.scenarios.stories.own import read_own
@@ -205,7 +205,7 @@ def _print(
     total = score(each for each in judged if each.needs_first)
     table.add_row("all", "all", *_cells(score(judged)), *_cells(total))
     console = stdout()
-    console.print(folded(table))
+    print_table(console, table)
     unread = {each.item.row: each.unread for each in judged if each.unread is not None}
     for row, error in [*unread.items()][:1]:
         console.print(
