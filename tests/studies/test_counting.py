@@ -1,11 +1,13 @@
 """Intervals and paired differences, by hand and by another way."""
 
+import itertools
 import math
 
 import pytest
 
 from beliefnest.errors import InputError
-from beliefnest.studies.counting import Pairs, count_rows, paired_rows
+from beliefnest.studies.clusters import exchange_p
+from beliefnest.studies.counting import count_rows, paired_rows
 
 
 def row(model, spot, ok, outcome=None):
@@ -32,7 +34,8 @@ def test_what_has_no_result_is_counted_and_not_judged():
 def test_pairs_are_rows_that_differ_in_one_column():
     rows = [row(model, spot, (model == "a") or spot > 2) for model in "ab" for spot in range(5)]
     (pairs,) = paired_rows(rows, "model", ["model", "spot"])
-    assert pairs == Pairs("a", "b", 5, 2, 3, 0)
+    assert (pairs.one, pairs.other, pairs.pairs, pairs.variations) == ("a", "b", 5, 5)
+    assert (pairs.both, pairs.only_one, pairs.only_other) == (2, 3, 0)
     assert pairs.difference == pytest.approx(0.6)
     # Bonett and Price: 4/7 and 1/7 in place of 3/5 and 0.
     half = 1.959964 * math.sqrt((4 / 7 + 1 / 7 - (3 / 7) ** 2) / 7)
@@ -44,3 +47,77 @@ def test_pairs_are_rows_that_differ_in_one_column():
 def test_nothing_is_compared_by_what_came_of_it():
     with pytest.raises(InputError, match="by 'outcome'; columns are model, spot"):
         paired_rows([row("a", 1, True)], "outcome", ["model", "spot"])
+
+
+def clustered(variation, model, oks):
+    """Rows of one variation, one for each repeat."""
+    return [
+        {**row(model, variation, ok), "variation": variation, "repeat": n}
+        for n, ok in enumerate(oks)
+    ]
+
+
+def test_rows_of_one_variation_are_no_independent_evidence():
+    rows = [each for n in range(60) for each in clustered(f"v{n}", "a", [n % 6 > 0] * 3)]
+    (found,) = count_rows(rows, ["model"])
+    assert (found["judged"], found["right"], found["variations"]) == (180, 150, 60)
+    assert found["interval"] == "bootstrap"
+    # As of 50 of 60, not as of 150 of 180.
+    half = 1.96 * math.sqrt(5 / 6 / 6 / 60)
+    assert (found["low"], found["high"]) == pytest.approx((5 / 6 - half, 5 / 6 + half), abs=0.02)
+    assert count_rows(rows, ["model"]) == [found]
+    (one,) = count_rows(rows[:180:3], ["model"])
+    assert (one["interval"], one["variations"]) == ("wilson", 60)
+    assert (one["low"], one["high"]) == pytest.approx((0.7196, 0.9069), abs=1e-4)
+
+
+def test_where_all_variations_agree_their_number_makes_the_interval():
+    rows = [each for n in range(10) for each in clustered(f"v{n}", "a", [True] * 6)]
+    (found,) = count_rows(rows, ["model"])
+    assert (found["right"], found["variations"]) == (60, 10)
+    # Wilson, of 10 in 10.
+    assert (found["low"], found["high"]) == pytest.approx((0.7225, 1.0), abs=1e-4)
+
+
+def test_means_are_clustered_too():
+    rows = [each for n in range(4) for each in clustered(f"v{n}", "a", [True] * 3)]
+    for each in rows:
+        each["ticks"] = 10 * int(each["variation"][1:])
+    (found,) = count_rows(rows, ["model"], {"ticks": True})
+    assert (found["ticks"], found["ticks_low"], found["ticks_high"]) == pytest.approx(
+        (15, 5, 25), 1
+    )
+    (one,) = count_rows(rows[:3], ["model"], {"ticks": True})
+    assert (one["ticks"], one["ticks_low"]) == (0, None)
+
+
+def test_pairs_of_one_variation_are_exchanged_together():
+    rows = [
+        each
+        for model in "ab"
+        for n in range(4)
+        for each in clustered(f"v{n}", model, [model == "a"] * 5)
+    ]
+    (pairs,) = paired_rows(rows, "model", ["model", "spot", "repeat"])
+    assert (pairs.pairs, pairs.variations, pairs.only_one) == (20, 4, 20)
+    # Four heads in four throws, either side, and not twenty.
+    assert pairs.p == pytest.approx(2 / 2**4)
+    # Bonett and Price of four pairs: 5/6 and 1/6.
+    assert pairs.interval == pytest.approx(
+        (4 / 6 - 1.959964 * math.sqrt((1 - (4 / 6) ** 2) / 6), 1.0)
+    )
+
+
+def every_exchange(differences):
+    totals = [
+        sum(sign * each for sign, each in zip(signs, differences, strict=True))
+        for signs in itertools.product((1, -1), repeat=len(differences))
+    ]
+    return sum(abs(total) >= abs(sum(differences)) for total in totals) / len(totals)
+
+
+@pytest.mark.parametrize(
+    "differences", [[3, -1, 2, 0, 2], [1, 1, 1, -1], [0, 0], [], [5, -5], [2, 2, -1, -1, 3, 1]]
+)
+def test_p_is_the_share_of_all_exchanges(differences):
+    assert exchange_p(differences) == pytest.approx(every_exchange(differences))

@@ -34,7 +34,7 @@ STUDY = """\
 tasks: [bring.yaml]
 policies: [search, "program:idle.js", {ann: "program:take.js", eve: random}]
 orders: [0, 1]
-seeds: 2
+seeds: [1, 3]
 variations: {spot: [[1, 1, 1], [7, 1, 1], [9, 1, 1]]}
 """
 TAKE = "await getItemFromChest(bot, new Vec3(1, 1, 1), {apple: 1})"
@@ -86,7 +86,12 @@ def test_one_row_for_each_episode(whole: Path) -> None:
     assert right[("program:idle.js", "1,1,1")] == 0
     taken = "ann=program:take.js,eve=random"
     assert (right[(taken, "1,1,1")], right[(taken, "7,1,1")]) == (1, 0)
-    assert list(frame["seed"].unique()) == [0, 1]
+    # The same for all players, and another in each variation.
+    assert frame.groupby(["spot", "instance"])["seed"].nunique().tolist() == [1, 1, 1, 1]
+    assert frame["seed"].nunique() == 4
+    # A task that is read from a file is no other for another seed.
+    assert frame.groupby("spot")["variation"].nunique().tolist() == [1, 1]
+    assert frame["variation"].nunique() == 2
     lost = frame[frame["policy"] == "program:idle.js"]
     told = {"not reached: ann has 1 apple", "not to be: eve has 1 apple"}
     assert set(lost["why_not"]) == told
@@ -100,14 +105,18 @@ def test_summaries_have_intervals_and_differences_are_of_pairs(whole: Path) -> N
     result = bn.StudyResult.read(whole)
     summary = result.summary().set_index("policy")
     assert (summary.loc["search:0", "right"], summary.loc["search:0", "judged"]) == (4, 4)
-    assert summary.loc["search:0", "low"] == pytest.approx(0.5101, abs=1e-4)  # Wilson, 4 of 4
+    assert (summary.loc["search:0", "variations"], summary.loc["search:0", "interval"]) == (
+        *(2, "wilson"),
+    )
+    assert summary.loc["search:0", "low"] == pytest.approx(0.3424, abs=1e-4)  # Wilson, 2 of 2
     ticks = summary.loc["search:0", ["ticks_low", "ticks", "ticks_high"]]
     assert ticks.iloc[0] <= ticks.iloc[1] <= ticks.iloc[2]
     differences = result.differences("policy").set_index(["one", "other"])
     pair = differences.loc[("search:0", "program:idle.js")]
     assert (pair["pairs"], pair["only_one"], pair["only_other"]) == (4, 4, 0)
     none = result.differences("task")
-    assert len(none) == 0 and list(none.columns) == ["one", "other", *differences.columns]
+    names = ["player", "one", "other", *differences.columns]
+    assert len(none) == 0 and list(none.columns) == names
     by_order = result.differences("order")
     assert list(by_order[["one", "other", "both"]].itertuples(index=False, name=None)) == [
         ("0", "1", 4)
@@ -115,7 +124,6 @@ def test_summaries_have_intervals_and_differences_are_of_pairs(whole: Path) -> N
     apart = result.differences("policy", by=["task", "spot"])
     assert list(apart.columns[:4]) == ["task", "spot", "one", "other"]
     assert set(apart["pairs"]) == {2} and set(apart["spot"]) == {"1,1,1", "7,1,1"}
-    assert list(result.differences("task").columns[:3]) == ["one", "other", "pairs"]
     assert result.plot().axes[0].get_xlabel() == "task"
     page = (whole / "study.html").read_text("utf-8")
     assert "bring.yaml" in page and "<svg" in page and "search:1" in page

@@ -216,10 +216,41 @@ def test_draws_keep_constraints_differ_and_begin_alike(tmp_path):
     assert drawn_variations(document, 5, "other") != few
 
 
-def test_no_more_is_drawn_than_there_is(tmp_path):
-    text = SMALL.replace("range: [1, 64]", "values: [1]")
-    # Three places, two items, one count, eight symmetries.
-    assert len(drawn_variations(read_document(small_in(tmp_path, text)), 1000, "seed")) == 48
+def test_as_many_are_drawn_as_asked_for_or_it_is_told_how_many_there_are(tmp_path):
+    # Three places, two items, one count, eight symmetries; Ann is named in the task.
+    text = SMALL.replace("range: [1, 64]", "values: [1]").replace("Get a", "As ann get a")
+    document = read_document(small_in(tmp_path, text))
+    every = drawn_variations(document, 48, "seed")
+    assert len({each.key for each in every}) == 48
+    assert every[:20] == drawn_variations(document, 20, "seed")
+    told = (
+        r"small.yaml: variations is 60, and there are 48 different ones: all combinations of spot "
+        r"\(3\), item \(2\), count \(1\), symmetry \(8\) that keep the constraints; ask for 48"
+    )
+    with pytest.raises(InputError, match=told):
+        drawn_variations(document, 60, "seed")
+    with pytest.raises(InputError, match=told):
+        bn.Study(small_in(tmp_path, text), variations=60).plan()
+
+
+def test_names_are_drawn_beside_parameters_but_for_those_that_parameters_have(tmp_path):
+    document = read_document(small_in(tmp_path, SMALL.replace("range: [1, 64]", "values: [1]")))
+    many = drawn_variations(document, 60, "seed")
+    assert len({each.key for each in many}) == 60
+    assert len({each.values["agents"]["ann"] for each in many}) > 5
+    assert all("items" not in each.values for each in many)
+    plan = bn.Study(small_in(tmp_path), variations=60).plan()
+    assert len(plan.cells) == 60 and not plan.invalid
+    who = SMALL.replace("parameters:\n", "parameters:\n  who: {default: ann, values: [ann]}\n")
+    named = drawn_variations(read_document(small_in(tmp_path, who)), 9, "seed")
+    assert all(each.values["who"] == "ann" and "agents" not in each.values for each in named)
+
+
+def test_a_study_s_constraints_take_no_variation_from_those_asked_for(tmp_path):
+    study = bn.Study(small_in(tmp_path), variations=20, constraints=["count > 32"])
+    plan = study.plan()
+    assert len(plan.cells) == 20 and not plan.invalid
+    assert all(cell.key.variation["count"] > 32 for cell in plan.cells)
 
 
 TOLD = """

@@ -398,6 +398,10 @@ def study(
     claims_from: Annotated[
         str | None, typer.Option(help="Model that reads claims out of what is said.")
     ] = None,
+    by: Annotated[
+        list[str] | None,
+        typer.Option(metavar="COLUMN", help="Sum rows up by this column; can be repeated."),
+    ] = None,
     json: Json = False,
 ) -> int:
     """Play many variations of scenarios with several models; print accuracies with intervals."""
@@ -405,7 +409,9 @@ def study(
 
     merged = tuple(merge or ())
     return run_study(
-        StudyOptions(study, out, jobs, backend, shard, merged, record, json, claims_from)
+        StudyOptions(
+            study, out, jobs, backend, shard, merged, record, json, claims_from, tuple(by or ())
+        )
     )
 
 

@@ -16,6 +16,7 @@ from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.cli.report import cost_text
 from beliefnest.cli.text import printable
 from beliefnest.errors import InputError, ModelError, UnknownNameError
+from beliefnest.studies.checking import checked_columns
 from beliefnest.studies.copies import text_of_copies
 from beliefnest.studies.result import StudyResult
 from beliefnest.studies.running import StudyProgress
@@ -40,6 +41,7 @@ class StudyOptions:
         record: Whether runs are recorded.
         as_json: Whether to print the report as JSON instead of a table.
         claims_from: Model that reads claims out of what is said; None: what the file says.
+        by: Columns by which rows are summed up; empty: those of the kind of study.
     """
 
     file: Path
@@ -51,6 +53,7 @@ class StudyOptions:
     record: bool
     as_json: bool
     claims_from: str | None = None
+    by: tuple[str, ...] = ()
 
 
 def run_study(options: StudyOptions) -> int:
@@ -68,6 +71,7 @@ def run_study(options: StudyOptions) -> int:
         if options.merge:
             taken = study.take_over(folder, options.merge)
             on_progress(f"took over {taken} cells", 0, 0)
+        checked_columns(options.by, study.columns)
 
         def told(progress: StudyProgress) -> None:
             on_progress(_progress_text(progress), progress.done, progress.total)
@@ -84,11 +88,12 @@ def run_study(options: StudyOptions) -> int:
         except KeyboardInterrupt:
             sys.stderr.write(f"what has ended is kept in {folder}; the same command goes on\n")
             raise
-    _write_files(result)
+    by = options.by or result.groups
+    _write_files(result, by)
     if options.as_json:
-        sys.stdout.write(json.dumps(_report(result), indent=2) + "\n")
+        sys.stdout.write(json.dumps(_report(result, by), indent=2) + "\n")
     else:
-        _print(result)
+        _print(result, by)
     return _status(result)
 
 
@@ -110,28 +115,28 @@ def _progress_text(progress: StudyProgress) -> str:
     return ", ".join(parts)
 
 
-def _write_files(result: StudyResult) -> None:
-    """The tables, and the page, in the study's folder; without pandas only the page."""
+def _write_files(result: StudyResult, by: Sequence[str]) -> None:
+    """Write the tables and the page into the study's folder; without pandas only the page."""
     try:
         result.write_tables()
     except UnknownNameError as error:
         sys.stderr.write(f"no rows.csv and rows.parquet: {error}\n")
-    result.write_page(result.folder.path / "study.html")
+    result.write_page(result.folder.path / "study.html", by)
 
 
-def _report(result: StudyResult) -> dict[str, Any]:
+def _report(result: StudyResult, by: Sequence[str]) -> dict[str, Any]:
     return {
         "study_dir": str(result.folder.path),
         "cells": len(result.plan["cells"]),
-        "summary": result.counted(result.groups),
+        "summary": result.counted(by),
         "rows": result.rows,
         "invalid": result.invalid,
     }
 
 
-def _print(result: StudyResult) -> None:
+def _print(result: StudyResult, by: Sequence[str]) -> None:
     console = stdout()
-    print_table(console, _table(result.groups, result.counted(result.groups)))
+    print_table(console, _table(by, result.counted(by)))
     failed = {row["cell"]: row["why_not"] for row in result.rows if row["outcome"] == "error"}
     told = [f"no result: {why}" for why in dict.fromkeys(failed.values())]
     told += [f"left out: {_invalid_text(each)}" for each in result.invalid]
@@ -156,7 +161,7 @@ def _table(by: Sequence[str], groups: Sequence[Mapping[str, Any]]) -> Table:
     table = Table(box=box.SIMPLE_HEAVY)
     for heading in by:
         table.add_column(heading)
-    for heading in ("right", "accuracy", "95 % interval", "not ok", "tokens", "cost"):
+    for heading in ("variations", "right", "accuracy", "95 % interval", "not ok", "tokens", "cost"):
         table.add_column(heading, justify="right")
     for group in groups:
         names = ("wrong", "no_way", "program_failed", "no_answer", "error")
@@ -164,6 +169,7 @@ def _table(by: Sequence[str], groups: Sequence[Mapping[str, Any]]) -> Table:
         judged = group["judged"]
         table.add_row(
             *(printable("-" if group[name] is None else str(group[name])) for name in by),
+            str(group["variations"]),
             f"{group['right']} of {judged}",
             f"{group['accuracy']:.0%}" if judged else "-",
             f"{group['low']:.0%} to {group['high']:.0%}" if judged else "-",

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 from beliefnest.belief.plain import belief_json
 from beliefnest.episodes.measures import Measures
 from beliefnest.episodes.telling import round_rows, told_episode
-from beliefnest.errors import InputError, MissingExtraError
+from beliefnest.errors import InputError
 from beliefnest.frames.sources import RecordedCell, Source, cells_of, study_of
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.studies.episode_rows import EPISODES
+from beliefnest.studies.plainframe import Typed, plain_frame
 from beliefnest.studies.result import StudyResult
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.timeline.tables import entry_rows, prompt_row
@@ -271,11 +272,6 @@ def _plain(value: Any) -> Any:
 
 
 def _frame(rows: Iterator[Row], ids: Sequence[str]) -> "pandas.DataFrame":
-    try:
-        import pandas
-    except ModuleNotFoundError:
-        raise MissingExtraError("tables need pandas", "study") from None
     found = list(rows)
-    columns = list(dict.fromkeys([*ids, *(key for row in found for key in row)]))
-    # Whole numbers stay whole where some are missing.
-    return pandas.DataFrame.from_records(found, columns=columns).convert_dtypes()
+    columns = dict.fromkeys([*ids, *(key for row in found for key in row)])
+    return plain_frame({name: Typed([row.get(name) for row in found]) for name in columns})

@@ -14,6 +14,7 @@ __all__ = [
     "StudyKeyError",
     "check_count",
     "check_once",
+    "checked_columns",
     "checked_conditions",
     "checked_limits",
     "checked_lists",
@@ -28,13 +29,13 @@ class StudyKeyError(InputError):
     """What is asked for under a key of a study is wrong.
 
     Args:
-        key: The key, which is also the name of the argument.
+        key: The key, which is also the name of the argument, or the keys down to what is wrong.
         message: What was found, and what to do.
     """
 
-    def __init__(self, key: str, message: str) -> None:
+    def __init__(self, key: str | tuple[str, ...], message: str) -> None:
         super().__init__(message)
-        self.key = key
+        self.path = (key,) if isinstance(key, str) else key
 
 
 def several(key: str, names: object) -> tuple[str, ...]:
@@ -47,6 +48,20 @@ def several(key: str, names: object) -> tuple[str, ...]:
     if isinstance(found, Sequence) and all(isinstance(each, str | os.PathLike) for each in found):
         return tuple(map(os.fspath, found))
     raise StudyKeyError(key, f"{key} is {names!r}; give a name, or a list of names")
+
+
+def checked_columns(names: object, known: Sequence[str]) -> list[str]:
+    """Names of columns, as they are; one alone is a list of one.
+
+    Raises:
+        StudyKeyError: It is neither.
+        InputError: There is no such column.
+    """
+    chosen = several("by", names)
+    for name in chosen:
+        if name not in known:
+            raise InputError(f"there is no column {name!r}; there are {', '.join(known)}")
+    return list(chosen)
 
 
 def checked_conditions(conditions: object) -> tuple[int, ...] | None:
@@ -123,13 +138,13 @@ def checked_lists(variations: Mapping[str, Sequence[Any]]) -> None:
     for name, values in variations.items():
         if isinstance(values, str) or not isinstance(values, Sequence) or not values:
             raise StudyKeyError(
-                "variations",
+                ("variations", name),
                 f"variations of {name!r} are {values!r}; give a list of at least one value",
             )
         for value in values:
             if not _is_plain(value):
                 told = f"variations of {name!r} have {value!r}; give texts, finite numbers, and "
-                raise StudyKeyError("variations", f"{told}lists and mappings of them")
+                raise StudyKeyError(("variations", name), f"{told}lists and mappings of them")
         check_once("variations", [json.dumps(v) for v in values], f"variations of {name!r}")
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from beliefnest.errors import InputError
 from beliefnest.scenarios.judging import OUTCOMES
-from beliefnest.scenarios.scoring import mean_interval, wilson_interval
+from beliefnest.studies.clusters import exchange_p, mean_interval, rate_interval
 
 __all__ = ["Pairs", "Row", "count_rows", "paired_rows"]
 
@@ -20,10 +20,11 @@ _Z95 = 1.959963984540054
 def count_rows(
     rows: Sequence[Row], by: Sequence[str], means: Mapping[str, bool] | None = None
 ) -> list[dict[str, Any]]:
-    """For each group of rows how many came out as expected, and how sure that is.
+    """Count for each group the rows that are right, and compute how sure their share is.
 
     Rows in which nothing was expected, or which have no result, are counted and not judged. Of a
-    row and its copies (`copy_of`) one is counted; `copies` are those that are left out.
+    row and its copies (`copy_of`) one is counted; `copies` are those that are left out. Intervals
+    are clustered by the column `variation`; rows without it are clusters of their own.
 
     Args:
         rows: Of a study.
@@ -32,10 +33,11 @@ def count_rows(
 
     Returns:
         One mapping for each group, in the order in which they come: the columns of `by`; `rows`;
-        `copies`; `judged`; `right`; `accuracy`, `low` and `high` (the 95 % interval of Wilson),
-        None where none is judged; each outcome with its count; `tokens`, `cost` (None if not
-        known); of each of `means` the mean, and its 95 % interval as `NAME_low`, `NAME_high`
-        (None: no values).
+        `copies`; `judged`; `variations` (independent ones among the judged rows); `right`;
+        `accuracy`, `low` and `high` (its 95 % interval) and `interval` (`wilson` or `bootstrap`,
+        see `rate_interval`), None where none is judged; each outcome with its count; `tokens`,
+        `cost` (None if not known); of each of `means` the mean, and its 95 % interval as
+        `NAME_low`, `NAME_high` (None: fewer than two variations have a value).
     """
     groups: dict[tuple[Any, ...], list[tuple[Row, _Origin]]] = {}
     for row, origin in zip(rows, _origins(rows), strict=True):
@@ -50,7 +52,7 @@ _Origin = tuple[object, int]
 
 
 def _origins(rows: Iterable[Row]) -> Iterator[_Origin]:
-    """What tells rows apart: cell and place in it, of a copy those of what it is a copy of."""
+    """Yield what tells rows apart: cell and place in it, of a copy those of the original."""
     places: Counter[object] = Counter()
     for number, row in enumerate(rows):
         cell = row.get("cell", number)
@@ -62,33 +64,48 @@ def _counted(all_rows: Sequence[tuple[Row, _Origin]], means: Mapping[str, bool])
     firsts: dict[_Origin, Row] = {}
     for row, origin in all_rows:
         firsts.setdefault(origin, row)
-    group = list(firsts.values())
-    judged = [row["ok"] for row in group if row.get("ok") is not None]
-    right = sum(judged)
-    low, high = wilson_interval(right, len(judged)) if judged else (None, None)
+    judged = _clusters(firsts, "ok")
+    count, right = sum(map(len, judged)), sum(map(sum, judged))
+    low, high, interval = rate_interval(judged) if judged else (None, None, None)
     costs = [row.get("cost") for row, _ in all_rows if row["outcome"] != "error"]
     return {
         "rows": len(all_rows),
-        "copies": len(all_rows) - len(group),
-        "judged": len(judged),
+        "copies": len(all_rows) - len(firsts),
+        "judged": count,
+        "variations": len(judged),
         "right": right,
-        "accuracy": right / len(judged) if judged else None,
+        "accuracy": right / count if judged else None,
         "low": low,
         "high": high,
-        **{name: sum(row["outcome"] == name for row in group) for name in OUTCOMES},
+        "interval": interval,
+        **{name: sum(row["outcome"] == name for row in firsts.values()) for name in OUTCOMES},
         "tokens": sum(row.get("tokens") or 0 for row, _ in all_rows),
         "cost": None if None in costs else sum(cost or 0.0 for cost in costs),
-        **_means(group, means),
+        **_means(firsts, means),
     }
 
 
-def _means(group: Sequence[Row], means: Mapping[str, bool]) -> dict[str, Any]:
+def _clusters(rows: Mapping[_Origin, Row], column: str) -> list[list[Any]]:
+    """Group the known values of a column by variation."""
+    clusters: dict[object, list[Any]] = {}
+    for origin, row in rows.items():
+        if row.get(column) is not None:
+            clusters.setdefault(_variation(row, origin), []).append(row[column])
+    return list(clusters.values())
+
+
+def _variation(row: Row, origin: _Origin) -> object:
+    return row.get("variation") or origin
+
+
+def _means(rows: Mapping[_Origin, Row], means: Mapping[str, bool]) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for name, of_right in means.items():
-        chosen = [row for row in group if row.get("ok") or not of_right]
-        values = [row[name] for row in chosen if row.get(name) is not None]
-        low, high = mean_interval(values)
-        mean = sum(values) / len(values) if values else None
+        chosen = {key: row for key, row in rows.items() if row.get("ok") or not of_right}
+        clusters = _clusters(chosen, name)
+        low, high = mean_interval(clusters)
+        count = sum(map(len, clusters))
+        mean = sum(map(sum, clusters)) / count if clusters else None
         found |= {name: mean, f"{name}_low": low, f"{name}_high": high}
     return found
 
@@ -100,18 +117,41 @@ class Pairs:
     Attributes:
         one: A value of the column.
         other: Another one.
-        pairs: Rows that both have a judged result for; copies of a pair are left out.
-        both: Pairs that are right with both.
-        only_one: Pairs that are right with `one` only.
-        only_other: Pairs that are right with `other` only.
+        clusters: For each independent variation its pairs: whether each is right with `one`, and
+            whether it is with `other`. Copies of a pair are left out.
     """
 
     one: Any
     other: Any
-    pairs: int
-    both: int
-    only_one: int
-    only_other: int
+    clusters: tuple[tuple[tuple[bool, bool], ...], ...]
+
+    @property
+    def variations(self) -> int:
+        """Number of independent variations."""
+        return len(self.clusters)
+
+    @property
+    def pairs(self) -> int:
+        """Number of pairs of rows."""
+        return sum(map(len, self.clusters))
+
+    @property
+    def both(self) -> int:
+        """Pairs that are right with both."""
+        return self._count(True, True)
+
+    @property
+    def only_one(self) -> int:
+        """Pairs that are right with `one` only."""
+        return self._count(True, False)
+
+    @property
+    def only_other(self) -> int:
+        """Pairs that are right with `other` only."""
+        return self._count(False, True)
+
+    def _count(self, one: bool, other: bool) -> int:
+        return sum(cluster.count((one, other)) for cluster in self.clusters)
 
     @property
     def difference(self) -> float:
@@ -122,28 +162,35 @@ class Pairs:
     def interval(self) -> tuple[float, float]:
         """The 95 % interval of the difference.
 
-        Source: Bonett and Price (2012), Wald's interval with one added to either kind of
-        discordant pairs, which holds for few pairs too.
+        With one pair in each variation, it is that of Bonett and Price (2012): Wald's interval
+        with one added to either kind of discordant pairs, which holds for few pairs too. With
+        several it is that of the cluster bootstrap. Where all variations have the same difference,
+        the bootstrap has nothing to draw from; then it is Bonett and Price's for as many pairs
+        as there are variations.
         """
-        first = (self.only_one + 1) / (self.pairs + 2)
-        second = (self.only_other + 1) / (self.pairs + 2)
+        differences = [[one - other for one, other in cluster] for cluster in self.clusters]
+        several = any(len(cluster) > 1 for cluster in differences)
+        if several and len({sum(each) / len(each) for each in differences}) > 1:
+            low, high = mean_interval(differences)
+            assert low is not None and high is not None
+            return low, high
+        count = self.variations
+        first = (self.only_one * count / self.pairs + 1) / (count + 2)
+        second = (self.only_other * count / self.pairs + 1) / (count + 2)
         middle = first - second
-        half = _Z95 * math.sqrt((first + second - middle**2) / (self.pairs + 2))
+        half = _Z95 * math.sqrt((first + second - middle**2) / (count + 2))
         return max(-1.0, middle - half), min(1.0, middle + half)
 
     @property
     def p(self) -> float:
-        """How likely a difference as great is by chance: McNemar's exact test, two-sided."""
-        discordant = self.only_one + self.only_other
-        fewer = min(self.only_one, self.only_other)
-        tail = sum(math.comb(discordant, k) for k in range(fewer + 1))
-        return float(min(1.0, 2 * tail / 2**discordant))
+        """Probability of so great a difference by chance: `exchange_p` of the variations."""
+        return exchange_p([sum(one - other for one, other in each) for each in self.clusters])
 
 
 def paired_rows(
     rows: Sequence[Row], column: str, identity: Sequence[str], same: Sequence[str] = ()
 ) -> list[Pairs]:
-    """All pairs of levels of a column, on rows that are the same in all but it.
+    """Pair rows that are the same in all but one column, for any two levels of it.
 
     Args:
         rows: Of a study.
@@ -159,30 +206,28 @@ def paired_rows(
             f"rows cannot be compared by {column!r}; columns are {', '.join(identity)}"
         )
     others = [name for name in identity if name not in (column, *same)]
-    table: dict[tuple[Any, ...], dict[Any, tuple[_Origin, bool]]] = {}
+    table: dict[tuple[Any, ...], dict[Any, tuple[Row, _Origin]]] = {}
     levels: dict[Any, None] = {}
     for row, origin in zip(rows, _origins(rows), strict=True):
         levels[row[column]] = None
         if row.get("ok") is not None:
             key = tuple(row.get(name) for name in others)
-            table.setdefault(key, {})[row[column]] = (origin, row["ok"])
+            table.setdefault(key, {})[row[column]] = (row, origin)
     every = (_pairs(table.values(), one, other) for one, other in itertools.combinations(levels, 2))
-    return [pairs for pairs in every if pairs.pairs]
+    return [pairs for pairs in every if pairs.clusters]
 
 
-def _pairs(table: Iterable[Mapping[Any, tuple[_Origin, bool]]], one: Any, other: Any) -> Pairs:
-    judged: dict[tuple[_Origin, _Origin], tuple[bool, bool]] = {}
+def _pairs(table: Iterable[Mapping[Any, tuple[Row, _Origin]]], one: Any, other: Any) -> Pairs:
+    found: dict[tuple[_Origin, _Origin], tuple[Row, Row]] = {}
     for each in table:
         if one in each and other in each:
             (first, a), (second, b) = each[one], each[other]
-            judged[first, second] = (a, b)
-    # A row and its own copy are no pair.
-    found = [oks for (first, second), oks in judged.items() if first != second]
-    return Pairs(
-        one,
-        other,
-        len(found),
-        sum(a and b for a, b in found),
-        sum(a and not b for a, b in found),
-        sum(b and not a for a, b in found),
-    )
+            # A row and its own copy are no pair.
+            if a != b:
+                found[a, b] = (first, second)
+    clusters: dict[tuple[object, object], list[tuple[bool, bool]]] = {}
+    for (a, b), (first, second) in found.items():
+        # Where the column is part of the variation, the two rows have two variations.
+        cluster = _variation(first, a), _variation(second, b)
+        clusters.setdefault(cluster, []).append((first["ok"], second["ok"]))
+    return Pairs(one, other, tuple(map(tuple, clusters.values())))

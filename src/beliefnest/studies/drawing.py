@@ -1,9 +1,10 @@
 """Drawing variations of a scenario by a seed: parameters, symmetries, names."""
 
 import itertools
+import math
 import random
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,45 +28,70 @@ _THINGS = (
 )
 """Items that do nothing but be carried, so that one is as good as another."""
 _MISSES = 200
-"""Draws in a row that give nothing new, after which there is no more."""
+"""Draws in a row that give nothing new, after which what is left is listed."""
+_MOST_LISTED = 100_000
+"""Combinations that are listed one by one, to find those that were not drawn."""
 
 
-def drawn_variations(document: Document, count: int, seed: str) -> list[Variation]:
-    """So many different variations of a scenario; fewer if there are not as many.
+def drawn_variations(
+    document: Document, count: int, seed: str, keeps: Callable[[Variation], bool] | None = None
+) -> list[Variation]:
+    """Draw so many different variations of a scenario.
 
-    What varies: parameters that it declares; the symmetries that it can be put into; of a
-    scenario without parameters also the names of its agents, and of items that are only carried.
-    Which come first does not depend on how many are drawn, so that a study can be extended.
+    What varies: parameters that it declares; the symmetries that it can be put into; the names of
+    its agents, and of items that are only carried, unless a parameter has them as values. Which
+    come first does not depend on how many are drawn, so that a study can be extended.
 
     Args:
         document: The scenario.
         count: How many.
         seed: Decides which.
+        keeps: Whether a variation is wanted; None: all are that keep the scenario's constraints.
 
     Raises:
         ScenarioError: A declaration or constraint is wrong.
-        InputError: The constraints leave next to nothing.
+        InputError: There are not as many, or the constraints leave next to nothing.
     """
-    found = list(itertools.islice(_draws(document, random.Random(seed)), count))
+    drawing = _Drawing.of(document)
+    draws = _draws(document, drawing, random.Random(seed), keeps or (lambda _: True))
+    found = list(itertools.islice(draws, count))
     if not found:
         raise InputError(
             f"{document.source}: none of {_MISSES} draws keeps the constraints; widen a range"
         )
+    if len(found) < count:
+        raise InputError(
+            f"{document.source}: variations is {count}, and there are {len(found)} different ones: "
+            f"all combinations of {drawing.text} that keep the constraints; ask for {len(found)} "
+            "at most, or give parameters more values"
+        )
     return found
 
 
-def _draws(document: Document, chance: random.Random) -> Iterator[Variation]:
-    drawing = _Drawing.of(document)
+def _draws(
+    document: Document,
+    drawing: "_Drawing",
+    chance: random.Random,
+    keeps: Callable[[Variation], bool],
+) -> Iterator[Variation]:
     seen: set[str] = set()
     misses = 0
     while misses < _MISSES:
         found = drawing.draw(chance)
         misses += 1
-        if found.key in seen or broken_constraint(document, found.parameters) is not None:
+        if found.key in seen or not _is_kept(document, found, keeps):
             continue
         seen.add(found.key)
         misses = 0
         yield found
+    if drawing.size <= _MOST_LISTED:
+        left = [each for each in drawing.all() if each.key not in seen]
+        chance.shuffle(left)
+        yield from (each for each in left if _is_kept(document, each, keeps))
+
+
+def _is_kept(document: Document, found: Variation, keeps: Callable[[Variation], bool]) -> bool:
+    return broken_constraint(document, found.parameters) is None and keeps(found)
 
 
 @dataclass(frozen=True)
@@ -93,14 +119,17 @@ class _Drawing:
         """What a document offers."""
         declared = declared_in(document)
         content: Any = plain(document.root)
-        agents = () if declared else _proper_names(content)
+        taken = frozenset(_words(content))
+        fixed = _named_by_parameters(content)
+        agents = tuple(name for name in _proper_names(content) if name not in fixed)
+        items = tuple(name for name in _carried(content) if name not in fixed)
         return cls(
             lists={name: choices(entry) for name, entry in declared.items()},
             ranges={name: entry.range for name, entry in declared.items() if entry.range},
             symmetries=_symmetries(document),
-            agents=agents,
-            items=() if declared else _carried(content),
-            taken=frozenset(_words(content)),
+            agents=_renamable(document, "agents", agents, _free(_NAMES, taken)),
+            items=_renamable(document, "items", items, _free(_THINGS, taken)),
+            taken=taken,
         )
 
     def draw(self, chance: random.Random) -> Variation:
@@ -113,20 +142,71 @@ class _Drawing:
         }
         if len(self.symmetries) > 1:
             values["symmetry"] = chance.choice(self.symmetries)
-        for kind, own, pool in (("agents", self.agents, _NAMES), ("items", self.items, _THINGS)):
-            free = [name for name in pool if name not in self.taken]
-            if own:
-                values[kind] = dict(zip(own, chance.sample(free, len(own)), strict=True))
+        for kind, own, free in self._renamed():
+            values[kind] = dict(zip(own, chance.sample(free, len(own)), strict=True))
         return Variation(values)
+
+    def _renamed(self) -> Iterator[tuple[str, tuple[str, ...], list[str]]]:
+        """Yield what is drawn anew: its kind, the names as written, the names to draw from."""
+        for kind, own, pool in (("agents", self.agents, _NAMES), ("items", self.items, _THINGS)):
+            if own:
+                yield kind, own, _free(pool, self.taken)
+
+    @property
+    def _sizes(self) -> dict[str, float]:
+        """Numbers of values, by what varies; infinite for any number in a range."""
+        sizes: dict[str, float] = {
+            name: math.inf if listed is None else len(listed) for name, listed in self.lists.items()
+        }
+        sizes["symmetry"] = len(self.symmetries)
+        return sizes | {kind: math.perm(len(free), len(own)) for kind, own, free in self._renamed()}
+
+    @property
+    def size(self) -> float:
+        """Number of all variations, also those that break a constraint."""
+        return math.prod(self._sizes.values())
+
+    @property
+    def text(self) -> str:
+        """What varies, with numbers of values, for messages."""
+        return ", ".join(f"{name} ({size:,})" for name, size in self._sizes.items())
+
+    def all(self) -> Iterator[Variation]:
+        """Yield all variations, also those that break a constraint, of finitely many."""
+        choices: dict[str, Iterable[Any]] = {
+            name: listed for name, listed in self.lists.items() if listed is not None
+        }
+        if len(self.symmetries) > 1:
+            choices["symmetry"] = self.symmetries
+        for kind, own, free in self._renamed():
+            choices[kind] = [
+                dict(zip(own, names, strict=True))
+                for names in itertools.permutations(free, len(own))
+            ]
+        for values in itertools.product(*choices.values()):
+            yield Variation(dict(zip(choices, values, strict=True)))
 
 
 def _symmetries(document: Document) -> tuple[str, ...]:
-    """Names of the symmetries that the scenario can be put into, under all its conditions."""
-    return tuple(symmetry.name for symmetry in SYMMETRIES if _is_possible(document, symmetry.name))
+    """Name the symmetries that the scenario can be put into, under all its conditions."""
+    names = (symmetry.name for symmetry in SYMMETRIES)
+    return tuple(name for name in names if _is_possible(document, {"symmetry": name}))
 
 
-def _is_possible(document: Document, symmetry: str) -> bool:
-    scene = Variation({"symmetry": symmetry}).scene
+def _free(pool: Sequence[str], taken: Collection[str]) -> list[str]:
+    return [name for name in pool if name not in taken]
+
+
+def _renamable(
+    document: Document, kind: str, names: Sequence[str], free: Sequence[str]
+) -> tuple[str, ...]:
+    """Choose the names of agents or items that are drawn anew; none if the scenario forbids it."""
+    new = dict(zip(names, free, strict=False))
+    return tuple(new) if new and _is_possible(document, {kind: new}) else ()
+
+
+def _is_possible(document: Document, changes: Mapping[str, Any]) -> bool:
+    scene = Variation(changes).scene
     try:
         for condition in condition_numbers(document):
             Scenario.varied(document, condition, None, scene)
@@ -149,6 +229,13 @@ def _carried(content: Mapping[str, Any]) -> tuple[str, ...]:
     held = [agent.get("inventory") or {} for agent in content["agents"].values()]
     held += [container.get("items") or {} for container in content.get("containers", ())]
     return tuple(dict.fromkeys(name for items in held for name in items if name in _THINGS))
+
+
+def _named_by_parameters(content: Mapping[str, Any]) -> frozenset[str]:
+    """Words of the parameters' values: their columns say them, so that they are not changed."""
+    conditions = content.get("conditions") or {}
+    entries = [content, *(each for each in conditions.values() if isinstance(each, Mapping))]
+    return frozenset(word for each in entries for word in _words(each.get("parameters")))
 
 
 def _words(content: object) -> Iterator[str]:

@@ -13,7 +13,15 @@ from beliefnest.scenarios.loading import condition_numbers
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.chance import episode_draws
 from beliefnest.studies.episode_design import EpisodeDesign, Player
-from beliefnest.studies.plan import SEEDS, Invalid, Plan, alike, check_called, digest
+from beliefnest.studies.plan import (
+    Invalid,
+    Plan,
+    alike,
+    cell_seed,
+    check_called,
+    digest,
+    variation_id,
+)
 from beliefnest.studies.variation import Variation, listed_variations
 
 __all__ = ["EpisodeCell", "EpisodeKey", "plan_episodes"]
@@ -69,10 +77,14 @@ class EpisodeKey:
 
     @property
     def seed(self) -> int:
-        """Drives every random number; the same for all players of one repeat of an instance."""
-        if self.repeat == 1:
-            return self.instance
-        return int(digest([self.instance, self.repeat]), 16) % SEEDS
+        """Drives every random number of the cell.
+
+        Of one repeat of one instance of one variation all players and conditions have the same.
+        An instance as written has its own number, as with `beliefnest play --seed`.
+        """
+        if self.variation:
+            return cell_seed(self.task, dict(self.variation), self.instance, self.repeat)
+        return self.instance if self.repeat == 1 else cell_seed(self.instance, self.repeat)
 
 
 @dataclass(frozen=True)
@@ -93,11 +105,14 @@ class EpisodeCell:
         """What a study's plan says of it."""
         key = self.key
         # What is read from a file has no instances: every one of them is the same.
-        seeds = ("repeat",) if self.task.seed is not None else ("repeat", "instance")
+        from_file = self.task.seed is None
+        seeds = ("repeat", "instance") if from_file else ("repeat",)
+        instance = None if from_file else key.instance
         return {
             "name": key.name,
             "key": key.content_json(),
             "seed": key.seed,
+            "variation": variation_id(key.task, dict(key.variation), instance),
             "alike": None if self.draws else alike(key, seeds),
         }
 

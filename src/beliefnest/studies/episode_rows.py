@@ -6,6 +6,7 @@ from typing import Any
 from beliefnest.episodes.measures import Measures
 from beliefnest.studies.copies import rows_with_copies
 from beliefnest.studies.episode_design import policy_named
+from beliefnest.studies.plan import variation_id
 from beliefnest.studies.rows import FAILED, plain_value, variation_columns
 from beliefnest.studies.store import StudyFolder
 from beliefnest.studies.table import Table
@@ -13,6 +14,7 @@ from beliefnest.studies.table import Table
 __all__ = ["EPISODES"]
 
 _COLUMNS = {
+    "variation": "string",
     "player": "string",
     "order": "string",
     "policy": "string",
@@ -51,7 +53,8 @@ _COLUMNS = {
     "copy_of": "string",
 }
 """Columns after `task`, `condition` and those of variations, and their types; what they mean is
-told at `Measures`. `needs` is the order that the task needs, `order` that of who plays."""
+told at `Measures`. `variation` names the independent variation that a row belongs to: of a built-in
+task each instance is one. `needs` is the order that the task needs, `order` that of who plays."""
 
 
 _MEASURED = [
@@ -70,6 +73,9 @@ def _rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, An
             "task": key["task"],
             "condition": key["condition"],
             **{name: plain_value(key["variation"].get(name)) for name in columns},
+            # The plan of an earlier version has no name for it.
+            "variation": cell.get("variation")
+            or variation_id(key["task"], key["variation"], key["instance"]),
             "player": key["player"],
             "order": key["order"] or None,
             "policy": policy_named(key["player"], key["order"]),
@@ -104,10 +110,21 @@ EPISODES = Table(
     columns=_COLUMNS,
     identity=("task", "condition", "player", "order", "policy", "instance", "repeat"),
     groups=("task", "policy"),
-    further_group="condition",
+    further_groups=("condition",),
     compared=("policy",),
+    apart=("player",),
     shown=(
-        *("policy", "instance", "repeat", "outcome", "why_not", "ticks", "rounds", "messages"),
+        *(
+            "variation",
+            "policy",
+            "instance",
+            "repeat",
+            "outcome",
+            "why_not",
+            "ticks",
+            "rounds",
+            "messages",
+        ),
         *("lies", "acted_on_false", "false_beliefs_over_time", "tokens"),
     ),
     same={"policy": ("player", "order"), "player": ("policy",), "order": ("policy",)},

@@ -35,7 +35,7 @@ class _StudyFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     templates: list[str] | str = []
     repeats: int = 1
     seed: int = 0
-    variations: dict[str, list[Any]] | int = {}
+    variations: dict[str, Any] | int = {}
     conditions: list[int] | None = None
     constraints: list[str] | str = []
     world: str | None = None
@@ -74,7 +74,7 @@ def read_design(path: Path) -> Design | EpisodeDesign:
             return _scenarios(found, path, templates)
         return _episodes(found, path, several("tasks", found.tasks))
     except StudyKeyError as fault:
-        raise document.fault((fault.key,), str(fault)) from None
+        raise document.fault(fault.path, str(fault)) from None
 
 
 def _scenarios(found: _StudyFile, path: Path, templates: tuple[Template, ...]) -> Design:

@@ -36,6 +36,9 @@ class Counted(Protocol):
     def counted(self, by: Sequence[str]) -> Sequence[Mapping[str, Any]]:
         """Return the rows of `summary` as plain values."""
 
+    def apart(self, between: str) -> Sequence[str]:
+        """The columns in whose groups a column is compared."""
+
     def paired(
         self, between: str, by: Sequence[str] = ()
     ) -> Sequence[tuple[tuple[Any, ...], Pairs]]:
@@ -71,20 +74,24 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
         columns=[*table.first, *variation_columns(plan), *table.shown],
         rows=rows[:_MOST_ROWS],
         left_out=max(0, len(rows) - _MOST_ROWS),
+        variations=len({row["variation"] for row in rows}),
         copies=sum(row["copy_of"] is not None for row in rows),
         failed=[row for row in rows if row["outcome"] == "error"],
     )
 
 
 def _differences(result: Counted) -> Iterator[tuple[str, str, Pairs]]:
-    """Column, what it was compared in, pairs: in all, and in each task or scenario of several."""
+    """Yield column, what it was compared in, pairs: in all, and in each task or scenario."""
     whole = result.table.groups[0]
     several = len({row[whole] for row in result.rows}) > 1
     for column in result.table.compared:
-        for _, pairs in result.paired(column):
-            yield column, f"every {whole}" if several else "", pairs
-        for values, pairs in result.paired(column, [whole]) if several else ():
-            yield column, str(values[0]), pairs
+        apart = result.apart(column)
+        for by in (apart, (whole, *apart)) if several else (apart,):
+            for values, pairs in result.paired(column, by):
+                told = [f"{name} {value}" for name, value in zip(by, values, strict=True)]
+                if several and by == apart:
+                    told.insert(0, f"every {whole}")
+                yield column, ", ".join(told), pairs
 
 
 def _players(plan: Mapping[str, Any]) -> str:

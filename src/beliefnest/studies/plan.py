@@ -27,9 +27,11 @@ __all__ = [
     "Keyed",
     "Plan",
     "alike",
+    "cell_seed",
     "check_called",
     "digest",
     "plan_cells",
+    "variation_id",
 ]
 
 SEEDS = 2**32
@@ -114,8 +116,7 @@ class CellKey:
         Of one repeat of one variation all conditions, models and templates have the same, so
         that nothing else differs where they are compared.
         """
-        whole = [self.scenario, dict(self.variation), self.repeat, self.setting["seed"]]
-        return int(digest(whole), 16) % SEEDS
+        return cell_seed(self.scenario, dict(self.variation), self.repeat, self.setting["seed"])
 
     @property
     def title(self) -> str:
@@ -129,6 +130,20 @@ class CellKey:
 def digest(value: object) -> str:
     """A hash of plain values, the same on every machine."""
     return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
+
+
+def cell_seed(*parts: object) -> int:
+    """Derive the seed of a cell from plain values, the same on every machine."""
+    return int(digest(list(parts)), 16) % SEEDS
+
+
+def variation_id(*parts: object) -> str:
+    """Name an independent variation by the plain values that tell it from others.
+
+    The name is the same on every machine and in every shard, and begins with a letter, so that no
+    reader of tables takes it for a number.
+    """
+    return f"v{digest(list(parts))[:10]}"
 
 
 def alike(key: Key, seeds: Collection[str]) -> str:
@@ -157,6 +172,7 @@ class Cell:
             "name": key.name,
             "key": key.content_json(),
             "seed": key.seed,
+            "variation": variation_id(key.scenario, dict(key.variation)),
             "alike": None if draws else alike(key, ("repeat",)),
             "probes": [
                 {
@@ -258,7 +274,14 @@ def _variations(design: Design, document: Document) -> Sequence[Variation]:
     for condition in _conditions(design, document):
         Scenario.varied(document, condition)
     if isinstance(design.variations, int):
-        return drawn_variations(document, design.variations, f"{design.seed} {document.source}")
+        conditions = _conditions(design, document)
+
+        def keeps(variation: Variation) -> bool:
+            broken = (design.broken_constraint(document, each, variation) for each in conditions)
+            return any(fault is None for fault in broken)
+
+        seed = f"{design.seed} {document.source}"
+        return drawn_variations(document, design.variations, seed, keeps)
     return listed_variations(design.variations)
 
 

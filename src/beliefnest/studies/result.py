@@ -1,15 +1,16 @@
 """What a study has come to: tables, intervals, a figure, a page."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from beliefnest.errors import InputError, MissingExtraError
-from beliefnest.studies.checking import several
+from beliefnest.errors import InputError
+from beliefnest.studies.checking import checked_columns
 from beliefnest.studies.counting import Pairs, count_rows, paired_rows
 from beliefnest.studies.episode_rows import EPISODES
+from beliefnest.studies.plainframe import Typed, plain_frame, write_typed
 from beliefnest.studies.rows import PROBES, variation_columns
 from beliefnest.studies.store import StudyFolder
 from beliefnest.studies.table import Table
@@ -20,11 +21,10 @@ if TYPE_CHECKING:  # Extras, imported when they are asked for.
 
 __all__ = ["StudyResult"]
 
-_DIFFERENCES = (
-    *("one", "other", "pairs", "both", "only_one", "only_other"),
-    *("difference", "low", "high", "p"),
+_COMPARED = (
+    *("one", "other", "pairs", "variations", "both", "only_one", "only_other", "difference"),
 )
-"""Columns of `differences`, also where there is no pair."""
+"""What `differences` tells of `Pairs`, in columns of the same names."""
 
 
 @dataclass(frozen=True)
@@ -74,27 +74,49 @@ class StudyResult:
         return dict(self._plan)
 
     def frame(self) -> "pandas.DataFrame":
-        """One row for each probe of each cell, or each episode, in the order of the plan.
+        """Return one row for each probe of each cell, or each episode, in the order of the plan.
 
         The same study gives the same rows, however many jobs it ran with. Wall times, which are
-        not the same twice, are in `seconds`.
+        not the same twice, are in `seconds`. Types are pandas's plain ones, see `plain_frame`.
 
         Raises:
             MissingExtraError: pandas is not installed.
         """
-        return _frame(self.rows, self.table, variation_columns(self._plan))
+        return plain_frame(self._typed())
+
+    def _typed(self) -> dict[str, Typed]:
+        table = self.table
+        kinds = {
+            **table.first,
+            **dict.fromkeys(variation_columns(self._plan)),
+            **table.columns,
+        }
+        return {
+            name: Typed([row.get(name) for row in self.rows], kind) for name, kind in kinds.items()
+        }
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of the columns of `frame`."""
+        return self.table.names(variation_columns(self._plan))
 
     @property
     def groups(self) -> tuple[str, ...]:
         """The columns that summaries are made by where nothing else is asked for."""
         table = self.table
-        several = len({row[table.further_group] for row in self.rows}) > 1
-        return (*table.groups, table.further_group) if several else table.groups
+        return (*table.groups, *self._several(table.further_groups))
+
+    def _several(self, columns: Iterable[str]) -> tuple[str, ...]:
+        """Choose the columns that have several values."""
+        return tuple(name for name in columns if len({row.get(name) for row in self.rows}) > 1)
 
     def summary(self, by: Sequence[str] | str | None = None) -> "pandas.DataFrame":
-        """For each group its accuracy with the 95 % interval of Wilson, and all outcomes' counts.
+        """Return for each group its accuracy with a 95 % interval, and counts of all outcomes.
 
-        Of episodes also means with their 95 % intervals, by the bootstrap.
+        Rows of one variation are not independent. So the interval is that of Wilson where each
+        variation has one row in the group, and otherwise that of the cluster bootstrap over
+        variations; the column `interval` says which, `variations` how many there are. Of episodes
+        there are also means with their 95 % intervals, by the same bootstrap.
 
         `accuracy` is of what was judged: rows with the outcome `error` are counted, not judged.
 
@@ -106,7 +128,9 @@ class StudyResult:
             MissingExtraError: pandas is not installed.
         """
         names = self._columns(self.groups if by is None else by)
-        return _pandas().DataFrame.from_records(self.counted(names))
+        counted = self.counted(names)
+        columns = counted[0] if counted else names
+        return plain_frame({name: Typed([row[name] for row in counted]) for name in columns})
 
     def counted(self, by: Sequence[str]) -> list[dict[str, Any]]:
         """The rows of `summary` as plain values."""
@@ -122,34 +146,46 @@ class StudyResult:
         identity = [*table.identity, *variation_columns(self._plan)]
         groups: dict[tuple[Any, ...], list[dict[str, Any]]] = {}
         for row in self.rows:
-            groups.setdefault(tuple(row[name] for name in by), []).append(row)
+            groups.setdefault(tuple(row.get(name) for name in by), []).append(row)
         return [
             (values, pairs)
             for values, rows in groups.items()
             for pairs in paired_rows(rows, between, identity, table.same.get(between, ()))
         ]
 
-    def differences(self, between: str, by: Sequence[str] | str = ()) -> "pandas.DataFrame":
-        """Paired differences of accuracy between the values of a column.
+    def apart(self, between: str) -> tuple[str, ...]:
+        """The columns in whose groups a column is compared where nothing else is asked for."""
+        same = (between, *self.table.same.get(between, ()))
+        return self._several(name for name in self.table.apart if name not in same)
+
+    def differences(
+        self, between: str, by: Sequence[str] | str | None = None
+    ) -> "pandas.DataFrame":
+        """Return paired differences of accuracy between the values of a column.
 
         Pairs are rows that are the same in scenario, condition, variation, model, template, repeat
-        and probe, but for that column; or in task, instance, repeat and who plays.
+        and probe, but for that column; or in task, instance, repeat and player. Intervals and
+        tests take variations, and not pairs, for independent.
 
         Args:
             between: Such as `model` or `condition`.
-            by: Columns that tell groups apart, such as `task`, in each of which it is done anew.
+            by: Columns that tell groups apart, in each of which it is done anew; None: model,
+                template and order of the question, or of episodes the player, as far as there
+                are several and they are not what is compared; an empty list: one comparison.
 
         Returns:
-            For each two values: those of `by`; `one`, `other`; `pairs`, how many are right with
-            `both` or one of them, the `difference`, `low` and `high` (95 %, Bonett and Price), `p`
-            (McNemar, exact).
+            For each two values: those of `by`; `one`, `other`; `pairs`, the independent
+            `variations` among them, how many pairs are right with `both` or one of them; the
+            `difference`, `low` and `high` (95 %: Bonett and Price with one pair in each variation,
+            else the cluster bootstrap); `p` (exact permutation of the levels within variations;
+            with one pair in each, McNemar's exact test).
 
         Raises:
             InputError: There is no such column, or no two rows differ in it alone.
             MissingExtraError: pandas is not installed.
         """
         self._columns(between)
-        names = self._columns(by)
+        names = self._columns(self.apart(between) if by is None else by)
         compared = self.paired(between, names)
         levels = list(dict.fromkeys(row[between] for row in self.rows))
         if len(levels) > 1 and not compared:
@@ -159,31 +195,22 @@ class StudyResult:
         found = [
             {
                 **dict(zip(names, values, strict=True)),
-                "one": pairs.one,
-                "other": pairs.other,
-                "pairs": pairs.pairs,
-                "both": pairs.both,
-                "only_one": pairs.only_one,
-                "only_other": pairs.only_other,
-                "difference": pairs.difference,
+                **{name: getattr(pairs, name) for name in _COMPARED},
                 "low": pairs.interval[0],
                 "high": pairs.interval[1],
                 "p": pairs.p,
             }
             for values, pairs in compared
         ]
-        columns = [*names, *_DIFFERENCES]
-        return _pandas().DataFrame.from_records(found, columns=columns)
+        columns = [*names, *_COMPARED, "low", "high", "p"]
+        return plain_frame({name: Typed([row[name] for row in found]) for name in columns})
 
     def seconds(self) -> "pandas.DataFrame":
         """Wall time of each cell, as far as it is known: `cell`, `seconds`."""
         noted = self.folder.seconds()
-        records = [
-            {"cell": cell["name"], "wall_seconds": noted[cell["name"]]}
-            for cell in self._plan["cells"]
-            if cell["name"] in noted
-        ]
-        return _pandas().DataFrame.from_records(records, columns=["cell", "wall_seconds"])
+        cells = [cell["name"] for cell in self._plan["cells"] if cell["name"] in noted]
+        times = [noted[name] for name in cells]
+        return plain_frame({"cell": Typed(cells), "wall_seconds": Typed(times)})
 
     def plot(self, by: Sequence[str] | str | None = None) -> "Figure":
         """Accuracies with their intervals: the first column along the axis, the second by colour.
@@ -219,51 +246,10 @@ class StudyResult:
         return path
 
     def write_tables(self) -> tuple[Path, Path]:
-        """Write `rows.csv` and `rows.parquet` into the folder."""
-        frame = self.frame()
+        """Write `rows.csv` and `rows.parquet` into the folder, with the type of each column."""
         csv, parquet = self.folder.path / "rows.csv", self.folder.path / "rows.parquet"
-        frame.to_csv(csv, index=False, lineterminator="\n")
-        frame.to_parquet(parquet, index=False)
+        write_typed(self._typed(), csv, parquet)
         return csv, parquet
 
     def _columns(self, names: Sequence[str] | str) -> list[str]:
-        known = [*self.table.first, *variation_columns(self._plan), *self.table.columns]
-        chosen = several("by", names)
-        for name in chosen:
-            if name not in known:
-                raise InputError(f"there is no column {name!r}; there are {', '.join(known)}")
-        return list(chosen)
-
-
-def _frame(
-    rows: Sequence[dict[str, Any]], table: Table, varied: Sequence[str]
-) -> "pandas.DataFrame":
-    pandas = _pandas()
-    import pyarrow
-
-    arrow = {"string": pyarrow.string(), "bool": pyarrow.bool_()}
-    arrow |= {"int64": pyarrow.int64(), "float64": pyarrow.float64()}
-    columns: dict[str, Any] = {}
-    kinds = {**table.first, **dict.fromkeys(varied), **table.columns}
-    for name, kind in kinds.items():
-        values = [row.get(name) for row in rows]
-        told = pyarrow.array(values if kind else _alike(values), arrow[kind] if kind else None)
-        columns[name] = pandas.array(told, dtype=pandas.ArrowDtype(told.type))
-    return pandas.DataFrame(columns)
-
-
-def _alike(values: Sequence[Any]) -> list[Any]:
-    """Values of one type: what a list of a study mixes becomes text."""
-    kinds = {type(value) for value in values if value is not None}
-    if len(kinds) <= 1 or kinds == {int, float}:
-        return [float(v) if kinds == {int, float} and v is not None else v for v in values]
-    return [None if value is None else str(value) for value in values]
-
-
-def _pandas() -> Any:
-    try:
-        import pandas
-        import pyarrow  # noqa: F401  # what the columns are kept in
-    except ModuleNotFoundError as error:
-        raise MissingExtraError(f"tables of studies need {error.name}", "study") from None
-    return pandas
+        return checked_columns(names, self.columns)

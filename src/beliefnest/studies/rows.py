@@ -6,8 +6,10 @@ from typing import Any
 
 from beliefnest.scenarios.judging import OUTCOMES
 from beliefnest.studies.copies import rows_with_copies
+from beliefnest.studies.plan import variation_id
 from beliefnest.studies.store import StudyFolder
 from beliefnest.studies.table import Table
+from beliefnest.world.paths import normalised
 
 __all__ = ["FAILED", "PROBES", "plain_value", "variation_columns"]
 
@@ -16,12 +18,14 @@ FAILED = "error"
 assert FAILED in OUTCOMES
 
 _COLUMNS = {
+    "variation": "string",
     "model": "string",
     "template": "string",
     "repeat": "int64",
     "seed": "int64",
     "probe": "string",
     "path": "string",
+    "order": "int64",
     "acts_in": "string",
     "agent": "string",
     "task": "string",
@@ -46,7 +50,9 @@ _COLUMNS = {
     "copy_of": "string",
 }
 """Columns after `scenario`, `condition` and those of variations, and their types. Places are texts
-such as `-2,-51,-4`; `seconds` are the Minecraft ones that the probe's program ran."""
+such as `-2,-51,-4`. `variation` names the independent variation that a row belongs to. `order` is
+that of the belief that is asked, 0 for the real world. `seconds` are Minecraft's, of the probe's
+program."""
 
 
 def variation_columns(plan: Mapping[str, Any]) -> list[str]:
@@ -69,6 +75,8 @@ def _probe_rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[s
             "scenario": key["scenario"],
             "condition": key["condition"],
             **{name: plain_value(key["variation"].get(name)) for name in columns},
+            # The plan of an earlier version has no name for it.
+            "variation": cell.get("variation") or variation_id(key["scenario"], key["variation"]),
             "model": key["model"],
             "template": key["template"],
             "repeat": key["repeat"],
@@ -97,6 +105,7 @@ def _probe(probe: Mapping[str, Any]) -> dict[str, Any]:
     return {
         "probe": probe["label"],
         "path": probe["path"],
+        "order": _order(probe["path"]),
         "acts_in": probe["acts_in"],
         "agent": probe["agent"],
         "task": probe["task"],
@@ -121,6 +130,7 @@ def _failed(probe: Mapping[str, Any], why: str) -> dict[str, Any]:
     return {
         **{name: probe.get(name) for name in ("path", "acts_in", "agent", "task")},
         "probe": probe.get("label", ""),
+        "order": _order(probe["path"]) if "path" in probe else None,
         "expected": plain_value(probe.get("expected")),
         "outcome": FAILED,
         "why_not": why,
@@ -146,6 +156,11 @@ def plain_value(value: Any) -> Any:
     return json.dumps(value, sort_keys=True) if isinstance(value, list | dict) else value
 
 
+def _order(path: str) -> int:
+    """Count the agents in whose beliefs a path leads: 0 for the real world."""
+    return len(normalised(filter(None, path.split("/"))))
+
+
 def _place(place: list[float] | None) -> str | None:
     return None if place is None else ",".join(f"{part:g}" for part in place)
 
@@ -159,12 +174,13 @@ PROBES = Table(
         *("probe", "path", "acts_in", "agent", "task"),
     ),
     groups=("scenario", "condition", "model"),
-    further_group="template",
+    further_groups=("template", "order"),
     compared=("condition", "model", "template"),
+    apart=("model", "template", "order"),
     shown=(
-        *("model", "template", "repeat", "probe", "path", "expected", "intended", "opened"),
-        *("arrived", "answered", "outcome", "why_not", "ticks", "tokens"),
+        *("variation", "model", "template", "repeat", "probe", "path", "order", "expected"),
+        *("intended", "opened", "arrived", "answered", "outcome", "why_not", "ticks", "tokens"),
     ),
-    same={"probe": ("path", "acts_in", "agent", "task")},
+    same={"probe": ("path", "order", "acts_in", "agent", "task")},
 )
 """Of studies of scenarios."""

@@ -88,7 +88,8 @@ def run_cells(
 
 def _is_open(folder: StudyFolder, cell: Keyed) -> bool:
     known = folder.cell(cell.key.name)
-    return known is None or known["error"] is not None
+    # An earlier version may have given the cell another seed.
+    return known is None or known["error"] is not None or known["seed"] != cell.key.seed
 
 
 class _Counting:

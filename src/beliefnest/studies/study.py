@@ -197,6 +197,13 @@ class Study:
                 self._plan = _told_apart(plan_episodes(design), EPISODES)
         return self._plan
 
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of the columns of the table, see `StudyResult.frame`; raises as `plan` does."""
+        table = PROBES if isinstance(self._design, Design) else EPISODES
+        varied = dict.fromkeys(name for cell in self.plan().cells for name in cell.key.variation)
+        return table.names(varied)
+
     def run(
         self,
         folder: str | Path,

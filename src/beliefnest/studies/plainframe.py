@@ -1,0 +1,110 @@
+"""Data frames of pandas with plain types, which statistical packages can read."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from beliefnest.errors import MissingExtraError
+
+if TYPE_CHECKING:  # Tables are an extra, imported when one is made.
+    import pandas
+    import pyarrow
+
+__all__ = ["Typed", "plain_frame", "write_typed"]
+
+
+@dataclass(frozen=True, slots=True)
+class Typed:
+    """Values of a column.
+
+    Attributes:
+        values: The values; None: missing.
+        kind: `string`, `bool`, `int64` or `float64`; None: that of the values.
+    """
+
+    values: Sequence[Any]
+    kind: str | None = None
+
+    @property
+    def found_kind(self) -> str:
+        """The kind, if need be that of the values; `string` where they are mixed, or missing."""
+        if self.kind is not None:
+            return self.kind
+        types = {type(value) for value in self.values if value is not None}
+        if types == {bool}:
+            return "bool"
+        if types == {int}:
+            return "int64"
+        return "float64" if types and types <= {int, float} else "string"
+
+
+def plain_frame(columns: Mapping[str, Typed]) -> "pandas.DataFrame":
+    """Make a data frame of plain types: `object` for texts, `bool`, `int64`, `float64`.
+
+    Missing is None among texts. Among truth values and whole numbers, whose plain types have no
+    missing value, it is NaN, and the column is `float64`, with 1 and 0 for True and False.
+
+    Raises:
+        MissingExtraError: pandas is not installed.
+    """
+    pandas = _pandas()
+    series = {name: _plain(column) for name, column in columns.items()}
+    return pandas.DataFrame(
+        {name: pandas.Series(values, dtype=kind) for name, (values, kind) in series.items()},
+        columns=list(columns),
+    )
+
+
+def _plain(column: Typed) -> tuple[Sequence[Any], str]:
+    kind = column.found_kind
+    if kind == "string":
+        return _texts(column), "object"
+    if any(value is None for value in column.values):
+        kind = "float64"
+    values = [float("nan") if value is None else value for value in column.values]
+    return values, kind
+
+
+def _texts(column: Typed) -> list[str | None]:
+    # What a list of a study mixes becomes text.
+    return [value if value is None else str(value) for value in column.values]
+
+
+def write_typed(columns: Mapping[str, Typed], csv: Path, parquet: Path) -> None:
+    """Write a table as CSV and as Parquet; whole numbers stay whole where some are missing.
+
+    Raises:
+        MissingExtraError: pandas or pyarrow is not installed.
+    """
+    pandas = _pandas()
+    arrays = {name: _arrow(column) for name, column in columns.items()}
+    frame = pandas.DataFrame(
+        {
+            name: pandas.array(values, dtype=pandas.ArrowDtype(values.type))
+            for name, values in arrays.items()
+        }
+    )
+    frame.to_csv(csv, index=False, lineterminator="\n")
+    import pyarrow
+    from pyarrow import parquet as files
+
+    # Without notes for pandas, by which it would read other types than plain ones.
+    files.write_table(pyarrow.table(arrays), parquet)
+
+
+def _arrow(column: Typed) -> "pyarrow.Array":
+    import pyarrow
+
+    kind = column.found_kind
+    values = _texts(column) if kind == "string" else column.values
+    return pyarrow.array(values, pyarrow.type_for_alias(kind))
+
+
+def _pandas() -> Any:
+    try:
+        import pandas
+        import pyarrow  # noqa: F401  # what tables are written with
+    except ModuleNotFoundError as error:
+        raise MissingExtraError(f"tables of studies need {error.name}", "study") from None
+    return pandas

@@ -1,0 +1,174 @@
+"""Rows of studies as statistical packages take them, and summed up by variation."""
+
+import csv
+import json
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from tests.studies.small import SMALL, small_in, study_in
+
+import beliefnest as bn
+from beliefnest import frames
+from beliefnest.cli.app import run_command_line
+from beliefnest.studies.store import StudyFolder
+
+# Two questions, one of them about what Bob believes of Ann.
+SEVERAL = (
+    SMALL.replace("agents:\n", "agents:\n  bob: {position: [3.5, 1, 4.5]}\n")
+    + """\
+  - label: other
+    path: /bob/ann
+    acts_in: /bob
+    agent: ann
+    task: Get a ${item} from a chest.
+    expect: {opens: "${spot}"}
+"""
+)
+PLAIN = {"object", "bool", "int64", "float64"}
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory: pytest.TempPathFactory) -> bn.StudyResult:
+    folder = tmp_path_factory.mktemp("several")
+    study = bn.Study(
+        small_in(folder, SEVERAL),
+        variations={"spot": [[1, 1, 1], [5, 1, 1], [1, 1, 5]], "count": [1, 2]},
+        repeats=2,
+        world="scripted",
+    )
+    return study.run(folder / "out", jobs=1)
+
+
+def test_rows_name_their_variation_and_the_order_of_the_question(result: bn.StudyResult) -> None:
+    frame = result.frame()
+    assert len(frame) == 6 * 2 * 2
+    assert frame["variation"].nunique() == 6
+    assert (frame.groupby("variation")[["spot", "count"]].nunique() == 1).all(axis=None)
+    assert frame.groupby("probe")["order"].unique().map(list).to_dict() == {
+        "fetch": [1],
+        "other": [2],
+    }
+
+
+def test_orders_are_summed_up_apart_and_variations_counted(result: bn.StudyResult) -> None:
+    summary = result.summary()
+    assert list(summary["order"]) == [1, 2]
+    assert list(summary["variations"]) == [6, 6]
+    whole = result.summary(by=["model"]).iloc[0]
+    assert (whole["judged"] + whole["copies"], whole["variations"]) == (24, 6)
+    each = result.summary(by=["variation"])
+    assert list(each["variations"]) == [1] * 6
+    assert list(result.differences("spot").columns[:5]) == [
+        *("order", "one", "other", "pairs", "variations"),
+    ]
+    assert list(result.differences("spot", by=[]).columns[:2]) == ["one", "other"]
+    page = result.write_page(result.folder.path / "page.html").read_text("utf-8")
+    assert "6 independent variations" in page
+
+
+def test_templates_are_compared_within_each_order_and_variation(tmp_path: Path) -> None:
+    study = bn.Study(
+        small_in(tmp_path, SEVERAL),
+        variations={"count": [1, 2]},
+        templates=["default", "paper"],
+        world="scripted",
+    )
+    result = study.run(tmp_path / "out", jobs=1)
+    differences = result.differences("template")
+    assert differences[["order", "pairs", "variations"]].to_numpy().tolist() == [
+        *([1, 2, 2], [2, 2, 2]),
+    ]
+    (pooled,) = result.differences("template", by=[]).to_dict("records")
+    assert (pooled["pairs"], pooled["variations"]) == (4, 2)
+    page = result.write_page(tmp_path / "page.html").read_text("utf-8")
+    assert "<th>variations</th><th>pairs</th>" in page and "<td>order 2</td>" in page
+
+
+@pytest.mark.filterwarnings("ignore::FutureWarning")
+def test_models_of_statsmodels_are_fitted_to_the_frame(result: bn.StudyResult) -> None:
+    models = pytest.importorskip("statsmodels.formula.api", reason="statsmodels is not installed")
+    api = pytest.importorskip("statsmodels.api", reason="statsmodels is not installed")
+    frame = result.frame()
+    # Not every value of a column decides about the result.
+    frame["right"] = frame["ok"].astype(float).where(frame.index % 5 > 0, 1 - frame["ok"])
+    logit = models.logit("right ~ C(probe) + C(order == 1)", frame[frame["order"] == 1].assign())
+    assert logit.endog.shape == (12,)
+    gee = models.gee(
+        "right ~ C(probe)", "variation", data=frame, family=api.families.Binomial()
+    ).fit()
+    assert gee.model.num_group == 6
+    assert gee.params.notna().all()
+    fitted = models.logit("right ~ order", frame).fit(disp=False)
+    assert fitted.nobs == 24 and fitted.params.notna().all()
+
+
+def test_all_data_frames_have_plain_types(result: bn.StudyResult) -> None:
+    found = {
+        "frame": result.frame(),
+        "summary": result.summary(),
+        "differences": result.differences("spot"),
+        "seconds": result.seconds(),
+        "cells": frames.cells_df(result),
+        "probes": frames.probes_df(result),
+    }
+    for name, frame in found.items():
+        assert {str(kind) for kind in frame.dtypes} <= PLAIN, name
+    frame = found["frame"]
+    assert {frame[name].dtype.kind for name in ("ok", "beliefs_ok")} == {"b", "f"}
+    assert frame["beliefs_ok"].isna().all() and frame["condition"].isna().all()
+    assert frame["copy_of"].iloc[0] is None
+
+
+def test_files_keep_types_and_are_read_as_plain_ones(result: bn.StudyResult) -> None:
+    table, parquet = result.write_tables()
+    with table.open(encoding="utf-8", newline="") as opened:
+        first = next(csv.DictReader(opened))
+    assert (first["condition"], first["ticks"].isdecimal(), first["ok"]) == ("", True, "True")
+    read = pd.read_parquet(parquet)
+    assert list(read.columns) == list(result.frame().columns)
+    assert not any("pyarrow" in str(kind).lower() for kind in read.dtypes if kind != "str")
+
+
+def test_columns_to_sum_up_by_are_asked_for_on_the_command_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = study_in(tmp_path, "scenarios: [small.yaml]\nworld: scripted\nvariations: 3\n")
+    command = ["study", str(file), "--out", str(tmp_path / "out"), "--jobs", "1"]
+    assert run_command_line([*command, "--by", "itme", "--json"]) == 2
+    assert "there is no column 'itme'" in capsys.readouterr().err
+    assert not list(tmp_path.glob("out/cells/*"))
+    assert run_command_line([*command, "--by", "variation", "--by", "order", "--json"]) == 0
+    summary = json.loads(capsys.readouterr().out)["summary"]
+    assert [(each["order"], each["variations"]) for each in summary] == [(1, 1)] * 3
+    assert "<th>variation</th><th>order</th>" in Path(tmp_path, "out/study.html").read_text()
+
+
+def test_a_list_that_is_none_is_told_by_its_own_key(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = "scenarios: [small.yaml]\nseed: 1\nvariations:\n  spot: [[1, 1, 1]]\n  agents: 5\n"
+    assert run_command_line(["study", str(study_in(tmp_path, text))]) == 2
+    told = "study.yaml:5: variations.agents: variations of 'agents' are 5; give a list"
+    assert told in capsys.readouterr().err
+
+
+def test_folders_of_earlier_versions_are_read(result: bn.StudyResult, tmp_path: Path) -> None:
+    old = StudyFolder.open(tmp_path / "old")
+    plan = result.plan
+    for cell in plan["cells"]:
+        old.write_cell(cell["name"], result.folder.cell(cell["name"]) or {})
+    cells = [{k: v for k, v in cell.items() if k != "variation"} for cell in plan["cells"]]
+    old.write_plan({**plan, "cells": cells})
+    read = bn.StudyResult.read(tmp_path / "old").frame()
+    assert read.equals(result.frame())
+
+
+def test_a_cell_that_was_played_with_another_seed_is_played_again(tmp_path: Path) -> None:
+    study = bn.Study(small_in(tmp_path), world="scripted")
+    result = study.run(tmp_path / "out", jobs=1)
+    (cell,) = result.plan["cells"]
+    content = result.folder.cell(cell["name"]) or {}
+    result.folder.write_cell(cell["name"], {**content, "seed": 0, "ticks": -1})
+    (row,) = study.run(tmp_path / "out", jobs=1).rows
+    assert row["seed"] == cell["seed"] and row["script_ticks"] == content["ticks"]
