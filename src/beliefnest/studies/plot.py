@@ -18,14 +18,23 @@ _LETTER = 0.085
 """Inches that a letter takes."""
 _WIDEST = 1.6
 """Inches to which bars are spread for what stands below them; longer texts are turned."""
+_MM = 25.4
+"""Millimetres of an inch."""
 
 
-def plot_accuracy(groups: Sequence[Mapping[str, Any]], by: Sequence[str]) -> "Figure":
-    """Bars from 0 to 1 with 95 % intervals.
+def plot_accuracy(
+    groups: Sequence[Mapping[str, Any]],
+    by: Sequence[str],
+    size: tuple[float, float] | None = None,
+) -> "Figure":
+    """Draw bars from 0 to 1 with 95 % intervals.
+
+    The figure fits its texts into its size whenever it is drawn, also after its size was changed.
 
     Args:
         groups: As `count_rows` gives them.
         by: The columns they are told apart by: the first along the axis, the others by colour.
+        size: Width and height in millimetres; None: as the bars and texts need.
 
     Raises:
         MissingExtraError: matplotlib is not installed.
@@ -34,11 +43,14 @@ def plot_accuracy(groups: Sequence[Mapping[str, Any]], by: Sequence[str]) -> "Fi
         from matplotlib.figure import Figure
     except ModuleNotFoundError:
         raise MissingExtraError("figures of studies need matplotlib", "plot") from None
+    from beliefnest.studies.fitting import Fitting
+
     judged = [group for group in groups if group["accuracy"] is not None]
     along = list(dict.fromkeys(_told(group[by[0]]) for group in judged))
     colours = list(dict.fromkeys(_legend(group, by) for group in judged))
     title = ", ".join(by[1:])
-    figure = Figure(figsize=_inches(along, colours, title))
+    wanted = _inches(along, colours, title)
+    figure = Figure(figsize=wanted if size is None else (size[0] / _MM, size[1] / _MM))
     axes = figure.add_subplot()
     width = 0.8 / max(1, len(colours))
     for number, name in enumerate(colours):
@@ -51,15 +63,12 @@ def plot_accuracy(groups: Sequence[Mapping[str, Any]], by: Sequence[str]) -> "Fi
         axes.bar(middles, heights, width * 0.9, color=colour, label=name or None)
         axes.errorbar(middles, heights, [below, above], fmt="none", ecolor="#333333", capsize=3)
     axes.set_xticks(range(len(along)), along)
-    if _label(along) > _slot(along, colours):
-        axes.tick_params("x", labelrotation=20)
     axes.set_xlabel(by[0])
-    axes.set_ylabel("accuracy, 95 % interval")
     axes.set_ylim(0, 1.02)
     axes.spines[["top", "right"]].set_visible(False)
     if len(colours) > 1:
-        axes.legend(title=title, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    figure.set_layout_engine("tight")
+        axes.legend(title=title, frameon=False)
+    figure.set_layout_engine(Fitting(along))
     return figure
 
 

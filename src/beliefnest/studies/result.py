@@ -212,11 +212,18 @@ class StudyResult:
         times = [noted[name] for name in cells]
         return plain_frame({"cell": Typed(cells), "wall_seconds": Typed(times)})
 
-    def plot(self, by: Sequence[str] | str | None = None) -> "Figure":
-        """Accuracies with their intervals: the first column along the axis, the second by colour.
+    def plot(
+        self,
+        by: Sequence[str] | str | None = None,
+        size: tuple[float, float] | None = None,
+    ) -> "Figure":
+        """Draw accuracies with their intervals, as `summary` computes them.
+
+        The first column is drawn along the axis, the others by colour.
 
         Args:
             by: The columns; None: condition and model, or of episodes task and policy.
+            size: Width and height in millimetres; None: as the bars and texts need.
 
         Raises:
             InputError: There is no such column.
@@ -227,7 +234,7 @@ class StudyResult:
         names = self._columns(self.table.groups[-2:] if by is None else by)
         if not names:
             raise InputError("by is empty; name at least one column to draw along")
-        return plot_accuracy(count_rows(self.rows, names), names)
+        return plot_accuracy(count_rows(self.rows, names), names, size)
 
     def write_page(self, file: str | Path, by: Sequence[str] | str | None = None) -> Path:
         """Write all of it as one HTML page that needs no network; `by` as for `summary`.
