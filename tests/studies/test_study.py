@@ -216,7 +216,10 @@ def test_a_world_that_fails_is_a_row_that_says_why(tmp_path):
             "scenarios: small.yaml\nmodels: 3\n",
             "study.yaml:2: models: expected 'str | array | null', got 'int'",
         ),
-        ("scenarios: [small.yaml]\nvariations: {spot: 3}\n", "study.yaml:2: variations.spot: variations of"),
+        (
+            "scenarios: [small.yaml]\nvariations: {spot: 3}\n",
+            "yaml:2: variations.spot: variations of",
+        ),
         ("scenarios: [small.yaml]\nvariations: {spot: []}\n", "variations of 'spot' are []"),
         ("scenarios: [small.yaml]\nvariations: {spto: [1]}\n", "there is no parameter 'spto'"),
         ("scenarios: [small.yaml]\nworld: moon\n", "there is no world 'moon'"),
