@@ -241,7 +241,7 @@ def _print(report: Mapping[str, Any]) -> None:
         f"{counted(measures['rounds'], 'round')}, {counted(measures['messages'], 'message')}"
     )
     for line in lines:
-        console.print(printable(line), markup=False, highlight=False)
+        console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
 
 
 def _goal_line(condition: Mapping[str, Any]) -> str:

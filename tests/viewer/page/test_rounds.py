@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from tests.viewer.page.test_page import assert_accessible, assert_clean
@@ -12,7 +13,7 @@ from beliefnest.cli.page import PageOptions, write_page
 from beliefnest.episodes.policies import Scripted
 from beliefnest.episodes.telling import told_episode
 
-TASK = {
+TASK: dict[str, Any] = {
     "name": "fetch",
     "scenario": {
         "name": "fetch",
@@ -109,3 +110,18 @@ def test_rounds_are_listed_and_lead_to_ticks_programs_and_branches(
     finally:
         browser.driver.set_window_size(size["width"], size["height"])
     assert_clean(browser, "file:")
+
+
+def test_why_a_program_failed_is_told_beside_it(browser: Browser, tmp_path: Path) -> None:
+    policies = {"ann": Scripted(["await turnOnLever(bot, new Vec3(5, 1, 1))"]), "bob": Scripted([])}
+    never = {"reach": TASK["goal"]["reach"], "never": [{"agent": "bob", "items": {"apple": 1}}]}
+    task = bn.Task.from_mapping({**TASK, "goal": never, "rounds": 2})
+    with bn.Episode(task, policies, store=tmp_path / "run.bn") as episode:
+        episode.play(1)
+        write_page(PageOptions(tmp_path / "run.bn", tmp_path / "page.html", "/", None, None, 1))
+    browser.open((tmp_path / "page.html").as_uri())
+    why = "line 1: turnOnLever: there is no lever at (5, 1, 1), but air. Give that of a lever."
+    assert texts(browser, ".deed .why") == [why]
+    assert any(each.endswith(f"which fails: {why}") for each in texts(browser, ".events .what"))
+    assert texts(browser, ".goal .when") == ["not yet", "at no tick so far"]
+    assert texts(browser, ".goal li")[1].startswith("\u25cb not to be: bob has 1 apple: ")

@@ -53,8 +53,8 @@ export class Rounds {
     const words = when !== null ? `tick ${when}` : !open ? 'at no tick' : never ? 'at no tick so far' : 'not yet'
     return element('li', { class: when === null ? 'open' : 'true' },
       when === null
-        ? element('span', {}, `○ ${text} `, element('span', { class: 'when' }, words))
-        : element('button', { type: 'button', onclick: () => this.seek(line, when) }, `● ${text} `, element('span', { class: 'when' }, words)))
+        ? element('span', {}, `○ ${text}: `, element('span', { class: 'when' }, words))
+        : element('button', { type: 'button', onclick: () => this.seek(line, when) }, `● ${text}: `, element('span', { class: 'when' }, words)))
   }
 
   part (run, line, part, { isNow, turns, choice }) {
