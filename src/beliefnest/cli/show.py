@@ -286,7 +286,7 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
     print_table(console, agents)
     for (tick, speaker, text), to in zip(state.chat, state.addressees, strict=True):
         said = speaker if to is None else f"{speaker} whispers to {to}"
-        console.print(_foreign(f"{tick} {said}: {text}"), highlight=False)
+        console.print(_foreign(f"tick {tick}, {said}: {text}"), highlight=False)
 
 
 def _how_known(state: State, basis: Basis | None, *, current: bool) -> list[str]:
