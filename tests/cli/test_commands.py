@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
+from tests.servers import GameServer
 
 from beliefnest.cli.app import app, run_command_line
 from beliefnest.cli.folder import store_in
@@ -223,6 +224,20 @@ def test_doctor_finds_everything_in_order(capsys: pytest.CaptureFixture[str]) ->
         "model:",
     ]
     assert all(line.startswith("ok") for line in lines)
+
+
+def test_doctor_checks_a_server(capsys: pytest.CaptureFixture[str]) -> None:
+    with GameServer() as server:
+        assert run_command_line(["doctor", server.address(patience=5)]) == 0
+        lines = capsys.readouterr().out.splitlines()
+        assert lines[-2].startswith("ok    server: 127.0.0.1:")
+        assert lines[-1].startswith("ok    place there: a floor and a chest")
+        server.type("deop BeliefNest")
+        assert run_command_line(["doctor", server.address(patience=3)]) == 3
+        lines = capsys.readouterr().out.splitlines()
+        assert lines[-2].startswith("FAIL  server: on the server")
+        assert "op BeliefNest" in lines[-2]
+    assert run_command_line(["doctor", "localhost"]) == 2
 
 
 def test_doctor_compiles_what_the_first_belief_would_wait_for(

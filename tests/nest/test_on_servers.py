@@ -253,6 +253,13 @@ def test_a_bot_that_does_nothing_loses_its_connection_and_others_go_on(console):
         assert result.ok, result.error
 
 
+def test_a_step_whose_bot_is_sent_away_is_the_worlds_failure(console):
+    with Nest.open(Scenario.load("sally-anne", 1), console.address(patience=PATIENCE)) as nest:
+        console.type("after 10 kick sally")
+        with pytest.raises(BodyError, match="sally lost its connection to the server"):
+            nest.play()
+
+
 def test_a_server_that_stands_still_for_a_moment_is_waited_for(console):
     with Nest.open(Scenario.load("sally-anne", 1), console.address(patience=PATIENCE)) as nest:
         console.type("stall 1500")

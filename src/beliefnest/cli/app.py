@@ -508,6 +508,9 @@ def reproduce(
 
 @app.command()
 def doctor(
+    server: Annotated[
+        str | None, typer.Argument(help="A server to check, too: minecraft://HOST:PORT.")
+    ] = None,
     warm: Annotated[
         bool, typer.Option("--warm", help="Compile now what the first belief would wait for.")
     ] = False,
@@ -516,7 +519,7 @@ def doctor(
     """Check Node, the bundle, a world and a model; say what to do about what fails."""
     from beliefnest.cli.doctor import examine
 
-    return examine(as_json=json, warm=warm)
+    return examine(server, as_json=json, warm=warm)
 
 
 @app.command()

@@ -6,14 +6,18 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import asdict, dataclass
 
-from beliefnest.errors import BeliefNestError, BodyError, ModelError
+from beliefnest.bodies.address import ServerAddress, is_server
+from beliefnest.errors import BeliefNestError, BodyError, InputError, ModelError
 
 __all__ = ["Finding", "examine"]
 
 _FAILED = 3
 _SECONDS = 30
+_HIGH = 200
+"""Height of what is built on a server, where there is hardly anything."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,17 +35,20 @@ class Finding:
     detail: str
 
 
-def examine(*, as_json: bool, warm: bool = False) -> int:
+def examine(server: str | None = None, *, as_json: bool, warm: bool = False) -> int:
     """Print one line for each check; the exit status says whether all is well.
 
     Args:
+        server: Address of a Minecraft server that is checked, too.
         as_json: Print one JSON array instead.
         warm: Compile what is not compiled yet, so that no run waits for it.
     """
+    if server is not None and not is_server(server):
+        raise InputError(f"{server!r} is no address of a server; write minecraft://HOST:PORT")
     if warm:
         _one_belief()
     found = []
-    for name, check in _CHECKS:
+    for name, check in (*_CHECKS, *(() if server is None else _server_checks(server))):
         finding = _find(name, check)
         found.append(finding)
         if not as_json:
@@ -155,6 +162,43 @@ def _model() -> str:
     if "goToPosition" not in answer.text:
         raise ModelError("the offline model does not answer: report this as a bug")
     return f"{model.name} answers"
+
+
+def _server_checks(server: str) -> tuple[tuple[str, Callable[[], str]], ...]:
+    """Return the checks of a server: first what needs no place on it, then a small place."""
+    address = ServerAddress.parse(server)
+
+    def joined() -> str:
+        from beliefnest.bodies.minecraft import MinecraftWorld
+
+        with closing(MinecraftWorld.start(address, 0)) as world:
+            return (
+                f"{world.address} speaks Minecraft {world.minecraft}, and {address.operator} may "
+                "use all commands that are needed"
+            )
+
+    def built() -> str:
+        from beliefnest.nest.face.nest import Nest
+        from beliefnest.scenarios.scenario import Scenario
+
+        room = {
+            "name": "doctor",
+            "box": [[0, _HIGH, 0], [4, _HIGH + 3, 4]],
+            "blocks": [{"block": "stone", "fill": [[0, _HIGH, 0], [4, _HIGH, 4]]}],
+            "containers": [{"label": "chest", "at": [3, _HIGH + 1, 3], "items": {"apple": 2}}],
+            "agents": {"patient": {"position": [1.5, _HIGH + 1, 1.5]}},
+        }
+        taken = f"await getItemFromChest(bot, new Vec3(3, {_HIGH + 1}, 3), {{apple: 1}})"
+        with Nest.open(Scenario.from_mapping(room), server) as nest:
+            result = nest["/"].run("patient", taken)
+        if not result.ok:
+            raise BodyError(f"a program failed on the server: {result.error}")
+        return (
+            f"a floor and a chest at a height of {_HIGH} were built, read back, used by a bot and "
+            "put back"
+        )
+
+    return ("server", joined), ("place there", built)
 
 
 _CHECKS: tuple[tuple[str, Callable[[], str]], ...] = (

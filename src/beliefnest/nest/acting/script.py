@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 
+from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.errors import BodyError, ProgramError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.past.setting import Step
@@ -19,7 +20,7 @@ def play_script(engine: Engine, on_progress: Progress | None = None) -> None:
 
     Raises:
         ProgramError: A program failed.
-        BodyError: The Minecraft side died again and again under a step.
+        BodyError: The Minecraft side died again and again under a step, or a bot failed by itself.
     """
     recording = engine.recording
     script = recording.setting.script
@@ -57,7 +58,12 @@ def _play_step(engine: Engine, number: int, step: Step) -> None:
         if not result.ok:
             label = f" ({step.label})" if step.label else ""
             where = f"{step.where}: " if step.where else ""
-            fault = BodyError if result.killed else ProgramError
+            fault = BodyError if result.killed or _is_of_bot(result) else ProgramError
             raise fault(
                 f"{where}step {number + 1}{label}: the program of {agent} failed: {result.error}"
             )
+
+
+def _is_of_bot(result: ProgramResult) -> bool:
+    """Return whether not the program was at fault, but its bot, as by a lost connection."""
+    return result.error is not None and result.error.kind == "bot"
