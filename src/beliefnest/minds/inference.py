@@ -108,7 +108,7 @@ class Inference:
         self._trackers, self._rerun = tuple(trackers), rerun
         self._steps = _merged([tracker.steps for tracker in trackers])
         self._smoothed = smoothed
-        possible = [bool(np.isfinite(step.weights).any()) for step in self._steps]
+        possible = [step.is_possible for step in self._steps]
         self._failed = None if all(possible) else possible.index(False)
         if self._failed is not None:
             self._known = self._steps[: self._failed] or self._steps[:1]
@@ -437,7 +437,10 @@ def _joined_steps(parts: Sequence[Sequence[Step]]) -> Iterator[Step]:
                 for state, mass in step.states[a].items():
                     logs.setdefault(state, []).append(mass)
             states.append({state: log_sum(np.stack(each)) for state, each in logs.items()})
-        yield Step(told.tick, told.text, weights, tuple(states), told.agrees, told.is_movement)
+        is_possible = any(step.is_possible for step in at)
+        yield Step(
+            told.tick, told.text, weights, tuple(states), told.agrees, told.is_movement, is_possible
+        )
 
 
 def _shares(logs: Mapping[Any, Sequence[float]]) -> dict[Any, float]:

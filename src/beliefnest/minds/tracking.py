@@ -125,6 +125,7 @@ class Step:
     states: tuple[Mapping[State, Floats], ...]
     agrees: int
     is_movement: bool
+    is_possible: bool = True
 
 
 def log_sum(parts: Floats) -> Floats:
@@ -712,8 +713,10 @@ class Tracker:
         for actual, weights in enumerate(self.states):
             if weights:
                 total[actual] = _joined(weights.values())
-        self.steps.append(Step(tick, text, total, self.masses(), self._agrees, is_movement))
-        if not np.isfinite(total).any():
+        is_possible = bool(np.isfinite(total).any())
+        masses = self.masses()
+        self.steps.append(Step(tick, text, total, masses, self._agrees, is_movement, is_possible))
+        if not is_possible:
             self._over = True
 
 

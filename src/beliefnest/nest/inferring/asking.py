@@ -1,6 +1,8 @@
 """Inference on one node: reads its timeline, filters, and gives the result."""
 
+import hashlib
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -17,6 +19,8 @@ __all__ = ["credence_in", "infer_in"]
 
 _ROOM = 2**27
 """Bytes that values of one knowledge may take in one chunk of utilities."""
+
+_MOST_READINGS, _MOST_FILTERS = 8, 4
 
 _STEP_TICKS = {"scripted": 1}
 _MINECRAFT_STEP = 5
@@ -39,35 +43,84 @@ def infer_in(
         PathError: There is no such agent.
         TickError: A tick lies in the future or before the start.
     """
-    reading = _read(recording, path, model, since, until)
-    if not reading.has_seen:
+    work = _work_on(recording, path, model, since, until)
+    if not work.reading.has_seen:
         raise InputError(
-            f"{path_text(path)} has not seen {model.agent} from tick {since} to {reading.latest}; "
-            "infer from a node and a tick at which it sees the agent"
+            f"{path_text(path)} has not seen {model.agent} from tick {since} to "
+            f"{work.reading.latest}; infer from a node and a tick at which it sees the agent"
         )
     step_ticks = model.step_ticks or _STEP_TICKS.get(recording.world, _MINECRAFT_STEP)
-    _check_goals(model, reading.moments)
-    return _inferred(model, reading.moments, since, reading.latest, step_ticks, ended=ended)
+    _check_goals(model, work.reading.moments)
+    return work.inferred(model, since, step_ticks, ended=ended, smooth=smooth)
 
 
-def _read(
+@dataclass
+class _Work:
+    """A reading of a node, and the filters that have followed it so far, by model.
+
+    An inference at a later tick goes on with them.
+    """
+
+    reading: Reading
+    generation: int
+    filters: dict[bytes, tuple[int, list[Tracker]]] = field(default_factory=dict)
+
+    def goes_on(self, recording: Recording, until: int) -> bool:
+        """Whether nothing has been added to the timeline at ticks that were read."""
+        same = recording.history.generation == self.generation
+        return same and self.reading.latest <= until and self.reading.is_whole
+
+    def inferred(
+        self, model: MindModel, since: int, step_ticks: int, *, ended: bool, smooth: bool
+    ) -> Inference:
+        """Return the posterior at the last tick that was read."""
+        moments, until = self.reading.moments, self.reading.latest
+        key = _digest(model, step_ticks)
+        count, trackers = self.filters.get(key) or (0, _trackers(model, moments, step_ticks))
+        for tracker in trackers:
+            tracker.follow(moments[count:], until)
+        self.filters = {**self.filters, key: (len(moments), trackers)}
+        while len(self.filters) > _MOST_FILTERS:
+            del self.filters[next(iter(self.filters))]
+        return _told(model, tuple(moments), since, until, step_ticks, trackers, ended, smooth)
+
+
+def _work_on(
     recording: Recording, path: BeliefPath, model: MindModel, since: int, until: int | None
-) -> Reading:
-    start = recording.moment(path, None)
-    first = recording.stretches(start)[0]
+) -> _Work:
+    """Return the reading of a node up to a tick, gone on with where there is one."""
+    question = _question(recording, path, model, since)
+    moment = recording.moment(path, until)
+    key = ("inference", moment.timeline, repr(question))
+    known = recording.remembered.pop(key, None)
+    if isinstance(known, _Work) and known.goes_on(recording, moment.tick):
+        work = known
+    else:
+        work = _Work(Reading(recording, question), recording.history.generation)
+    work.reading.read(until)
+    work.generation = recording.history.generation
+    if not isinstance(known, _Work) or work is known or work.reading.latest >= known.reading.latest:
+        recording.remembered[key] = work
+    else:
+        recording.remembered[key] = known
+    kept = [other for other in recording.remembered if isinstance(other, tuple)]
+    for other in kept[:-_MOST_READINGS]:
+        del recording.remembered[other]
+    return work
+
+
+def _question(recording: Recording, path: BeliefPath, model: MindModel, since: int) -> Question:
+    first = recording.stretches(recording.moment(path))[0]
     begin = recording.journal.info(first.timeline).start
-    question = Question(
+    return Question(
         path,
         model.agent,
         dict(model.goal_values),
         model.alternatives,
-        model.observer_doubts or isinstance(model.actual, str),
+        model.actual is not None,
         model.diagonal,
-        max(since, begin) if since == 0 else since,
+        begin if since == 0 else since,
     )
-    reading = Reading(recording, question)
-    reading.read(until)
-    return reading
 
 
 def _check_goals(model: MindModel, moments: Sequence[Moment]) -> None:
@@ -83,27 +136,46 @@ def _check_goals(model: MindModel, moments: Sequence[Moment]) -> None:
     )
 
 
-def _inferred(
+def _digest(model: MindModel, step_ticks: int) -> bytes:
+    """Digest of what a filter depends on besides what was read."""
+    rules = Hypotheses.of(model, step_ticks).rules
+    digest = hashlib.blake2b(repr((rules, model.rationalities, step_ticks, model.stays)).encode())
+    for table in (model.utility_rows, model.credence_rows, model.prior_weights):
+        digest.update(repr(table.shape).encode())
+        digest.update(np.ascontiguousarray(table).tobytes())
+    return digest.digest()
+
+
+def _trackers(
+    model: MindModel, moments: Sequence[Moment], step_ticks: int, *, keeps: bool = False
+) -> list[Tracker]:
+    """Return filters at the beginning, one for each chunk of utilities."""
+    trackers = []
+    for part in _chunks(model, moments):
+        with np.errstate(divide="ignore"):
+            prior = np.log(model.prior_weights[part]) - np.log(len(model.rationalities))
+        trackers.append(Tracker(Hypotheses.of(model, step_ticks, part), prior, keeps=keeps))
+    return trackers
+
+
+def _told(
     model: MindModel,
     moments: Sequence[Moment],
     since: int,
     until: int,
     step_ticks: int,
-    *,
+    trackers: Sequence[Tracker],
     ended: bool,
+    smooth: bool,
 ) -> Inference:
-    trackers = []
-    for part in _chunks(model, moments):
-        with np.errstate(divide="ignore"):
-            prior = np.log(model.prior_weights[part]) - np.log(len(model.rationalities))
-        tracker = Tracker(Hypotheses.of(model, step_ticks, part), prior)
-        tracker.follow([moment for moment in moments if moment.tick <= until], until)
-        trackers.append(tracker.finished(until, ended=ended))
-
     def rerun(tick: int) -> Inference:
-        return _inferred(model, moments, since, tick, step_ticks, ended=False)
+        again = _trackers(model, moments, step_ticks)
+        for tracker in again:
+            tracker.follow([moment for moment in moments if moment.tick <= tick], tick)
+        return _told(model, moments, since, tick, step_ticks, again, False, False)
 
-    return Inference(model, since, until, trackers, rerun)
+    finished = [tracker.finished(until, ended=ended) for tracker in trackers]
+    return Inference(model, since, until, finished, rerun)
 
 
 def _chunks(model: MindModel, moments: Sequence[Moment]) -> list[slice]:
@@ -136,7 +208,7 @@ def credence_in(
     Raises:
         InputError, PathError, TickError: As for `infer_in`.
     """
-    reading = _read(recording, path, model, since, tick)
+    reading = _work_on(recording, path, model, since, tick).reading
     names = model.alternative_names
     weights = model.actual_weights
     agrees = reading.agrees

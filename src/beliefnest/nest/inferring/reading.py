@@ -100,6 +100,13 @@ class Reading:
         self.latest = moment.tick
 
     @property
+    def is_whole(self) -> bool:
+        """Whether all entries of the ticks that were read are in it."""
+        if self._key is None:
+            return False
+        return self.recording.journal.entries_until(self._key, self.latest) == self._position
+
+    @property
     def agrees(self) -> int:
         """The alternatives that have agreed with what the node holds."""
         return self._agrees

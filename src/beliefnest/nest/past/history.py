@@ -82,7 +82,11 @@ class _Stretch:
 
 
 class History:
-    """States of any node, at any entry of any timeline of a journal."""
+    """States of any node, at any entry of any timeline of a journal.
+
+    Attributes:
+        generation: Grows when what was read before may not hold any more, as a timeline's name.
+    """
 
     def __init__(self, journal: Journal, setting: Setting, pace: Pace | None = None) -> None:
         self._journal = journal
@@ -95,6 +99,7 @@ class History:
         self._logs: dict[TimelineKey, EventLog] = {}
         self._heads: dict[TimelineKey, Forest] = {}
         self._pasts: list[tuple[TimelineKey, Forest]] = []
+        self.generation = 0
 
     def reading(self, key: TimelineKey, path: BeliefPath, position: int | None = None) -> NodeView:
         """State of the node `path` after `position` entries of a timeline; None: at its head.
@@ -258,6 +263,7 @@ class History:
 
     def forget(self, key: TimelineKey) -> None:
         """Drop what is remembered of a timeline that was deleted or renamed."""
+        self.generation += 1
         self._stretches = {at: kept for at, kept in self._stretches.items() if at[0] != key}
         self._logs.pop(key, None)
         self._heads.pop(key, None)
@@ -267,6 +273,7 @@ class History:
 
     def forget_all(self) -> None:
         """Drop what is remembered of all timelines."""
+        self.generation += 1
         self._stretches, self._logs, self._heads, self._pasts = {}, {}, {}, []
         self._checkpoints.forget_all()
         self._claimed.forget_all()
@@ -274,6 +281,7 @@ class History:
     def _keep_up(self, key: TimelineKey) -> None:
         """Begin anew where a claim is about a block that nobody was watched looking at."""
         if self._claimed.read(key):
+            self.generation += 1
             self._heads.clear()
             self._pasts.clear()
 

@@ -39,6 +39,7 @@ class Recording:
         selected: The timeline of every simulator in control mode.
         turn: Held by the thread that is in the nest.
         world: Name of the world that the nest was opened in.
+        remembered: What readers keep of the nest from one question to the next, by their own keys.
     """
 
     def __init__(
@@ -51,6 +52,7 @@ class Recording:
     ) -> None:
         self.setting = setting
         self.world = world
+        self.remembered: dict[object, object] = {}
         self.journal = journal
         self.seed = seed
         self.renderer = Renderer() if renderer is None else renderer
