@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.errors import InputError, TickError
+from beliefnest.minds.looking_back import sampled_cells, smoothed_steps
 from beliefnest.minds.model import MindModel
 from beliefnest.minds.tracking import Step, Tracker, log_sum
 from beliefnest.world.values import Position
@@ -17,7 +18,7 @@ from beliefnest.world.values import Position
 if TYPE_CHECKING:  # Few results become tables.
     import pandas as pd
 
-__all__ = ["Change", "Impossible", "Inference", "reported_credence"]
+__all__ = ["Change", "Impossible", "Inference", "SampledPath", "reported_credence"]
 
 Floats = npt.NDArray[np.float64]
 Value = Hashable
@@ -39,6 +40,19 @@ class Impossible:
 
     def __str__(self) -> str:
         return f"tick {self.tick}: the agent {self.text}, which no hypothesis explains"
+
+
+@dataclass(frozen=True)
+class SampledPath:
+    """A course that agrees with the evidence.
+
+    Attributes:
+        hypothesis: Values of the factors that explain it, with their probability.
+        cells: By tick where the agent is.
+    """
+
+    hypothesis: Mapping[str, Any]
+    cells: Mapping[int, Position]
 
 
 @dataclass(frozen=True)
@@ -93,6 +107,7 @@ class Inference:
         model: The hypotheses.
         since: The tick from which on evidence counts.
         until: The last tick.
+        smooth: Whether marginals of `cell` and `credence_now` use later evidence too.
     """
 
     def __init__(
@@ -102,12 +117,14 @@ class Inference:
         until: int,
         trackers: Sequence[Tracker],
         rerun: Callable[[int], "Inference"],
-        smoothed: "Sequence[Step] | None" = None,
+        kept: Callable[[], Sequence[Tracker]],
+        *,
+        smooth: bool = False,
     ) -> None:
         self.model, self.since, self.until = model, since, until
-        self._trackers, self._rerun = tuple(trackers), rerun
+        self._trackers, self._rerun, self._keep = tuple(trackers), rerun, kept
         self._steps = _merged([tracker.steps for tracker in trackers])
-        self._smoothed = smoothed
+        self.smooth = smooth
         possible = [step.is_possible for step in self._steps]
         self._failed = None if all(possible) else possible.index(False)
         if self._failed is not None:
@@ -272,6 +289,37 @@ class Inference:
             found.append(_shares(shares))
         return found
 
+    def sample_paths(self, n: int, seed: int = 0) -> list[SampledPath]:
+        """Draw hypotheses from the posterior, with courses that agree with all evidence.
+
+        Where the agent was in sight, its course is the one that was seen.
+
+        Args:
+            n: How many.
+            seed: The same one gives the same paths.
+
+        Raises:
+            InputError: The number is below 1, or no hypothesis explains the course.
+        """
+        if isinstance(n, bool) or not isinstance(n, int) or n < 1:
+            raise InputError(f"n is {n!r}; give a whole number from 1")
+        if self._failed is not None:
+            raise InputError(f"there is no path to draw: {self.impossible}")
+        random = np.random.default_rng(seed)
+        posterior = self.posterior()
+        drawn = random.choice(posterior.size, size=n, p=posterior.reshape(-1) / posterior.sum())
+        paths = []
+        for number in drawn.tolist():
+            a, b, u, w = (int(part) for part in np.unravel_index(number, posterior.shape))
+            for tracker in self._kept:
+                size = len(tracker.hypotheses.utilities)
+                if u < size:
+                    break
+                u -= size
+            cells = sampled_cells(tracker, a, (b, u, w), random)
+            paths.append(SampledPath(self._told(posterior, number), cells))
+        return paths
+
     def at(self, tick: int) -> "Inference":
         """Return the inference as it was at a tick: nothing after it counts."""
         self._number(tick)
@@ -351,9 +399,19 @@ class Inference:
         return self._grouped(factor, self._posterior_of(step))
 
     def _smooth_step(self, number: int) -> Step:
-        if self._smoothed is None:
+        # Nothing later explains a course that nothing explains.
+        if not self.smooth or self._failed is not None:
             return self._known[number]
         return self._smoothed[number]
+
+    @cached_property
+    def _kept(self) -> Sequence[Tracker]:
+        """The filters with their layers, worked out when somebody looks back."""
+        return self._keep()
+
+    @cached_property
+    def _smoothed(self) -> list[Step]:
+        return _merged([smoothed_steps(tracker) for tracker in self._kept])
 
     def _grouped(self, factor: str, posterior: Floats) -> dict[Any, float]:
         values = self._values(factor)

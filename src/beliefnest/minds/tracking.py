@@ -22,7 +22,17 @@ from beliefnest.minds.stage import Stage, shortest
 from beliefnest.minds.worlds import middle_of
 from beliefnest.world.values import Position
 
-__all__ = ["Hypotheses", "State", "States", "Step", "Tracker", "known_after", "log_sum"]
+__all__ = [
+    "Action",
+    "Hypotheses",
+    "Layer",
+    "State",
+    "States",
+    "Step",
+    "Tracker",
+    "known_after",
+    "log_sum",
+]
 
 Floats = npt.NDArray[np.float64]
 
@@ -142,16 +152,54 @@ def _joined(parts: Iterable[Floats]) -> Floats:
     return listed[0] if len(listed) == 1 else log_sum(np.stack(listed))
 
 
+Action = tuple[Stage, Position, Knowledge, tuple[int, ...]]
+"""A stage, a cell, a knowledge, and the numbers of actions."""
+
+Edge = tuple[State, State, Action | None]
+"""A state, the one that it becomes, and by which actions; None: by none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """How states became others in one part of a tick; kept for what looks back.
+
+    Attributes:
+        tick: When.
+        edges: From which state to which.
+        before: The weights before.
+    """
+
+    tick: int
+    edges: list[Edge]
+    before: Mapping[State, Floats]
+
+
 class _Sums:
-    """Weights being added up by state."""
+    """Weights being added up by state; edges are listed where a layer is kept."""
 
-    def __init__(self) -> None:
+    def __init__(self, layer: Layer | None = None) -> None:
         self._parts: dict[State, list[Floats]] = {}
+        self._layer = layer
 
-    def add(self, state: State, weights: Floats) -> None:
+    def add(
+        self,
+        state: State,
+        weights: Floats,
+        source: State,
+        policy: Floats | None = None,
+        action: Action | None = None,
+    ) -> None:
+        """Add the weights of a source, times the policy's sum over some actions."""
+        if policy is not None and action is not None:
+            chosen = list(action[3])
+            part = policy[chosen[0]] if len(chosen) == 1 else log_sum(policy[chosen])
+            weights = weights + part
         self._parts.setdefault(state, []).append(weights)
+        if self._layer is not None:
+            self._layer.edges.append((source, state, action))
 
     def total(self) -> dict[State, Floats]:
+        """Return the sums."""
         return {state: _joined(parts) for state, parts in self._parts.items()}
 
 
@@ -163,7 +211,8 @@ class _Gap:
         start: The last tick at which it was seen.
         cell: Where it was then.
         before: The states then.
-        seen: The moments since, and the one before.
+        moments: The moments since, and the one before.
+        marks: By actual alternative how many layers there were then.
         count: Actions that have ended since then.
     """
 
@@ -171,6 +220,7 @@ class _Gap:
     cell: Position
     before: States
     moments: list[Moment]
+    marks: tuple[int, ...]
     count: int = 0
 
 
@@ -184,7 +234,8 @@ class Tracker:
         states: Weights after the latest evidence.
         steps: The filter after each piece of evidence.
         tick: The last tick that was taken into account.
-        kept: The states before each action and after it, if these are to be kept.
+        keeps: Whether layers are kept.
+        trail: By actual alternative its layers, if they are kept.
     """
 
     hypotheses: Hypotheses
@@ -193,7 +244,7 @@ class Tracker:
     steps: list[Step] = field(default_factory=list)
     tick: int = -1
     keeps: bool = False
-    trail: list[tuple[int, Stage | None, States]] = field(default_factory=list)
+    trail: tuple[list[Layer], ...] = ()
     _agrees: int = -1
     _moment: Moment | None = None
     _cell: Position | None = None
@@ -208,7 +259,7 @@ class Tracker:
         copied = (
             None
             if gap is None
-            else _Gap(gap.start, gap.cell, gap.before, list(gap.moments), gap.count)
+            else _Gap(gap.start, gap.cell, gap.before, list(gap.moments), gap.marks, gap.count)
         )
         return Tracker(
             self.hypotheses,
@@ -217,7 +268,7 @@ class Tracker:
             list(self.steps),
             self.tick,
             self.keeps,
-            list(self.trail),
+            tuple(list(layers) for layers in self.trail),
             self._agrees,
             self._moment,
             self._cell,
@@ -268,6 +319,7 @@ class Tracker:
             knowledge = _told(knowledge, mask)
         start: State = (moment.cell, *knowledge, False)
         self.states = tuple({start: zeros} for _ in range(self.hypotheses.alternatives))
+        self.trail = tuple([] for _ in self.states)
         self._cell = moment.cell
         self._perceive(moment)
         self._note(moment.tick, f"is first seen at {moment.cell}", is_movement=False)
@@ -280,10 +332,11 @@ class Tracker:
         if moment.cell is None:
             if self._gap is None:
                 assert self._cell is not None and self._moment is not None
-                self._gap = _Gap(moment.tick - 1, self._cell, self.states, [self._moment])
+                marks = tuple(len(layers) for layers in self.trail)
+                self._gap = _Gap(moment.tick - 1, self._cell, self.states, [self._moment], marks)
                 self._quiet = 0
             self._gap.moments.append(moment)
-            self._moment = moment
+            self._moment, self.tick = moment, moment.tick
             self._agree(moment)
             due = self._due(moment.tick)
             if due:
@@ -291,7 +344,6 @@ class Tracker:
             self._hear(moment)
             if not due:
                 self.states = self._planned(moment.scene, self.states)
-            self.tick = moment.tick
             return
         if self._gap is not None:
             self._reappear(moment)
@@ -301,6 +353,7 @@ class Tracker:
     def _see(self, moment: Moment) -> None:
         """Explain what the agent does in sight."""
         assert moment.cell is not None and self._cell is not None
+        self.tick = moment.tick
         before, cell = self._cell, moment.cell
         text, is_movement = "", True
         if cell != before:
@@ -321,7 +374,6 @@ class Tracker:
             text = f"stays at {cell}"
         else:
             is_movement = False
-        self._keep(moment.tick)
         self._cell = cell
         changed = self._perceive(moment)
         if text or changed:
@@ -347,7 +399,6 @@ class Tracker:
             elif self._stays_now():
                 assert self._cell is not None
                 self.states = self._stayed(self._stage(self._cell))
-                self._keep(self.tick)
                 self._note(self.tick, f"stays at {self._cell}", is_movement=True)
         self.tick = max(self.tick, tick)
 
@@ -364,7 +415,9 @@ class Tracker:
         found: list[Mapping[State, Floats]] = []
         for actual, weights in enumerate(self.states):
             steps = shortest(stage, actual, before, cell)
-            found.append({} if steps is None else self._way(stage, actual, weights, cell, steps))
+            found.append(
+                {} if steps is None else self._way(stage, actual, weights, cell, steps, moment.tick)
+            )
         return tuple(found)
 
     def _way(
@@ -374,44 +427,58 @@ class Tracker:
         weights: Mapping[State, Floats],
         cell: Position,
         steps: int,
+        tick: int,
     ) -> Mapping[State, Floats]:
         """Several actions of which only the last one's end is seen."""
         for _ in range(steps - 1):
-            weights = self._perceived_by_plan(stage, actual, self._spread(stage, actual, weights))
-        return self._arrived(stage, actual, weights, cell)
+            sums = self._sums(actual, tick, weights)
+            self._spread(stage, actual, weights, sums)
+            weights = sums.total()
+            sums = self._sums(actual, tick, weights)
+            self._perceived_by_plan(stage, actual, weights, sums)
+            weights = sums.total()
+        sums = self._sums(actual, tick, weights)
+        self._arrived(stage, actual, weights, cell, sums)
+        return sums.total()
 
     def _seen(self, stage: Stage, states: States, cell: Position) -> States:
-        return tuple(
-            self._arrived(stage, actual, weights, cell) for actual, weights in enumerate(states)
-        )
+        found = []
+        for actual, weights in enumerate(states):
+            sums = self._sums(actual, self.tick, weights)
+            self._arrived(stage, actual, weights, cell, sums)
+            found.append(sums.total())
+        return tuple(found)
 
     def _arrived(
-        self, stage: Stage, actual: int, weights: Mapping[State, Floats], cell: Position
-    ) -> Mapping[State, Floats]:
+        self,
+        stage: Stage,
+        actual: int,
+        weights: Mapping[State, Floats],
+        cell: Position,
+        sums: _Sums,
+    ) -> None:
         """One action without a perceived event, after which the agent is seen in a cell."""
-        sums = _Sums()
         for state, weight in weights.items():
             place, possible, believed, has_ended = state
             if has_ended or place not in stage.index:
                 if place == cell:
-                    sums.add(state, weight)
+                    sums.add(state, weight, state)
                 continue
-            number = stage.index[place]
-            moves = stage.moves[actual, number].tolist()
             goal = stage.index.get(cell, -1)
+            moves = stage.moves[actual, stage.index[place]].tolist()
             leading = [step + 1 for step, to in enumerate(moves) if to == goal]
             if place == cell:
                 leading.insert(0, 0)
-            policy = None
-            if leading:
-                policy = self.hypotheses.log_policy(stage, place, (possible, believed))
-                sums.add((cell, possible, believed, False), weight + log_sum(policy[leading]))
-            if place == cell and policy is not None:
-                acts = self._unmarked(stage, policy)
-                if acts:
-                    ended = (cell, possible, believed, True)
-                    sums.add(ended, weight + log_sum(policy[acts]))
-        return sums.total()
+            if not leading:
+                continue
+            knowledge = (possible, believed)
+            policy = self.hypotheses.log_policy(stage, place, knowledge)
+            by = (stage, place, knowledge, tuple(leading))
+            sums.add((cell, *knowledge, False), weight, state, policy, by)
+            acts = self._unmarked(stage, policy) if place == cell else ()
+            if acts:
+                by = (stage, place, knowledge, tuple(acts))
+                sums.add((cell, *knowledge, True), weight, state, policy, by)
 
     def _unmarked(self, stage: Stage, policy: Floats) -> list[int]:
         """Acts on goals that there are, and that nobody perceives as events."""
@@ -432,34 +499,37 @@ class Tracker:
         else:
             return tuple({} for _ in self.states)
         found = []
-        for weights in self.states:
-            sums = _Sums()
+        for actual, weights in enumerate(self.states):
+            sums = self._sums(actual, moment.tick, weights)
             for state, weight in weights.items():
                 place, possible, believed, has_ended = state
                 if has_ended or place not in stage.index:
                     continue
-                policy = self.hypotheses.log_policy(stage, place, (possible, believed))[action]
-                if np.isfinite(policy).any():
-                    after = (place, possible, believed, moment.act is not None)
-                    sums.add(after, weight + policy)
+                knowledge = (possible, believed)
+                policy = self.hypotheses.log_policy(stage, place, knowledge)
+                if np.isfinite(policy[action]).any():
+                    by = (stage, place, knowledge, (action,))
+                    sums.add((place, *knowledge, moment.act is not None), weight, state, policy, by)
             found.append(sums.total())
         return tuple(found)
 
     def _end(self, tick: int) -> None:
         """The act after the last tick."""
         found = []
-        for weights in self.states:
-            sums = _Sums()
+        for actual, weights in enumerate(self.states):
+            sums = self._sums(actual, tick, weights)
             for state, weight in weights.items():
                 place, possible, believed, has_ended = state
                 stage = self._stage(place)
                 if has_ended or place not in stage.index:
                     continue
-                policy = self.hypotheses.log_policy(stage, place, (possible, believed))
+                knowledge = (possible, believed)
+                policy = self.hypotheses.log_policy(stage, place, knowledge)
                 first = 1 + stage.moves.shape[2] + len(stage.boxes)
+                acts = tuple(range(first, len(policy)))
                 if np.isfinite(policy[first:]).any():
-                    ended = (place, possible, believed, True)
-                    sums.add(ended, weight + log_sum(policy[first:]))
+                    by = (stage, place, knowledge, acts)
+                    sums.add((place, *knowledge, True), weight, state, policy, by)
             found.append(sums.total())
         self.states = tuple(found)
         self._note(tick, "acts on a goal where it is, and ends", is_movement=True)
@@ -477,18 +547,23 @@ class Tracker:
         before = self._gap.moments[-2] if self._moment.tick == tick else self._moment
         self.states = self._unseen_action(before.scene, self._moment, self.states)
         self._gap.count += 1
-        self._keep(tick)
         self._note(tick, "is out of sight", is_movement=True)
 
     def _unseen_action(self, scene: Scene, moment: Moment, states: States) -> States:
         found = []
         for actual, weights in enumerate(states):
-            spread: dict[State, Floats] = {}
-            for stage, part in self._by_stage(scene, weights):
-                spread.update(self._spread(stage, actual, part))
+            spread = self._spread_all(scene, actual, weights, self.tick)
             hidden = self._hidden(moment, actual, spread)
-            found.append(self._look_round(moment.scene, actual, hidden))
+            found.append(self._look_round(moment.scene, actual, hidden, self.tick))
         return tuple(found)
+
+    def _spread_all(
+        self, scene: Scene, actual: int, weights: Mapping[State, Floats], tick: int
+    ) -> Mapping[State, Floats]:
+        sums = self._sums(actual, tick, weights)
+        for stage, part in self._by_stage(scene, weights):
+            self._spread(stage, actual, part, sums)
+        return sums.total()
 
     def _by_stage(
         self, scene: Scene, weights: Mapping[State, Floats]
@@ -500,33 +575,33 @@ class Tracker:
         return list(parts.values())
 
     def _spread(
-        self, stage: Stage, actual: int, weights: Mapping[State, Floats]
-    ) -> Mapping[State, Floats]:
+        self, stage: Stage, actual: int, weights: Mapping[State, Floats], sums: _Sums
+    ) -> None:
         """One action of an agent out of sight."""
-        sums = _Sums()
         steps = stage.moves.shape[2]
         for state, weight in weights.items():
             place, possible, believed, has_ended = state
             if has_ended or place not in stage.index:
-                sums.add(state, weight)
+                sums.add(state, weight, state)
                 continue
             number = stage.index[place]
-            policy = self.hypotheses.log_policy(stage, place, (possible, believed))
+            knowledge = (possible, believed)
+            policy = self.hypotheses.log_policy(stage, place, knowledge)
             leading: dict[int, list[int]] = {number: [0]}
             for step, to in enumerate(stage.moves[actual, number].tolist()):
                 leading.setdefault(to, []).append(step + 1)
             for to, actions in leading.items():
-                part = policy[actions[0]] if len(actions) == 1 else log_sum(policy[actions])
-                sums.add((stage.cells[to], possible, believed, False), weight + part)
+                by = (stage, place, knowledge, tuple(actions))
+                sums.add((stage.cells[to], *knowledge, False), weight, state, policy, by)
             there = np.isfinite(policy[1 + steps :]).any(axis=(1, 2, 3))
             for action in (np.flatnonzero(there) + 1 + steps).tolist():
+                by = (stage, place, knowledge, (action,))
                 box = action - 1 - steps
-                if box < len(stage.boxes):
-                    after = _conditioned((possible, believed), int(stage.content[box, actual]))
-                    sums.add((place, *after, False), weight + policy[action])
-                else:
-                    sums.add((place, possible, believed, True), weight + policy[action])
-        return sums.total()
+                is_opening = box < len(stage.boxes)
+                after = knowledge
+                if is_opening:
+                    after = _conditioned(knowledge, int(stage.content[box, actual]))
+                sums.add((place, *after, not is_opening), weight, state, policy, by)
 
     def _hidden(
         self, moment: Moment, actual: int, weights: Mapping[State, Floats]
@@ -546,6 +621,7 @@ class Tracker:
         """Explain where the agent is when it is seen again."""
         gap = self._gap
         assert gap is not None and moment.cell is not None
+        self.tick = moment.tick
         ticks = moment.tick - gap.start
         usual = round(ticks / self.hypotheses.step_ticks)
         last = gap.moments[-1]
@@ -566,7 +642,6 @@ class Tracker:
         if (moment.act is not None or moment.opened is not None) and not self._is_impossible():
             self.states = self._did(self._stage_of(moment.scene, moment.cell), moment)
             self._over = moment.act is not None
-        self._keep(moment.tick)
         self._perceive(moment)
         self._note(moment.tick, f"is seen again at {moment.cell}", is_movement=True)
 
@@ -574,10 +649,9 @@ class Tracker:
         self, scene: Scene, actual: int, weights: Mapping[State, Floats], moment: Moment
     ) -> Mapping[State, Floats]:
         assert moment.cell is not None
-        sums = _Sums()
+        sums = self._sums(actual, moment.tick, weights)
         for stage, part in self._by_stage(scene, weights):
-            for state, weight in self._arrived(stage, actual, part, moment.cell).items():
-                sums.add(state, weight)
+            self._arrived(stage, actual, part, moment.cell, sums)
         return sums.total()
 
     def _again_through(
@@ -586,6 +660,7 @@ class Tracker:
         """A gap with as many actions as are given, spread evenly over its ticks."""
         assert moment.cell is not None
         weights = gap.before[actual]
+        del self.trail[actual][gap.marks[actual] :]
         if count == 0:
             return {state: weight for state, weight in weights.items() if state[0] == moment.cell}
         ticks = moment.tick - gap.start
@@ -593,16 +668,13 @@ class Tracker:
         heard = 1
         for number in range(count - 1):
             before = _last_until(gap.moments, ends[number] - 1)
-            spread: dict[State, Floats] = {}
-            for stage, part in self._by_stage(before.scene, weights):
-                spread.update(self._spread(stage, actual, part))
-            weights = spread
+            weights = self._spread_all(before.scene, actual, weights, ends[number])
             now = _last_until(gap.moments, ends[number])
             if ends[number] < moment.tick and ends[number] != ends[number + 1]:
                 weights = self._hidden(now, actual, weights)
-            weights = self._look_round(now.scene, actual, weights)
+            weights = self._look_round(now.scene, actual, weights, ends[number])
             while heard < len(gap.moments) and gap.moments[heard].tick <= ends[number]:
-                weights = _heard(weights, gap.moments[heard].claims)
+                weights = self._told_of(actual, weights, gap.moments[heard])
                 heard += 1
         return self._arrived_from(gap.moments[-1].scene, actual, weights, moment)
 
@@ -613,15 +685,16 @@ class Tracker:
         before = [set(weights) for weights in self.states]
         found = []
         for actual, weights in enumerate(self.states):
-            sums = _Sums()
-            for (place, possible, believed, has_ended), weight in weights.items():
+            sums = self._sums(actual, moment.tick, weights)
+            for state, weight in weights.items():
+                place, possible, believed, has_ended = state
                 knowledge = (possible, believed)
                 if not has_ended:
                     for learnt in moment.learnt:
                         knowledge = _conditioned(knowledge, learnt[actual])
                     knowledge = _conditioned(knowledge, moment.alike[actual])
-                sums.add((place, *knowledge, has_ended), weight)
-            found.append(_heard(sums.total(), moment.claims))
+                sums.add((place, *knowledge, has_ended), weight, state)
+            found.append(self._told_of(actual, sums.total(), moment))
         self.states = tuple(found)
         self._moment, self.tick = moment, max(self.tick, moment.tick)
         self._agree(moment)
@@ -636,35 +709,50 @@ class Tracker:
         )
 
     def _hear(self, moment: Moment) -> None:
-        self.states = tuple(_heard(weights, moment.claims) for weights in self.states)
+        self.states = tuple(
+            self._told_of(actual, weights, moment) for actual, weights in enumerate(self.states)
+        )
+
+    def _told_of(
+        self, actual: int, weights: Mapping[State, Floats], moment: Moment
+    ) -> Mapping[State, Floats]:
+        """Let the agent take up the claims of a moment."""
+        if not moment.claims:
+            return weights
+        sums = self._sums(actual, moment.tick, weights)
+        for state, weight in weights.items():
+            place, possible, believed, has_ended = state
+            knowledge = (possible, believed)
+            for mask in () if has_ended else moment.claims:
+                knowledge = _told(knowledge, mask)
+            sums.add((place, *knowledge, has_ended), weight, state)
+        return sums.total()
 
     def _planned(self, scene: Scene, states: States) -> States:
         return tuple(
-            self._look_round(scene, actual, weights) for actual, weights in enumerate(states)
+            self._look_round(scene, actual, weights, self.tick)
+            for actual, weights in enumerate(states)
         )
 
     def _look_round(
-        self, scene: Scene, actual: int, weights: Mapping[State, Floats]
+        self, scene: Scene, actual: int, weights: Mapping[State, Floats], tick: int
     ) -> Mapping[State, Floats]:
         """Let an agent out of sight perceive from the middle of its cell."""
-        sums = _Sums()
+        sums = self._sums(actual, tick, weights)
         for stage, part in self._by_stage(scene, weights):
-            for state, weight in self._perceived_by_plan(stage, actual, part).items():
-                sums.add(state, weight)
+            self._perceived_by_plan(stage, actual, part, sums)
         return sums.total()
 
     def _perceived_by_plan(
-        self, stage: Stage, actual: int, weights: Mapping[State, Floats]
-    ) -> Mapping[State, Floats]:
-        sums = _Sums()
+        self, stage: Stage, actual: int, weights: Mapping[State, Floats], sums: _Sums
+    ) -> None:
         for state, weight in weights.items():
             place, possible, believed, has_ended = state
             if has_ended or place not in stage.index:
-                sums.add(state, weight)
+                sums.add(state, weight, state)
                 continue
             same = int(stage.same[actual, stage.index[place]])
-            sums.add((place, *_conditioned((possible, believed), same), False), weight)
-        return sums.total()
+            sums.add((place, *_conditioned((possible, believed), same), False), weight, state)
 
     # Records
 
@@ -673,10 +761,8 @@ class Tracker:
         assert self._moment is not None
         found = []
         for actual, weights in enumerate(self.states):
-            spread: dict[State, Floats] = {}
-            for stage, part in self._by_stage(self._moment.scene, weights):
-                spread.update(self._spread(stage, actual, part))
-            found.append(self._look_round(self._moment.scene, actual, spread))
+            spread = self._spread_all(self._moment.scene, actual, weights, self.tick)
+            found.append(self._look_round(self._moment.scene, actual, spread, self.tick))
         self.states = tuple(found)
 
     def masses(self) -> tuple[Mapping[State, Floats], ...]:
@@ -703,9 +789,13 @@ class Tracker:
             np.isfinite(weight).any() for weights in self.states for weight in weights.values()
         )
 
-    def _keep(self, tick: int) -> None:
-        if self.keeps:
-            self.trail.append((tick, None, self.states))
+    def _sums(self, actual: int, tick: int, before: Mapping[State, Floats]) -> _Sums:
+        """Begin a layer of an alternative, if layers are kept."""
+        if not self.keeps:
+            return _Sums()
+        layer = Layer(tick, [], before)
+        self.trail[actual].append(layer)
+        return _Sums(layer)
 
     def _note(self, tick: int, text: str, *, is_movement: bool) -> None:
         shape = (self.hypotheses.alternatives, *self.hypotheses.shape)
@@ -733,18 +823,6 @@ def _told(knowledge: Knowledge, mask: int) -> Knowledge:
     """Knowledge after a claim was taken up that is true in a set of alternatives."""
     possible, believed = knowledge
     return possible, believed & mask or possible & mask or believed
-
-
-def _heard(weights: Mapping[State, Floats], claims: Sequence[int]) -> Mapping[State, Floats]:
-    if not claims:
-        return weights
-    sums = _Sums()
-    for (place, possible, believed, has_ended), weight in weights.items():
-        knowledge = (possible, believed)
-        for mask in () if has_ended else claims:
-            knowledge = _told(knowledge, mask)
-        sums.add((place, *knowledge, has_ended), weight)
-    return sums.total()
 
 
 def _last_until(moments: Sequence[Moment], tick: int) -> Moment:

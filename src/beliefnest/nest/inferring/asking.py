@@ -174,8 +174,14 @@ def _told(
             tracker.follow([moment for moment in moments if moment.tick <= tick], tick)
         return _told(model, moments, since, tick, step_ticks, again, False, False)
 
+    def kept() -> list[Tracker]:
+        again = _trackers(model, moments, step_ticks, keeps=True)
+        for tracker in again:
+            tracker.follow([moment for moment in moments if moment.tick <= until], until)
+        return [tracker.finished(until, ended=ended) for tracker in again]
+
     finished = [tracker.finished(until, ended=ended) for tracker in trackers]
-    return Inference(model, since, until, finished, rerun)
+    return Inference(model, since, until, finished, rerun, kept, smooth=smooth)
 
 
 def _chunks(model: MindModel, moments: Sequence[Moment]) -> list[slice]:

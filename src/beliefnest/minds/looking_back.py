@@ -1,0 +1,120 @@
+"""Looking back: where an agent was while it was out of sight, given what was seen later.
+
+Works on the layers that a `Tracker` keeps (forward filtering, backward smoothing and sampling).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.minds.tracking import Action, Hypotheses, Layer, State, Step, Tracker, log_sum
+from beliefnest.world.values import Position
+
+__all__ = ["sampled_cells", "smoothed_steps"]
+
+Floats = npt.NDArray[np.float64]
+
+
+def smoothed_steps(tracker: Tracker) -> list[Step]:
+    """Return the steps of a filter, with the states of each given all evidence."""
+    by_actual = [_smoothed(tracker, actual, layers) for actual, layers in enumerate(tracker.trail)]
+    count = len(tracker.hypotheses.credences)
+    found = []
+    for step in tracker.steps:
+        masses = []
+        for layers, moments in zip(tracker.trail, by_actual, strict=True):
+            joint = moments[_boundary(layers, step.tick)]
+            masses.append(
+                {
+                    state: log_sum((weight + tracker.log_prior).reshape(-1, count))
+                    for state, weight in joint.items()
+                }
+            )
+        found.append(replace(step, states=tuple(masses)))
+    return found
+
+
+def sampled_cells(
+    tracker: Tracker, actual: int, hypothesis: tuple[int, int, int], random: np.random.Generator
+) -> dict[int, Position]:
+    """Draw where the agent was at each tick with an action, given all evidence.
+
+    Args:
+        tracker: A filter with layers.
+        actual: What is the case.
+        hypothesis: Numbers of rationality, utility and credence.
+        random: Where chance comes from.
+
+    Returns:
+        Cell by tick, from the first tick of the course.
+    """
+    state = _drawn(
+        {each: float(weight[hypothesis]) for each, weight in tracker.states[actual].items()}, random
+    )
+    cells = {tracker.steps[-1].tick: state[0]}
+    for layer in reversed(tracker.trail[actual]):
+        cells.setdefault(layer.tick, state[0])
+        sources: dict[State, float] = {}
+        parts: dict[State, list[float]] = {}
+        for source, target, action in layer.edges:
+            if target == state:
+                chance = _chance(tracker.hypotheses, action)
+                inside = 0.0 if chance is None else float(_at(chance, hypothesis))
+                parts.setdefault(source, []).append(
+                    float(layer.before[source][hypothesis]) + inside
+                )
+        for source, logs in parts.items():
+            sources[source] = float(log_sum(np.array(logs)))
+        state = _drawn(sources, random)
+    cells.setdefault(tracker.steps[0].tick, state[0])
+    return dict(sorted(cells.items()))
+
+
+def _smoothed(
+    tracker: Tracker, actual: int, layers: Sequence[Layer]
+) -> list[Mapping[State, Floats]]:
+    """Joint weights of states and all evidence, before each layer and after the last."""
+    last = tracker.states[actual]
+    ahead: dict[State, Floats] = {state: np.zeros_like(weight) for state, weight in last.items()}
+    found: list[Mapping[State, Floats]] = [last]
+    for layer in reversed(layers):
+        parts: dict[State, list[Floats]] = {}
+        for source, target, action in layer.edges:
+            if target in ahead:
+                chance = _chance(tracker.hypotheses, action)
+                rest = ahead[target]
+                parts.setdefault(source, []).append(rest if chance is None else rest + chance)
+        ahead = {
+            state: each[0] if len(each) == 1 else log_sum(np.stack(each))
+            for state, each in parts.items()
+        }
+        found.append({state: layer.before[state] + weight for state, weight in ahead.items()})
+    return found[::-1]
+
+
+def _boundary(layers: Sequence[Layer], tick: int) -> int:
+    """How many layers lie at a tick or before."""
+    return sum(layer.tick <= tick for layer in layers)
+
+
+def _chance(hypotheses: Hypotheses, action: Action | None) -> Floats | None:
+    if action is None:
+        return None
+    stage, cell, knowledge, numbers = action
+    policy = hypotheses.log_policy(stage, cell, knowledge)[list(numbers)]
+    return log_sum(policy)
+
+
+def _at(chance: Floats, hypothesis: tuple[int, int, int]) -> float:
+    b, u, w = hypothesis
+    # What is certain has one value for all credences.
+    return float(chance[b, u, min(w, chance.shape[2] - 1)])
+
+
+def _drawn(logs: Mapping[State, float], random: np.random.Generator) -> State:
+    states = sorted(logs)
+    weights = np.array([logs[state] for state in states])
+    shares = np.exp(weights - log_sum(weights))
+    return states[int(random.choice(len(states), p=shares / shares.sum()))]
