@@ -138,21 +138,27 @@ class Reference:
 
     def everything(self, path: Path) -> dict[str, Any]:
         """All that the node holds, in the form of `comparing.everything`."""
-        node = self.tree(path).node
+        node, now = self.tree(path).node, self.head(path)
         text = self.rules.registry.text
         blocks: dict[Position, Any] = dict.fromkeys(
             self._start.box.positions(), (None, False, None)
         )
         for place, block in node.blocks.items():
-            blocks[place] = (text(block.state), block.current, block.basis)
+            blocks[place] = (text(block.state), block.current, seen_at(block, now).basis)
         said = {
             kind: tuple((e.tick, e.actor, e.detail["text"]) for e in node.log if e.kind is kind)
             for kind in (EventKind.CHAT, EventKind.THINK)
         }
         return {
             "blocks": blocks,
-            "containers": node.containers,
-            "agents": node.agents,
+            "containers": {
+                place: seen_at(c, now)
+                if node.is_world or place in node.into
+                # An act shows a content in its tick alone.
+                else replace(c, current=c.current and c.basis.observed_at == now)
+                for place, c in node.containers.items()
+            },
+            "agents": {name: seen_at(a, now) for name, a in node.agents.items()},
             "items": {},
             "events": tuple(e for e in node.log if e.kind not in said),
             "chat": said[EventKind.CHAT],
@@ -188,6 +194,7 @@ class Reference:
                 for name, fact in start.agents.items()
             },
             self._ear(),
+            is_world=True,
         )
 
     def _ear(self) -> Ear:
@@ -259,6 +266,7 @@ class Reference:
             n: replace(a, current=a.position is not None) for n, a in node.agents.items()
         }
         node.news = node.events = ()
+        node.is_world = True
         return node
 
     def _acted(self, before: Node, frame: Frame) -> Node:
@@ -297,6 +305,11 @@ class Reference:
             for n, a in node.agents.items()
         }
         return node
+
+
+def seen_at(part: Any, now: int) -> Any:
+    """A part of a state as it is at a tick: what is current is observed then (2)."""
+    return replace(part, basis=replace(part.basis, observed_at=now)) if part.current else part
 
 
 def paths_to(agents: tuple[str, ...], depth: int) -> Iterator[Path]:

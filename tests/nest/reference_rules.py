@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field, replace
 from math import dist
+from typing import Any
 
 import numpy as np
 from tests.nest.reference_testimony import Ear, Matter, hear
@@ -49,6 +50,9 @@ class Node:
     """The state of one simulator. A block that is not in `blocks` is unknown.
 
     `events` are all that happened on its timeline in this tick, `news` those that it perceived.
+    `is_world` says that it is the simulator whose timeline it is. `into` are the transparent
+    containers it sees into and whose content is current, `looked_into` those it looked into in this
+    tick, `moved` items that it perceived to be put in or taken out in this tick.
     """
 
     tick: int
@@ -60,6 +64,10 @@ class Node:
     log: list[PerceivedEvent] = field(default_factory=list)
     news: tuple[Event, ...] = ()
     events: tuple[Event, ...] = ()
+    is_world: bool = False
+    into: frozenset[Position] = frozenset()
+    looked_into: frozenset[Position] = frozenset()
+    moved: frozenset[tuple[Position, str]] = frozenset()
 
     def drop(self, place: Position) -> None:
         """Hold nothing of a container any more, nor that something was perceived in it."""
@@ -77,6 +85,23 @@ class Node:
             list(self.log),
             self.news,
             self.events,
+            self.is_world,
+            self.into,
+            self.looked_into,
+            self.moved,
+        )
+
+    def perceives(self, place: Position | None, item: str) -> bool:
+        """Whether it was perceived in this tick if an item is in a container (8.0)."""
+        content = self.containers.get(place)
+        return (
+            place in self.looked_into
+            or (place, item) in self.moved
+            or (
+                content is not None
+                and content.current
+                and (content.complete or item in content.items)
+            )
         )
 
 
@@ -108,8 +133,11 @@ class Rules:
         """
         after = before.copy()
         after.tick, after.events = around.tick, around.events
-        after.ear.pass_to(around.tick - 1 if happening else around.tick)
-        self._age(after)
+        after.is_world = False
+        last = around.tick - 1 if happening else around.tick
+        after.ear.pass_to(last)
+        self._age(after, last)
+        after.into = after.looked_into = after.moved = frozenset()
         present = around.agents[me].position is not None and around.agents[me].current
         view = View(self, around, me) if present else None
         after.news = tuple(e for e in around.news if self._perceived(e, around, me, view))
@@ -145,11 +173,15 @@ class Rules:
         missing = {name for name, agent in after.agents.items() if not agent.current}
         after.ear.perceive(missing, seen, acts, after.tick)
 
-    def _age(self, node: Node) -> None:
-        """Nothing is current that is not perceived anew (4)."""
-        node.blocks = {p: replace(b, current=False) for p, b in node.blocks.items()}
-        node.containers = {p: replace(c, current=False) for p, c in node.containers.items()}
-        node.agents = {n: replace(a, current=False) for n, a in node.agents.items()}
+    def _age(self, node: Node, last: int) -> None:
+        """Nothing is current that is not perceived anew (4); what was, was until `last` (2)."""
+        for place, content in node.containers.items():
+            if content.current:
+                # An act shows a content in its tick alone.
+                until = last if place in node.into else content.basis.observed_at
+                node.containers[place] = aged(content, until)
+        for parts in (node.blocks, node.agents):
+            parts.update({key: aged(part, last) for key, part in parts.items() if part.current})
 
     def _perceived(self, event: Event, around: Node, me: str, view: "View | None") -> bool:
         """Whether an event of `around` is perceived (3, 5.2, 5.5)."""
@@ -173,7 +205,8 @@ class Rules:
         """What is seen replaces what was believed; unknown blocks are not handed on (4, 5.4)."""
         for position, block in around.blocks.items():
             if view.sees(position):
-                after.blocks[position] = block
+                seen = Basis(around.tick, Source.SEEN) if around.is_world else block.basis
+                after.blocks[position] = replace(block, basis=seen)
 
     def _see_agents(self, after: Node, before: Node, around: Node, me: str, view: "View") -> None:
         """Poses, possessions, and places seen empty (4)."""
@@ -213,6 +246,7 @@ class Rules:
         own = [e for e in after.news if e.kind in TOUCHES and e.actor == me]
         touched = [e.detail["position"] for e in own if e.detail["position"] in around.containers]
         looked_into = set(touched)
+        seen_into: set[Position] = set()
         if self.options.containers == "transparent":
             seen_into = {place for place in around.containers if view.sees(place)}
             looked_into |= seen_into
@@ -232,14 +266,26 @@ class Rules:
                     current=True,
                 )
                 after.ear.put(place, event.detail["items"], MOVES[event.kind])
+                after.moved |= {(place, item) for item in event.detail["items"]}
         for place in looked_into:
             after.containers[place] = around.containers[place]
+            if around.is_world:
+                seen = Basis(around.tick, Source.SEEN)
+                after.containers[place] = replace(after.containers[place], basis=seen)
+            old = before.containers.get(place)
+            if place in before.into and place in seen_into and old is not None:
+                new = after.containers[place]
+                if (old.items, old.complete, True) == (new.items, new.complete, new.current):
+                    # One perception goes on.
+                    after.containers[place] = replace(new, basis=old.basis)
             acts = [e.kind for e in own if e.detail["position"] == place]
             if acts and after.containers[place].current:
                 basis = Basis(around.tick, Source.WITNESSED, acts[-1])
                 after.containers[place] = replace(after.containers[place], basis=basis)
         for place in touched:
             after.ear.look_into(place, around.containers[place].items)
+        after.looked_into = frozenset(looked_into)
+        after.into = frozenset(p for p in seen_into if around.containers[p].current)
 
     def _find_and_forget(self, after: Node, before: Node, around: Node, view: "View") -> None:
         for place in around.blocks:
@@ -298,6 +344,11 @@ class View:
         return bool(
             self._sight.geometry(self._grid, self._box.low).sees_agents(*self._looking, [feet])[0]
         )
+
+
+def aged(part: Any, last: int) -> Any:
+    """A part of a state that is current no longer, and was so until a tick."""
+    return replace(part, basis=replace(part.basis, observed_at=last), current=False)
 
 
 def changed(items: Items, change: Items, sign: int) -> dict[str, int]:

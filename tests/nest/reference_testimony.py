@@ -131,13 +131,30 @@ def hear(rules: "Rules", after: "Node", around: "Node", me: str, view: "View | N
         if testimony == "none" or event not in around.news:
             continue
         for index, claim in enumerate(claims_of(event)):
-            if event.actor == me:
+            if _is_beaten(after, me, view, claim):
+                believed = False
+                after.ear.verdicts[number, index] = False
+            elif event.actor == me:
                 believed = _taken_at_its_word(rules, after, around, me, claim, (number, index))
             else:
                 believed = id(event) in heard and _taken_up(rules, after, me, view, claim, event)
                 after.ear.verdicts[number, index] = believed
             if believed:
                 _believe(rules.registry, after, claim, event)
+
+
+def _is_beaten(after: "Node", me: str, view: "View | None", claim: Claim) -> bool:
+    """Rule 0: whether what is perceived of the matter in this tick beats what is said."""
+    if claim.kind is ClaimKind.POSITION and view is not None and claim.agent in view.agents:
+        return True
+    if claim.item is None:
+        return view is not None and _sees_claimed(view, claim)
+    if after.perceives(claim.cell, claim.item):
+        return True
+    return claim.kind is ClaimKind.LOCATED and any(
+        place != claim.cell and claim.item in content.items and after.perceives(place, claim.item)
+        for place, content in after.containers.items()
+    )
 
 
 def _taken_up(
@@ -149,7 +166,12 @@ def _taken_up(
     if rules.options.testimony == "accept":
         return True
     known, ear = after.ear.known(claim), after.ear
-    if known in ear.seen or (view is not None and _sees_claimed(view, claim)):
+    if claim.item is None:
+        if known in ear.seen or (view is not None and _sees_claimed(view, claim)):
+            return False
+    elif any(
+        after.perceives(place, claim.item) for place in (ear.found.get(claim.item), claim.cell)
+    ):
         return False
     assert event.actor is not None
     return known is None or ear.missed_since(known, event.actor) > rules.options.grace

@@ -150,3 +150,15 @@ def test_hearsay_is_explained_as_such() -> None:
     taken = str(nest["/max"].explain(container=LEFT))
     assert "nora told max at tick 15 that diamond is in (17, 0, 3); max could not" in taken
     assert "nora told max so at tick 15." in str(accepting["/max"].explain(container=RIGHT))
+
+
+def test_each_sentence_is_the_view_of_the_believer_it_names() -> None:
+    lie = played().claims()[1]
+    assert lie.why("/bob") == "bob did not hear it"
+    assert lie.why("/bob/nora") == "bob does not know of it"
+    assert lie.why("/bob/nora/max") == "bob does not know of it"
+    assert lie.why("/nora/bob") == "as far as nora knows, bob did not hear it"
+    assert lie.why("/max/bob/nora") == "as far as max knows, bob does not know of it"
+    assert lie.why("/max/nora/bob") == (
+        "max believes that as far as nora knows, bob did not hear it"
+    )

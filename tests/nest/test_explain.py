@@ -196,7 +196,8 @@ def test_absence_further_down_tells_of_no_look():
     told = nest["/observer/anne/sally"].explain(container=WEST_CHEST)
     assert told.levels[-1].missed.absence.sighting is None
     assert lines(told)[-1] == (
-        "At tick 0 anne could not tell what sally saw: anne has never known where sally is."
+        "At tick 0, as far as observer knows, anne could not tell what sally saw: "
+        "anne has never known where sally is."
     )
 
 
@@ -412,13 +413,12 @@ def test_a_branch_is_the_world_of_what_follows_it():
         "perhaps more; that has not changed since the fork.",
         "observer believes that sally believes that the chest at (5, 0, 9) holds 1 diamond, and "
         "perhaps more: as far as observer knows, sally, at (4.5, 0, 9.5), saw what happened at "
-        "tick 1: anne put 1 diamond in. That is current.",
+        "tick 1: anne put 1 diamond in.",
         "Before the fork at tick 2:",
         "  In reality, the chest at (5, 0, 9) holds 1 diamond and 1 emerald since tick 1: "
         "anne put 1 diamond in.",
         "  observer believes that the chest at (5, 0, 9) holds 1 diamond, and perhaps more: "
-        "observer, at (2.5, 0, 1.5), saw what happened at tick 1: anne put 1 diamond in. "
-        "That is current.",
+        "observer, at (2.5, 0, 1.5), saw what happened at tick 1: anne put 1 diamond in.",
     ]
     belief.scripted.withdraw("sally", CHEST, {"diamond": 1})
     after = nest["/observer/sally"].explain(container=CHEST)

@@ -144,7 +144,7 @@ class Nodes(NamedTuple):
         child_at, child: Node n's children are child[child_at[n]:child_at[n + 1]].
         pose: (N, A), id of each agent's believed pose; -1 unknown.
         equipment: (N, A), pose id of each agent's believed equipment; -1 unknown.
-        seen_at: (N, A), tick of the perception that the pose rests on.
+        seen_at: (N, A), last tick at which the pose was current, where it no longer is.
         current: (N, A), whether the pose is backed by a perception in this tick.
         blocks: (N, C), numbers of believed blocks (`BeliefContext.number`); -1 unknown.
         codes: (N, cells with margin), geometry of the blocks.
@@ -157,7 +157,9 @@ class Nodes(NamedTuple):
         sees: (N, A), whether the owner sees the agent in the parent.
         tracked: (T,), cells whose basis is tracked: those that ever hold a container.
         watched: (N, T), whether the owner sees the tracked cell in the parent.
-        basis_at: (N, T), tick that the tracked cell rests on; -1 unknown.
+        basis_at: (N, T), last tick at which the tracked cell was current, where it no longer is;
+            -1 unknown.
+        basis_current: (N, T), whether the block is backed by a perception in this tick.
         basis_source: (N, T), its source, a code of `BeliefContext.basis_code`.
         counted: (N,), tick to which the next four count. They have no room if nobody weighs
             claims (semantics, section 8).
@@ -191,6 +193,7 @@ class Nodes(NamedTuple):
     watched: Flags
     basis_at: Ints
     basis_source: npt.NDArray[np.uint8]
+    basis_current: Flags
     counted: Ints
     missed: Ints
     met: Ints

@@ -38,7 +38,7 @@ class Basis:
     """The ground of an entry.
 
     Attributes:
-        observed_at: Tick of the perception that the value rests on.
+        observed_at: The last tick at which the value was current: now, while it still is.
         source: Kind of ground.
         event: The kind of the event that was witnessed or heard, if it was one.
         speaker: Who said it, if it was heard.

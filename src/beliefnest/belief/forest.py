@@ -192,7 +192,7 @@ class Forest:
 
     def bases(self, path: BeliefPath, cells: Sequence[int]) -> dict[int, Basis | None]:
         """What the blocks of a node at some cells rest on; None where a block is unknown."""
-        return self.table.bases(self.node(path), cells)
+        return self.table.bases(self.node(path), cells, self.tick)
 
     def current_blocks(self, path: BeliefPath, cells: Iterable[int]) -> set[int]:
         """Those of some cells whose block in a node is backed by a perception in the last entry."""
@@ -204,9 +204,15 @@ class Forest:
         return None if pose < 0 else self.poses.position(pose)
 
     def seen_at(self, path: BeliefPath, agent: str) -> int | None:
-        """Tick of what a node holds of an agent's pose; None: it is unknown."""
+        """Last tick at which a node's pose of an agent was current; None: it is unknown."""
         node, number = self.node(path), self.context.numbers[agent]
-        return None if self.table.pose(node, number) < 0 else self.table.seen_at(node, number)
+        if self.table.pose(node, number) < 0:
+            return None
+        return self.tick if self.is_current(path, agent) else self.table.seen_at(node, number)
+
+    def is_current(self, path: BeliefPath, agent: str) -> bool:
+        """Whether a node's pose of an agent is backed by a perception in the last entry."""
+        return self.table.is_current(self.node(path), self.context.numbers[agent])
 
     def is_present(self, path: BeliefPath) -> bool:
         """Whether a node's owner is present in the parent node (semantics, section 5)."""
@@ -232,7 +238,6 @@ class Forest:
         self.hearing.set(0, count, np.ones(events - count, dtype=np.bool_))
         self.enter(Columns(self.context, position, events, PoseTable()))
         self.position = position
-        self.holdings.note_perception((0,), position - 1)
 
     def advance(self, stop: int) -> None:
         """Fold entries of the stretch up to number `stop` (excluded)."""
@@ -271,19 +276,13 @@ class Forest:
         for path in paths:
             source = other.node(path)
             node = self.table.copy_node(other.table, source, is_root=False, recorded=True)
-            self.holdings.add(
-                other.holdings.of(source).copy(), other.holdings.last_perceived(source)
-            )
+            self.holdings.add(other.holdings.of(source).copy())
             self.hearing.set(node, 0, other.hearing.of(source, count))
         self.table.link()
 
     def perceive_at_first(self) -> None:
         """Let all nodes but the first perceive what there is, with nothing happening."""
         self._perceive(self.table.below(0))
-
-    def see_now(self, tick: int) -> None:
-        """Note that what is current of agents' poses is so at a tick."""
-        self.table.see_now(tick)
 
     def skip(self, tick: int) -> None:
         """Let an entry pass that is about no node of this forest."""
@@ -352,6 +351,7 @@ class Forest:
         poses, nodes = self.poses.arrays(), self.table.nodes()
         everywhere = np.ones(self.table.count, dtype=np.bool_)
         span = Span(start - columns.first, stop - columns.first, True)
+        self.holdings.end_acts(everywhere)
         reached = columns.first + kernel.fold(
             context.space, poses, facts, nodes, changes, span, everywhere
         )
@@ -362,11 +362,11 @@ class Forest:
         if self.holdings.needs_looks():
             entries.add(start)
         for entry in sorted(entries):
-            acts = _acts(columns, entry, changes.perceived, first)
-            self._note_perception(columns, entry)
-            self.holdings.apply_frame(entry, columns.frames.get(entry))
-            self.holdings.follow(entry, columns.tick(entry), rows.get(entry, {}), acts, everywhere)
-        self._note_perception(columns, reached - 1)
+            acts, tick = _acts(columns, entry, changes.perceived, first), columns.tick(entry)
+            self.holdings.see_root(tick)
+            self.holdings.apply_frame(columns.frames.get(entry))
+            self.holdings.follow(tick, tick - 1, rows.get(entry, {}), acts, everywhere)
+        self.holdings.see_root(columns.tick(reached - 1))
         self.table.edited_cells.clear()
         return reached
 
@@ -377,27 +377,22 @@ class Forest:
         count = columns.events_until(entry + 1) - first
         perceived = np.zeros((count, self.table.count), dtype=np.bool_)
         testimony = Testimony(columns, self.table, self.holdings, entry, perceived)
-        self._note_perception(columns, entry)
+        self.holdings.see_root(tick)
         for level in self.table.levels():
             changes = self._changes(0)._replace(perceived=perceived)
             poses, nodes, facts = self.poses.arrays(), self.table.nodes(), columns.facts()
             kernel.fold(space, poses, facts, nodes, changes, Span(at, at + 1, True), level)
+            self.holdings.end_acts(level)
             if level[0]:
-                self.holdings.apply_frame(entry, columns.frames.get(entry))
+                self.holdings.apply_frame(columns.frames.get(entry))
             rows = _by_entry(changes, columns.first).get(entry, {})
             acts = _acts(columns, entry, perceived, first)
-            self.holdings.follow(entry, tick, rows, acts, level)
+            self.holdings.follow(tick, tick - 1, rows, acts, level)
             testimony.hear(level)
-            self.table.edited_cells |= testimony.told_cells
         self.hearing.note(first, perceived)
-        self.table.edited_cells = testimony.told_cells
+        self.table.edited_cells.clear()
         self.verdicts = testimony.verdicts()
         return entry + 1
-
-    def _note_perception(self, columns: Columns, entry: int) -> None:
-        """Note that in an entry everybody perceived what there is."""
-        self.holdings.see_root(columns.tick(entry))
-        self.holdings.note_perception(range(self.table.count), entry)
 
     def _perceive(self, below: npt.NDArray[np.bool_]) -> None:
         context, nodes = self.context, self.table.nodes()
@@ -415,10 +410,11 @@ class Forest:
             kernel.fold(context.space, poses, facts, nodes, changes, Span(0, 1, False), below)
         else:
             context.first_perceptions.perceive(context.space, poses, facts, nodes, changes, below)
-        entry, edited = self.position - 1, self.table.edited_cells
-        self.holdings.note_perception(np.flatnonzero(below).tolist(), entry)
+        edited = self.table.edited_cells
+        self.holdings.end_acts(below)
         edited.difference_update([(node, cell) for node, cell in edited if below[node]])
-        self.holdings.follow(entry, self.tick, _by_entry(changes, 0).get(0, {}), {}, below)
+        rows = _by_entry(changes, 0).get(0, {})
+        self.holdings.follow(self.tick, self.tick, rows, {}, below)
 
 
 def _acts(

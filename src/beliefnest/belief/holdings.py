@@ -11,24 +11,19 @@ from beliefnest.belief.entries import Basis, Source
 from beliefnest.world.values import DroppedItem, Event, EventKind, Items
 
 __all__ = [
-    "NEVER",
+    "MOVES",
     "TOUCHES",
-    "BelievedItem",
     "Content",
     "Holdings",
     "changed_items",
     "follow_acts",
-    "learn",
     "replaced_block",
     "witness",
 ]
 
-NEVER = -2
-"""Entry of what no perception backs; -1 is the first perception, before all entries."""
+MOVES = {EventKind.DEPOSIT_ITEM_INTO_CHEST: 1, EventKind.GET_ITEM_FROM_CHEST: -1}
 
-_MOVES = {EventKind.DEPOSIT_ITEM_INTO_CHEST: 1, EventKind.GET_ITEM_FROM_CHEST: -1}
-
-TOUCHES = frozenset({EventKind.OPEN_CONTAINER, *_MOVES})
+TOUCHES = frozenset({EventKind.OPEN_CONTAINER, *MOVES})
 """Acts by which an actor learns what a container holds."""
 
 # What was smelted comes out of its furnace, and is counted as that.
@@ -48,23 +43,33 @@ class Content:
     Attributes:
         items: Known items.
         complete: Whether these are known to be all.
-        basis: What this rests on; its tick is that of the perception.
-        entry: Entry in which it was last backed by a perception, or `NEVER`.
+        basis: What this rests on; its tick is the last one at which the content was current, where
+            it no longer is.
+        in_sight: Whether it is seen, in a transparent container, from the tick of the basis on.
+        by_act: Whether an act showed it in the tick of the basis, in the last entry.
     """
 
     items: Items
     complete: bool
     basis: Basis
-    entry: int = NEVER
+    in_sight: bool = False
+    by_act: bool = False
 
+    @property
+    def current(self) -> bool:
+        """Whether a perception in the last entry backs it."""
+        return self.in_sight or self.by_act
 
-@dataclass(frozen=True, slots=True)
-class BelievedItem:
-    """What is believed of a dropped item; entry as in `Content`."""
+    def shows_as(self, other: "Content") -> bool:
+        """Whether two contents in sight are the same to see."""
+        seen = self.items, self.complete, self.in_sight
+        return seen == (other.items, other.complete, other.in_sight)
 
-    item: DroppedItem
-    basis: Basis
-    entry: int = NEVER
+    def at(self, tick: int) -> "Content":
+        """The content as it is at a tick: sight lasts, an act is perceived in its tick alone."""
+        if self.in_sight:
+            return replace(self, basis=replace(self.basis, observed_at=tick))
+        return replace(self, by_act=self.by_act and self.basis.observed_at == tick)
 
 
 @dataclass
@@ -81,7 +86,7 @@ class Holdings:
 
     containers: dict[int, Content] = field(default_factory=dict)
     inventories: dict[int, Items] = field(default_factory=dict)
-    items: dict[int, BelievedItem] = field(default_factory=dict)
+    items: dict[int, DroppedItem] = field(default_factory=dict)
     found: dict[str, int] = field(default_factory=dict)
     counts: dict[int, Items] = field(default_factory=dict)
 
@@ -149,30 +154,21 @@ def replaced_block(
         holdings.containers[cell] = Content({}, complete=False, basis=basis)
 
 
-def witness(holdings: Holdings, cell: int, event: Event, tick: int, entry: int) -> None:
+def witness(holdings: Holdings, cell: int, event: Event, tick: int) -> None:
     """Follow items that another agent was seen to move; opening shows nothing to others."""
-    if event.kind not in _MOVES:
+    if event.kind not in MOVES:
         return
     old = holdings.containers.get(cell)
     items = changed_items(
-        {} if old is None else old.items, event.detail["items"], _MOVES[event.kind]
+        {} if old is None else old.items, event.detail["items"], MOVES[event.kind]
     )
     holdings.containers[cell] = Content(
         items,
         complete=old is not None and old.complete,
         basis=Basis(tick, Source.WITNESSED, event.kind),
-        entry=entry,
+        by_act=True,
     )
-    holdings.see_moved(cell, event.detail["items"], _MOVES[event.kind])
-
-
-def learn(
-    holdings: Holdings, cell: int, content: Content, kind: EventKind | None, tick: int
-) -> None:
-    """Learn what the parent node holds, by touching the container or by seeing into it."""
-    basis = content.basis if kind is None else Basis(tick, Source.WITNESSED, kind)
-    holdings.containers[cell] = replace(content, basis=basis)
-    holdings.look_into(cell, content.items)
+    holdings.see_moved(cell, event.detail["items"], MOVES[event.kind])
 
 
 def follow_acts(inventory: Items, acts: Iterable[Event]) -> Items:

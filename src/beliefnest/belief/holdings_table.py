@@ -4,7 +4,7 @@ The kernel has folded poses and blocks of an entry; what follows from its change
 from perceived acts is done here, shallower nodes first. The rules of one node are in `holdings`.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -13,19 +13,17 @@ import numpy.typing as npt
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.entries import Basis, Source
 from beliefnest.belief.holdings import (
-    NEVER,
+    MOVES,
     TOUCHES,
-    BelievedItem,
     Content,
     Holdings,
     follow_acts,
-    learn,
     replaced_block,
     witness,
 )
 from beliefnest.belief.node_table import NodeTable
 from beliefnest.world.frames import Frame
-from beliefnest.world.values import Event, Items, Sign
+from beliefnest.world.values import DroppedItem, Event, Items, Sign
 
 __all__ = ["HoldingsTable", "RootFacts", "SavedHoldings"]
 
@@ -59,12 +57,10 @@ class SavedHoldings:
 
     Attributes:
         holdings: Contents, possessions and dropped items.
-        looked: Entry after which the owner last perceived what there is.
         doubtful: Cells of contents where no container is known, with their block.
     """
 
     holdings: Holdings
-    looked: int
     doubtful: dict[int, int]
 
 
@@ -79,17 +75,18 @@ class HoldingsTable:
         self.root = root
         self._table, self._context = table, table.context
         self._holdings: list[Holdings] = []
-        # By node, the entry after which its owner last perceived what there is.
-        self._looked: dict[int, int] = {}
+        # By node other than node 0, cells of contents that are seen, and that an act showed.
+        self._in_sight: dict[int, set[int]] = {}
+        self._shown_by_acts: dict[int, set[int]] = {}
+        # Nodes and cells whose owners looked in in this entry; and items seen to be moved there.
+        self._looked_into: set[tuple[int, int]] = set()
+        self._seen_moved: set[tuple[int, int, str]] = set()
         # By node, cells of contents where no container is known, with their block.
         self._doubtful: dict[int, dict[int, int]] = {}
 
-    def add(self, holdings: Holdings, looked: int | None = None) -> None:
+    def add(self, holdings: Holdings) -> None:
         """Add the holdings of the node that was added to the node table last."""
-        node = len(self._holdings)
-        self._holdings.append(holdings)
-        if looked is not None:
-            self._looked[node] = looked
+        node = self._append(holdings)
         for cell in holdings.containers:
             self.doubt(node, cell)
 
@@ -100,21 +97,15 @@ class HoldingsTable:
     def saved(self, node: int) -> SavedHoldings:
         """Holdings of a node as plain data."""
         doubtful = dict(sorted(self._doubtful.get(node, {}).items()))
-        return SavedHoldings(self._holdings[node], self.last_perceived(node), doubtful)
+        return SavedHoldings(self._holdings[node], doubtful)
 
     def restore(self, saved: SavedHoldings, signs: Sequence[Sign]) -> None:
         """Add holdings that were saved, with what was numbered then."""
-        node = len(self._holdings)
-        self._holdings.append(saved.holdings)
-        self._looked[node] = saved.looked
+        node = self._append(saved.holdings)
         if saved.doubtful:
             blocks = np.array([*saved.doubtful.values()], dtype=np.int16)
             numbers = self._context.renumbered(blocks, signs).tolist()
             self._doubtful[node] = dict(zip(saved.doubtful, numbers, strict=True))
-
-    def last_perceived(self, node: int) -> int:
-        """Entry after which a node's owner last perceived what there is; -1: at first."""
-        return self._looked.get(node, -1)
 
     def content(self, node: int, cell: int) -> Content:
         """A container's content in a node; in node 0 it is seen to be so all the time."""
@@ -123,7 +114,7 @@ class HoldingsTable:
             return content
         seen = self.root.seen_at is not None and cell not in self.root.edited
         basis = Basis(self.root.seen_at or 0, Source.SEEN) if seen else content.basis
-        return Content(content.items, content.complete, basis, self.last_perceived(0))
+        return Content(content.items, content.complete, basis, in_sight=True)
 
     def inventory(self, node: int, agent: int) -> tuple[Items, bool]:
         """Believed possessions of an agent, and whether these are known to be all."""
@@ -154,17 +145,53 @@ class HoldingsTable:
         transparent = self._context.options.containers == "transparent"
         return transparent or bool(self._doubtful) or any(h.items for h in self._holdings)
 
-    def note_perception(self, nodes: Sequence[int], entry: int) -> None:
-        """Note that the owners of nodes perceived what there is after an entry."""
-        self._looked.update(dict.fromkeys(nodes, entry))
+    def perceives(self, node: int, cell: int, item: str) -> bool:
+        """Whether a node's owner perceives in this entry if an item is in a container."""
+        if (node, cell) in self._looked_into or (node, cell, item) in self._seen_moved:
+            return True
+        content = self._holdings[node].containers.get(cell)
+        if content is None or not content.current:
+            return False
+        return content.complete or item in content.items
+
+    def perceives_elsewhere(self, node: int, cell: int, item: str) -> bool:
+        """Whether a node's owner perceives in this entry an item in another container."""
+        held = self._holdings[node].containers
+        return any(
+            at != cell and item in content.items and self.perceives(node, at, item)
+            for at, content in held.items()
+        )
+
+    def end_acts(self, which: npt.NDArray[np.bool_]) -> None:
+        """Let what acts showed in the last entry be current no more.
+
+        Args:
+            which: Nodes that are to follow.
+        """
+        for node in [node for node in self._shown_by_acts if which[node]]:
+            held = self._holdings[node].containers
+            for cell in self._shown_by_acts.pop(node) & held.keys():
+                held[cell] = replace(held[cell], by_act=False)
+
+    def _lose_sight(self, node: int, seen: Set[int], last: int) -> None:
+        """Let contents be seen until tick `last` that are not among those `seen` now."""
+        held, in_sight = self._holdings[node].containers, self._in_sight.get(node, set())
+        for cell in (in_sight - seen) & held.keys():
+            if held[cell].in_sight:
+                held[cell] = replace(held[cell].at(last), in_sight=False)
+        in_sight &= seen
+        if not in_sight:
+            self._in_sight.pop(node, None)
 
     def see_root(self, tick: int) -> None:
         """Note that node 0 is seen to be as it is."""
         self.root.seen_at = tick
         self.root.edited.clear()
+        self._looked_into.clear()
+        self._seen_moved.clear()
 
-    def apply_frame(self, entry: int, frame: Frame | None) -> None:
-        """Take over contents and dropped items of node 0 from the frame of an entry."""
+    def apply_frame(self, frame: Frame | None) -> None:
+        """Take over contents and dropped items of node 0 from a frame."""
         if frame is None:
             return
         holdings, basis = self._holdings[0], Basis(frame.tick, Source.SEEN)
@@ -173,16 +200,16 @@ class HoldingsTable:
             old = holdings.containers.pop(cell, None)
             if items is not None:
                 complete = old is None or old.complete
-                holdings.containers[cell] = Content(dict(items), complete, basis, entry)
+                holdings.containers[cell] = Content(dict(items), complete, basis)
         for number, item in frame.items.items():
             holdings.items.pop(number, None)
             if item is not None:
-                holdings.items[number] = BelievedItem(item, basis, entry)
+                holdings.items[number] = item
 
     def follow(
         self,
-        entry: int,
         tick: int,
+        last: int,
         rows: dict[int, list[Sequence[int]]],
         acts: Mapping[int, list[Event]],
         which: npt.NDArray[np.bool_],
@@ -190,8 +217,8 @@ class HoldingsTable:
         """What an entry does to contents, possessions and items, after `apply_frame`.
 
         Args:
-            entry: Number of the entry.
-            tick: Its tick.
+            tick: Tick of the entry.
+            last: The last tick before it.
             rows: Changes of blocks by node, as in `arrays.Changes`.
             acts: Acts by the node that perceived them.
             which: Nodes that are to follow.
@@ -201,9 +228,10 @@ class HoldingsTable:
                 self._holdings[0].containers.pop(cell, None)
             elif cell not in self._holdings[0].containers:
                 basis = Basis(tick, Source.SEEN)
-                self._holdings[0].containers[cell] = Content({}, True, basis, entry)
+                self._holdings[0].containers[cell] = Content({}, True, basis)
         looking = self._looking(acts, which)
-        for node in sorted(looking | rows.keys()):
+        seeing = {node for node in self._in_sight if which[node]}
+        for node in sorted(looking | rows.keys() | seeing):
             if node == 0:
                 continue
             for _, _, cell, old, new, observed_at, source in rows.get(node, ()):
@@ -211,13 +239,15 @@ class HoldingsTable:
                 basis = self._context.basis(observed_at, source)
                 replaced_block(self._holdings[node], cell, *names, basis)
             if node not in looking:
+                self._lose_sight(node, set(), last)
                 continue
             perceived = acts.get(node, [])
             self._forget(node)
-            into = self._see_into(node, tick, entry)
+            into = self._see_into(node, tick)
+            self._lose_sight(node, into, last)
             if perceived:
-                self._follow_acts(node, perceived, into, tick, entry)
-            self._see_items(node, tick, entry)
+                self._follow_acts(node, perceived, into, tick)
+            self._see_items(node)
 
     def _looking(self, acts: Mapping[int, list[Event]], which: npt.NDArray[np.bool_]) -> set[int]:
         """Nodes whose present owners have acts or things to follow."""
@@ -248,9 +278,7 @@ class HoldingsTable:
         if node == 0:
             self.root.edited |= {*blocks, *contents}
 
-    def _follow_acts(
-        self, node: int, acts: list[Event], into: set[int], tick: int, entry: int
-    ) -> None:
+    def _follow_acts(self, node: int, acts: list[Event], into: set[int], tick: int) -> None:
         """What perceived acts do to a node that sees into the containers of `into` anyway."""
         holdings, owner = self._holdings[node], self._context.agents[self._table.owner(node)]
         parent = self._table.parent(node)
@@ -259,15 +287,19 @@ class HoldingsTable:
         own = {cell for cell, act in touched if act.actor == owner and cell in known}
         for cell, act in touched:
             if cell not in own | into and not self._is_gone(node, cell):
-                witness(holdings, cell, act, tick, entry)
-                self.doubt(node, cell)
+                witness(holdings, cell, act, tick)
+                moved = act.detail["items"] if act.kind in MOVES else ()
+                self._seen_moved.update((node, cell, item) for item in moved)
+                self._note(node, cell)
         for cell, act in touched:
             if cell in own and act.actor == owner:
-                content = self._learnt(parent, cell, entry)
+                content = self.content(parent, cell)
+                if content.current:
+                    basis = Basis(tick, Source.WITNESSED, act.kind)
+                    is_seen = content.in_sight and cell in into
+                    content = replace(content, basis=basis, in_sight=is_seen, by_act=True)
                 # What the parent node holds by hearsay of its own is no perception now.
-                kind = act.kind if content.entry == entry else None
-                learn(holdings, cell, content, kind, tick)
-                self.doubt(node, cell)
+                self._learn(node, cell, content)
         for name in {act.actor for act in acts if act.actor not in (None, owner)}:
             number = self._context.numbers[str(name)]
             before = holdings.inventories.get(number, {})
@@ -321,40 +353,59 @@ class HoldingsTable:
             and self._table.block_is_current(parent, cell)
         )
 
-    def _see_into(self, node: int, tick: int, entry: int) -> set[int]:
+    def _see_into(self, node: int, tick: int) -> set[int]:
         """Look into transparent containers; returns the cells looked into."""
         if self._context.options.containers != "transparent":
             return set()
         parent = self._table.parent(node)
         into = self._table.sees_cells(node, self._holdings[parent].containers)
         for cell in sorted(into):
-            learn(self._holdings[node], cell, self._learnt(parent, cell, entry), None, tick)
-            self.doubt(node, cell)
+            content, old = self.content(parent, cell), self._holdings[node].containers.get(cell)
+            basis = Basis(tick, Source.SEEN) if parent == 0 else content.basis
+            if old is not None and old.in_sight and old.shows_as(content):
+                # One perception goes on, whatever else happens.
+                basis = old.basis
+            self._learn(node, cell, replace(content, basis=basis))
         return into
 
-    def _learnt(self, node: int, cell: int, entry: int) -> Content:
-        """A node's content as somebody in it learns it in an entry (semantics, section 5.4)."""
-        content = self.content(node, cell)
-        is_current = node == 0 or content.entry == self.last_perceived(node)
-        return replace(content, entry=entry if is_current else NEVER)
+    def _learn(self, node: int, cell: int, content: Content) -> None:
+        """Let a node's owner look into a container and find what its parent node holds."""
+        holdings = self._holdings[node]
+        holdings.containers[cell] = content
+        holdings.look_into(cell, content.items)
+        self._looked_into.add((node, cell))
+        self._note(node, cell)
 
-    def _see_items(self, node: int, tick: int, entry: int) -> None:
-        """Seen items are taken over; one whose believed place is seen empty is dropped."""
-        parent, known = self._table.parent(node), self._holdings[node].items
-        if not known and not self._holdings[parent].items:
+    def _note(self, node: int, cell: int) -> None:
+        """Note a content that a node has just perceived."""
+        self._note_current(node, cell)
+        self.doubt(node, cell)
+
+    def _note_current(self, node: int, cell: int) -> None:
+        content = self._holdings[node].containers.get(cell)
+        if node > 0 and content is not None and content.in_sight:
+            self._in_sight.setdefault(node, set()).add(cell)
+        if node > 0 and content is not None and content.by_act:
+            self._shown_by_acts.setdefault(node, set()).add(cell)
+
+    def _append(self, holdings: Holdings) -> int:
+        node = len(self._holdings)
+        self._holdings.append(holdings)
+        for cell in holdings.containers:
+            self._note_current(node, cell)
+        return node
+
+    def _see_items(self, node: int) -> None:
+        """Take over seen items; drop one whose believed place is seen empty."""
+        lying, known = self._holdings[self._table.parent(node)].items, self._holdings[node].items
+        if not known and not lying:
             return
-        lying = {
-            number: BelievedItem(believed.item, Basis(tick, Source.SEEN), entry)
-            if parent == 0
-            else believed
-            for number, believed in self._holdings[parent].items.items()
-        }
-        seen = {n: believed for n, believed in lying.items() if self._sees_item(node, believed)}
+        seen = {number: item for number, item in lying.items() if self._sees_item(node, item)}
         for number in [n for n in known if n not in seen]:
             if self._sees_item(node, known[number]):
                 del known[number]
         known.update(seen)
 
-    def _sees_item(self, node: int, believed: BelievedItem) -> bool:
-        x, y, z = believed.item.position
+    def _sees_item(self, node: int, item: DroppedItem) -> bool:
+        x, y, z = item.position
         return self._table.sees_point(node, (x, y + _ITEM_HEIGHT, z))

@@ -1,7 +1,6 @@
 """Where forests begin: in the real world with its priors, or forked from another forest."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +10,7 @@ from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis, InitialBelief, Source
 from beliefnest.belief.forest import EventHistory, Forest
-from beliefnest.belief.holdings import NEVER, BelievedItem, Content, Holdings
+from beliefnest.belief.holdings import Content, Holdings
 from beliefnest.belief.holdings_table import HoldingsTable, RootFacts
 from beliefnest.belief.node_table import NodeTable
 from beliefnest.belief.poses import PoseTable
@@ -125,9 +124,9 @@ def _add_world(table: NodeTable, snapshot: Snapshot, blocks: BlockGrid) -> Holdi
         table.set_equipment(node, number, pose)
     holdings = Holdings()
     for place, items in snapshot.containers.items():
-        holdings.containers[cell_of(context.box, place)] = Content(dict(items), True, basis, -1)
+        holdings.containers[cell_of(context.box, place)] = Content(dict(items), True, basis)
     for key, item in snapshot.items.items():
-        holdings.items[key] = BelievedItem(item, basis, -1)
+        holdings.items[key] = item
     return holdings
 
 
@@ -196,16 +195,11 @@ def forked_forest(
 def _forked_holdings(
     source: HoldingsTable, node: int, agents: Iterable[int], *, is_root: bool
 ) -> Holdings:
-    """Holdings at a fork; what was current is so until the new timeline's first entry."""
+    """Holdings at a fork; what was current is so until something new is perceived."""
     copied = source.of(node).copy()
-    last = source.last_perceived(node)
     for cell in copied.containers:
         content = source.content(node, cell)
-        entry = -1 if is_root or content.entry == last else NEVER
-        copied.containers[cell] = replace(content, entry=entry)
-    for number, believed in copied.items.items():
-        entry = -1 if is_root or believed.entry == last else NEVER
-        copied.items[number] = replace(believed, entry=entry)
+        copied.containers[cell] = content
     if is_root:
         for agent in agents:
             items, complete = source.inventory(node, agent)

@@ -67,9 +67,33 @@ def put(space: Space, nodes: Nodes, node: int, cell: int, state: int) -> None:
         _mark(nodes, whole(nodes.child[n]), cell)
 
 
+@inlined
+def _handed_source(nodes: Nodes, parent: int, spot: int) -> int:
+    """Source of a tracked cell for whoever sees it in a node: all of node 0 is seen."""
+    return SOURCE_SEEN if parent == 0 else nodes.basis_source[parent, spot]
+
+
+@inner
+def _settle(nodes: Nodes, node: int, last: int) -> None:
+    """Date what is current to `last`, the last tick at which it is sure to be so (section 2)."""
+    for who in range(nodes.pose.shape[1]):
+        if nodes.current[node, who]:
+            nodes.seen_at[node, who] = last
+    for spot in range(len(nodes.tracked)):
+        if nodes.basis_current[node, spot]:
+            nodes.basis_at[node, spot] = last
+
+
 @inner
 def _put_noted(
-    space: Space, nodes: Nodes, changes: Changes, entry: int, node: int, cell: int, state: int
+    space: Space,
+    nodes: Nodes,
+    changes: Changes,
+    entry: int,
+    tick: int,
+    node: int,
+    cell: int,
+    state: int,
 ) -> None:
     """`put`, and note it where a container is or was."""
     old = nodes.blocks[node, cell]
@@ -85,8 +109,9 @@ def _put_noted(
         for spot in range(len(nodes.tracked)):
             if nodes.tracked[spot] == cell:
                 parent = max(nodes.parent[node], 0)
-                changes.rows[row, 5] = nodes.basis_at[parent, spot]
-                changes.rows[row, 6] = nodes.basis_source[parent, spot]
+                is_current = nodes.basis_current[parent, spot]
+                changes.rows[row, 5] = tick if is_current else nodes.basis_at[parent, spot]
+                changes.rows[row, 6] = _handed_source(nodes, parent, spot)
         changes.used[0] = row + 1
     put(space, nodes, node, cell, state)
 
@@ -126,9 +151,11 @@ def _apply_entry(space: Space, facts: Facts, nodes: Nodes, changes: Changes, ent
             nodes.seen_at[0, who] = facts.tick[entry]
     for row in range(facts.block_at[entry], facts.block_at[entry + 1]):
         cell, state = whole(facts.block_cell[row]), whole(facts.block_state[row])
-        _put_noted(space, nodes, changes, entry, whole(0), cell, state)
+        _put_noted(space, nodes, changes, entry, facts.tick[entry], whole(0), cell, state)
     for spot in range(len(nodes.tracked)):
-        if nodes.blocks[0, nodes.tracked[spot]] != UNKNOWN:
+        known = nodes.blocks[0, nodes.tracked[spot]] != UNKNOWN
+        nodes.basis_current[0, spot] = known
+        if known:
             nodes.basis_at[0, spot] = facts.tick[entry]
             nodes.basis_source[0, spot] = SOURCE_SEEN
 
@@ -141,16 +168,18 @@ def _propagate_bases(space: Space, nodes: Nodes, node: int, eye: Eye, moved: boo
         if moved:
             cell = whole(nodes.tracked[spot])
             nodes.watched[node, spot] = sees_cell(space, nodes, parent, eye, cell)
+        nodes.basis_current[node, spot] = False
         if nodes.watched[node, spot] and nodes.blocks[parent, nodes.tracked[spot]] != UNKNOWN:
             nodes.basis_at[node, spot] = nodes.basis_at[parent, spot]
-            nodes.basis_source[node, spot] = nodes.basis_source[parent, spot]
+            nodes.basis_source[node, spot] = _handed_source(nodes, parent, spot)
+            nodes.basis_current[node, spot] = nodes.basis_current[parent, spot]
 
 
 @merged
 def _observe_agents(
     space: Space, poses: Poses, nodes: Nodes, node: int, eye: Eye, moved: bool
 ) -> None:
-    """What the owner of a node learns of the other agents in its parent node."""
+    """What the owner of a node learns of the agents in its parent node."""
     parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
     for who in range(nodes.pose.shape[1]):
         pose = whole(nodes.pose[parent, who])
@@ -179,7 +208,13 @@ def _observe_agents(
 
 @merged
 def _observe_blocks(
-    space: Space, nodes: Nodes, changes: Changes, entry: int, node: int, eye: Eye
+    space: Space,
+    nodes: Nodes,
+    changes: Changes,
+    entry: int,
+    tick: int,
+    node: int,
+    eye: Eye,
 ) -> None:
     """Take over what the owner of a node sees of the blocks it knew otherwise."""
     parent = whole(nodes.parent[node])
@@ -192,7 +227,7 @@ def _observe_blocks(
                 cell = word * _WORD + place
                 if sees_cell(space, nodes, parent, eye, cell):
                     state = whole(nodes.blocks[parent, cell])
-                    _put_noted(space, nodes, changes, entry, node, cell, state)
+                    _put_noted(space, nodes, changes, entry, tick, node, cell, state)
     nodes.fresh[node] = False
 
 
@@ -268,6 +303,7 @@ def _update_absent(
 ) -> None:
     """An owner that is not present is credited with common ground alone (5.2, 5.5)."""
     nodes.current[node, :] = False
+    nodes.basis_current[node, :] = False
     nodes.eye[node] = UNKNOWN
     nodes.watched[node, :] = False
     nodes.meets[node, :] = False
@@ -360,8 +396,10 @@ def _update_node(
 ) -> None:
     """Fold an entry into one node, after its parent."""
     tick = whole(facts.tick[entry])
+    last = tick - 1 if span.happens else tick
+    _settle(nodes, node, last)
     if space.senses.weighs:
-        _count_to(nodes, node, tick - 1 if span.happens else tick)
+        _count_to(nodes, node, last)
     parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
     if not nodes.current[parent, me]:
         _update_absent(space.senses, facts, nodes, changes, span, entry, node)
@@ -375,7 +413,7 @@ def _update_node(
     nodes.seen_geometry[node] = nodes.geometry[parent]
     _observe_agents(space, poses, nodes, node, eye, moved)
     if moved or nodes.fresh[node]:
-        _observe_blocks(space, nodes, changes, entry, node, eye)
+        _observe_blocks(space, nodes, changes, entry, tick, node, eye)
     _perceive_events(space, poses, facts, nodes, changes, span, entry, node)
     _propagate_bases(space, nodes, node, eye, moved)
     if space.senses.weighs:

@@ -24,7 +24,7 @@ Row = npt.NDArray[Any]
 _POSE_IDS = ("pose", "equipment", "eye", "tried", "met")
 """Rows that hold pose ids."""
 
-_BY_SPOT = ("watched", "basis_at", "basis_source", "watch_missed")
+_BY_SPOT = ("watched", "basis_at", "basis_source", "basis_current", "watch_missed")
 """Rows with a column for each tracked cell."""
 
 
@@ -43,12 +43,16 @@ class SavedNode:
     current: bytes
     basis_at: bytes
     basis_source: bytes
+    basis_current: bytes
     edited_cells: list[int]
     weighing: dict[str, bytes] = field(default_factory=dict)
 
 
 _WEIGHING = ("counted", "missed", "met", "meets", "met_missed", "watched", "watch_missed")
-_SAVED = ("blocks", "pose", "equipment", "seen_at", "current", "basis_at", "basis_source")
+_SAVED = (
+    *("blocks", "pose", "equipment", "seen_at", "current"),
+    *("basis_at", "basis_source", "basis_current"),
+)
 
 
 class NodeTable:
@@ -59,8 +63,8 @@ class NodeTable:
         count: How many nodes there are.
         context: What all nodes share.
         poses: The pose table that the nodes' pose ids are rows of.
-        edited_cells: Nodes and cells of blocks that were changed by hand, or claimed to be other,
-            since the node last perceived them.
+        edited_cells: Nodes and cells of blocks that were changed by hand since the node last
+            perceived them.
     """
 
     def __init__(self, context: BeliefContext, poses: PoseTable, extra: Sequence[int] = ()) -> None:
@@ -96,6 +100,7 @@ class NodeTable:
             "watched": np.empty((2, spots), np.bool_),
             "basis_at": np.empty((2, spots), np.int32),
             "basis_source": np.empty((2, spots), np.uint8),
+            "basis_current": np.empty((2, spots), np.bool_),
             "counted": np.empty(2, np.int32),
             "missed": np.empty((2, weighed), np.int32),
             "met": np.empty((2, weighed), np.int32),
@@ -170,14 +175,10 @@ class NodeTable:
         if is_root:
             self._rows["parent"][node] = self._rows["agent"][node] = UNKNOWN
             self._rows["current"][node] = self._rows["pose"][node] >= 0
+            self._rows["basis_current"][node] = self._rows["blocks"][node][self._tracked] >= 0
         else:
             self._rows["parent"][node] = self.index[path[:-1]]
         return node
-
-    def see_now(self, tick: int) -> None:
-        """Note that what is current of agents' poses is so at a tick."""
-        current, seen_at = self._rows["current"][: self.count], self._rows["seen_at"]
-        seen_at[: self.count][current] = tick
 
     def path(self, node: int) -> BeliefPath:
         """Path of a node."""
@@ -220,6 +221,7 @@ class NodeTable:
         """Set what a cell rests on, if it is tracked."""
         for spot in np.flatnonzero(self._tracked == cell):
             self._rows["basis_at"][node, spot] = UNKNOWN if basis is None else basis.observed_at
+            self._rows["basis_current"][node, spot] = node == 0 and basis is not None
             if basis is not None:
                 self._rows["basis_source"][node, spot] = self.context.basis_code(basis)
 
@@ -228,11 +230,13 @@ class NodeTable:
         known = self._rows["blocks"][node][self._tracked] >= 0
         self._rows["basis_at"][node][known] = basis.observed_at
         self._rows["basis_source"][node][known] = self.context.basis_code(basis)
+        self._rows["basis_current"][node][known] = node == 0
 
-    def bases(self, node: int, cells: Sequence[int]) -> dict[int, Basis | None]:
-        """What tracked cells rest on in a node; None where a block is unknown."""
+    def bases(self, node: int, cells: Sequence[int], tick: int) -> dict[int, Basis | None]:
+        """What tracked cells rest on in a node at a tick; None where a block is unknown."""
         spots = {cell: spot for spot, cell in enumerate(self._tracked.tolist())}
-        ticks = self._rows["basis_at"][node].tolist()
+        current = self._rows["basis_current"][node]
+        ticks = np.where(current, tick, self._rows["basis_at"][node]).tolist()
         codes = self._rows["basis_source"][node].tolist()
         basis = self.context.basis
         known = self._rows["blocks"][node] >= 0
@@ -350,7 +354,7 @@ class NodeTable:
         return None if pose < 0 else self.poses.details(pose)
 
     def seen_at(self, node: int, agent: int) -> int:
-        """Tick that an agent's believed pose rests on."""
+        """Last tick at which an agent's believed pose was current, where it no longer is."""
         return int(self._rows["seen_at"][node, agent])
 
     def is_current(self, node: int, agent: int) -> bool:

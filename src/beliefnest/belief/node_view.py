@@ -26,17 +26,16 @@ class NodeView:
 
     Attributes:
         path: The node.
-        tick: Tick of the last entry it rests on.
+        tick: The tick it is; None: that of the last entry it rests on.
         count_of_events: How many events of the timeline lie before it.
     """
 
-    def __init__(self, forest: Forest, path: BeliefPath) -> None:
+    def __init__(self, forest: Forest, path: BeliefPath, tick: int | None = None) -> None:
         self.path = path
-        self.tick = forest.tick
+        self.tick = forest.tick if tick is None else tick
         self._forest = forest
         self._node = forest.node(path)
         self.count_of_events = forest.count_of_events
-        self._last_perceived = forest.holdings.last_perceived(self._node)
         forest.read_by(self)
 
     def keep(self) -> None:
@@ -70,12 +69,9 @@ class NodeView:
         forest = self._forest
         found = {}
         for cell in sorted(forest.holdings.of(self._node).containers):
-            content = forest.holdings.content(self._node, cell)
+            content = forest.holdings.content(self._node, cell).at(self.tick)
             found[place_of(forest.context.box, cell)] = ContainerBelief(
-                content.items,
-                content.complete,
-                content.basis,
-                current=self._node == 0 or content.entry == self._last_perceived,
+                content.items, content.complete, content.basis, content.current
             )
         return found
 
@@ -88,9 +84,7 @@ class NodeView:
     @cached_property
     def items(self) -> Mapping[int, DroppedItem]:
         """Dropped items last seen."""
-        return {
-            n: believed.item for n, believed in self._forest.holdings.of(self._node).items.items()
-        }
+        return dict(self._forest.holdings.of(self._node).items)
 
     def events(self) -> tuple[PerceivedEvent, ...]:
         """All perceived events, oldest first."""
@@ -158,6 +152,7 @@ class NodeView:
             )
         posed = poses.details(pose)
         yaw, pitch = poses.angles(pose)
+        current = table.is_current(node, number)
         return AgentBelief(
             position=poses.position(pose),
             yaw=yaw,
@@ -168,8 +163,8 @@ class NodeView:
             inventory_complete=complete,
             health=health,
             food=food,
-            basis=self._basis(pose, table.seen_at(node, number)),
-            current=table.is_current(node, number),
+            basis=self._basis(pose, self.tick if current else table.seen_at(node, number)),
+            current=current,
         )
 
     def _basis(self, pose: int, tick: int) -> Basis:

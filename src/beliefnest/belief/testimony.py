@@ -4,7 +4,7 @@ An entry with claims is folded level by level: who is deeper perceives what the 
 has just come to believe. Who watches which place is counted by the kernel, in `Nodes`.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
 
 import numpy as np
@@ -15,7 +15,7 @@ from beliefnest.belief.arrays import UNKNOWN, Nodes
 from beliefnest.belief.columns import Columns, cell_of
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis, Source
-from beliefnest.belief.holdings import NEVER, Content, Holdings, changed_items, replaced_block
+from beliefnest.belief.holdings import Content, Holdings, changed_items, replaced_block
 from beliefnest.belief.holdings_table import HoldingsTable
 from beliefnest.belief.node_table import NodeTable
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
@@ -35,6 +35,7 @@ class Verdict(StrEnum):
     OFF = "off"
     TAKEN_UP = "taken up"
     OWN_PLACE = "own place"
+    SEES_OTHERWISE = "0"
     SEES_KNOWN = "1a known"
     SEES_CLAIMED = "1a claimed"
     NO_CHANCE = "1b"
@@ -55,6 +56,7 @@ class Verdict(StrEnum):
 
 
 _CONDITIONS = {
+    Verdict.SEES_OTHERWISE: "0",
     Verdict.SEES_KNOWN: "1a",
     Verdict.SEES_CLAIMED: "1a",
     Verdict.NO_CHANCE: "1b",
@@ -76,9 +78,6 @@ class Testimony:
         holdings: Their contents.
         entry: The entry.
         perceived: By event of the entry and node, who perceived it; filled by the kernel.
-
-    Attributes:
-        told_cells: Nodes and cells of blocks that were taken over.
     """
 
     def __init__(
@@ -93,7 +92,6 @@ class Testimony:
         self._context = table.context
         self._tick = columns.tick(entry)
         self._perceived = perceived
-        self.told_cells: set[tuple[int, int]] = set()
         first = columns.events_until(entry)
         self._claims = [
             (row, columns.event(first + row), index, claim)
@@ -124,16 +122,21 @@ class Testimony:
     def _weighed(
         self, number: int, which: Numbers, row: int, speaker: int, claim: Claim
     ) -> npt.NDArray[np.int8]:
-        """Codes of what some nodes make of a claim (semantics, sections 8.1 and 8.3)."""
+        """Codes of what some nodes make of a claim (semantics, sections 8.0, 8.1 and 8.3)."""
         options, nodes = self._context.options, self._table.nodes()
         subject = self._context.numbers.get(claim.agent or "", UNKNOWN)
         owner, parent = nodes.agent[which], nodes.parent[which]
         is_speaker = owner == speaker
         heard = np.where(is_speaker, self._perceived[row, parent], self._perceived[row, which])
+        sees_matter, sees_claimed = self._sees(which, claim, nodes)
+        beaten = [(sees_matter | sees_claimed, Verdict.SEES_OTHERWISE)]
         if options.testimony == "accept":
-            conditions = [(~is_speaker, Verdict.TAKEN_UP), (is_speaker, Verdict.WORD)]
+            words = [(~is_speaker, Verdict.TAKEN_UP), (is_speaker, Verdict.WORD)]
+            conditions = beaten + words
         else:
-            conditions = self._informed(number, which, speaker, claim, nodes)
+            needless = (~is_speaker & sees_claimed, Verdict.SEES_CLAIMED)
+            weighed = self._informed(number, which, speaker, claim, nodes)
+            conditions = [*weighed[:1], needless, *beaten, *weighed[1:]]
         is_reality = not self._table.path(0)
         unknown = claim.agent is not None and subject == UNKNOWN
         first = [
@@ -158,11 +161,10 @@ class Testimony:
         up = self._codes[number, nodes.parent[which]] == _CODES[Verdict.TAKEN_UP]
         others = ~is_speaker
         return [
+            (others & sees_known, Verdict.SEES_KNOWN),
             (is_speaker & is_short, Verdict.LEARNT_NOTHING),
             (is_speaker & ~up & (not options.sincere), Verdict.NOT_SINCERE),
             (is_speaker, Verdict.WORD),
-            (others & sees_known, Verdict.SEES_KNOWN),
-            (others & self._sees_claimed(which, claim, nodes), Verdict.SEES_CLAIMED),
             (others & is_short, Verdict.NO_CHANCE),
             (others, Verdict.TAKEN_UP),
         ]
@@ -170,7 +172,7 @@ class Testimony:
     def _known(
         self, which: Numbers, speaker: int, claim: Claim, nodes: Nodes
     ) -> tuple[Flags, Flags, npt.NDArray[np.int64]]:
-        """By node: is a place known, is it seen now, ticks without the speaker since."""
+        """By node: is a place known, is the matter perceived there, ticks without the speaker."""
         now = nodes.missed[which, speaker].astype(np.int64)
         if claim.agent is not None:
             subject = self._context.numbers[claim.agent]
@@ -180,27 +182,68 @@ class Testimony:
         spots = self._known_spots(which, claim)
         watched = nodes.watch_missed[which, spots, speaker]
         known = (spots >= 0) & (watched >= 0)
-        return known, known & nodes.watched[which, spots], now - watched
+        if claim.kind is ClaimKind.BLOCK:
+            seen = nodes.watched[which, spots]
+        else:
+            seen = self._perceives(which, self._found(which, claim), claim)
+        return known, known & seen, now - watched
 
     def _known_spots(self, which: Numbers, claim: Claim) -> Numbers:
         """By node, the tracked cell of the known place; -1: none."""
         if claim.kind is ClaimKind.BLOCK:
             here = self._table.spot(cell_of(self._context.box, claim.cell))
             return np.full(len(which), here, dtype=np.int64)
-        item = str(claim.item)
         spots = {cell: spot for spot, cell in enumerate(self._table.tracked.tolist())}
-        found = (self._holdings.of(node).found.get(item, -1) for node in which.tolist())
+        found = self._found(which, claim)
         return np.array([spots.get(cell, UNKNOWN) for cell in found], dtype=np.int64)
 
-    def _sees_claimed(self, which: Numbers, claim: Claim, nodes: Nodes) -> Flags:
-        if claim.kind is ClaimKind.POSITION:
-            x, y, z = claim.place
-            pose = self._table.poses.add_pose((x, y, z), 0.0, 0.0)
-            poses, space = self._table.poses.arrays(), self._context.space
-            return seeing.sees_place(space, poses, nodes, which, pose)
-        spot = self._table.spot(cell_of(self._context.box, claim.cell))
-        seen: Flags = nodes.watched[which, spot]
-        return seen
+    def _found(self, which: Numbers, claim: Claim) -> list[int]:
+        """By node, the cell of the container in which a claimed item was last perceived; or -1."""
+        item = str(claim.item)
+        return [self._holdings.of(node).found.get(item, UNKNOWN) for node in which.tolist()]
+
+    def _perceives(self, which: Numbers, cells: Iterable[int], claim: Claim) -> Flags:
+        """By node, whether its owner perceives now if a claimed item is in a container."""
+        item, nodes = str(claim.item), which.tolist()
+        seen = [
+            self._holdings.perceives(node, cell, item)
+            for node, cell in zip(nodes, cells, strict=True)
+        ]
+        return np.array(seen, dtype=np.bool_)
+
+    def _sees(self, which: Numbers, claim: Claim, nodes: Nodes) -> tuple[Flags, Flags]:
+        """By node, what its owner perceives in this tick that a claim is about (section 8.0).
+
+        Returns:
+            Whether it perceives the matter elsewhere, and whether at the claimed place.
+        """
+        nowhere = np.zeros(len(which), dtype=np.bool_)
+        cell = cell_of(self._context.box, claim.cell)
+        match claim.kind:
+            case ClaimKind.POSITION:
+                subject = self._context.numbers.get(str(claim.agent), UNKNOWN)
+                known = nodes.pose[nodes.parent[which], subject] != UNKNOWN
+                there = nodes.sees[which, subject] | (nodes.agent[which] == subject)
+                x, y, z = claim.place
+                pose = self._table.poses.add_pose((x, y, z), 0.0, 0.0)
+                poses, space = self._table.poses.arrays(), self._context.space
+                at_place = seeing.sees_place(space, poses, nodes, which, pose)
+                return known & there & (nodes.eye[which] != UNKNOWN), at_place
+            case ClaimKind.BLOCK:
+                seen = [
+                    nodes.eye[node] != UNKNOWN and bool(self._table.sees_cells(node, (cell,)))
+                    for node in which.tolist()
+                ]
+                return nowhere, np.array(seen, dtype=np.bool_)
+            case ClaimKind.LOCATED | ClaimKind.ABSENT:
+                item = str(claim.item)
+                at_place = self._perceives(which, [cell] * len(which), claim)
+                if claim.kind is ClaimKind.ABSENT:
+                    return nowhere, at_place
+                elsewhere = [
+                    self._holdings.perceives_elsewhere(node, cell, item) for node in which.tolist()
+                ]
+                return np.array(elsewhere, dtype=np.bool_), at_place
 
     def _believe(self, which: Numbers, event: Event, claim: Claim) -> None:
         """Let nodes hold what is claimed (semantics, section 8.2)."""
@@ -238,7 +281,6 @@ class Testimony:
             names = context.block_name(before), context.container_name(after)
             replaced_block(self._holdings.of(node), cell, *names, basis)
             self._holdings.doubt(node, cell)
-            self.told_cells.add((node, cell))
 
 
 _IS_BELIEVED = np.array([verdict.believed for verdict in _VERDICTS])
@@ -295,4 +337,4 @@ def believe_absent(holdings: Holdings, cell: int, item: str, basis: Basis) -> No
 
 def _hold(holdings: Holdings, cell: int, items: Items, basis: Basis) -> None:
     old = holdings.containers.get(cell)
-    holdings.containers[cell] = Content(items, old is not None and old.complete, basis, NEVER)
+    holdings.containers[cell] = Content(items, old is not None and old.complete, basis)

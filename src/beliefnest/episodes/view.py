@@ -1,10 +1,10 @@
 """What a policy is given: its agent's own belief, what lies below it, and its task."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from beliefnest.belief.view import FixedState, State
+from beliefnest.belief.view import State
 from beliefnest.episodes.decided import Ended
 from beliefnest.errors import PathError
 from beliefnest.nest.acting.imagination import Imagination
@@ -135,7 +135,7 @@ class AgentView:
     @property
     def state(self) -> State:
         """What the agent believes."""
-        return _settled(self._own.state)
+        return self._own.state
 
     @property
     def heard(self) -> Sequence[tuple[int, str, str]]:
@@ -158,7 +158,7 @@ class AgentView:
             if agent not in self._own.state.agents:
                 raise PathError(f"there is no agent {agent!r} in {sorted(self._own.state.agents)}")
             simulator = simulator.child(agent)
-        return _settled(simulator.state)
+        return simulator.state
 
     def imagine(self, depth: int = 1) -> Imagination:
         """Its belief as a world of its own, to try courses in; nothing of it is recorded.
@@ -236,33 +236,6 @@ class RoundFacts:
             brief.round_ticks,
             view.last,
         )
-
-
-def _settled(state: State) -> State:
-    """Return a state in which who is seen was seen just now.
-
-    It is noted at ticks at which something happened, be it where nobody sees it: from that an
-    agent could tell that something did.
-    """
-    agents = {
-        name: replace(each, basis=replace(each.basis, observed_at=state.tick))
-        if each.current and each.basis is not None
-        else each
-        for name, each in state.agents.items()
-    }
-    return FixedState(
-        path=state.path,
-        tick=state.tick,
-        box=state.box,
-        blocks=state.blocks,
-        containers=state.containers,
-        agents=agents,
-        items=state.items,
-        events=state.events,
-        chat=state.chat,
-        thoughts=state.thoughts,
-        addressees=state.addressees,
-    )
 
 
 class Policy(Protocol):

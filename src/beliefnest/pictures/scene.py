@@ -120,7 +120,7 @@ class Store:
         age: Ticks since what is known of it was perceived.
         instead: What is in it elsewhere, if it is false.
         above: Blocks above the storey; below: negative.
-        teller: Who said what is known of it; empty: it was perceived.
+        teller: Who said what is known of it; empty: it was perceived, or nothing is known.
     """
 
     position: Position
@@ -368,7 +368,7 @@ def read_stores(
                 age=0 if held.current else state.tick - held.basis.observed_at,
                 instead="" if false is None else false.instead,
                 above=place[1] - level,
-                teller=_teller(held.basis),
+                teller=_teller(held.basis) if held.items or held.complete else "",
             )
         )
     return tuple(found)

@@ -141,8 +141,7 @@ class Imagination:
         wanted = paths_below(root, depth, source.context.agents)
         news = _News()
         forest = forked_forest(source, news, root, root, tick, further=wanted[1:])
-        forest.see_now(tick)
-        believed = NodeView(forest, root)
+        believed = NodeView(forest, root, tick)
         snapshot, registry = believed.snapshot(), source.context.registry
         blocks = with_chests(registry, snapshot.box, believed.blocks, snapshot.containers)
         possible = embodiable(registry, snapshot, blocks)

@@ -49,7 +49,7 @@ def start_of(
         moment: Of a timeline; if it is not the node's own, the node is about to be forked.
         has_physics: Whether agents in the body stand, fall and are stopped by blocks.
     """
-    reading = history.reading(moment.timeline, path, moment.entries)
+    reading = history.reading(moment.timeline, path, moment.entries, moment.tick)
     is_own = moment.timeline.path == path
     state = internal_state_at(journal, moment) if is_own else b""
     snapshot, blocks = _filled(reading, history)
@@ -65,7 +65,7 @@ def start_of(
     if not (blocks < 0).any():
         return BodyStart(snapshot)
     _, base = fork
-    believed = history.reading(base.timeline, path, base.entries)
+    believed = history.reading(base.timeline, path, base.entries, base.tick)
     before, known = _filled(believed, history)
     begun = _begun(before, known, believed, history).snapshot.agents
     space = BodySpace(history.context.registry, snapshot.box, known)

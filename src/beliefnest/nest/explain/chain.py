@@ -11,8 +11,9 @@ from beliefnest.errors import InputError, PathError
 from beliefnest.nest.explain.element_history import (
     LogStep,
     cells_of,
-    grounded_at,
+    is_current,
     last_change,
+    observed_at,
     steps_since,
     touches,
     value_in,
@@ -126,7 +127,7 @@ class _Finding:
 
     @property
     def observed_at(self) -> int | None:
-        """Tick of the perception the belief rests on."""
+        """Last tick at which the belief was current."""
         return None if self.held.basis is None else self.held.basis.observed_at
 
 
@@ -148,6 +149,8 @@ def _held_now(
             cell = cell_of(recording.box, element.where)
             block = recording.context.block_name(forest.block(node, cell))
         events = NodeView(forest, node).events()
+        if current and basis is not None:
+            basis = replace(basis, observed_at=moment.tick)
         held[node] = _HeldNow(value_in(forest, node, element), block, basis, current, events)
     return held
 
@@ -156,7 +159,7 @@ def _ground_of(
     recording: Recording, moment: ForkPoint, forest: Forest, node: BeliefPath, element: Element
 ) -> tuple[Basis | None, bool]:
     """What a node's value rests on, and whether it is current."""
-    reading = NodeView(forest, node)
+    reading = NodeView(forest, node, moment.tick)
     if isinstance(element.where, str):
         agent = reading.agents[element.where]
         return agent.basis, agent.current
@@ -215,15 +218,16 @@ def _take(recording: Recording, trace: _Finding, step: LogStep, element: Element
     """Note what one entry means for one belief."""
     forest = step.forest
     outside = value_in(forest, trace.path[:-1], element)
-    mine = value_in(forest, trace.path, element), grounded_at(forest, trace.path, element)
-    if mine[0] != trace.value:
-        trace.value = mine[0]
+    mine = value_in(forest, trace.path, element)
+    if mine != trace.value:
+        trace.value = mine
         trace.told += _told(recording, trace.path, step, element)
-    if mine != (trace.held.value, trace.observed_at):
+    is_held, goes_on = _is_held(trace, forest, mine, element)
+    if not is_held:
         trace.was_known = True
         trace.since, trace.missed = None, None
         return
-    if trace.since is None:
+    if trace.since is None or goes_on:
         if trace.observed_at is None and not trace.was_known:
             return
         trace.since, trace.parent = forest.tick, outside
@@ -235,6 +239,19 @@ def _take(recording: Recording, trace: _Finding, step: LogStep, element: Element
         acts = () if edited else _acts(events, forest.tick, element)
         missed = _missed(recording, trace.path, step, element, trace.parent, acts)
         trace.missed = replace(missed, edited=edited)
+
+
+def _is_held(trace: _Finding, forest: Forest, value: Value, element: Element) -> tuple[bool, bool]:
+    """Whether a node holds what it holds when it is explained, and whether it perceives it still.
+
+    What is current is one perception up to the last tick at which it was.
+    """
+    ground = observed_at(forest, trace.path, element)
+    if value != trace.held.value or trace.observed_at is None or ground is None:
+        return value == trace.held.value and ground == trace.observed_at, False
+    if is_current(forest, trace.path, element):
+        return ground <= trace.observed_at, ground <= trace.observed_at
+    return ground == trace.observed_at, False
 
 
 def _missed(
@@ -325,6 +342,11 @@ def _acts(
 def _level(trace: _Finding, element: Element) -> Level:
     held = trace.held
     at = trace.observed_at
+    acts = () if at is None else [act for act in held.events if act.tick <= at]
+    latest = next((act.tick for act in reversed(acts) if touches(element, act)), None)
+    since = trace.since
+    if since is not None and at is not None:
+        since = max(since, at)
     return Level(
         path=trace.path,
         holder=trace.path[-1],
@@ -332,8 +354,8 @@ def _level(trace: _Finding, element: Element) -> Level:
         block=held.block,
         basis=held.basis,
         current=held.current,
-        acts=() if at is None else _acts(held.events, at, element),
-        since=trace.since,
+        acts=() if latest is None else _acts(acts, latest, element),
+        since=since,
         stood=trace.stood,
         missed=trace.missed,
         told=tuple(each for each in trace.told if at is not None and each.tick >= at),

@@ -17,8 +17,9 @@ from beliefnest.world.values import Box
 __all__ = [
     "LogStep",
     "cells_of",
-    "grounded_at",
+    "is_current",
     "last_change",
+    "observed_at",
     "steps_since",
     "touches",
     "value_in",
@@ -72,8 +73,8 @@ def value_in(forest: Forest, path: BeliefPath, element: Element) -> Value:
     return Contents(dict(content.items), content.complete)
 
 
-def grounded_at(forest: Forest, path: BeliefPath, element: Element) -> int | None:
-    """Tick of the perception that a node's value of an element rests on; None: no value."""
+def observed_at(forest: Forest, path: BeliefPath, element: Element) -> int | None:
+    """Last tick at which a node's value of an element was current; None: no value."""
     if isinstance(element.where, str):
         return forest.seen_at(path, element.where)
     node, cell = forest.node(path), cell_of(forest.context.box, element.where)
@@ -82,7 +83,18 @@ def grounded_at(forest: Forest, path: BeliefPath, element: Element) -> int | Non
         return None if basis is None else basis.observed_at
     if cell not in forest.holdings.of(node).containers:
         return None
-    return forest.holdings.content(node, cell).basis.observed_at
+    return forest.holdings.content(node, cell).at(forest.tick).basis.observed_at
+
+
+def is_current(forest: Forest, path: BeliefPath, element: Element) -> bool:
+    """Whether a node's value of an element is backed by a perception in the last entry."""
+    if isinstance(element.where, str):
+        return forest.is_current(path, element.where)
+    node, cell = forest.node(path), cell_of(forest.context.box, element.where)
+    if element.kind == "block":
+        return bool(forest.current_blocks(path, (cell,)))
+    known = cell in forest.holdings.of(node).containers
+    return known and forest.holdings.content(node, cell).at(forest.tick).current
 
 
 def touches(element: Element, event: PerceivedEvent) -> bool:

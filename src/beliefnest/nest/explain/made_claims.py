@@ -10,6 +10,7 @@ from beliefnest.belief.forest import Forest
 from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.testimony import Verdict
 from beliefnest.errors import InputError
+from beliefnest.nest.explain.wording import as_known_to
 from beliefnest.nest.past.recording import Recording
 from beliefnest.prompts.text import block_name, block_properties
 from beliefnest.timeline.journal import EntryFilter, ForkPoint, TimelineKey
@@ -86,10 +87,21 @@ class MadeClaim:
         """Why it was taken up, or by which condition it was not; errors as for `taken_up`."""
         names = parse_path(path, self._recording.agents)
         grace = self._recording.setting.perception.grace
-        return _words(self._verdict(path), names, self.speaker, grace)
+        verdict = self._verdict(path)
+        if verdict is not Verdict.NOT_HEARD:
+            return _words(verdict, names, self.speaker, grace)
+        unaware = self._unaware(names)
+        if unaware == names:
+            return _words(verdict, names, self.speaker, grace)
+        return f"{as_known_to(unaware[:-1])}{unaware[-1]} does not know of it"
+
+    def _unaware(self, path: BeliefPath) -> BeliefPath:
+        """The first simulator on the way to one that did not hear it in which it is not known."""
+        ways = (path[:depth] for depth in range(len(self._key.path) + 1, len(path)))
+        return next((way for way in ways if not self._was_perceived(way)), path)
 
     def condition(self, path: str) -> str | None:
-        """The condition (`1a`, `1b`, `3`, `4`; semantics, section 8); errors as above.
+        """The condition (`0`, `1a`, `1b`, `3`, `4`; semantics, section 8); errors as above.
 
         None where none had to: it was taken up, was not heard, is about its hearer's own place,
         or testimony is off.
@@ -203,23 +215,28 @@ def _is_elsewhere(held: NodeView, context: BeliefContext, claim: Claim) -> bool:
 
 
 def _words(verdict: Verdict, path: BeliefPath, speaker: str, grace: int) -> str:
-    """A verdict in words, and the condition that decided it."""
-    me = path[-1]
-    outer = path[-2] if len(path) > 1 else None
+    """A verdict in words, with the condition that decided it; each is the view of a believer."""
+    me, believers = path[-1], path[:-1]
+    outer = believers[-1] if believers else None
     words = {
         Verdict.TAKEN_UP: f"{me} believes what {speaker} said; nothing spoke against it",
         Verdict.NOT_HEARD: f"{me} did not hear it",
         Verdict.OFF: "testimony is 'none': what is said is known as text alone",
         Verdict.OWN_PLACE: f"{me} knows where {me} is",
+        Verdict.SEES_OTHERWISE: f"{me} perceives how it is, and seeing beats hearing (0)",
         Verdict.SEES_KNOWN: f"{me} sees where it was last perceived, and needs no telling (1a)",
         Verdict.SEES_CLAIMED: f"{me} sees the place that is spoken of, and needs no telling (1a)",
         Verdict.NO_CHANCE: f"{me} did not lose sight of {speaker} for more than {grace} ticks "
         f"since it last watched the place, so {speaker} cannot know better (1b)",
         Verdict.WORD: f"{speaker} believes what {speaker} says (3)",
-        Verdict.LEARNT_NOTHING: f"{speaker} was out of sight for at most {grace} ticks since it "
-        "last watched the place, and can have learnt nothing new (3)",
+        Verdict.LEARNT_NOTHING: f"{outer} lost sight of {speaker} for at most {grace} ticks since "
+        f"{speaker} last watched the place, so {speaker} can have learnt nothing new (3)",
         Verdict.NOT_SINCERE: f"{outer} does not believe it, nor that {speaker} does "
         "(3, sincere: false)",
         Verdict.SPEAKER: f"what {speaker} says changes nothing of what {speaker} believes (4)",
     }[verdict]
-    return words if outer is None or verdict is Verdict.OFF else f"as far as {outer} knows, {words}"
+    if verdict is Verdict.OFF:
+        return words
+    if verdict is Verdict.NOT_SINCERE:
+        return as_known_to(believers[:-1]) + words
+    return as_known_to(believers) + words

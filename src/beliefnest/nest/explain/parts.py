@@ -179,7 +179,8 @@ class Level:
         block: Name of the block it holds to be at the position; None: unknown, or an agent.
         basis: The perception it rests on; None where nothing is known.
         current: Whether a perception in this tick backs it.
-        acts: What was perceived of acts on the element in the basis' tick.
+        acts: What was perceived of acts on the element, at the last tick of any up to that of the
+            basis.
         since: Tick from which on the belief held this; later than the basis where it was
             handed on stale; None where nothing was ever known.
         stood: The holder's feet in the parent node at tick `since`; None: unknown.

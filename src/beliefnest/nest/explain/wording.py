@@ -1,6 +1,6 @@
 """Explanations in words: one line for what is so, then one or two for each belief."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from beliefnest.belief.entries import Basis, PerceivedEvent, Source
@@ -19,7 +19,7 @@ from beliefnest.world.paths import path_text
 from beliefnest.world.signs import sign_words
 from beliefnest.world.values import EventKind, Items
 
-__all__ = ["explanation_lines"]
+__all__ = ["as_known_to", "explanation_lines"]
 
 _KINDS = {
     EventKind.DEPOSIT_ITEM_INTO_CHEST: "something was put in",
@@ -69,7 +69,7 @@ def _belief_text(level: Level, element: Element) -> str:
 
 
 def _given_up(level: Level, element: Element) -> str:
-    begin = f" At tick {level.since} {_standing(level.holder, level.stood)}"
+    begin = f" At tick {level.since} {_knows(level)}{_standing(level.holder, level.stood)}"
     if element.kind == "agent":
         return f"{begin} saw {element.where} not to be where it was believed to be."
     return f"{begin} gave up what it had believed."
@@ -90,6 +90,7 @@ def _context(level: Level, basis: Basis, name: str) -> str:
         case Source.WITNESSED:
             place = "" if level.stood is None or late else f", at {_point(level.stood)},"
             own = any(act.actor == holder for act in level.acts)
+            tick = level.acts[0].tick if level.acts else tick
             verb = "last perceived it at" if own else "saw what happened at"
             acts = _acts_text(level.acts) or _kind_text(basis.event)
             text = f"{_knows(level)}{holder}{place} {verb} tick {tick}: {acts}"
@@ -134,7 +135,8 @@ def _missed_text(missed: Missed, level: Level, fact: Fact, element: Element) -> 
     name, holder = _named(element, level.block or fact.block), level.holder
     begin = f"At tick {missed.tick}"
     if missed.absence is not None:
-        text = f"{begin} {_absence_text(missed, level)}"
+        view = as_known_to(level.path[:-2])
+        text = f"{begin}{',' if view else ''} {view}{_absence_text(missed, level)}"
     elif missed.saw_acts:
         text = (
             f"{begin} {_teller(level)}{_standing(holder, missed.stood)} saw the act, "
@@ -159,10 +161,12 @@ def _looks_text(looks: Iterable[Sighting]) -> str:
 
 
 def _absence_text(missed: Missed, level: Level) -> str:
-    parent = _parent_holder(level) or "nobody"
     absence = missed.absence
     if absence is None:
         raise AssertionError("there is no absence to explain")
+    if len(level.path) == 1:
+        return f"{level.holder} was not there"
+    parent = level.path[-2]
     text = f"{parent} could not tell what {level.holder} saw"
     if absence.last_seen is None:
         text += f": {parent} has never known where {level.holder} is"
@@ -306,13 +310,19 @@ def _point(point: Iterable[float]) -> str:
     return "(" + ", ".join(f"{round(number, 3):.10g}" for number in point) + ")"
 
 
-def _parent_holder(level: Level) -> str | None:
-    return level.path[-2] if len(level.path) > 1 else None
-
-
 def _knows(level: Level) -> str:
-    parent = _parent_holder(level)
-    return "" if parent is None else f"as far as {parent} knows, "
+    """By whom it is known what the holder of a belief perceives."""
+    return as_known_to(level.path[:-1])
+
+
+def as_known_to(believers: Sequence[str]) -> str:
+    """`as far as b knows,`, `a believes that as far as b knows,`: whose view a sentence tells.
+
+    Args:
+        believers: Agent names from the outermost believer inwards; empty: it is a fact.
+    """
+    outer = "".join(f"{name} believes that " for name in believers[:-1])
+    return f"{outer}as far as {believers[-1]} knows, " if believers else ""
 
 
 def _teller(level: Level) -> str:

@@ -101,14 +101,24 @@ class History:
         self._pasts: list[tuple[TimelineKey, Forest]] = []
         self.generation = 0
 
-    def reading(self, key: TimelineKey, path: BeliefPath, position: int | None = None) -> NodeView:
+    def reading(
+        self,
+        key: TimelineKey,
+        path: BeliefPath,
+        position: int | None = None,
+        tick: int | None = None,
+    ) -> NodeView:
         """State of the node `path` after `position` entries of a timeline; None: at its head.
 
-        `path` is the timeline's own simulator or a node below it that follows it.
+        Args:
+            key: The timeline.
+            path: Its own simulator or a node below it that follows it.
+            position: Number of entries.
+            tick: A tick up to the next entry; None: that of the last one.
         """
         if position is None:
             position = self._journal.info(key).entries
-        return NodeView(self.shared(key, path, position), path)
+        return NodeView(self.shared(key, path, position), path, tick)
 
     def shared(self, key: TimelineKey, path: BeliefPath, position: int) -> Forest:
         """A forest with a node, after some entries of a timeline.
@@ -219,14 +229,14 @@ class History:
             self._checkpoints.keep_last(key, head)
 
     def block_bases(
-        self, key: TimelineKey, path: BeliefPath, position: int, cells: Sequence[int]
+        self, moment: ForkPoint, path: BeliefPath, cells: Sequence[int]
     ) -> dict[int, Basis | None]:
         """What a node's blocks at some cells rest on; None where a block is unknown.
 
         It is not kept while folding, so the timeline is folded anew.
         """
-        forest = self._folded(key, path, position, cells)
-        return forest.bases(path, cells)
+        forest = self._folded(moment.timeline, path, moment.entries, cells)
+        return forest.table.bases(forest.node(path), cells, moment.tick)
 
     def current_blocks(
         self, key: TimelineKey, path: BeliefPath, position: int, cells: Iterable[int]

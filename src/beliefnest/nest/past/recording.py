@@ -139,12 +139,12 @@ class Recording:
     def reading(self, path: BeliefPath, tick: int | None = None) -> NodeView:
         """A node's state now, or at a past tick; TickError as for `moment`."""
         moment = self.moment(path, tick)
-        return self.history.reading(moment.timeline, path, moment.entries)
+        return self.history.reading(moment.timeline, path, moment.entries, moment.tick)
 
     def state(self, path: BeliefPath, tick: int | None = None) -> LiveState:
         """The view of a node's state now, or at a past tick; TickError as for `moment`."""
         moment = self.moment(path, tick)
-        reading = self.history.reading(moment.timeline, path, moment.entries)
+        reading = self.history.reading(moment.timeline, path, moment.entries, moment.tick)
         return self.view_of(reading, moment)
 
     def states(self, paths: Iterable[BeliefPath]) -> Mapping[BeliefPath, LiveState]:

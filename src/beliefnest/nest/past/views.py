@@ -106,9 +106,8 @@ class _Blocks:
         cell = self._cell(position)
         if cell not in self._bases:
             cells = self._asked_with(cell, self._bases)
-            at, path = self._moment, self._reading.path
             with self._turn:
-                found = self._history.block_bases(at.timeline, path, at.entries, cells)
+                found = self._history.block_bases(self._moment, self._reading.path, cells)
             self._bases.update(found)
         return self._bases[cell]
 

@@ -224,7 +224,7 @@ class TrackRecorder:
         code = np.where(pose_id < 0, UNKNOWN, np.where(current, CURRENT, STALE)).astype(np.int8)
         as_there = self._stands_there(pose_id) | (code != CURRENT)
         code[~as_there] = STALE
-        stale = np.where(code == STALE, seen_at, -1).astype(np.int32)
+        stale = np.where((code == STALE) & ~current, seen_at, -1).astype(np.int32)
         for at, agent in np.argwhere((code != last.code) | (stale != last.seen_at)).tolist():
             row = [tick, int(code[at, agent])]
             if code[at, agent] == STALE:
@@ -247,7 +247,8 @@ class TrackRecorder:
         """The row of an agent that is not where it stands in the timeline's world now."""
         table, poses = self._forest.table, self._forest.poses
         number = self._numbers[at]
-        pose_id, seen = table.pose(number, agent), table.seen_at(number, agent)
+        pose_id = table.pose(number, agent)
+        seen = tick if current else table.seen_at(number, agent)
         pose: Pose = (*poses.position(pose_id), *poses.angles(pose_id))
         as_seen = poses.details(pose_id) is not None and poses.speaker(pose_id) < 0
         if not current and as_seen and self._book.at(agent, seen) == pose:
@@ -261,17 +262,17 @@ class TrackRecorder:
 
     def _note_contents(self, at: int, track: Track, number: int, tick: int) -> None:
         forest, held = self._forest, self._forest.holdings.of(number).containers
-        last, look = self._last.contents[at], forest.holdings.last_perceived(number)
+        last = self._last.contents[at]
         for cell in last.keys() - held.keys():
             del last[cell]
             _put(track.contents[cell], [tick, None, False, False, -1, "", "", None])
         for cell, raw in held.items():
-            current = number == 0 or raw.entry == look
+            current = number == 0 or raw.current
             told = (raw.items, raw.complete, current, None if current else raw.basis)
             if last.get(cell) == told:
                 continue
             last[cell] = told
-            basis: Basis = forest.holdings.content(number, cell).basis
+            basis: Basis = forest.holdings.content(number, cell).at(tick).basis
             event = "" if basis.event is None else basis.event.value
             row = [tick, dict(raw.items), raw.complete, current]
             row += [basis.observed_at, basis.source.value, event, basis.speaker]
@@ -284,12 +285,11 @@ class TrackRecorder:
             return
         for gone in last.keys() - lying.keys():
             track.items.append([tick, gone, None])
-        for identity, each in lying.items():
-            if last.get(identity) != each.item:
-                item = each.item
+        for identity, item in lying.items():
+            if last.get(identity) != item:
                 place = [round(value, 3) for value in item.position]
                 track.items.append([tick, identity, [item.name, item.count, *place]])
-        self._last.items[at] = {identity: each.item for identity, each in lying.items()}
+        self._last.items[at] = dict(lying)
 
     def _note_looks(self, track: Track, tick: int) -> None:
         for agent, looks in enumerate(self._last.looks):

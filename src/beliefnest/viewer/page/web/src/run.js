@@ -115,7 +115,7 @@ class Track {
       return pose && { ...pose, current: false, seenAt: row[2], source: 'seen', holds: this.timeline.holds(number, row[2]) }
     }
     const [, , seenAt, pose, source, current, holds, speaker] = row
-    return { ...poseOf(pose), current, seenAt, source, holds, speaker }
+    return { ...poseOf(pose), current, seenAt: current ? tick : seenAt, source, holds, speaker }
   }
 
   /** @returns {Array} [items, complete] an agent is believed to have */
