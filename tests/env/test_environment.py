@@ -191,3 +191,48 @@ def test_the_guide_does_what_it_says(capsys):
     exec(compile(code, "guide", "exec"), {"__name__": "guide"})
     printed = capsys.readouterr().out.splitlines()
     assert printed == re.findall(r"print\(.*\)  # (.*)", code)
+
+
+@pytest.mark.parametrize("seed", ["x", 1.5, 2**63, b"1", [1]])
+def test_a_seed_that_is_none_is_refused_and_the_episode_goes_on(seed):
+    env = make(actions="skills")
+    env.reset(seed=np.int64(3))
+    with pytest.raises(bn.InputError, match=r"seed is .*; give a whole number of 64 bits"):
+        env.reset(seed=seed)
+    env.step({})
+    with pytest.raises(bn.InputError, match="seed is"):
+        make(seed=seed)
+    with pytest.raises(bn.InputError, match="seed is"):
+        bn.Nest.open(bn.Scenario.load("sally-anne", 3), world="scripted", seed=seed)
+    env.close()
+
+
+@pytest.mark.parametrize("actions", [None, 3, "sally", [{"skill": 0}], ("sally",)])
+def test_actions_that_are_no_mapping_are_refused(actions):
+    env = make(actions="skills")
+    env.reset()
+    with pytest.raises(bn.InputError, match="give a dict of agents' names and actions"):
+        env.step(actions)
+    env.close()
+
+
+@pytest.mark.parametrize(
+    "action", [None, 3, {}, {"skill": float("inf")}, {"skill": -1}, {"skill": "x" * 10_000}, []]
+)
+def test_what_is_no_action_is_refused_in_one_line(action):
+    env = make(actions="skills")
+    env.reset()
+    with pytest.raises(bn.InputError) as fault:
+        env.step({env.agents[0]: action})
+    assert "\n" not in str(fault.value)
+    assert len(str(fault.value)) < 600
+    for parts in ({"position": None}, {"position": "abc"}, {"position": (float("inf"), 0, 0)}):
+        with pytest.raises(bn.InputError):
+            env.action("goToPosition", **parts)
+    env.close()
+
+
+@pytest.mark.parametrize("name", ["max_steps", "timeout_ticks", "step_ticks", "reward", "ends"])
+def test_options_of_another_type_are_refused(name):
+    with pytest.raises(bn.InputError, match=f"{name} is "):
+        parallel_env("sally-anne", **{name: "x"})

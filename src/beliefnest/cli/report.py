@@ -241,7 +241,7 @@ def _verdict(row: OutcomeRow) -> str:
     """Whether all was as expected, and if not, what was not; `notes` say why."""
     if not row.failures:
         return "[green]yes[/green]"
-    names = (failure.partition(": ")[0] for failure in row.failures)
+    names = (printable(failure.partition(": ")[0]) for failure in row.failures)
     return "\n".join(["[bold red]NO[/bold red]", *map(escape, names)])
 
 
@@ -254,7 +254,8 @@ def _notes(outcome: Outcome) -> list[str]:
         for count, probe in enumerate(outcome.probes, start=1)
         if probe.error is not None and probe.ok is None
     ]
-    return [*(f"NO: {where}{failure}" for failure in outcome.failures), *failed]
+    lines = [*(f"NO: {where}{failure}" for failure in outcome.failures), *failed]
+    return [printable(line) for line in lines]
 
 
 def _headings(rows: Iterable[OutcomeRow]) -> list[str]:

@@ -358,7 +358,7 @@ def _print(
     with console.capture() as captured:
         for number, about in cells[0].scenario.conditions.items():
             if any(cell.scenario.condition == number for cell in cells):
-                console.print(f"condition {number}: {about}", highlight=False)
+                console.print(f"condition {number}: {printable(about)}", highlight=False)
         print_table(console, _table(run, cells, console))
         if _is_one_round(run, cells):
             for line in (line for row in run.rows for line in row.notes):

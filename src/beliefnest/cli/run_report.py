@@ -10,6 +10,8 @@ from typing import Any
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
+from beliefnest.world.texts import visible
+
 __all__ = ["command_of", "report_html"]
 
 
@@ -35,7 +37,7 @@ def report_html(
     template = environment.from_string(
         (files("beliefnest.cli") / "run_report.html").read_text(encoding="utf-8")
     )
-    return (
+    return visible(
         template.render(
             report=report,
             runs=runs,

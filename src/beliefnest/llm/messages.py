@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
+from beliefnest.world.texts import visible
+
 __all__ = ["Answer", "Message", "Model", "Role", "Sampling", "Usage"]
 
 Role = Literal["system", "user", "assistant"]
@@ -11,10 +13,17 @@ Role = Literal["system", "user", "assistant"]
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """One message of a conversation."""
+    """One message of a conversation.
+
+    Hidden characters of its text are written out, whoever wrote it: a model reads what a person
+    would see.
+    """
 
     role: Role
     text: str
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "text", visible(self.text))
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ from html import escape
 from beliefnest.belief.view import State
 from beliefnest.pictures.palette import age_text
 from beliefnest.world.signs import is_sign
+from beliefnest.world.texts import visible
 from beliefnest.world.values import Items, Point, Position
 
 __all__ = [
@@ -68,16 +69,18 @@ _STATES = {"open": ("open", "shut"), "powered": ("on", "off"), "lit": ("lit", "o
 
 def html_lines(lines: Iterable[str]) -> str:
     """Return lines of text; spaces at their beginning are kept."""
-    return f'<div style="white-space:pre-wrap">{escape(chr(10).join(lines))}</div>'
+    return f'<div style="white-space:pre-wrap">{_html(chr(10).join(lines))}</div>'
 
 
 def html_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Return a table of texts."""
-    head = "".join(f"<th>{escape(each)}</th>" for each in headings)
-    body = "".join(
-        f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows
-    )
+    head = "".join(f"<th>{_html(each)}</th>" for each in headings)
+    body = "".join(f"<tr>{''.join(f'<td>{_html(cell)}</td>' for cell in row)}</tr>" for row in rows)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def _html(text: str) -> str:
+    return escape(visible(text))
 
 
 def state_words(state: State) -> str:

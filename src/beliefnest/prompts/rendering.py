@@ -1,7 +1,6 @@
 """From a template and a simulator to the text of a prompt."""
 
 import functools
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +23,7 @@ from beliefnest.prompts.templates import (
 )
 from beliefnest.prompts.text import nearest
 from beliefnest.prompts.view import BranchView
-from beliefnest.world.texts import escaped
+from beliefnest.world.texts import visible
 
 __all__ = ["LAST_CODE", "LAST_ERROR", "NO_CODE", "NO_ERROR", "Renderer", "instructions", "render"]
 
@@ -34,7 +33,6 @@ NO_ERROR = "No error"
 LAST_CODE = "$$LAST_CODE$$"
 LAST_ERROR = "$$LAST_ERROR$$"
 
-_SPACES = re.compile(r"([\n\t])")
 """What programs and errors of several lines are set with."""
 
 _MARKERS = {LAST_CODE: "{{ last_code }}", LAST_ERROR: "{{ last_error }}"}
@@ -198,7 +196,7 @@ def _printed(value: object) -> object:
     """What `{{ }}` prints, whoever wrote it: lines stay, what controls text is written out."""
     if not isinstance(value, str) or (value.isascii() and value.isprintable()):
         return value
-    return "".join(part if part in "\n\t" else escaped(part) for part in _SPACES.split(value))
+    return visible(value)
 
 
 def _environment(filters: FilterSet) -> jinja2.Environment:

@@ -12,6 +12,7 @@ from beliefnest.studies.counting import Pairs
 from beliefnest.studies.plot import plot_accuracy, svg_of
 from beliefnest.studies.rows import variation_columns
 from beliefnest.studies.table import Table
+from beliefnest.world.texts import visible
 
 __all__ = ["page_text"]
 
@@ -61,7 +62,7 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
     template = environment.from_string(
         (files("beliefnest.studies") / "page.html.jinja").read_text(encoding="utf-8")
     )
-    return template.render(
+    text = template.render(
         kind="episodes" if "tasks" in plan else "scenarios",
         subjects=plan.get("tasks") or plan["scenarios"],
         players=_players(plan),
@@ -78,6 +79,7 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
         copies=sum(row["copy_of"] is not None for row in rows),
         failed=[row for row in rows if row["outcome"] == "error"],
     )
+    return visible(text)
 
 
 def _differences(result: Counted) -> Iterator[tuple[str, str, Pairs]]:

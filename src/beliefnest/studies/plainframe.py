@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from beliefnest.errors import MissingExtraError
+from beliefnest.world.texts import formula_free
 
 if TYPE_CHECKING:  # Tables are an extra, imported when one is made.
     import pandas
@@ -74,6 +75,8 @@ def _texts(column: Typed) -> list[str | None]:
 def write_typed(columns: Mapping[str, Typed], csv: Path, parquet: Path) -> None:
     """Write a table as CSV and as Parquet; whole numbers stay whole where some are missing.
 
+    In the CSV file an apostrophe stands before texts that a spreadsheet would compute.
+
     Raises:
         MissingExtraError: pandas or pyarrow is not installed.
     """
@@ -85,12 +88,18 @@ def write_typed(columns: Mapping[str, Typed], csv: Path, parquet: Path) -> None:
             for name, values in arrays.items()
         }
     )
-    frame.to_csv(csv, index=False, lineterminator="\n")
+    texts = [name for name in frame if any(isinstance(each, str) for each in frame[name])]
+    safe = {name: [_cell(value) for value in frame[name]] for name in texts}
+    frame.assign(**safe).to_csv(csv, index=False, lineterminator="\n")
     import pyarrow
     from pyarrow import parquet as files
 
     # Without notes for pandas, by which it would read other types than plain ones.
     files.write_table(pyarrow.table(arrays), parquet)
+
+
+def _cell(value: object) -> object:
+    return formula_free(value) if isinstance(value, str) else value
 
 
 def _arrow(column: Typed) -> "pyarrow.Array":

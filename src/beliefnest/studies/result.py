@@ -253,7 +253,10 @@ class StudyResult:
         return path
 
     def write_tables(self) -> tuple[Path, Path]:
-        """Write `rows.csv` and `rows.parquet` into the folder, with the type of each column."""
+        """Write `rows.csv` and `rows.parquet` into the folder, with the type of each column.
+
+        In the CSV file an apostrophe stands before texts that a spreadsheet would compute.
+        """
         csv, parquet = self.folder.path / "rows.csv", self.folder.path / "rows.parquet"
         write_typed(self._typed(), csv, parquet)
         return csv, parquet

@@ -29,6 +29,10 @@ _COMPRESSION = 1
 """Level of zstandard; higher ones save nothing on poses, which are noise in their last digits."""
 
 
+_LARGEST = 2**28
+"""Bytes of a chunk, keyframe or body state when it is unpacked; a foreign file may name any."""
+
+
 class _Chunk(NamedTuple):
     """A row of the table of chunks."""
 
@@ -61,11 +65,16 @@ class Chunks:
 
     def decompressed(self, body: bytes) -> bytes:
         """What was compressed; StoreError if it is damaged."""
+        path = self._database.path
         try:
-            return self._unpacker.decompress(body)
+            if zstandard.frame_content_size(body) <= _LARGEST:
+                return self._unpacker.decompress(body)
         except zstandard.ZstdError as fault:
-            path = self._database.path
             raise StoreError(f"{path} is damaged; restore it from a copy ({fault})") from fault
+        raise StoreError(
+            f"{path} is damaged; restore it from a copy (a part would unpack to more than "
+            f"{_LARGEST:,} bytes)"
+        )
 
     def add(
         self,

@@ -1,11 +1,23 @@
 """Texts that people, programs and models write: what may be said, and how it is shown."""
 
+import re
 import unicodedata
 
-__all__ = ["LONGEST_UTTERANCE", "escaped", "fault_of", "is_well_formed", "on_one_line"]
+__all__ = [
+    "LONGEST_UTTERANCE",
+    "escaped",
+    "fault_of",
+    "formula_free",
+    "is_well_formed",
+    "on_one_line",
+    "visible",
+    "visible_json",
+]
 
 LONGEST_UTTERANCE = 256
 """Characters of one line of chat, as in Minecraft."""
+
+_LAST_OF_FOUR_DIGITS = 0xFFFF
 
 _COMMANDS = frozenset({"Cc", "Cs", "Zl", "Zp"})
 """Unicode categories of what controls or breaks lines, or is half a character."""
@@ -13,7 +25,17 @@ _COMMANDS = frozenset({"Cc", "Cs", "Zl", "Zp"})
 _BIDIRECTIONAL = frozenset(
     "\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069"
 )
-"""What turns the direction of the text around it."""
+"""Characters that turn the direction of the text around them."""
+
+_HIDDEN = re.compile(
+    "\r(?!\n)|[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\xad\u0600-\u0605\u061c\u06dd\u070f\u180e\u200b\u200e\u200f"
+    "\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb\ud800-\udfff\U000e0000-\U000e007f]"
+)
+"""Characters that `visible` writes out: controls but tab and line ends, marks of direction, text
+that is not shown."""
+
+_FORMULA = re.compile(r"[=+\-@\t\r\uff1d\uff0b\uff0d\uff20]")
+_NUMBERS = re.compile(r"[-+]?[\d.][-+\d., eE]*", re.ASCII)
 
 
 def is_well_formed(text: str) -> bool:
@@ -38,7 +60,31 @@ def escaped(text: str) -> str:
     r"""A text with all that controls, breaks lines or turns direction written out, as `\u001b`."""
     if text.isascii() and text.isprintable():
         return text
-    return "".join(_written(character) if _commands(character) else character for character in text)
+    return visible("".join(_written(each) if _commands(each) else each for each in text))
+
+
+def visible(text: str) -> str:
+    r"""Return a text as models and readers of pages get it: lines stay, hidden characters show.
+
+    Bidirectional controls, invisible characters and controls are written out, as `\u202e`.
+    """
+    if text.isascii() and text.isprintable():
+        return text
+    return _HIDDEN.sub(lambda found: _written(found[0]), text)
+
+
+def visible_json(text: str) -> str:
+    """Return a JSON text in whose strings hidden characters show, see `visible`."""
+    return _HIDDEN.sub(lambda found: "\\" + _written(found[0]), text)
+
+
+def formula_free(text: str) -> str:
+    """Return a text as a cell of a CSV file: an apostrophe keeps spreadsheets from computing it.
+
+    Numbers and places, as `-2,-51,-4`, stay as they are.
+    """
+    is_formula = _FORMULA.match(text) and not _NUMBERS.fullmatch(text)
+    return f"'{text}" if is_formula else text
 
 
 def on_one_line(text: str) -> str:
@@ -51,4 +97,5 @@ def _commands(character: str) -> bool:
 
 
 def _written(character: str) -> str:
-    return f"\\u{ord(character):04x}"
+    number = ord(character)
+    return f"\\u{number:04x}" if number <= _LAST_OF_FOUR_DIGITS else f"\\U{number:08x}"

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from beliefnest.errors import InputError
+from beliefnest.world.texts import on_one_line, visible_json
 
 __all__ = ["page_html"]
 
@@ -46,12 +47,12 @@ def page_html(title: str, content: Mapping[str, Any], *, served: bool) -> str:
     Raises:
         InputError: The page was not built with the package.
     """
-    text = json.dumps(content, separators=(",", ":"), ensure_ascii=False)
+    text = visible_json(json.dumps(content, separators=(",", ":"), ensure_ascii=False))
     packed = base64.b64encode(zlib.compress(text.encode(), 9)).decode()
     style, program = _part("page.css"), _part("page.js")
     return _SHELL.format(
         policy=html.escape(_policy(style, program, served=served)),
-        title=html.escape(title),
+        title=html.escape(on_one_line(title)),
         style=style,
         # Base64 has no `<`: nothing in the data can end the element.
         data=json.dumps({"served": served, "packed": packed}),

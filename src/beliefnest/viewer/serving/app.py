@@ -11,13 +11,14 @@ from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
 from starlette.middleware import Middleware
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, JSONResponse, Response, StreamingResponse
+from starlette.responses import HTMLResponse, Response, StreamingResponse
 from starlette.routing import Route
 
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.viewer.page.html import page_html
 from beliefnest.viewer.serving.guard import Guard
 from beliefnest.viewer.serving.host import Host
+from beliefnest.world.texts import visible_json
 
 __all__ = ["page_app"]
 
@@ -143,7 +144,15 @@ def page_app(
 
 def _refused(_: Request, error: Exception) -> Response:
     """Say in one line what is wrong with a question."""
-    return JSONResponse({"error": str(error)}, 400)
+    return _answered({"error": str(error)}, 400)
+
+
+def _answered(content: object, status: int = 200) -> Response:
+    return Response(_json(content), status, media_type="application/json")
+
+
+def _json(content: object) -> str:
+    return visible_json(json.dumps(content, separators=(",", ":"), ensure_ascii=False))
 
 
 def _page(host: Host) -> Response:
@@ -159,7 +168,7 @@ async def _updates(host: Host, news: _News, first: int) -> AsyncIterator[str]:
     while not news.is_ending():
         for run, update in host.told[number:]:
             number += 1
-            told = json.dumps({"run": run, "update": update}, separators=(",", ":"))
+            told = _json({"run": run, "update": update})
             yield f"id: {number}\ndata: {told}\n\n"
         if not await news.after(number):
             yield ": still here\n\n"
@@ -169,7 +178,7 @@ def _answer(ask: Callable[[Mapping[str, str]], Any]) -> Callable[[Request], Resp
     """Return a route that asks in a thread."""
 
     def answer(request: Request) -> Response:
-        return JSONResponse(ask(request.query_params))
+        return _answered(ask(request.query_params))
 
     return answer
 
