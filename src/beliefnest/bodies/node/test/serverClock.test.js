@@ -33,3 +33,15 @@ test('ticks never fall, whatever the server tells', () => {
 test('a server that tells nothing is waited for', () => {
   assert.equal(following([[0, 100], [1000, 120], [60_000, 120]]).at(-1), 139)
 })
+
+test('time in which this process was stopped is not the silence of a server', () => {
+  let now = 0
+  const clock = new ServerClock(() => now)
+  clock.tell(100)
+  now = 60_000
+  assert.ok(!clock.isSilentFor(5000))
+  for (; now < 70_000; now += 100) clock.isSilentFor(5000)
+  assert.ok(clock.isSilentFor(5000))
+  clock.tell(120)
+  assert.ok(!clock.isSilentFor(5000))
+})
