@@ -18,6 +18,7 @@ from typing import Any
 
 from tests.nest.reference_rules import UNKNOWN, Node, Rules, known_block
 from tests.nest.reference_testimony import Ear
+from tests.nest.reference_unique import remove
 
 import beliefnest as bn
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
@@ -52,6 +53,7 @@ class Reference:
         static_blocks: Names of blocks that everybody knows.
         initial_beliefs: Further priors.
         depth: Length of the longest paths.
+        unique: Items of which there is one.
     """
 
     def __init__(
@@ -61,8 +63,9 @@ class Reference:
         static_blocks: frozenset[str] = frozenset(),
         initial_beliefs: tuple[bn.InitialBelief, ...] = (),
         depth: int = 3,
+        unique: frozenset[str] = frozenset(),
     ) -> None:
-        self.rules = Rules(start, options)
+        self.rules = Rules(start, options, unique)
         self._static = static_blocks
         self._initial = initial_beliefs
         self._start = start
@@ -117,6 +120,8 @@ class Reference:
             )
         for place, items in contents.items():
             node.containers[place] = ContainerBelief(dict(items), True, basis, control)
+            for item in () if control else self.rules.unique & items.keys():
+                remove(node, item, basis, {("container", place)})
         node.tick = basis.observed_at
         tree.node = node
         self._perceive_below(tree, happening=False)

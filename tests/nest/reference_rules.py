@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from tests.nest.reference_testimony import Ear, Matter, hear
+from tests.nest.reference_unique import see_alone, see_moved
 
 import beliefnest as bn
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
@@ -52,7 +53,8 @@ class Node:
     `events` are all that happened on its timeline in this tick, `news` those that it perceived.
     `is_world` says that it is the simulator whose timeline it is. `into` are the transparent
     containers it sees into and whose content is current, `looked_into` those it looked into in this
-    tick, `moved` items that it perceived to be put in or taken out in this tick.
+    tick, `moved` items that it perceived to be put in or taken out in this tick, `found_now` where
+    it perceived unique items in this tick.
     """
 
     tick: int
@@ -68,6 +70,7 @@ class Node:
     into: frozenset[Position] = frozenset()
     looked_into: frozenset[Position] = frozenset()
     moved: frozenset[tuple[Position, str]] = frozenset()
+    found_now: frozenset[tuple[str, Any]] = frozenset()
 
     def drop(self, place: Position) -> None:
         """Hold nothing of a container any more, nor that something was perceived in it."""
@@ -89,6 +92,7 @@ class Node:
             self.into,
             self.looked_into,
             self.moved,
+            self.found_now,
         )
 
     def perceives(self, place: Position | None, item: str) -> bool:
@@ -108,7 +112,10 @@ class Node:
 class Rules:
     """Perception and update: semantics, sections 3 to 5."""
 
-    def __init__(self, start: Snapshot, options: bn.Perception) -> None:
+    def __init__(
+        self, start: Snapshot, options: bn.Perception, unique: frozenset[str] = frozenset()
+    ) -> None:
+        self.unique = unique
         self.registry = Registry.load()
         self.box = start.box
         self.options = options
@@ -133,7 +140,7 @@ class Rules:
         """
         after = before.copy()
         after.tick, after.events = around.tick, around.events
-        after.is_world = False
+        after.is_world, after.found_now = False, frozenset()
         last = around.tick - 1 if happening else around.tick
         after.ear.pass_to(last)
         self._age(after, last)
@@ -143,9 +150,17 @@ class Rules:
         after.news = tuple(e for e in around.news if self._perceived(e, around, me, view))
         after.log += [PerceivedEvent(around.tick, e.kind, e.actor, e.detail) for e in after.news]
         if view is not None:
+            for item in self.unique:
+                see_moved(after, item)
             self._see_blocks(after, around, view)
             self._see_agents(after, before, around, me, view)
             self._see_contents(after, before, around, me, view)
+        # An agent knows what it has.
+        own = around.agents[me].inventory
+        after.agents[me] = replace(after.agents[me], inventory=own)
+        if view is not None:
+            for item in self.unique:
+                see_alone(after, around, me, view.agents, item)
         if self.options.testimony == "informed":
             self._attend(after, me, view)
         hear(self, after, around, me, view)

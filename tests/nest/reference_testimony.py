@@ -15,6 +15,8 @@ Where the text leaves something open, the choice made here is:
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from tests.nest.reference_unique import is_perceived_elsewhere, remove
+
 from beliefnest.belief.entries import Basis, ContainerBelief, Source
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
 from beliefnest.world.registry import Registry
@@ -95,6 +97,14 @@ class Ear:
         for item, count in items.items():
             self._is_there(place, item, count)
 
+    def find_elsewhere(self, item: str, kept: set[Position]) -> None:
+        """It was perceived to be nowhere but in some containers."""
+        for place, name in list(self.counts):
+            if name == item and place not in kept:
+                del self.counts[place, name]
+        if self.found.get(item) not in kept:
+            self.found.pop(item, None)
+
     def forget(self, place: Position) -> None:
         """Nothing of what was perceived there is there any more."""
         for at, item in [key for key in self.counts if key[0] == place]:
@@ -131,7 +141,7 @@ def hear(rules: "Rules", after: "Node", around: "Node", me: str, view: "View | N
         if testimony == "none" or event not in around.news:
             continue
         for index, claim in enumerate(claims_of(event)):
-            if _is_beaten(after, me, view, claim):
+            if _is_beaten(after, me, view, claim, rules.unique):
                 believed = False
                 after.ear.verdicts[number, index] = False
             elif event.actor == me:
@@ -140,10 +150,12 @@ def hear(rules: "Rules", after: "Node", around: "Node", me: str, view: "View | N
                 believed = id(event) in heard and _taken_up(rules, after, me, view, claim, event)
                 after.ear.verdicts[number, index] = believed
             if believed:
-                _believe(rules.registry, after, claim, event)
+                _believe(rules.registry, after, claim, event, rules.unique)
 
 
-def _is_beaten(after: "Node", me: str, view: "View | None", claim: Claim) -> bool:
+def _is_beaten(
+    after: "Node", me: str, view: "View | None", claim: Claim, unique: frozenset[str]
+) -> bool:
     """Rule 0: whether what is perceived of the matter in this tick beats what is said."""
     if claim.kind is ClaimKind.POSITION and view is not None and claim.agent in view.agents:
         return True
@@ -151,6 +163,9 @@ def _is_beaten(after: "Node", me: str, view: "View | None", claim: Claim) -> boo
         return view is not None and _sees_claimed(view, claim)
     if after.perceives(claim.cell, claim.item):
         return True
+    if claim.kind is ClaimKind.LOCATED and claim.item in unique:
+        if is_perceived_elsewhere(after, me, claim.item, claim.cell):
+            return True
     return claim.kind is ClaimKind.LOCATED and any(
         place != claim.cell and claim.item in content.items and after.perceives(place, claim.item)
         for place, content in after.containers.items()
@@ -197,7 +212,9 @@ def _sees_claimed(view: "View", claim: Claim) -> bool:
     return view.sees(claim.cell)
 
 
-def _believe(registry: Registry, node: "Node", claim: Claim, event: Event) -> None:
+def _believe(
+    registry: Registry, node: "Node", claim: Claim, event: Event, unique: frozenset[str]
+) -> None:
     """Condition 2: what a claim does to a node's beliefs."""
     basis = Basis(node.tick, Source.HEARD, EventKind.CHAT, event.actor)
     match claim.kind:
@@ -216,6 +233,8 @@ def _believe(registry: Registry, node: "Node", claim: Claim, event: Event) -> No
             _believe_block(registry, node, claim, basis)
         case ClaimKind.LOCATED:
             _believe_located(node, claim.item or "", claim.cell, basis)
+            if claim.item in unique:
+                remove(node, claim.item, basis, {("container", claim.cell)})
         case ClaimKind.ABSENT:
             item, old_content = claim.item or "", node.containers.get(claim.cell)
             if old_content is not None and item in old_content.items:

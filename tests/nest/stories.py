@@ -43,14 +43,23 @@ class Story:
     initial: tuple[bn.InitialBelief, ...] = ()
     yaws: Mapping[str, float] = field(default_factory=dict)
     signs: Mapping[Position, str] = field(default_factory=dict)
+    unique: Mapping[str, str] = field(default_factory=dict)
+    """Unique item to who has it at first; `hand NAME`: in the hand."""
 
     def world(self) -> bn.ScriptedWorld:
         """The world at the start; everybody owns an apple and two diamonds."""
+        own = {name: {"apple": 1, "diamond": 2} for name in self.agents}
+        hands = {}
+        for item, holder in self.unique.items():
+            own[holder.split()[-1]][item] = 1
+            if " " in holder:
+                hands[holder.split()[-1]] = {"main_hand": item}
         world = bn.ScriptedWorld(
             (LOW, HIGH),
             self.blocks | dict.fromkeys(self.signs, "oak_sign"),
             self.agents,
-            inventories={name: {"apple": 1, "diamond": 2} for name in self.agents},
+            inventories=own,
+            equipment=hands,
             containers=self.contents,
             signs=self.signs,
         )
@@ -84,6 +93,7 @@ class Stage:
             static_blocks=story.static,
             initial_beliefs=story.initial,
             store=store,
+            unique=story.unique,
         )
 
     def do(self, act: Act) -> bool:
@@ -135,6 +145,7 @@ class Stories:
         whispers: Whether agents whisper as well.
         claims: Whether they claim something, which hearers may take up.
         signs: Whether there are signs, and agents write on them.
+        unique: Whether there is a gold ingot, of which there is one.
     """
 
     def __init__(
@@ -149,6 +160,7 @@ class Stories:
         whispers: bool = True,
         claims: bool = False,
         signs: bool = False,
+        unique: bool = False,
     ) -> None:
         self._blocks = st.sampled_from(blocks)
         self._options = options
@@ -159,6 +171,7 @@ class Stories:
         self._whispers = whispers
         self._claims = claims
         self._signs = signs
+        self._unique = unique
 
     @cached_property
     def story(self) -> st.SearchStrategy[Story]:
@@ -183,7 +196,13 @@ class Stories:
             initial=initial.map(tuple),
             yaws=st.fixed_dictionaries(dict.fromkeys(NAMES, self._yaw)),
             signs=self._writing if self._signs else st.just({}),
+            unique=self._holder if self._unique else st.just({}),
         )
+
+    @cached_property
+    def _holder(self) -> st.SearchStrategy[dict[str, str]]:
+        holders = st.sampled_from([*NAMES, *(f"hand {name}" for name in NAMES)])
+        return holders.map(lambda holder: {"gold_ingot": holder})
 
     @cached_property
     def _initial(self) -> st.SearchStrategy[bn.InitialBelief]:
@@ -192,13 +211,19 @@ class Stories:
             lambda names: all(a != b for a, b in pairwise(names))
         )
         states = st.sampled_from([-1, *map(REGISTRY.state_id, ("air", "stone", "chest"))])
-        contents = st.tuples(st.just({"emerald": 1}), st.booleans())
+        held = st.just({"emerald": 1})
+        # Two priors may speak of one node, and have to agree about where it is.
+        place = CONTAINERS
+        if self._unique:
+            held |= st.just({"emerald": 1, "gold_ingot": 1})
+            place = CONTAINERS[:1]
+        contents = st.tuples(held, st.booleans())
         return st.builds(
             bn.InitialBelief,
             path=st.one_of(
                 paths.map(tuple), paths.map(lambda names: (*names[:2], "**")), st.just(("**",))
             ),
-            containers=st.dictionaries(st.sampled_from(CONTAINERS), contents, max_size=1),
+            containers=st.dictionaries(st.sampled_from(place), contents, max_size=1),
             blocks=st.dictionaries(self._cell(range(2)), states, max_size=3),
             agents=st.dictionaries(st.sampled_from(NAMES), self._feet, max_size=1),
         )
@@ -217,6 +242,9 @@ class Stories:
         who = st.sampled_from(NAMES)
         container = st.sampled_from(CONTAINERS)
         items = st.sampled_from([{"diamond": 1}, {"emerald": 1}, {"diamond": 2, "apple": 1}])
+        if self._unique:
+            gold = st.just({"gold_ingot": 1})
+            items = gold | gold | items | st.just({"gold_ingot": 1, "apple": 1})
         place = st.tuples(st.just("place_agent"), who, self._feet, self._yaw)
         anywhere = st.one_of(self._cell(range(4)), container)
         block = st.one_of(self._blocks, st.sampled_from(["air", "chest", "barrel"]))
@@ -250,7 +278,7 @@ class Stories:
     def _claim(self) -> st.SearchStrategy[bn.Claim]:
         """A claim, sometimes about a place without a container."""
         place = st.sampled_from(CONTAINERS) | self._cell(range(2))
-        item = st.sampled_from(["diamond", "emerald"])
+        item = st.sampled_from(["gold_ingot"] if self._unique else ["diamond", "emerald"])
         block = self._blocks | st.sampled_from(["air", "chest", "chest[facing=east]", "barrel"])
         if self._signs:
             place |= st.sampled_from(SIGNS)
@@ -279,7 +307,10 @@ class Stories:
     @cached_property
     def _edit(self) -> st.SearchStrategy[Act]:
         blocks = st.dictionaries(self._cell(range(2)), self._blocks, max_size=1)
-        contents = st.dictionaries(st.sampled_from(CONTAINERS), st.just({"apple": 3}), max_size=1)
+        held = st.just({"apple": 3})
+        if self._unique:
+            held |= st.just({"apple": 1, "gold_ingot": 1})
+        contents = st.dictionaries(st.sampled_from(CONTAINERS), held, max_size=1)
         signs = self._writing if self._signs else st.just({})
         return st.tuples(st.just("edit"), self._path, blocks, contents, signs)
 

@@ -17,7 +17,12 @@ class Double:
         start = self.stage.world.snapshot()
         options = story.perception()
         self.reference = Reference(
-            start, options, frozenset(story.static), story.initial, depth=depth
+            start,
+            options,
+            frozenset(story.static),
+            story.initial,
+            depth=depth,
+            unique=frozenset(story.unique),
         )
         self._bodies = {(): self.stage.world}
         self.stage.world.listen(lambda frame: self.reference.frame((), frame))
@@ -116,4 +121,19 @@ def test_every_node_where_signs_are_written_on_asked_at_every_tick(story):
 
 @given(Stories(signs=True, max_acts=12).story)
 def test_every_node_to_depth_four_where_signs_are_written_on(story):
+    compare(story, each_tick=False, depth=4)
+
+
+@given(Stories(unique=True, forks=True, max_acts=20).story)
+def test_every_node_where_an_item_is_unique(story):
+    compare(story, each_tick=False)
+
+
+@given(Stories(unique=True, claims=True, forks=True, max_acts=12).story)
+def test_every_node_where_an_item_is_unique_and_claimed_asked_at_every_tick(story):
+    compare(story, each_tick=True, depth=2)
+
+
+@given(Stories(unique=True, claims=True, max_acts=12).story)
+def test_every_node_to_depth_four_where_an_item_is_unique_and_claimed(story):
     compare(story, each_tick=False, depth=4)

@@ -35,6 +35,7 @@ class BeliefContext:
         registry: Names and shapes of blocks.
         sight: How agents see.
         first_perceptions: Of that sight, in this nest and others.
+        unique: Items of which everybody knows that there is one (semantics, section 3).
     """
 
     box: Box
@@ -43,6 +44,7 @@ class BeliefContext:
     registry: Registry
     sight: Sight
     first_perceptions: FirstPerceptions = field(default_factory=FirstPerceptions)
+    unique: tuple[str, ...] = ()
     _tracked: dict[int, None] = field(default_factory=dict)
     _signs: dict[Sign, int] = field(default_factory=dict)
 

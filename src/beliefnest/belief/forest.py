@@ -343,8 +343,8 @@ class Forest:
         )
 
     def _fold(self, start: int, stop: int) -> int:
-        if self._weighs and self.columns.has_claims(start):
-            return self._fold_claims(start)
+        if self.context.unique or (self._weighs and self.columns.has_claims(start)):
+            return self._fold_by_level(start)
         context, columns, facts = self.context, self.columns, self.columns.facts()
         first = columns.events_until(start)
         changes = self._changes(columns.events_until(stop) - first)
@@ -370,8 +370,12 @@ class Forest:
         self.table.edited_cells.clear()
         return reached
 
-    def _fold_claims(self, entry: int) -> int:
-        """Fold an entry with claims, level by level: who is deeper sees what the others took up."""
+    def _fold_by_level(self, entry: int) -> int:
+        """Fold an entry level by level: deeper nodes perceive what the others came to believe.
+
+        So it is needed where more than the kernel decides what they perceive: what was claimed,
+        and where a unique item is believed to be no more.
+        """
         columns, tick, space = self.columns, self.columns.tick(entry), self.context.space
         first, at = columns.events_until(entry), entry - columns.first
         count = columns.events_until(entry + 1) - first
@@ -391,12 +395,12 @@ class Forest:
             testimony.hear(level)
         self.hearing.note(first, perceived)
         self.table.edited_cells.clear()
-        self.verdicts = testimony.verdicts()
+        if columns.has_claims(entry):
+            self.verdicts = testimony.verdicts()
         return entry + 1
 
     def _perceive(self, below: npt.NDArray[np.bool_]) -> None:
-        context, nodes = self.context, self.table.nodes()
-        changes = self._changes(0)
+        context = self.context
         nothing, at = np.zeros(0, dtype=np.int32), np.zeros(2, dtype=np.int32)
         facts = Facts(
             np.array([self.tick], dtype=np.int32),
@@ -404,17 +408,21 @@ class Forest:
             *(at, nothing, nothing),
             *(at, nothing, nothing, nothing, nothing),
         )
-        poses = self.poses.arrays()
-        if context.signs:
-            # What their numbers stand for is this nest's own.
-            kernel.fold(context.space, poses, facts, nodes, changes, Span(0, 1, False), below)
-        else:
-            context.first_perceptions.perceive(context.space, poses, facts, nodes, changes, below)
         edited = self.table.edited_cells
         self.holdings.end_acts(below)
         edited.difference_update([(node, cell) for node, cell in edited if below[node]])
-        rows = _by_entry(changes, 0).get(0, {})
-        self.holdings.follow(self.tick, self.tick, rows, {}, below)
+        parts = (level & below for level in self.table.levels()) if context.unique else (below,)
+        for part in parts:
+            poses, nodes, changes = self.poses.arrays(), self.table.nodes(), self._changes(0)
+            if context.signs or context.unique:
+                # What numbers of signs stand for, and what is unique, is this nest's own.
+                kernel.fold(context.space, poses, facts, nodes, changes, Span(0, 1, False), part)
+            else:
+                context.first_perceptions.perceive(
+                    context.space, poses, facts, nodes, changes, part
+                )
+            rows = _by_entry(changes, 0).get(0, {})
+            self.holdings.follow(self.tick, self.tick, rows, {}, part)
 
 
 def _acts(

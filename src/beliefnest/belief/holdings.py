@@ -4,8 +4,9 @@ The rules of semantics, section 4, that are not about rays. They follow the kern
 by entry, shallower nodes first.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Literal, NamedTuple
 
 from beliefnest.belief.entries import Basis, Source
 from beliefnest.world.values import DroppedItem, Event, EventKind, Items
@@ -15,6 +16,8 @@ __all__ = [
     "TOUCHES",
     "Content",
     "Holdings",
+    "Sole",
+    "Whereabouts",
     "changed_items",
     "follow_acts",
     "replaced_block",
@@ -72,6 +75,33 @@ class Content:
         return replace(self, by_act=self.by_act and self.basis.observed_at == tick)
 
 
+class Whereabouts(NamedTuple):
+    """A place where an item can be.
+
+    Attributes:
+        kind: In a container, in the hands or possession of an agent, or on the floor.
+        number: Cell of the container, number of the agent or of the dropped item.
+    """
+
+    kind: Literal["container", "agent", "floor"]
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
+class Sole:
+    """Where a unique item was last perceived.
+
+    Attributes:
+        tick: Tick at which the owner perceived it.
+        place: Where; None: it was seen to be moved, and not where to.
+        basis: What that rests on.
+    """
+
+    tick: int
+    place: Whereabouts | None
+    basis: Basis
+
+
 @dataclass
 class Holdings:
     """What one node holds besides poses and blocks.
@@ -82,6 +112,7 @@ class Holdings:
         items: Dropped items by number.
         found: Item to the cell of the container in which the owner last perceived it.
         counts: By cell and item, how many of it were perceived in it.
+        sole: Unique item to where the owner last perceived it.
     """
 
     containers: dict[int, Content] = field(default_factory=dict)
@@ -89,6 +120,7 @@ class Holdings:
     items: dict[int, DroppedItem] = field(default_factory=dict)
     found: dict[str, int] = field(default_factory=dict)
     counts: dict[int, Items] = field(default_factory=dict)
+    sole: dict[str, Sole] = field(default_factory=dict)
 
     def copy(self) -> "Holdings":
         """The same holdings, to be changed apart."""
@@ -98,6 +130,7 @@ class Holdings:
             dict(self.items),
             dict(self.found),
             dict(self.counts),
+            dict(self.sole),
         )
 
     def drop(self, cell: int) -> None:
@@ -120,6 +153,55 @@ class Holdings:
                 self.found[name] = cell
             else:
                 self.found.pop(name, None)
+
+    def remove(self, item: str, kept: Collection[Whereabouts], basis: Basis) -> None:
+        """Believe an item to be nowhere but in some places; what is worn the node table knows.
+
+        What is left in a container rests on what it rested on; an empty one on `basis`.
+        """
+        for cell, content in list(self.containers.items()):
+            if item in content.items and Whereabouts("container", cell) not in kept:
+                left = {name: count for name, count in content.items.items() if name != item}
+                rest = (
+                    content
+                    if left
+                    else replace(content, basis=basis, in_sight=False, by_act=False)
+                )
+                self.containers[cell] = replace(rest, items=left)
+        for agent, held in list(self.inventories.items()):
+            if item in held and Whereabouts("agent", agent) not in kept:
+                self.inventories[agent] = {name: n for name, n in held.items() if name != item}
+        for number, lying in list(self.items.items()):
+            if lying.name == item and Whereabouts("floor", number) not in kept:
+                del self.items[number]
+
+    def perceive_only(self, item: str, kept: Collection[Whereabouts]) -> None:
+        """An item was perceived to be nowhere but in some places."""
+        for cell, counts in list(self.counts.items()):
+            if item in counts and Whereabouts("container", cell) not in kept:
+                self.counts[cell] = {name: n for name, n in counts.items() if name != item}
+        if Whereabouts("container", self.found.get(item, -1)) not in kept:
+            self.found.pop(item, None)
+
+    def places_of(self, item: str) -> list[Whereabouts]:
+        """Where an item is believed to be; what is worn the node table knows."""
+        return [
+            *(
+                Whereabouts("container", cell)
+                for cell, content in self.containers.items()
+                if item in content.items
+            ),
+            *(
+                Whereabouts("agent", agent)
+                for agent, held in self.inventories.items()
+                if item in held
+            ),
+            *(
+                Whereabouts("floor", number)
+                for number, lying in self.items.items()
+                if lying.name == item
+            ),
+        ]
 
     def _perceive_none(self, cell: int) -> None:
         if self.counts.pop(cell, None):

@@ -4,7 +4,7 @@ The kernel has folded poses and blocks of an entry; what follows from its change
 from perceived acts is done here, shallower nodes first. The rules of one node are in `holdings`.
 """
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Collection, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -17,6 +17,8 @@ from beliefnest.belief.holdings import (
     TOUCHES,
     Content,
     Holdings,
+    Sole,
+    Whereabouts,
     follow_acts,
     replaced_block,
     witness,
@@ -81,6 +83,8 @@ class HoldingsTable:
         # Nodes and cells whose owners looked in in this entry; and items seen to be moved there.
         self._looked_into: set[tuple[int, int]] = set()
         self._seen_moved: set[tuple[int, int, str]] = set()
+        # By node and unique item, where its owner perceived it in this entry.
+        self._found_now: dict[tuple[int, str], Collection[Whereabouts]] = {}
         # By node, cells of contents where no container is known, with their block.
         self._doubtful: dict[int, dict[int, int]] = {}
 
@@ -143,6 +147,8 @@ class HoldingsTable:
     def needs_looks(self) -> bool:
         """Whether there is something to be looked at that is no block and no agent."""
         transparent = self._context.options.containers == "transparent"
+        if self._context.unique:
+            return True
         return transparent or bool(self._doubtful) or any(h.items for h in self._holdings)
 
     def perceives(self, node: int, cell: int, item: str) -> bool:
@@ -156,7 +162,11 @@ class HoldingsTable:
 
     def perceives_elsewhere(self, node: int, cell: int, item: str) -> bool:
         """Whether a node's owner perceives in this entry an item in another container."""
-        held = self._holdings[node].containers
+        held, here = self._holdings[node].containers, Whereabouts("container", cell)
+        if any(place != here for place in self._found_now.get((node, item), ())):
+            return True
+        if item in self._context.unique and item in self._own(node):
+            return True
         return any(
             at != cell and item in content.items and self.perceives(node, at, item)
             for at, content in held.items()
@@ -189,6 +199,7 @@ class HoldingsTable:
         self.root.edited.clear()
         self._looked_into.clear()
         self._seen_moved.clear()
+        self._found_now.clear()
 
     def apply_frame(self, frame: Frame | None) -> None:
         """Take over contents and dropped items of node 0 from a frame."""
@@ -243,11 +254,16 @@ class HoldingsTable:
                 continue
             perceived = acts.get(node, [])
             self._forget(node)
+            moved = [item for item in self._context.unique if self._is_moved(item, perceived)]
+            for item in moved:
+                self._lose(node, item, perceived, tick)
             into = self._see_into(node, tick)
             self._lose_sight(node, into, last)
             if perceived:
                 self._follow_acts(node, perceived, into, tick)
             self._see_items(node)
+            for item in self._context.unique:
+                self._find(node, item, tick, is_moved=item in moved)
 
     def _looking(self, acts: Mapping[int, list[Event]], which: npt.NDArray[np.bool_]) -> set[int]:
         """Nodes whose present owners have acts or things to follow."""
@@ -275,6 +291,8 @@ class HoldingsTable:
         for cell, items in contents.items():
             holdings.containers[cell] = Content(dict(items), complete=True, basis=basis)
             self.doubt(node, cell)
+            for item in items if node > 0 else ():
+                self.believe_only(node, item, cell, basis)
         if node == 0:
             self.root.edited |= {*blocks, *contents}
 
@@ -306,6 +324,80 @@ class HoldingsTable:
             after = follow_acts(before, (act for act in acts if act.actor == name))
             if after is not before:
                 holdings.inventories[number] = after
+
+    @staticmethod
+    def _is_moved(item: str, acts: Sequence[Event]) -> bool:
+        return any(item in act.detail.get("items", {}) for act in acts)
+
+    def _lose(self, node: int, item: str, acts: Sequence[Event], tick: int) -> None:
+        """Acts with a unique item were perceived: it is nowhere but where they bring it."""
+        kind = next(act.kind for act in reversed(acts) if self._is_moved(item, (act,)))
+        # What is worn at the end of the tick is seen already.
+        worn = [Whereabouts("agent", agent) for agent in self._table.sees_worn(node)]
+        basis = Basis(tick, Source.WITNESSED, kind)
+        self._holdings[node].remove(item, (), basis)
+        self._take_off(node, item, worn)
+        self._holdings[node].perceive_only(item, ())
+
+    def _find(self, node: int, item: str, tick: int, *, is_moved: bool) -> None:
+        """Let a node whose owner perceives a unique item believe that it is nowhere else.
+
+        Args:
+            node: Which; its contents, possessions and items are those after the tick.
+            item: Name of the item.
+            tick: The tick.
+            is_moved: Whether the owner perceives acts with the item.
+        """
+        holdings, seen = self._holdings[node], self._perceived_places(node, item, tick)
+        if seen:
+            *_, (place, basis) = seen.items()
+            self._keep_only(node, item, seen, basis)
+            holdings.perceive_only(item, seen)
+            holdings.sole[item] = Sole(tick, place, basis)
+            self._found_now[node, item] = seen.keys()
+        elif is_moved:
+            places = self._found_now[node, item] = holdings.places_of(item)
+            moved_to = next(iter(places), None)
+            holdings.sole[item] = Sole(tick, moved_to, Basis(tick, Source.WITNESSED))
+
+    def _perceived_places(self, node: int, item: str, tick: int) -> Mapping[Whereabouts, Basis]:
+        """Where the owner of a node perceives an item at the end of a tick."""
+        holdings, table = self._holdings[node], self._table
+        parent, owner = table.parent(node), table.owner(node)
+        seen: dict[Whereabouts, Basis] = {}
+        for cell in sorted(cell for other, cell in self._looked_into if other == node):
+            content = holdings.containers.get(cell)
+            if content is not None and item in content.items:
+                seen[Whereabouts("container", cell)] = content.at(tick).basis
+        present = table.is_present(node)
+        for number, lying in self._holdings[parent].items.items() if present else ():
+            if lying.name == item and self._sees_item(node, lying):
+                seen[Whereabouts("floor", number)] = Basis(tick, Source.SEEN)
+        for agent in table.sees_worn(node) if present else ():
+            if item in table.worn(parent, agent):
+                at = tick if table.is_current(node, agent) else table.seen_at(node, agent)
+                seen[Whereabouts("agent", agent)] = Basis(at, Source.SEEN)
+        if item in self._own(node):
+            seen[Whereabouts("agent", owner)] = Basis(tick, Source.SEEN)
+        return seen
+
+    def _own(self, node: int) -> Items:
+        """What the owner of a node has, as the parent node holds."""
+        return self.inventory(self._table.parent(node), self._table.owner(node))[0]
+
+    def believe_only(self, node: int, item: str, cell: int, basis: Basis) -> None:
+        """Let a node believe that an item, if it is unique, is nowhere but in a container."""
+        if item in self._context.unique:
+            self._keep_only(node, item, (Whereabouts("container", cell),), basis)
+
+    def _keep_only(self, node: int, item: str, kept: Collection[Whereabouts], basis: Basis) -> None:
+        self._holdings[node].remove(item, kept, basis)
+        self._take_off(node, item, kept)
+
+    def _take_off(self, node: int, item: str, kept: Collection[Whereabouts]) -> None:
+        for agent in range(len(self._context.agents)):
+            if Whereabouts("agent", agent) not in kept:
+                self._table.take_off(node, agent, item)
 
     def doubt(self, node: int, cell: int) -> None:
         """Note a content at a place where a node knows no container."""

@@ -14,8 +14,9 @@ from beliefnest.belief.holdings import Content, Holdings
 from beliefnest.belief.holdings_table import HoldingsTable, RootFacts
 from beliefnest.belief.node_table import NodeTable
 from beliefnest.belief.poses import PoseTable
+from beliefnest.belief.priors import merged_belief
 from beliefnest.world.frames import BlockGrid, Snapshot
-from beliefnest.world.paths import AND_BELOW, BeliefPath
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Position
 
 __all__ = ["forked_forest", "initial_forest"]
@@ -60,36 +61,11 @@ def initial_forest(
     holdings.add(_add_world(table, snapshot, world))
     wanted = (path[:depth] for path in paths for depth in range(1, len(path) + 1))
     for node in dict.fromkeys(wanted):
-        holdings.add(_add_prior(table, node, prior, _merged(initial, node), snapshot.tick))
+        holdings.add(_add_prior(table, node, prior, merged_belief(initial, node), snapshot.tick))
     table.link()
     forest = Forest(events, table, holdings, snapshot.tick)
     forest.perceive_at_first()
     return forest
-
-
-def _merged(initial: Sequence[InitialBelief], node: BeliefPath) -> InitialBelief:
-    """All that initial beliefs say of a node; the more is said of it alone, the more it counts."""
-    known = [belief for belief in initial if _is_about(belief.path, node)]
-    merged = InitialBelief(node)
-    for belief in sorted(known, key=_precision):
-        merged = InitialBelief(
-            node,
-            {**merged.containers, **belief.containers},
-            {**merged.blocks, **belief.blocks},
-            {**merged.agents, **belief.agents},
-        )
-    return merged
-
-
-def _precision(belief: InitialBelief) -> tuple[int, bool]:
-    is_exact = AND_BELOW not in belief.path
-    return len(belief.path) - (not is_exact), is_exact
-
-
-def _is_about(path: BeliefPath, node: BeliefPath) -> bool:
-    if path[-1:] == (AND_BELOW,):
-        return node[: len(path) - 1] == path[:-1]
-    return path == node
 
 
 def _states_of(context: BeliefContext, names: Iterable[str]) -> npt.NDArray[np.bool_]:

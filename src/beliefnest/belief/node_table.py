@@ -1,6 +1,6 @@
 """The kernel's arrays of the nodes of one forest, growing with the nodes that are asked for."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -216,6 +216,27 @@ class NodeTable:
     def set_equipment(self, node: int, agent: int, pose: int) -> None:
         """Set the believed equipment of an agent to that of a pose."""
         self._rows["equipment"][node, agent] = pose
+
+    def worn(self, node: int, agent: int) -> Collection[str]:
+        """Items that an agent is believed to wear or hold."""
+        pose = self.equipment(node, agent)
+        details = None if pose < 0 else self.poses.details(pose)
+        return () if details is None else details.equipment.values()
+
+    def take_off(self, node: int, agent: int, item: str) -> None:
+        """Let a node believe that an agent does not wear or hold an item."""
+        if item in self.worn(node, agent):
+            pose = self.poses.without(self.equipment(node, agent), item)
+            self.set_equipment(node, agent, pose)
+
+    def sees_worn(self, node: int) -> list[int]:
+        """Agents of whom the present owner of a node sees what they wear, itself included."""
+        parent, owner = self.parent(node), self.owner(node)
+        seen = self._rows["sees"][node] & (self._rows["pose"][parent] >= 0)
+        seen[owner] = True
+        return [
+            int(agent) for agent in np.flatnonzero(seen & (self._rows["equipment"][parent] >= 0))
+        ]
 
     def set_basis(self, node: int, cell: int, basis: Basis | None) -> None:
         """Set what a cell rests on, if it is tracked."""

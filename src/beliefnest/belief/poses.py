@@ -1,7 +1,7 @@
 """Poses of agents, and what goes with each, in a table that the belief kernel reads."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -94,6 +94,17 @@ class PoseTable:
     def add_pose(self, position: Point, yaw: float, pitch: float, speaker: int = NOBODY) -> int:
         """Id of a pose in which nobody was seen; an agent `speaker` may have claimed it."""
         return self._append(position, yaw, pitch, 0, speaker, recorded=False)
+
+    def without(self, pose: int, item: str) -> int:
+        """Id of a new pose that is like another, whose agent does not wear or hold an item."""
+        details = self.details(pose)
+        if details is None:
+            raise AssertionError("nobody was seen in this pose")
+        worn = {slot: name for slot, name in details.equipment.items() if name != item}
+        last = self._note(replace(details, equipment=worn))
+        yaw, pitch = self.angles(pose)
+        recorded = self.is_recorded(pose)
+        return self._append(self.position(pose), yaw, pitch, last, recorded=recorded)
 
     def take(self, other: "PoseTable", numbers: Ints, *, recorded: bool = True) -> Ints:
         """Copy poses of another table; returns their ids in this one.

@@ -93,9 +93,10 @@ class Testimony:
         self._tick = columns.tick(entry)
         self._perceived = perceived
         first = columns.events_until(entry)
+        weighs = self._context.options.testimony != "none"
         self._claims = [
             (row, columns.event(first + row), index, claim)
-            for row in range(len(perceived))
+            for row in range(len(perceived) if weighs else 0)
             for index, claim in enumerate(claims_of(columns.event(first + row)))
         ]
         shape = (len(self._claims), table.count)
@@ -268,6 +269,8 @@ class Testimony:
                 believe = believe_located if is_there else believe_absent
                 for node in which.tolist():
                     believe(self._holdings.of(node), cell, item, basis)
+                    if is_there:
+                        self._holdings.believe_only(node, item, cell, basis)
                 if is_there:
                     self._holdings.doubt_all(which, cell)
 

@@ -2,13 +2,14 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
 
 from beliefnest.belief.entries import InitialBelief
 from beliefnest.nest.past.setting import Setting, Step
+from beliefnest.nest.past.unique import unique_fault, unique_items
 from beliefnest.perception.options import Perception
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, built_in_template
 from beliefnest.scenarios.content import Probe, ScenarioContent
@@ -147,20 +148,34 @@ class _Builder:
         for name, place in file.places.items():
             if place not in self._snapshot.box:
                 raise self._document.fault(("places", name), f"{list(place)} lies outside the box")
+        initial = tuple(
+            self._initial_belief(n, entry) for n, entry in enumerate(file.initial_beliefs)
+        )
         return Setting(
             name=file.name,
             snapshot=self._snapshot,
             perception=self._perception(file.perception),
             static_blocks=frozenset(file.static_blocks),
-            initial_beliefs=tuple(
-                self._initial_belief(n, entry) for n, entry in enumerate(file.initial_beliefs)
-            ),
+            initial_beliefs=initial,
             script=tuple(self._step(n, entry) for n, entry in enumerate(file.script)),
             labels={entry.at: entry.label for entry in file.containers if entry.label},
             prompt_labels=_prompt_labels(file) if file.labels else {},
             places=dict(file.places),
             people=frozenset(n for n, entry in file.agents.items() if entry.type == "human"),
+            unique=self._unique(initial),
         )
+
+    def _unique(self, initial: Sequence[InitialBelief]) -> frozenset[str]:
+        """Items of which there is one, which world and initial beliefs do not contradict."""
+        found = set()
+        for number, name in enumerate(self._file.unique):
+            path = ("unique", number)
+            with self._document.naming(path):
+                (item,) = unique_items((name,))
+            if fault := unique_fault(item, self._snapshot, initial):
+                raise self._document.fault(path, fault)
+            found.add(item)
+        return frozenset(found)
 
     def probe(self, number: int, entry: ProbeEntry) -> Probe:
         """One probe, its template read."""

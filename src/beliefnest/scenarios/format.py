@@ -376,6 +376,13 @@ class ScenarioFile(_Entry, frozen=True):
         list[str | Position],
         _note("Blocks that everybody knows from the start: names, or positions."),
     ] = []
+    unique: Annotated[
+        list[str],
+        _note(
+            "Items of which everybody knows that there is one: seen in one place, an item is "
+            "believed nowhere else."
+        ),
+    ] = []
     labels: Annotated[
         bool,
         _note("Whether prompts say what containers are called and look as if they held."),

@@ -147,6 +147,7 @@ _SHAPE: Mapping[str, Any] = {
     "perception": "keep",
     "senses": "keep",
     "static_blocks": _Each("static"),
+    "unique": _Each("item"),
     "labels": "keep",
     "initial_beliefs": _Each(
         {

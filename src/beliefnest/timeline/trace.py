@@ -121,6 +121,7 @@ class _FirstLine(msgspec.Struct, forbid_unknown_fields=True):
     tick: int = 0
     perception: _PerceptionLine = _PerceptionLine()
     static_blocks: list[str] = []
+    unique: list[str] = []
     fills: list[tuple[Position, Position, str]] = []
     blocks: list[_BlockLine] = []
     signs: list[_BlockLine] = []
@@ -155,6 +156,7 @@ class Trace:
         agents: Names of all agents, those who come later included.
         perception: What agents can perceive.
         static_blocks: Names of blocks that everybody knows from the start.
+        unique: Items of which everybody knows that there is one.
         entries: What changed, in order of ticks.
         bad: Lines that were left out.
     """
@@ -163,6 +165,7 @@ class Trace:
     agents: tuple[str, ...]
     perception: Perception
     static_blocks: frozenset[str]
+    unique: frozenset[str]
     entries: tuple[Entry, ...]
     bad: tuple[BadLine, ...]
 
@@ -211,6 +214,7 @@ def read_trace(lines: Iterable[bytes], registry: Registry) -> Trace:
         reader.names,
         reader.perception,
         reader.static_blocks,
+        reader.unique,
         tuple(entries),
         tuple(bad),
     )
@@ -237,6 +241,9 @@ class _Reader:
         for name in line.static_blocks:
             registry.state_ids(name)
         self.static_blocks = frozenset(line.static_blocks)
+        for name in line.unique:
+            registry.item_stack(name)
+        self.unique = frozenset(name.removeprefix("minecraft:") for name in line.unique)
         self._tick = line.tick
         blocks = np.zeros(self._box.shape, dtype=np.int32)
         for low, high, text in line.fills:

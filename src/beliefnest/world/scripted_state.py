@@ -133,10 +133,13 @@ class ScriptedState:
         equipment: dict[str, str] | None = None,
     ) -> None:
         agent = self._agent(name)
+        held = agent.inventory if inventory is None else inventory
+        worn = agent.equipment if equipment is None else equipment
+        gone = agent.inventory.keys() - held.keys()
         self._facts.agents[name] = replace(
             agent,
-            inventory=agent.inventory if inventory is None else inventory,
-            equipment=agent.equipment if equipment is None else equipment,
+            inventory=held,
+            equipment={slot: item for slot, item in worn.items() if item not in gone},
         )
 
     def _agent(self, name: str) -> AgentState:

@@ -24,6 +24,7 @@ from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.face.visiting import Visiting
 from beliefnest.nest.past.over_time import each_tick
 from beliefnest.nest.past.setting import Setting
+from beliefnest.nest.past.unique import unique_items
 from beliefnest.perception.options import Perception
 from beliefnest.prompts import Renderer
 from beliefnest.timeline.records import Senses
@@ -50,6 +51,8 @@ class Nest(Joining, Visiting):
         initial_beliefs: Further priors, at any depth.
         store: File to record in; None: memory.
         claims_from: Reads claims out of what is said without any (docs/claims.md); None: nobody.
+        unique: Items of which everybody knows that there is one: whoever perceives such an item
+            in one place believes it to be nowhere else.
     """
 
     def __init__(
@@ -60,6 +63,7 @@ class Nest(Joining, Visiting):
         initial_beliefs: Iterable[InitialBelief] = (),
         store: str | Path | None = None,
         claims_from: ClaimsFrom | None = None,
+        unique: Iterable[str] = (),
     ) -> None:
         if not isinstance(world, ScriptedWorld):
             raise InputError(
@@ -72,6 +76,7 @@ class Nest(Joining, Visiting):
             perception=perception or Perception(),
             static_blocks=frozenset(static_blocks),
             initial_beliefs=tuple(initial_beliefs),
+            unique=unique_items(unique),
         )
         bodies = ScriptedBodies(world)
         self._hold(begun(BareSetting(setting), bodies, "scripted", 0, store, claims_from))

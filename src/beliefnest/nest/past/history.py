@@ -40,7 +40,15 @@ def context_of(setting: Setting) -> BeliefContext:
         options.max_visible_distance, options.field_of_view, tuple(options.transparent_blocks)
     )
     agents = tuple(sorted({*setting.snapshot.agents, *setting.absent}))
-    return BeliefContext(setting.snapshot.box, agents, options, sight.registry, sight, first)
+    return BeliefContext(
+        setting.snapshot.box,
+        agents,
+        options,
+        sight.registry,
+        sight,
+        first,
+        tuple(sorted(setting.unique)),
+    )
 
 
 @functools.lru_cache(maxsize=8)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from beliefnest.belief.entries import InitialBelief
 from beliefnest.errors import InputError, PathError
+from beliefnest.nest.past.unique import unique_fault
 from beliefnest.perception.options import Perception
 from beliefnest.timeline.records import Senses
 from beliefnest.world.frames import Snapshot
@@ -62,6 +63,7 @@ class Setting:
         labels: What people call containers.
         places: What people call other places.
         prompt_labels: What containers are called and look as if they held, for prompts.
+        unique: Items of which everybody knows that there is one (semantics, section 3).
     """
 
     name: str
@@ -75,6 +77,7 @@ class Setting:
     labels: Mapping[Position, str] = field(default_factory=dict)
     places: Mapping[str, Position] = field(default_factory=dict)
     prompt_labels: Mapping[Position, str] = field(default_factory=dict)
+    unique: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         agents = self.snapshot.agents.keys() | self.absent
@@ -87,6 +90,9 @@ class Setting:
             fault = fault or agent_name_fault(name)
         for belief in self.initial_beliefs:
             fault = fault or _belief_fault(belief, self.snapshot.box, registry)
+        for item in sorted(self.unique):
+            registry.item_stack(item)
+            fault = fault or unique_fault(item, self.snapshot, self.initial_beliefs)
         fault = fault or self._people_fault() or self._text_fault()
         if fault:
             raise InputError(f"setting {self.name!r}: {fault}")

@@ -47,6 +47,7 @@ class _Start(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
     places: tuple[tuple[str, Position], ...] = ()
     prompt_labels: tuple[tuple[Position, str], ...] = ()
     people: tuple[str, ...] = ()
+    unique: tuple[str, ...] = ()
 
 
 def _names_first(static: str | Position) -> tuple[bool, str | Position]:
@@ -74,6 +75,7 @@ def encode_start(setting: Setting, world: str) -> bytes:
             places=tuple(sorted(setting.places.items())),
             prompt_labels=tuple(sorted(setting.prompt_labels.items())),
             people=tuple(sorted(setting.people)),
+            unique=tuple(sorted(setting.unique)),
         )
     )
 
@@ -103,6 +105,7 @@ def decode_start(data: bytes) -> tuple[Setting, str]:
         places=dict(start.places),
         prompt_labels=dict(start.prompt_labels),
         people=frozenset(start.people),
+        unique=frozenset(start.unique),
     )
     return setting, start.world
 

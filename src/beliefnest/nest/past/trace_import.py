@@ -23,7 +23,12 @@ def import_trace(trace: Trace, name: str, store: str | Path) -> None:
     """
     absent = frozenset(trace.agents) - trace.first.agents.keys()
     setting = Setting(
-        name, trace.first, trace.perception, static_blocks=trace.static_blocks, absent=absent
+        name,
+        trace.first,
+        trace.perception,
+        static_blocks=trace.static_blocks,
+        absent=absent,
+        unique=trace.unique,
     )
     key = TimelineKey((), MAIN)
     with _kept_whole(SqliteJournal.create_file(store)) as journal, journal.together():

@@ -1,0 +1,33 @@
+"""Initial beliefs of one node, merged from all that speak of it."""
+
+from collections.abc import Sequence
+
+from beliefnest.belief.entries import InitialBelief
+from beliefnest.world.paths import AND_BELOW, BeliefPath
+
+__all__ = ["merged_belief"]
+
+
+def merged_belief(initial: Sequence[InitialBelief], node: BeliefPath) -> InitialBelief:
+    """Merge all that initial beliefs say of a node; the more precise path counts."""
+    known = [belief for belief in initial if _is_about(belief.path, node)]
+    merged = InitialBelief(node)
+    for belief in sorted(known, key=_precision):
+        merged = InitialBelief(
+            node,
+            {**merged.containers, **belief.containers},
+            {**merged.blocks, **belief.blocks},
+            {**merged.agents, **belief.agents},
+        )
+    return merged
+
+
+def _precision(belief: InitialBelief) -> tuple[int, bool]:
+    is_exact = AND_BELOW not in belief.path
+    return len(belief.path) - (not is_exact), is_exact
+
+
+def _is_about(path: BeliefPath, node: BeliefPath) -> bool:
+    if path[-1:] == (AND_BELOW,):
+        return node[: len(path) - 1] == path[:-1]
+    return path == node
