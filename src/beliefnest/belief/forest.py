@@ -11,10 +11,11 @@ import numpy.typing as npt
 
 from beliefnest.belief import kernel
 from beliefnest.belief.arrays import Changes, Facts, Span
-from beliefnest.belief.columns import Columns
+from beliefnest.belief.columns import Columns, place_of
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.belief.hearing import Hearing
+from beliefnest.belief.holdings import Whereabouts
 from beliefnest.belief.holdings_table import HoldingsTable, RootFacts, SavedHoldings
 from beliefnest.belief.node_table import NodeTable, SavedNode
 from beliefnest.belief.poses import PoseTable, SavedPoses
@@ -213,6 +214,17 @@ class Forest:
     def is_current(self, path: BeliefPath, agent: str) -> bool:
         """Whether a node's pose of an agent is backed by a perception in the last entry."""
         return self.table.is_current(self.node(path), self.context.numbers[agent])
+
+    def place_of(self, path: BeliefPath, place: Whereabouts | None) -> Point | str | None:
+        """A place in a node as users name it: a block's position, an agent, a point of the floor."""
+        if place is None:
+            return None
+        if place.kind == "agent":
+            return self.context.agents[place.number]
+        if place.kind == "container":
+            return place_of(self.context.box, place.number)
+        lying = self.holdings.of(self.node(path)).items.get(place.number)
+        return None if lying is None else lying.position
 
     def is_present(self, path: BeliefPath) -> bool:
         """Whether a node's owner is present in the parent node (semantics, section 5)."""

@@ -21,11 +21,13 @@ from beliefnest.nest.explain.element_history import (
 from beliefnest.nest.explain.explanation import Explanation
 from beliefnest.nest.explain.parts import (
     Absence,
+    Contents,
     Element,
     Fact,
     HeardClaim,
     Level,
     Missed,
+    SeenElsewhere,
     Sighting,
     Value,
 )
@@ -124,6 +126,7 @@ class _Finding:
     missed: Missed | None = None
     value: Value = None
     told: list[HeardClaim] = field(default_factory=list)
+    elsewhere: list[SeenElsewhere] = field(default_factory=list)
 
     @property
     def observed_at(self) -> int | None:
@@ -220,6 +223,7 @@ def _take(recording: Recording, trace: _Finding, step: LogStep, element: Element
     outside = value_in(forest, trace.path[:-1], element)
     mine = value_in(forest, trace.path, element)
     if mine != trace.value:
+        trace.elsewhere += _elsewhere(step, trace.path, element, trace.value)
         trace.value = mine
         trace.told += _told(recording, trace.path, step, element)
     is_held, goes_on = _is_held(trace, forest, mine, element)
@@ -296,6 +300,22 @@ def _told(
                 yield HeardClaim(entry.tick, str(event.actor), claim)
 
 
+def _elsewhere(
+    step: LogStep, path: BeliefPath, element: Element, before: Value
+) -> Iterable[SeenElsewhere]:
+    """The unique items that one entry took out of a container because they are elsewhere."""
+    forest = step.forest
+    after = value_in(forest, path, element)
+    held = forest.holdings.of(forest.node(path))
+    for item, sole in held.sole.items() if isinstance(before, Contents) else ():
+        left = after.items if isinstance(after, Contents) else {}
+        if sole.tick != forest.tick or item not in before.items or item in left:
+            continue
+        where = forest.place_of(path, sole.place)
+        if where != element.where:
+            yield SeenElsewhere(sole.tick, item, where)
+
+
 def _entry(recording: Recording, step: LogStep) -> Entry | None:
     """The entry that a step took in; None at the beginning of a timeline."""
     count = step.forest.position
@@ -359,4 +379,5 @@ def _level(trace: _Finding, element: Element) -> Level:
         stood=trace.stood,
         missed=trace.missed,
         told=tuple(each for each in trace.told if at is not None and each.tick >= at),
+        elsewhere=tuple(each for each in trace.elsewhere if at is not None and each.tick >= at),
     )

@@ -18,6 +18,7 @@ __all__ = [
     "HeardClaim",
     "Level",
     "Missed",
+    "SeenElsewhere",
     "Sighting",
     "Value",
     "View",
@@ -144,6 +145,22 @@ class HeardClaim:
 
 
 @dataclass(frozen=True, slots=True)
+class SeenElsewhere:
+    """A perception of a unique item by which it went out of a container, as it is believed.
+
+    Attributes:
+        tick: When.
+        item: Name of the item.
+        where: Position of another container, name of the agent that has it, feet-high point of the
+            floor; None: it was seen to be moved, and not where to.
+    """
+
+    tick: int
+    item: str
+    where: Position | Point | str | None
+
+
+@dataclass(frozen=True, slots=True)
 class Fact:
     """How the element is in the world of the timeline that everything rests on.
 
@@ -188,6 +205,7 @@ class Level:
             known, why it is not perceived now; None: there is none.
         weighed: Whether hearsay is believed of those alone who may know better.
         told: Claims by which something went out of the container since the basis' tick.
+        elsewhere: Perceptions of unique items by which these went out of it since then.
     """
 
     path: BeliefPath
@@ -202,3 +220,4 @@ class Level:
     missed: Missed | None
     weighed: bool = False
     told: tuple[HeardClaim, ...] = ()
+    elsewhere: tuple[SeenElsewhere, ...] = ()

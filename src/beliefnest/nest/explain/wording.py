@@ -11,6 +11,7 @@ from beliefnest.nest.explain.parts import (
     HeardClaim,
     Level,
     Missed,
+    SeenElsewhere,
     Sighting,
     Value,
     View,
@@ -79,8 +80,13 @@ def _context(level: Level, basis: Basis, name: str) -> str:
     """What a belief rests on."""
     tick, holder = basis.observed_at, level.holder
     late = level.since is not None and level.since > tick
-    moved = [told for told in level.told if told.tick > tick]
+    moved = [_told_text(level, told) for told in level.told if told.tick > tick]
+    gone = [_elsewhere_text(level, each) for each in level.elsewhere if each.tick > tick]
+    found = [_elsewhere_text(level, each) for each in level.elsewhere if each.tick == tick]
+    moved += gone
     match basis.source:
+        case Source.SEEN | Source.WITNESSED if found and not level.acts:
+            text = f"{_knows(level)}{'; and '.join(found)}"
         case Source.PRIOR:
             text = f"a prior belief, held since tick {tick}"
         case Source.EDITED:
@@ -98,8 +104,7 @@ def _context(level: Level, basis: Basis, name: str) -> str:
             place = "" if level.stood is None or late else f", at {_point(level.stood)},"
             text = f"{_knows(level)}{holder}{place} last saw {name} at tick {tick}"
     if moved:
-        claims = "; and ".join(_told_text(level, told) for told in moved)
-        text += f"; since then {claims}"
+        text += f"; since then {'; and '.join(moved)}"
     elif late:
         text += f"; {holder} took it over at tick {level.since}"
         text += "" if level.stood is None else f", at {_point(level.stood)}"
@@ -127,6 +132,16 @@ def _told_text(level: Level, told: HeardClaim) -> str:
     holder, speaker = level.holder, told.speaker
     said = f"{holder} said" if speaker == holder else f"{speaker} told {holder}"
     return f"{said} at tick {told.tick} that {told.claim}"
+
+
+def _elsewhere_text(level: Level, seen: SeenElsewhere) -> str:
+    """Where else the holder perceived a unique item."""
+    begin = f"{level.holder} perceived at tick {seen.tick}"
+    if seen.where is None:
+        return f"{begin} that the only {seen.item} was moved"
+    if isinstance(seen.where, str):
+        return f"{begin} that {seen.where} has the only {seen.item}"
+    return f"{begin} the only {seen.item} at {_point(seen.where)}"
 
 
 def _missed_text(missed: Missed, level: Level, fact: Fact, element: Element) -> str:
