@@ -17,12 +17,14 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from tests.nest.reference_rules import UNKNOWN, Node, Rules, known_block
-from tests.nest.reference_testimony import Ear
+from tests.nest.reference_testimony import Ear, read
 from tests.nest.reference_unique import remove
 
 import beliefnest as bn
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
+from beliefnest.world.claims import Claim, claims_from_plain, claims_of
 from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.signs import text_of
 from beliefnest.world.values import EventKind, Items, Position, Sign
 
 Path = tuple[str, ...]
@@ -69,7 +71,9 @@ class Reference:
         self._static = static_blocks
         self._initial = initial_beliefs
         self._start = start
-        root = Tree(self._reality(start), head=start.tick)
+        reality = self._reality(start)
+        read(reality, ((p, b) for p, b in reality.blocks.items() if b.text))
+        root = Tree(reality, head=start.tick)
         self._grow(root, (), depth)
         self._trees: dict[Path, dict[str, Tree]] = {(): {"main": root}}
         self._selected: dict[Path, str] = {(): "main"}
@@ -116,7 +120,7 @@ class Reference:
                 node.containers[place] = ContainerBelief({}, control, basis, control)
         for place, text in signs.items():
             node.blocks[place] = replace(
-                node.blocks[place], text=text, basis=basis, current=control
+                node.blocks[place], text=text, claims=(), basis=basis, current=control
             )
         for place, items in contents.items():
             node.containers[place] = ContainerBelief(dict(items), True, basis, control)
@@ -180,7 +184,10 @@ class Reference:
         basis = Basis(start.tick, Source.SEEN)
         return Node(
             start.tick,
-            {p: known_block(start.block(p), basis, True) for p in start.box.positions()},
+            {
+                p: known_block(start.block(p), basis, True, self._claims(p))
+                for p in start.box.positions()
+            },
             {p: ContainerBelief(dict(i), True, basis, True) for p, i in start.containers.items()},
             {
                 name: AgentBelief(
@@ -201,6 +208,9 @@ class Reference:
             self._ear(),
             is_world=True,
         )
+
+    def _claims(self, place: Position) -> tuple[Claim, ...]:
+        return claims_from_plain(self._start.sign_claims.get(place, ()))
 
     def _ear(self) -> Ear:
         return Ear(self._start.tick, dict.fromkeys(self._start.agents, 0))
@@ -234,7 +244,11 @@ class Reference:
         node = Node(start.tick, {}, {}, nobody, self._ear(), path)
         special = self._special(path)
         known |= special.blocks
-        node.blocks = {p: known_block(s, basis, False) for p, s in known.items() if s != UNKNOWN}
+        node.blocks = {
+            p: known_block(s, basis, False, () if p in special.blocks else self._claims(p))
+            for p, s in known.items()
+            if s != UNKNOWN
+        }
         for place, block in node.blocks.items():
             if self.rules.container_name(block) is not None:
                 node.containers[place] = ContainerBelief({}, False, basis, current=False)
@@ -282,7 +296,10 @@ class Reference:
         node.news = node.events = frame.events
         node.log += [PerceivedEvent(frame.tick, e.kind, e.actor, e.detail) for e in frame.events]
         for place, state in frame.blocks.items():
-            node.blocks[place] = known_block(state, basis, True)
+            told = [e for e in frame.events if e.detail.get("position") == place]
+            same = [e for e in told if e.detail.get("text", text_of(state)) == text_of(state)]
+            claims = claims_of(same[-1]) if same and isinstance(state, Sign) else ()
+            node.blocks[place] = known_block(state, basis, True, claims)
         for place, items in frame.containers.items():
             old = node.containers.pop(place, None)
             if items is not None:
@@ -301,6 +318,7 @@ class Reference:
                 health=fact.health,
                 food=fact.food,
             )
+        read(node, ((p, b) for p, b in node.blocks.items() if b.text))
         node.blocks = {p: replace(b, basis=basis, current=True) for p, b in node.blocks.items()}
         node.containers = {
             p: replace(c, basis=basis, current=True) for p, c in node.containers.items()

@@ -5,12 +5,13 @@ from math import dist
 from typing import Any
 
 import numpy as np
-from tests.nest.reference_testimony import Ear, Matter, hear
+from tests.nest.reference_testimony import Ear, Matter, hear, read
 from tests.nest.reference_unique import see_alone, see_moved
 
 import beliefnest as bn
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.perception.sight import Sight
+from beliefnest.world.claims import Claim
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Event, EventKind, Items, Point, Position, Sign
@@ -30,19 +31,22 @@ UNKNOWN = -1
 class Block:
     """A known block: state id, what it rests on, whether that is a perception of this tick.
 
-    `text` is what is written on it.
+    `text` is what is written on it, `claims` what that claims.
     """
 
     state: int
     basis: Basis
     current: bool
     text: str = ""
+    claims: tuple[Claim, ...] = ()
 
 
-def known_block(told: "int | Sign", basis: Basis, current: bool) -> Block:
+def known_block(
+    told: "int | Sign", basis: Basis, current: bool, claims: tuple[Claim, ...] = ()
+) -> Block:
     """A block as facts tell it."""
     if isinstance(told, Sign):
-        return Block(told.state, basis, current, told.text)
+        return Block(told.state, basis, current, told.text, claims)
     return Block(told, basis, current)
 
 
@@ -71,6 +75,9 @@ class Node:
     looked_into: frozenset[Position] = frozenset()
     moved: frozenset[tuple[Position, str]] = frozenset()
     found_now: frozenset[tuple[str, Any]] = frozenset()
+    read: frozenset[tuple[Position, str]] = frozenset()
+    writers: dict[tuple[Position, str], str] = field(default_factory=dict)
+    told: tuple[tuple[Position, Block, str | None], ...] = ()
 
     def drop(self, place: Position) -> None:
         """Hold nothing of a container any more, nor that something was perceived in it."""
@@ -93,6 +100,9 @@ class Node:
             self.looked_into,
             self.moved,
             self.found_now,
+            self.read,
+            dict(self.writers),
+            self.told,
         )
 
     def perceives(self, place: Position | None, item: str) -> bool:
@@ -163,6 +173,8 @@ class Rules:
                 see_alone(after, around, me, view.agents, item)
         if self.options.testimony == "informed":
             self._attend(after, me, view)
+        signs = around.blocks.items() if view is not None else ()
+        read(after, ((p, b) for p, b in signs if b.text and view is not None and view.sees(p)))
         hear(self, after, around, me, view)
         return after
 

@@ -20,10 +20,12 @@ from tests.nest.reference_unique import is_perceived_elsewhere, remove
 from beliefnest.belief.entries import Basis, ContainerBelief, Source
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import Event, EventKind, Items, Point, Position
+from beliefnest.world.values import EventKind, Items, Point, Position
 
 if TYPE_CHECKING:
-    from tests.nest.reference_rules import Node, Rules, View
+    from collections.abc import Iterable
+
+    from tests.nest.reference_rules import Block, Node, Rules, View
 
 Matter = tuple[str, Any]
 """A place that can be watched: `("cell", position)` or `("agent", name)`."""
@@ -53,7 +55,7 @@ class Ear:
     found: dict[str, Position] = field(default_factory=dict)
     counts: dict[tuple[Position, str], int] = field(default_factory=dict)
     met: dict[str, Point] = field(default_factory=dict)
-    verdicts: dict[tuple[int, int], bool] = field(default_factory=dict)
+    verdicts: dict[Any, bool] = field(default_factory=dict)
 
     def copy(self) -> "Ear":
         return replace(
@@ -133,24 +135,58 @@ class Ear:
         return self.missed[name] - self.watched[place][name]
 
 
+def read(node: "Node", signs: "Iterable[tuple[Position, Block]]") -> None:
+    """Read signs that are seen, each text on each once; who wrote is known from the writing."""
+    for event in node.news:
+        if event.kind is EventKind.BLOCK_UPDATE and event.actor and event.detail.get("text"):
+            node.writers[event.detail["position"], event.detail["text"]] = event.actor
+    seen = [(at, block) for at, block in signs if (at, block.text) not in node.read]
+    node.read |= {(at, block.text) for at, block in seen}
+    node.told = tuple((at, block, node.writers.get((at, block.text))) for at, block in seen)
+
+
 def hear(rules: "Rules", after: "Node", around: "Node", me: str, view: "View | None") -> None:
-    """Let the claims that are perceived in a tick have their effect (8.1 to 8.4)."""
-    testimony = rules.options.testimony
+    """Let the claims that are perceived in a tick have their effect (8.0 to 8.5)."""
+    if rules.options.testimony == "none":
+        return
     heard = [id(event) for event in after.news]
-    for number, event in enumerate(around.events):
-        if testimony == "none" or event not in around.news:
-            continue
-        for index, claim in enumerate(claims_of(event)):
-            if _is_beaten(after, me, view, claim, rules.unique):
-                believed = False
-                after.ear.verdicts[number, index] = False
-            elif event.actor == me:
-                believed = _taken_at_its_word(rules, after, around, me, claim, (number, index))
-            else:
-                believed = id(event) in heard and _taken_up(rules, after, me, view, claim, event)
-                after.ear.verdicts[number, index] = believed
-            if believed:
-                _believe(rules.registry, after, claim, event, rules.unique)
+    for event in around.news:
+        if event.kind is EventKind.CHAT:
+            known = id(event) in heard
+            for index, claim in enumerate(claims_of(event)):
+                key = (id(event), index)
+                _weigh(rules, after, around, me, view, claim, event.actor, key, known=known)
+    # A sign is known to a model of its writer from whom it models.
+    theirs = [told for told in around.told if told[2] == me]
+    own = [told for told in after.told if told[2] != me]
+    for place, block, writer in sorted([*theirs, *own], key=lambda told: told[0]):
+        for index, claim in enumerate(block.claims):
+            key = ((place, block.text, block.claims, writer), index)
+            _weigh(rules, after, around, me, view, claim, writer, key, known=True)
+
+
+def _weigh(
+    rules: "Rules",
+    after: "Node",
+    around: "Node",
+    me: str,
+    view: "View | None",
+    claim: Claim,
+    speaker: str | None,
+    key: Any,
+    *,
+    known: bool,
+) -> None:
+    if _is_beaten(after, me, view, claim, rules.unique):
+        believed = False
+        after.ear.verdicts[key] = False
+    elif speaker == me:
+        believed = _taken_at_its_word(rules, after, around, me, claim, key)
+    else:
+        believed = known and _taken_up(rules, after, me, view, claim, speaker)
+        after.ear.verdicts[key] = believed
+    if believed:
+        _believe(rules.registry, after, claim, speaker, rules.unique)
 
 
 def _is_beaten(
@@ -163,17 +199,18 @@ def _is_beaten(
         return view is not None and _sees_claimed(view, claim)
     if after.perceives(claim.cell, claim.item):
         return True
-    if claim.kind is ClaimKind.LOCATED and claim.item in unique:
-        if is_perceived_elsewhere(after, me, claim.item, claim.cell):
-            return True
-    return claim.kind is ClaimKind.LOCATED and any(
+    if claim.kind is not ClaimKind.LOCATED:
+        return False
+    if claim.item in unique and is_perceived_elsewhere(after, me, claim.item, claim.cell):
+        return True
+    return any(
         place != claim.cell and claim.item in content.items and after.perceives(place, claim.item)
         for place, content in after.containers.items()
     )
 
 
 def _taken_up(
-    rules: "Rules", after: "Node", me: str, view: "View | None", claim: Claim, event: Event
+    rules: "Rules", after: "Node", me: str, view: "View | None", claim: Claim, speaker: str | None
 ) -> bool:
     """Condition 1: of somebody who is not the speaker."""
     if claim.agent == me:
@@ -188,12 +225,13 @@ def _taken_up(
         after.perceives(place, claim.item) for place in (ear.found.get(claim.item), claim.cell)
     ):
         return False
-    assert event.actor is not None
-    return known is None or ear.missed_since(known, event.actor) > rules.options.grace
+    if known is None or speaker is None:
+        return True
+    return ear.missed_since(known, speaker) > rules.options.grace
 
 
 def _taken_at_its_word(
-    rules: "Rules", after: "Node", around: "Node", me: str, claim: Claim, key: tuple[int, int]
+    rules: "Rules", after: "Node", around: "Node", me: str, claim: Claim, key: Any
 ) -> bool:
     """Condition 3: of the speaker, in somebody's model of it."""
     if not around.path:
@@ -213,10 +251,12 @@ def _sees_claimed(view: "View", claim: Claim) -> bool:
 
 
 def _believe(
-    registry: Registry, node: "Node", claim: Claim, event: Event, unique: frozenset[str]
+    registry: Registry, node: "Node", claim: Claim, speaker: str | None, unique: frozenset[str]
 ) -> None:
     """Condition 2: what a claim does to a node's beliefs."""
-    basis = Basis(node.tick, Source.HEARD, EventKind.CHAT, event.actor)
+    basis = Basis(node.tick, Source.HEARD)
+    if speaker is not None:
+        basis = Basis(node.tick, Source.HEARD, EventKind.CHAT, speaker)
     match claim.kind:
         case ClaimKind.POSITION:
             old = node.agents[claim.agent or ""]
@@ -248,13 +288,14 @@ def _believe_block(registry: Registry, node: "Node", claim: Claim, basis: Basis)
     place, text = claim.cell, claim.state or ""
     state, old = registry.state_id(text), node.blocks.get(place)
     name, written = registry.name(state), ""
+    claims: tuple[Claim, ...] = ()
     if old is not None and registry.name(old.state) == name:
-        written = old.text
+        written, claims = old.text, old.claims
         stated = dict(pair.split("=") for pair in text[len(name) + 1 : -1].split(",") if pair)
         properties = registry.properties(old.state) | stated
         inner = ",".join(f"{key}={value}" for key, value in properties.items())
         state = registry.state_id(f"{name}[{inner}]" if inner else name)
-    node.blocks[place] = Block(state, basis, False, written)
+    node.blocks[place] = Block(state, basis, False, written, claims)
     old_name = None if old is None else registry.name(old.state)
     if not registry.is_container(name) or old_name not in (None, name):
         node.drop(place)

@@ -43,6 +43,7 @@ class Story:
     initial: tuple[bn.InitialBelief, ...] = ()
     yaws: Mapping[str, float] = field(default_factory=dict)
     signs: Mapping[Position, str] = field(default_factory=dict)
+    sign_claims: Mapping[Position, list[bn.Claim]] = field(default_factory=dict)
     unique: Mapping[str, str] = field(default_factory=dict)
     """Unique item to who has it at first; `hand NAME`: in the hand."""
 
@@ -62,6 +63,7 @@ class Story:
             equipment=hands,
             containers=self.contents,
             signs=self.signs,
+            sign_claims={at: c for at, c in self.sign_claims.items() if self.signs.get(at)},
         )
         with world.tick():
             for name, yaw in self.yaws.items():
@@ -146,6 +148,7 @@ class Stories:
         claims: Whether they claim something, which hearers may take up.
         signs: Whether there are signs, and agents write on them.
         unique: Whether there is a gold ingot, of which there is one.
+        signed: Whether signs carry claims.
     """
 
     def __init__(
@@ -161,6 +164,7 @@ class Stories:
         claims: bool = False,
         signs: bool = False,
         unique: bool = False,
+        signed: bool = False,
     ) -> None:
         self._blocks = st.sampled_from(blocks)
         self._options = options
@@ -172,6 +176,7 @@ class Stories:
         self._claims = claims
         self._signs = signs
         self._unique = unique
+        self._signed = signed
 
     @cached_property
     def story(self) -> st.SearchStrategy[Story]:
@@ -196,8 +201,14 @@ class Stories:
             initial=initial.map(tuple),
             yaws=st.fixed_dictionaries(dict.fromkeys(NAMES, self._yaw)),
             signs=self._writing if self._signs else st.just({}),
+            sign_claims=self._signing if self._signed else st.just({}),
             unique=self._holder if self._unique else st.just({}),
         )
+
+    @cached_property
+    def _signing(self) -> st.SearchStrategy[dict[Position, list[bn.Claim]]]:
+        claims = st.lists(self._claim, min_size=1, max_size=2)
+        return st.dictionaries(st.sampled_from(SIGNS), claims, max_size=2)
 
     @cached_property
     def _holder(self) -> st.SearchStrategy[dict[str, str]]:
@@ -261,6 +272,10 @@ class Stories:
             place_of = st.sampled_from(SIGNS)
             kinds = st.sampled_from(["oak_sign", "oak_sign[rotation=4]", "stone", "air"])
             write = st.tuples(st.just("write_sign"), who, place_of, self._text)
+            if self._signed:
+                told = st.lists(self._claim, max_size=2)
+                text = st.sampled_from(["in", "out"])
+                write = st.tuples(st.just("write_sign"), who, place_of, text, told)
             signs = [write, write, st.tuples(st.just("set_block"), place_of, kinds)]
         return st.one_of(
             *signs,

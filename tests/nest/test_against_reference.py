@@ -137,3 +137,13 @@ def test_every_node_where_an_item_is_unique_and_claimed_asked_at_every_tick(stor
 @given(Stories(unique=True, claims=True, max_acts=12).story)
 def test_every_node_to_depth_four_where_an_item_is_unique_and_claimed(story):
     compare(story, each_tick=False, depth=4)
+
+
+@given(Stories(signs=True, signed=True, claims=True, forks=True, max_acts=16).story)
+def test_every_node_where_signs_carry_claims(story):
+    compare(story, each_tick=False)
+
+
+@given(Stories(signs=True, signed=True, claims=True, unique=True, max_acts=10).story)
+def test_every_node_where_signs_claim_where_a_unique_item_is_asked_at_every_tick(story):
+    compare(story, each_tick=True, depth=2)

@@ -23,6 +23,7 @@ __all__ = [
     "KIND_THINK",
     "KIND_UPDATE",
     "NOBODY",
+    "READ",
     "SOURCE_SEEN",
     "UNKNOWN",
     "Changes",
@@ -44,6 +45,9 @@ UNKNOWN = -1
 
 NOBODY = -1
 """Index of no agent."""
+
+READ = -2
+"""In place of the number of a speaker: it was read, and nobody is known to have written it."""
 
 SOURCE_SEEN = 1
 """Row of `Source.SEEN` in `belief.entries.SOURCES`."""

@@ -16,9 +16,9 @@ from beliefnest.belief.arrays import (
 )
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.poses import Growing, PoseTable
-from beliefnest.world.claims import ClaimKind, claims_of
+from beliefnest.world.claims import ClaimKind, claims_of, claims_written
 from beliefnest.world.frames import Frame
-from beliefnest.world.values import Box, Event, EventKind, Position
+from beliefnest.world.values import Box, Event, EventKind, Position, Sign
 
 __all__ = ["Columns", "cell_of", "place_of"]
 
@@ -107,8 +107,10 @@ class Columns:
             columns["pose_agent"].append(context.numbers[name])
             columns["pose_id"].append(pose)
         for place, block in frame.blocks.items():
-            state = context.number(block)
+            state = context.number(block, claims_written(frame, place))
             cell = cell_of(context.box, place)
+            if isinstance(block, Sign):
+                context.note_signs((cell,))
             columns["block_cell"].append(cell)
             columns["block_state"].append(state)
             if context.holds[state]:

@@ -3,25 +3,34 @@
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.arrays import HEAR_ALL, HEAR_NEAR, HEAR_SEEN, Senses, Space
+from beliefnest.belief.arrays import HEAR_ALL, HEAR_NEAR, HEAR_SEEN, NOBODY, Senses, Space
 from beliefnest.belief.entries import SOURCES, Basis, Source
 from beliefnest.belief.first_perceptions import FirstPerceptions
 from beliefnest.errors import InputError
 from beliefnest.perception.options import Perception, Radius
 from beliefnest.perception.sight import Sight
+from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import block_words, is_sign, plain_state
 from beliefnest.world.values import Block, Box, EventKind, Position, Sign
 
-__all__ = ["BeliefContext"]
+__all__ = ["BeliefContext", "SavedWriting"]
 
 _NUMBERS = 2**15 - 1
 """Numbers of blocks that arrays have room for: states, then signs with texts."""
+
+
+Writing = tuple[Sign, tuple[Claim, ...]]
+"""A sign that is written on, and what is claimed on it."""
+
+SavedWriting = tuple[Sign, tuple[Mapping[str, Any], ...]]
+"""A `Writing` as plain data."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +55,8 @@ class BeliefContext:
     first_perceptions: FirstPerceptions = field(default_factory=FirstPerceptions)
     unique: tuple[str, ...] = ()
     _tracked: dict[int, None] = field(default_factory=dict)
-    _signs: dict[Sign, int] = field(default_factory=dict)
+    _signs: dict[Writing, int] = field(default_factory=dict)
+    _sign_cells: dict[int, None] = field(default_factory=dict)
 
     @property
     def tracked(self) -> Collection[int]:
@@ -86,7 +96,7 @@ class BeliefContext:
         sight, registry = self.sight, self.registry
         codes = np.empty(_NUMBERS + 1, dtype=np.uint16)
         codes[: registry.states], codes[-1] = sight.state_codes[:-1], sight.state_codes[-1]
-        for sign, number in self._signs.items():
+        for (sign, _), number in self._signs.items():
             codes[number] = codes[sign.state]
         nx, ny, nz = self.box.shape
         return Space(
@@ -117,6 +127,12 @@ class BeliefContext:
             options.testimony == "informed",
         )
 
+    def heard_from(self, tick: int, speaker: int) -> Basis:
+        """The basis of a claim; `NOBODY`: it was read, and nobody is known to have written it."""
+        if speaker == NOBODY:
+            return Basis(tick, Source.HEARD)
+        return Basis(tick, Source.HEARD, EventKind.CHAT, self.agents[speaker])
+
     def basis_code(self, basis: Basis) -> int:
         """The source of a basis as arrays hold it: a row of `SOURCES`, or who was heard."""
         if basis.speaker is not None:
@@ -129,25 +145,53 @@ class BeliefContext:
             return Basis(tick, SOURCES[code])
         return Basis(tick, Source.HEARD, EventKind.CHAT, self.agents[code - len(SOURCES)])
 
-    def number(self, block: Block) -> int:
+    @property
+    def sign_cells(self) -> Collection[int]:
+        """Cells of signs that were ever written on in any node, in the order they were found."""
+        return self._sign_cells.keys()
+
+    def note_signs(self, cells: Iterable[int]) -> None:
+        """Note cells of signs that are written on, which are tracked if claims change beliefs."""
+        found = dict.fromkeys(cells)
+        self._sign_cells.update(found)
+        if self.options.testimony != "none":
+            self.track(found)
+
+    def number(self, block: Block, claims: tuple[Claim, ...] = ()) -> int:
         """The number by which arrays know a block: its state, or one for a sign and its text.
+
+        Args:
+            block: The block.
+            claims: What is claimed on it.
 
         Raises:
             InputError: More different texts were written than there are numbers for.
         """
         if isinstance(block, int):
             return block
-        if block not in self._signs:
+        writing = (block, claims)
+        if writing not in self._signs:
             number = self.registry.states + len(self._signs)
             if number == _NUMBERS:
                 raise InputError(
                     f"there are more than {len(self._signs)} different texts on signs in this run; "
                     "no more can be told apart: write fewer"
                 )
-            self._signs[block] = number
+            self._signs[writing] = number
             # Whoever looks has them already.
             self.space.codes[number] = self.space.codes[block.state]
-        return self._signs[block]
+        return self._signs[writing]
+
+    def claims_on(self, number: int) -> tuple[Claim, ...]:
+        """What is claimed on the block of a number."""
+        if number < self.registry.states:
+            return ()
+        return list(self._signs)[number - self.registry.states][1]
+
+    @property
+    def saved_signs(self) -> tuple[SavedWriting, ...]:
+        """The signs with their texts in order of their numbers, as plain data."""
+        return tuple((sign, tuple(c.plain() for c in claims)) for sign, claims in self._signs)
 
     def block(self, number: int) -> Block:
         """The block of a number; -1 is unknown."""
@@ -163,13 +207,13 @@ class BeliefContext:
     @property
     def signs(self) -> Mapping[int, Sign]:
         """The signs with their texts by number."""
-        return {number: sign for sign, number in self._signs.items()}
+        return {number: sign for (sign, _), number in self._signs.items()}
 
     def states(self, numbers: BlockGrid) -> BlockGrid:
         """Block states of numbers, without what is written."""
         if not self._signs or numbers.max(initial=-1) < self.registry.states:
             return numbers
-        plain = np.array([sign.state for sign in self._signs], dtype=np.int32)
+        plain = np.array([sign.state for sign, _ in self._signs], dtype=np.int32)
         first = self.registry.states
         return np.where(numbers < first, numbers, plain[np.maximum(numbers - first, 0)])
 
@@ -183,10 +227,11 @@ class BeliefContext:
         return {(x + i, y + j, z + k): signs[int(numbers[i, j, k])].text for i, j, k in found}
 
     def renumbered(
-        self, numbers: npt.NDArray[np.int16], signs: Sequence[Sign]
+        self, numbers: npt.NDArray[np.int16], signs: Sequence[SavedWriting]
     ) -> npt.NDArray[np.int16]:
         """Numbers of another context as those of this one; `signs` are the other's, in order."""
-        first, here = self.registry.states, [self.number(sign) for sign in signs]
+        first = self.registry.states
+        here = [self.number(sign, claims_from_plain(claims)) for sign, claims in signs]
         if here == list(range(first, first + len(here))):
             return numbers
         table = np.array([*range(first), *here], dtype=np.int16)

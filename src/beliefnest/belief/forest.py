@@ -12,7 +12,7 @@ import numpy.typing as npt
 from beliefnest.belief import kernel
 from beliefnest.belief.arrays import Changes, Facts, Span
 from beliefnest.belief.columns import Columns, place_of
-from beliefnest.belief.context import BeliefContext
+from beliefnest.belief.context import BeliefContext, SavedWriting
 from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.belief.hearing import Hearing
 from beliefnest.belief.holdings import Whereabouts
@@ -21,7 +21,7 @@ from beliefnest.belief.node_table import NodeTable, SavedNode
 from beliefnest.belief.poses import PoseTable, SavedPoses
 from beliefnest.belief.testimony import Testimony, Verdict
 from beliefnest.world.paths import BeliefPath
-from beliefnest.world.values import Event, Items, Point, Sign
+from beliefnest.world.values import Event, Items, Point
 
 __all__ = ["EventHistory", "Forest", "ForestState", "NodeState"]
 
@@ -58,6 +58,7 @@ class ForestState:
         since: Those of them that have been tracked since the beginning.
         poses: The poses that nodes refer to.
         signs: The signs with texts that blocks of nodes have numbers of, in order of these.
+        sign_cells: Cells of signs that were ever written on.
     """
 
     position: int
@@ -67,7 +68,8 @@ class ForestState:
     tracked: bytes
     since: tuple[int, ...]
     poses: SavedPoses
-    signs: tuple[Sign, ...] = ()
+    signs: tuple[SavedWriting, ...] = ()
+    sign_cells: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,8 +135,8 @@ class Forest:
         tracked = self.table.tracked.tobytes()
         root, poses = self.holdings.root.copy(), self.poses.saved()
         since = tuple(sorted(self.since))
-        signs = tuple(self.context.signs.values())
-        facts = (self.position, count, self.tick, root, tracked, since, poses, signs)
+        signs, cells = self.context.saved_signs, tuple(self.context.sign_cells)
+        facts = (self.position, count, self.tick, root, tracked, since, poses, signs, cells)
         return ForestState(*facts), nodes
 
     @classmethod
@@ -148,6 +150,7 @@ class Forest:
         """The forest that was saved, with some of its nodes, each after its parent."""
         tracked = np.frombuffer(state.tracked, dtype=np.int32)
         context.track(tracked.tolist())
+        context.note_signs(state.sign_cells)
         table = NodeTable(context, PoseTable.restored(state.poses))
         forest = cls(events, table, HoldingsTable(table, state.root), state.tick)
         forest.position, forest.since = state.position, frozenset(state.since)
@@ -216,7 +219,7 @@ class Forest:
         return self.table.is_current(self.node(path), self.context.numbers[agent])
 
     def place_of(self, path: BeliefPath, place: Whereabouts | None) -> Point | str | None:
-        """A place in a node as users name it: a block's position, an agent, a point of the floor."""
+        """A place in a node as users name it: a block, an agent, a point of the floor."""
         if place is None:
             return None
         if place.kind == "agent":
@@ -345,6 +348,11 @@ class Forest:
         """Whether claims change beliefs."""
         return self.context.options.testimony != "none"
 
+    @property
+    def _reads(self) -> bool:
+        """Whether there are signs on which something may be claimed that changes beliefs."""
+        return self._weighs and bool(self.context.sign_cells)
+
     def _changes(self, events: int) -> Changes:
         # In one entry every node can change every tracked cell once; see `kernel.fold`.
         room = 4 * (self.table.count * len(self.context.tracked) + 16)
@@ -355,7 +363,8 @@ class Forest:
         )
 
     def _fold(self, start: int, stop: int) -> int:
-        if self.context.unique or (self._weighs and self.columns.has_claims(start)):
+        claims = self._weighs and self.columns.has_claims(start)
+        if claims or self._reads or self.context.unique:
             return self._fold_by_level(start)
         context, columns, facts = self.context, self.columns, self.columns.facts()
         first = columns.events_until(start)
@@ -386,13 +395,14 @@ class Forest:
         """Fold an entry level by level: deeper nodes perceive what the others came to believe.
 
         So it is needed where more than the kernel decides what they perceive: what was claimed,
-        and where a unique item is believed to be no more.
+        aloud or on a sign, and where a unique item is believed to be no more.
         """
         columns, tick, space = self.columns, self.columns.tick(entry), self.context.space
         first, at = columns.events_until(entry), entry - columns.first
         count = columns.events_until(entry + 1) - first
         perceived = np.zeros((count, self.table.count), dtype=np.bool_)
-        testimony = Testimony(columns, self.table, self.holdings, entry, perceived)
+        events = [columns.event(first + row) for row in range(count)]
+        testimony = Testimony(self.table, self.holdings, tick, events, perceived)
         self.holdings.see_root(tick)
         for level in self.table.levels():
             changes = self._changes(0)._replace(perceived=perceived)
@@ -404,10 +414,11 @@ class Forest:
             rows = _by_entry(changes, columns.first).get(entry, {})
             acts = _acts(columns, entry, perceived, first)
             self.holdings.follow(tick, tick - 1, rows, acts, level)
-            testimony.hear(level)
+            if self._weighs:
+                testimony.hear(level)
         self.hearing.note(first, perceived)
         self.table.edited_cells.clear()
-        if columns.has_claims(entry):
+        if self._weighs and columns.has_claims(entry):
             self.verdicts = testimony.verdicts()
         return entry + 1
 
@@ -423,10 +434,13 @@ class Forest:
         edited = self.table.edited_cells
         self.holdings.end_acts(below)
         edited.difference_update([(node, cell) for node, cell in edited if below[node]])
-        parts = (level & below for level in self.table.levels()) if context.unique else (below,)
+        perceived = np.zeros((0, self.table.count), dtype=np.bool_)
+        testimony = Testimony(self.table, self.holdings, self.tick, (), perceived)
+        by_level = bool(context.unique) or self._reads
+        parts = (level & below for level in self.table.levels()) if by_level else (below,)
         for part in parts:
             poses, nodes, changes = self.poses.arrays(), self.table.nodes(), self._changes(0)
-            if context.signs or context.unique:
+            if context.signs or by_level:
                 # What numbers of signs stand for, and what is unique, is this nest's own.
                 kernel.fold(context.space, poses, facts, nodes, changes, Span(0, 1, False), part)
             else:
@@ -435,6 +449,8 @@ class Forest:
                 )
             rows = _by_entry(changes, 0).get(0, {})
             self.holdings.follow(self.tick, self.tick, rows, {}, part)
+            if self._reads:
+                testimony.hear(part)
 
 
 def _acts(

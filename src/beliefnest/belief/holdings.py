@@ -16,6 +16,7 @@ __all__ = [
     "TOUCHES",
     "Content",
     "Holdings",
+    "SignTold",
     "Sole",
     "Whereabouts",
     "changed_items",
@@ -102,6 +103,21 @@ class Sole:
     basis: Basis
 
 
+@dataclass(frozen=True, slots=True)
+class SignTold:
+    """What became of the claims on a sign in a node.
+
+    Attributes:
+        tick: Tick at which they were perceived.
+        speaker: Who is known to have written them; None: nobody is.
+        verdicts: By claim, a value of `testimony.Verdict`.
+    """
+
+    tick: int
+    speaker: str | None
+    verdicts: tuple[str, ...]
+
+
 @dataclass
 class Holdings:
     """What one node holds besides poses and blocks.
@@ -113,6 +129,9 @@ class Holdings:
         found: Item to the cell of the container in which the owner last perceived it.
         counts: By cell and item, how many of it were perceived in it.
         sole: Unique item to where the owner last perceived it.
+        read: Cell and text of signs that the owner has read, to the tick of the first time.
+        writers: Who was perceived to write a text on a sign.
+        told: What became of the claims on a sign, by cell and text.
     """
 
     containers: dict[int, Content] = field(default_factory=dict)
@@ -121,6 +140,9 @@ class Holdings:
     found: dict[str, int] = field(default_factory=dict)
     counts: dict[int, Items] = field(default_factory=dict)
     sole: dict[str, Sole] = field(default_factory=dict)
+    read: dict[tuple[int, str], int] = field(default_factory=dict)
+    writers: dict[tuple[int, str], str] = field(default_factory=dict)
+    told: dict[tuple[int, str], SignTold] = field(default_factory=dict)
 
     def copy(self) -> "Holdings":
         """The same holdings, to be changed apart."""
@@ -131,6 +153,9 @@ class Holdings:
             dict(self.found),
             dict(self.counts),
             dict(self.sole),
+            dict(self.read),
+            dict(self.writers),
+            dict(self.told),
         )
 
     def drop(self, cell: int) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.columns import cell_of
+from beliefnest.belief.context import SavedWriting
 from beliefnest.belief.entries import Basis, Source
 from beliefnest.belief.holdings import (
     MOVES,
@@ -25,7 +26,7 @@ from beliefnest.belief.holdings import (
 )
 from beliefnest.belief.node_table import NodeTable
 from beliefnest.world.frames import Frame
-from beliefnest.world.values import DroppedItem, Event, Items, Sign
+from beliefnest.world.values import DroppedItem, Event, Items
 
 __all__ = ["HoldingsTable", "RootFacts", "SavedHoldings"]
 
@@ -103,7 +104,7 @@ class HoldingsTable:
         doubtful = dict(sorted(self._doubtful.get(node, {}).items()))
         return SavedHoldings(self._holdings[node], doubtful)
 
-    def restore(self, saved: SavedHoldings, signs: Sequence[Sign]) -> None:
+    def restore(self, saved: SavedHoldings, signs: Sequence[SavedWriting]) -> None:
         """Add holdings that were saved, with what was numbered then."""
         node = self._append(saved.holdings)
         if saved.doubtful:

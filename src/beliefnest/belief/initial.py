@@ -15,9 +15,10 @@ from beliefnest.belief.holdings_table import HoldingsTable, RootFacts
 from beliefnest.belief.node_table import NodeTable
 from beliefnest.belief.poses import PoseTable
 from beliefnest.belief.priors import merged_belief
+from beliefnest.world.claims import ClaimKind, claims_from_plain
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.paths import BeliefPath
-from beliefnest.world.values import Position
+from beliefnest.world.values import Position, Sign
 
 __all__ = ["forked_forest", "initial_forest"]
 
@@ -50,6 +51,8 @@ def initial_forest(
             prior[context.box.index(place)] = world[context.box.index(place)]
     context.track(np.flatnonzero(context.holds[snapshot.blocks.ravel()]).tolist())
     for belief in initial:
+        written = (at for at, block in belief.blocks.items() if isinstance(block, Sign))
+        context.note_signs(cell_of(context.box, place) for place in written)
         context.track(cell_of(context.box, place) for place in belief.containers)
         context.track(
             cell_of(context.box, place)
@@ -82,7 +85,12 @@ def _numbers(context: BeliefContext, snapshot: Snapshot) -> BlockGrid:
         return snapshot.blocks
     numbers = snapshot.blocks.copy()
     for place in sorted(snapshot.signs):
-        numbers[context.box.index(place)] = context.number(snapshot.block(place))
+        claims = claims_from_plain(snapshot.sign_claims.get(place, ()))
+        number = context.number(snapshot.block(place), claims)
+        numbers[context.box.index(place)] = number
+        context.note_signs((cell_of(context.box, place),))
+        about = [claim for claim in claims if claim.kind is not ClaimKind.POSITION]
+        context.track(cell_of(context.box, claim.cell) for claim in about)
     return numbers
 
 

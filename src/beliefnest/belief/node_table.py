@@ -9,13 +9,13 @@ import numpy.typing as npt
 
 from beliefnest.belief import kernel, seeing
 from beliefnest.belief.arrays import UNKNOWN, Nodes
-from beliefnest.belief.context import BeliefContext
+from beliefnest.belief.context import BeliefContext, SavedWriting
 from beliefnest.belief.entries import Basis
 from beliefnest.belief.poses import PoseDetails, PoseTable
 from beliefnest.perception.codes import code_grid
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
-from beliefnest.world.values import Point, Sign
+from beliefnest.world.values import Point
 
 __all__ = ["NodeTable", "SavedNode"]
 
@@ -314,7 +314,7 @@ class NodeTable:
         return SavedNode(self.path(node), **row, edited_cells=edited, weighing=weighing)
 
     def restore(
-        self, saved: SavedNode, tracked: npt.NDArray[np.int32], signs: Sequence[Sign]
+        self, saved: SavedNode, tracked: npt.NDArray[np.int32], signs: Sequence[SavedWriting]
     ) -> None:
         """Add a node that was saved, with what was tracked, numbered then; `link` has to follow."""
         node = self.add(saved.path, self.index.get(saved.path[:-1], UNKNOWN))

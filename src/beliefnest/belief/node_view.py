@@ -7,13 +7,14 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.belief.arrays import NOBODY, READ
 from beliefnest.belief.columns import place_of
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.belief.forest import Forest
 from beliefnest.perception.sight import Geometry
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.paths import BeliefPath
-from beliefnest.world.values import EYE_HEIGHT, AgentState, DroppedItem, EventKind, Position
+from beliefnest.world.values import EYE_HEIGHT, AgentState, DroppedItem, Position
 
 __all__ = ["NodeView"]
 
@@ -170,9 +171,9 @@ class NodeView:
     def _basis(self, pose: int, tick: int) -> Basis:
         """What a believed pose rests on."""
         poses = self._forest.poses
-        if poses.speaker(pose) >= 0:
-            speaker = self._forest.context.agents[poses.speaker(pose)]
-            return Basis(tick, Source.HEARD, EventKind.CHAT, speaker)
+        speaker = poses.speaker(pose)
+        if speaker != NOBODY:
+            return self._forest.context.heard_from(tick, NOBODY if speaker == READ else speaker)
         return Basis(tick, Source.PRIOR if poses.details(pose) is None else Source.SEEN)
 
 

@@ -6,20 +6,21 @@ has just come to believe. Who watches which place is counted by the kernel, in `
 
 from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief import seeing
-from beliefnest.belief.arrays import UNKNOWN, Nodes
-from beliefnest.belief.columns import Columns, cell_of
+from beliefnest.belief.arrays import NOBODY, READ, UNKNOWN, Nodes
+from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import BeliefContext
-from beliefnest.belief.entries import Basis, Source
-from beliefnest.belief.holdings import Content, Holdings, changed_items, replaced_block
+from beliefnest.belief.entries import Basis
+from beliefnest.belief.holdings import Content, Holdings, SignTold, changed_items, replaced_block
 from beliefnest.belief.holdings_table import HoldingsTable
 from beliefnest.belief.node_table import NodeTable
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
-from beliefnest.world.signs import plain_state
+from beliefnest.world.signs import plain_state, text_of
 from beliefnest.world.values import Event, EventKind, Items, Sign
 
 __all__ = ["Testimony", "Verdict", "believe_absent", "believe_located", "stated"]
@@ -69,66 +70,144 @@ _VERDICTS = tuple(Verdict)
 _CODES = {verdict: code for code, verdict in enumerate(_VERDICTS)}
 
 
+class _Told(NamedTuple):
+    """A claim of the entry.
+
+    Attributes:
+        key: Number of the event in the entry and of the claim in it; None: a sign said so before.
+        perceived: By node, whether it was perceived.
+        speaker: Number of the speaker; `NOBODY`: nobody is known to have written it.
+        claim: The claim.
+    """
+
+    key: tuple[int, int] | None
+    perceived: Flags
+    speaker: int
+    claim: Claim
+
+
 class Testimony:
     """The claims of one entry, being weighed by the nodes of a forest, level by level.
 
+    What is claimed on a sign is perceived when the owner of a node first perceives that text on
+    that sign (semantics, section 8.5).
+
     Args:
-        columns: The stretch of the timeline.
         table: The nodes, of which the shallower levels are folded already.
         holdings: Their contents.
-        entry: The entry.
-        perceived: By event of the entry and node, who perceived it; filled by the kernel.
+        tick: Tick of the entry.
+        events: Its events.
+        perceived: By event and node, who perceived it; filled by the kernel.
     """
 
     def __init__(
         self,
-        columns: Columns,
         table: NodeTable,
         holdings: HoldingsTable,
-        entry: int,
+        tick: int,
+        events: Sequence[Event],
         perceived: Flags,
     ) -> None:
         self._table, self._holdings = table, holdings
         self._context = table.context
-        self._tick = columns.tick(entry)
-        self._perceived = perceived
-        first = columns.events_until(entry)
-        weighs = self._context.options.testimony != "none"
-        self._claims = [
-            (row, columns.event(first + row), index, claim)
-            for row in range(len(perceived) if weighs else 0)
-            for index, claim in enumerate(claims_of(columns.event(first + row)))
+        self._tick, self._perceived = tick, perceived
+        self._writings = [
+            (row, cell_of(self._context.box, event.detail["position"]), event)
+            for row, event in enumerate(events)
+            if event.kind is EventKind.BLOCK_UPDATE and event.detail.get("text")
         ]
-        shape = (len(self._claims), table.count)
-        self._codes = np.full(shape, _CODES[Verdict.NOT_HEARD], dtype=np.int8)
+        self._told = [
+            _Told((row, index), perceived[row], self._context.numbers[str(event.actor)], claim)
+            for row, event in enumerate(events)
+            if event.kind is EventKind.CHAT
+            for index, claim in enumerate(claims_of(event))
+        ]
+        self._utterances = len(self._told)
+        self._codes = [self._nothing_heard() for _ in self._told]
+        # By cell, number and writer of a sign that was read, the numbers of its claims.
+        self._read: dict[tuple[int, int, int], range] = {}
 
     def hear(self, level: Flags) -> None:
         """Let the nodes of a level, node 0 excepted, take up what they take up, claim by claim."""
         which = np.flatnonzero(level)
-        if which[0] == 0:
+        if len(which) == 0:
             return
-        for number, (row, event, _, claim) in enumerate(self._claims):
-            speaker = self._context.numbers[str(event.actor)]
-            self._codes[number, which] = self._weighed(number, which, row, speaker, claim)
-            believed = _IS_BELIEVED[self._codes[number, which]]
-            self._believe(which[believed], event, claim)
+        self._read_signs(which)
+        which = which[which > 0]
+        signs = [number for sign in sorted(self._read) for number in self._read[sign]]
+        for number in [*range(self._utterances), *signs]:
+            told = self._told[number]
+            self._codes[number][which] = self._weighed(number, which, told)
+            believed = _IS_BELIEVED[self._codes[number][which]]
+            self._believe(which[believed], told)
+        for (cell, sign, writer), numbers in self._read.items():
+            self._keep_verdicts(which, (cell, text_of(self._context.block(sign))), writer, numbers)
 
     def verdicts(self) -> Mapping[tuple[int, int], Sequence[Verdict]]:
         """By number of event in the entry and of claim in the event, each node's verdict."""
         return {
-            (row, index): [_VERDICTS[code] for code in self._codes[number].tolist()]
-            for number, (row, _, index, _) in enumerate(self._claims)
+            told.key: [_VERDICTS[code] for code in self._codes[number].tolist()]
+            for number, told in enumerate(self._told)
+            if told.key is not None
         }
 
-    def _weighed(
-        self, number: int, which: Numbers, row: int, speaker: int, claim: Claim
-    ) -> npt.NDArray[np.int8]:
+    def _nothing_heard(self) -> npt.NDArray[np.int8]:
+        return np.full(self._table.count, _CODES[Verdict.NOT_HEARD], dtype=np.int8)
+
+    def _read_signs(self, which: Numbers) -> None:
+        """Let owners of nodes read the signs that they see, and see who writes."""
+        for row, cell, event in self._writings:
+            for node in which[self._perceived[row, which]].tolist() if event.actor else ():
+                writers = self._holdings.of(node).writers
+                writers[cell, event.detail["text"]] = str(event.actor)
+        nodes = self._table.nodes()
+        for cell in self._context.sign_cells:
+            spot = self._table.spot(cell)
+            shown = nodes.blocks[np.maximum(nodes.parent[which], 0), cell]
+            sees = (shown >= self._context.registry.states) & (
+                (which == 0) | nodes.watched[which, spot]
+            )
+            for node, number in zip(which[sees].tolist(), shown[sees].tolist(), strict=True):
+                self._read_sign(node, cell, number)
+
+    def _read_sign(self, node: int, cell: int, number: int) -> None:
+        holdings, text = self._holdings.of(node), text_of(self._context.block(number))
+        if (cell, text) in holdings.read:
+            return
+        holdings.read[cell, text] = self._tick
+        claims = self._context.claims_on(number)
+        writer = holdings.writers.get((cell, text))
+        speaker = NOBODY if writer is None else self._context.numbers[writer]
+        if claims and (cell, number, speaker) not in self._read:
+            first, flags = len(self._told), np.zeros(self._table.count, dtype=np.bool_)
+            row = next((r for r, at, e in self._writings if (at, e.actor) == (cell, writer)), None)
+            for index, claim in enumerate(claims):
+                key = None if row is None else (row, index)
+                self._told.append(_Told(key, flags, speaker, claim))
+                self._codes.append(self._nothing_heard())
+            self._read[cell, number, speaker] = range(first, len(self._told))
+        if claims:
+            first = self._read[cell, number, speaker][0]
+            self._told[first].perceived[node] = True
+
+    def _keep_verdicts(
+        self, which: Numbers, sign: tuple[int, str], writer: int, numbers: range
+    ) -> None:
+        speaker = None if writer == NOBODY else self._context.agents[writer]
+        for node in which.tolist():
+            codes = [int(self._codes[number][node]) for number in numbers]
+            verdicts = tuple(_VERDICTS[code] for code in codes)
+            if any(verdict is not Verdict.NOT_HEARD for verdict in verdicts):
+                self._holdings.of(node).told[sign] = SignTold(self._tick, speaker, verdicts)
+
+    def _weighed(self, number: int, which: Numbers, told: _Told) -> npt.NDArray[np.int8]:
         """Codes of what some nodes make of a claim (semantics, sections 8.0, 8.1 and 8.3)."""
         options, nodes = self._context.options, self._table.nodes()
+        claim, speaker = told.claim, told.speaker
         subject = self._context.numbers.get(claim.agent or "", UNKNOWN)
         owner, parent = nodes.agent[which], nodes.parent[which]
         is_speaker = owner == speaker
-        heard = np.where(is_speaker, self._perceived[row, parent], self._perceived[row, which])
+        heard = np.where(is_speaker, told.perceived[parent], told.perceived[which])
         sees_matter, sees_claimed = self._sees(which, claim, nodes)
         beaten = [(sees_matter | sees_claimed, Verdict.SEES_OTHERWISE)]
         if options.testimony == "accept":
@@ -158,8 +237,9 @@ class Testimony:
         options = self._context.options
         is_speaker = nodes.agent[which] == speaker
         known, sees_known, missed = self._known(which, speaker, claim, nodes)
-        is_short = known & (missed <= options.grace)
-        up = self._codes[number, nodes.parent[which]] == _CODES[Verdict.TAKEN_UP]
+        # Nobody is known to have been in sight who is not known.
+        is_short = known & (missed <= options.grace) & (speaker != NOBODY)
+        up = self._codes[number][nodes.parent[which]] == _CODES[Verdict.TAKEN_UP]
         others = ~is_speaker
         return [
             (others & sees_known, Verdict.SEES_KNOWN),
@@ -246,18 +326,18 @@ class Testimony:
                 ]
                 return np.array(elsewhere, dtype=np.bool_), at_place
 
-    def _believe(self, which: Numbers, event: Event, claim: Claim) -> None:
+    def _believe(self, which: Numbers, told: _Told) -> None:
         """Let nodes hold what is claimed (semantics, section 8.2)."""
         if len(which) == 0:
             return
-        speaker = str(event.actor)
-        basis = Basis(self._tick, Source.HEARD, EventKind.CHAT, speaker)
+        claim = told.claim
+        basis = self._context.heard_from(self._tick, told.speaker)
         match claim.kind:
             case ClaimKind.POSITION:
                 x, y, z = claim.place
                 subject = self._context.numbers[str(claim.agent)]
-                number = self._context.numbers[speaker]
-                pose = self._table.poses.add_pose((x, y, z), 0.0, 0.0, number)
+                speaker = READ if told.speaker == NOBODY else told.speaker
+                pose = self._table.poses.add_pose((x, y, z), 0.0, 0.0, speaker)
                 for node in which.tolist():
                     self._table.set_pose(node, subject, pose, self._tick, current=False)
             case ClaimKind.BLOCK:
@@ -306,7 +386,9 @@ def stated(context: BeliefContext, text: str, believed: int) -> int:
     properties = registry.properties(plain_state(old)) | dict(claimed)
     inner = ",".join(f"{key}={value}" for key, value in properties.items())
     state = registry.state_id(f"{name}[{inner}]" if inner else name)
-    return context.number(Sign(state, old.text) if isinstance(old, Sign) else state)
+    if not isinstance(old, Sign):
+        return state
+    return context.number(Sign(state, old.text), context.claims_on(believed))
 
 
 def believe_located(holdings: Holdings, cell: int, item: str, basis: Basis) -> None:

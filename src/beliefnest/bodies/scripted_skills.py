@@ -90,15 +90,20 @@ def _use_door(to_open: bool) -> Callable[..., Doing]:
     return use
 
 
-def _write_sign(hand: Hand, position: Any, text: Any) -> Doing:
-    place = block_in(position)
+def _write_sign(hand: Hand, position: Any, lines: Any, claims: Any = ()) -> Doing:
+    place, told = block_in(position), _claims(claims)
+    text = "\n".join(lines) if _is_lines(lines) else lines
     if not isinstance(text, str):
         raise SkillError(f"text must be a text; it is {text!r}")
     if fault := sign_fault(text):
         raise SkillError(f"text is {fault}")
     yield from walk_to_use(hand, place)
     yield
-    hand.world.write_sign(hand.name, place, text)
+    hand.world.write_sign(hand.name, place, text, told)
+
+
+def _is_lines(value: Any) -> bool:
+    return isinstance(value, list | tuple) and all(isinstance(line, str) for line in value)
 
 
 def _look_at(hand: Hand, position: Any) -> Doing:

@@ -118,7 +118,7 @@ def _begun() -> Table:
 def _cells(told: MadeClaim, scenario: Scenario) -> list[str]:
     to = "" if told.addressee is None else f" to {told.addressee}"
     kind = "a lie" if told.lie else "false" if told.false else ""
-    row = (str(told.tick), f"{told.speaker}{to}", _words(told.claim, scenario), kind)
+    row = (str(told.tick), f"{told.speaker or 'a sign'}{to}", _words(told.claim, scenario), kind)
     return [printable(cell) for cell in row]
 
 

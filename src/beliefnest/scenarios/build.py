@@ -52,6 +52,7 @@ from beliefnest.scenarios.space import (
     build_box,
     build_containers,
     build_grid,
+    build_sign_claims,
     build_signs,
     check_inside,
     check_items,
@@ -131,9 +132,10 @@ class _Builder:
         grid = build_grid(document, file, box, registry)
         containers = build_containers(document, file.containers, grid, box, registry)
         signs = build_signs(document, file, grid, box, registry)
+        claims = build_sign_claims(document, file, signs, box)
         agents = build_agents(document, file, grid, box, registry)
         grid.flags.writeable = False
-        self._snapshot = Snapshot(0, box, grid, containers, agents, signs=signs)
+        self._snapshot = Snapshot(0, box, grid, containers, agents, signs=signs, sign_claims=claims)
 
     def setting(self) -> Setting:
         """What a nest starts from."""

@@ -86,12 +86,26 @@ _SignText = Annotated[
 ]
 
 
+class ClaimEntry(_Entry, frozen=True):
+    """A claim: what a text states."""
+
+    kind: Annotated[
+        Literal["located", "absent", "position", "block"],
+        _note("That an item is in a container, or not; where an agent is; which block is there."),
+    ]
+    place: Annotated[Point, _note("The container, the agent's feet, or the block's position.")]
+    item: Annotated[str | None, _note("The item of `located` and `absent`.")] = None
+    agent: Annotated[str | None, _note("The agent of `position`.")] = None
+    state: Annotated[str | None, _note("The block of `block`: name[property=value,...].")] = None
+
+
 class SignEntry(_Entry, frozen=True):
     """A sign, its block included, and what is written on it."""
 
     at: Annotated[Position, _note("Where its block is.")]
     text: _SignText = ""
     block: Annotated[str, _note("A block state of a sign.")] = "oak_sign"
+    claims: Annotated[list[ClaimEntry], _note("What the text claims, for those who read it.")] = []
 
 
 class BelievedSignEntry(_Entry, frozen=True):

@@ -2,12 +2,14 @@
 
 from collections.abc import Iterable, Mapping
 
+import msgspec
 import numpy as np
 import numpy.typing as npt
 
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.format import BlockEntry, ContainerEntry, ScenarioFile
-from beliefnest.world.frames import BlockGrid
+from beliefnest.world.claims import claims_from_plain
+from beliefnest.world.frames import BlockGrid, PlainClaims
 from beliefnest.world.limits import box_fault, container_slots, items_fault
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import text_of, written
@@ -19,6 +21,7 @@ __all__ = [
     "build_box",
     "build_containers",
     "build_grid",
+    "build_sign_claims",
     "build_signs",
     "check_inside",
     "check_items",
@@ -95,6 +98,23 @@ def build_signs(
         with document.naming(path):
             texts[entry.at] = text_of(written(registry, int(grid[box.index(entry.at)]), entry.text))
     return {place: text for place, text in sorted(texts.items()) if text}
+
+
+def build_sign_claims(
+    document: Document, file: ScenarioFile, texts: Mapping[Position, str], box: Box
+) -> dict[Position, PlainClaims]:
+    """What the texts of signs claim, as plain data."""
+    found: dict[Position, PlainClaims] = {}
+    for number, entry in enumerate(file.signs):
+        for index, told in enumerate(entry.claims):
+            path = ("signs", number, "claims", index)
+            with document.naming(path):
+                (claim,) = claims_from_plain((msgspec.to_builtins(told),))
+                claim.check(box, file.agents)
+            if entry.at not in texts:
+                raise document.fault(path, "nothing is written that could claim anything; add text")
+            found[entry.at] = (*found.get(entry.at, ()), claim.plain())
+    return found
 
 
 def build_containers(

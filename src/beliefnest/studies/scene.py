@@ -51,7 +51,8 @@ class _Map:
 _ITEMS = _Map("item", "keep")
 _CORNERS = _Each("block")
 _BLOCKS = _Each({"block": "state", "at": "block", "fill": _CORNERS, "walls": _CORNERS})
-_SIGNS = _Each({"at": "block", "text": "text", "block": "state"})
+_CLAIM = {"kind": "keep", "place": "place", "item": "item", "agent": "agent", "state": "wanted"}
+_SIGNS = _Each({"at": "block", "text": "text", "block": "state", "claims": _Each(_CLAIM)})
 _EQUIPMENT = dict.fromkeys(("head", "chest", "legs", "feet", "main_hand", "off_hand"), "item")
 _EXPECTATION = {
     "label": "keep",

@@ -62,6 +62,7 @@ class _SnapshotBody(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=Tr
     agents: Mapping[str, AgentState]
     items: Mapping[int, DroppedItem]
     signs: Mapping[Position, str] = {}
+    sign_claims: Mapping[Position, tuple[Mapping[str, Any], ...]] = {}
 
 
 def _plain(value: object) -> object:
@@ -152,6 +153,7 @@ def encode_snapshot(snapshot: Snapshot) -> bytes:
             snapshot.agents,
             snapshot.items,
             dict(sorted(snapshot.signs.items())),
+            dict(sorted(snapshot.sign_claims.items())),
         )
     )
 
@@ -165,7 +167,14 @@ def decode_snapshot(data: bytes) -> Snapshot:
         raise StoreError(f"stored grid of {len(body.blocks)} bytes does not fill {box}")
     blocks = grid.reshape(box.shape).astype(np.int32, copy=False)
     return Snapshot(
-        body.tick, box, blocks, body.containers, body.agents, body.items, signs=body.signs
+        body.tick,
+        box,
+        blocks,
+        body.containers,
+        body.agents,
+        body.items,
+        signs=body.signs,
+        sign_claims={at: _frozen(claims) for at, claims in body.sign_claims.items()},
     )
 
 

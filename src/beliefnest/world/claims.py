@@ -13,10 +13,18 @@ from typing import Any, Literal
 import msgspec
 
 from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import Box, Event, Point, Position
+from beliefnest.world.values import Box, Event, EventKind, Point, Position, Sign
 
-__all__ = ["Claim", "ClaimKind", "claims_from_plain", "claims_of", "with_claims"]
+__all__ = [
+    "Claim",
+    "ClaimKind",
+    "claims_from_plain",
+    "claims_of",
+    "claims_written",
+    "with_claims",
+]
 
 
 class ClaimKind(StrEnum):
@@ -201,6 +209,19 @@ def claims_of(event: Event) -> tuple[Claim, ...]:
     """Return the claims that an event carries; none for most."""
     plain = event.detail.get("claims")
     return claims_from_plain(plain) if plain else ()
+
+
+def claims_written(frame: Frame, place: Position) -> tuple[Claim, ...]:
+    """What is claimed on a sign that was written on in a frame; nothing on any other block."""
+    block = frame.blocks[place]
+    if not isinstance(block, Sign):
+        return ()
+    for event in reversed(frame.events):
+        if event.kind is EventKind.BLOCK_UPDATE and event.detail.get("position") == place:
+            # A sign that is turned keeps its text.
+            is_told = event.detail.get("text", block.text) == block.text
+            return claims_of(event) if is_told else ()
+    return ()
 
 
 def with_claims(

@@ -6,6 +6,7 @@ at one tick. Both say what is, never what anyone believes.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -21,7 +22,10 @@ from beliefnest.world.values import (
     Sign,
 )
 
-__all__ = ["BlockGrid", "Frame", "Snapshot"]
+__all__ = ["BlockGrid", "Frame", "PlainClaims", "Snapshot"]
+
+PlainClaims = tuple[Mapping[str, Any], ...]
+"""Claims as plain data."""
 
 BlockGrid = npt.NDArray[np.int32]
 """Block state ids of a box, shape `Box.shape`, C order; -1 is unknown."""
@@ -67,7 +71,8 @@ class Frame:
 class Snapshot:
     """All of one simulator at one tick; the grid is not to be written to.
 
-    `signs` has the texts of those that are written on.
+    `signs` has the texts of those that are written on, `sign_claims` what is claimed on them, as
+    plain data (see `world.claims`).
 
     `internal_state` is what goes on in it besides and nobody can perceive, as the speed of who
     falls or the heat of a furnace: bytes that only the simulator's world reads. Empty: nothing is
@@ -82,6 +87,7 @@ class Snapshot:
     items: Mapping[int, DroppedItem] = field(default_factory=dict)
     internal_state: bytes = b""
     signs: Mapping[Position, str] = field(default_factory=dict)
+    sign_claims: Mapping[Position, PlainClaims] = field(default_factory=dict)
 
     def block(self, place: Position) -> Block:
         """Return the block at a position of the box."""

@@ -68,6 +68,7 @@ class ScriptedWorld(ScriptedState):
         equipment: By agent name, slot (`EQUIPMENT_SLOTS`) to item name.
         tick: The first tick.
         signs: Texts by position, of blocks that are signs.
+        sign_claims: What the texts claim, by position.
 
     Raises:
         WorldError: Something lies outside the box, or is no block, item or agent name.
@@ -83,6 +84,7 @@ class ScriptedWorld(ScriptedState):
         equipment: Mapping[str, Mapping[str, str]] | None = None,
         tick: int = 0,
         signs: Mapping[Position, str] | None = None,
+        sign_claims: Mapping[Position, Iterable[Claim]] | None = None,
     ) -> None:
         super().__init__(box)
         self._tick = tick
@@ -105,6 +107,8 @@ class ScriptedWorld(ScriptedState):
             self._set_agent(name, inventory=self._items(items))
         for name, worn in (equipment or {}).items():
             self._set_agent(name, equipment=checked_equipment(worn, self._items))
+        for position, told in (sign_claims or {}).items():
+            self._claim_on(self._inside(position), self._claiming({}, told).get("claims", ()))
         if fault := snapshot_fault(self.snapshot(), self._registry):
             raise WorldError(fault)
 
@@ -152,6 +156,7 @@ class ScriptedWorld(ScriptedState):
             dict(facts.items),
             self.under_way,
             dict(facts.signs),
+            dict(facts.sign_claims),
         )
 
     def set_state(self, snapshot: Snapshot) -> None:
@@ -165,6 +170,7 @@ class ScriptedWorld(ScriptedState):
             dict(snapshot.agents),
             dict(snapshot.items),
             dict(snapshot.signs),
+            dict(snapshot.sign_claims),
             pressed_from(snapshot.internal_state, snapshot.tick),
         )
 
@@ -271,17 +277,26 @@ class ScriptedWorld(ScriptedState):
             detail = {"position": place, "block": self._registry.text(state)}
             pending.events.append(Event(EventKind.PLACE_BLOCK, name, detail))
 
-    def write_sign(self, name: str, position: Position, text: str) -> None:
-        """An agent writes on a sign, over what is there; whoever sees the sign sees the text."""
+    def write_sign(
+        self, name: str, position: Position, text: str, claims: Iterable[Claim] = ()
+    ) -> None:
+        """Let an agent write on a sign, over what is there; whoever sees the sign sees the text.
+
+        Args:
+            name: The agent.
+            position: Position of the sign.
+            text: Up to 4 lines.
+            claims: What the text claims, for those who read it.
+        """
         with self._act() as pending:
             self._agent(name)
             place = self._inside(position)
             self._write(place, text)
             block = pending.blocks[place] = self._block(place)
-            detail = {"position": place, "block": self._registry.text(plain_state(block))}
-            pending.events.append(
-                Event(EventKind.BLOCK_UPDATE, name, {**detail, "text": text_of(block)})
-            )
+            shown = {"position": place, "block": self._registry.text(plain_state(block))}
+            detail = self._claiming({**shown, "text": text_of(block)}, claims)
+            self._claim_on(place, detail.get("claims", ()))
+            pending.events.append(Event(EventKind.BLOCK_UPDATE, name, detail))
 
     def arrive(self, name: str, destination: Point) -> None:
         """An agent that was on its way somewhere is there; who sees it knows where it was going."""

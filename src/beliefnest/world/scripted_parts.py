@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import msgspec
 
 from beliefnest.errors import WorldError
-from beliefnest.world.frames import BlockGrid
+from beliefnest.world.frames import BlockGrid, PlainClaims
 from beliefnest.world.limits import agent_name_fault, box_fault
 from beliefnest.world.texts import fault_of
 from beliefnest.world.values import (
@@ -44,6 +44,7 @@ class WorldFacts:
     agents: dict[str, AgentState]
     items: dict[int, DroppedItem]
     signs: dict[Position, str] = field(default_factory=dict)
+    sign_claims: dict[Position, PlainClaims] = field(default_factory=dict)
     pressed: dict[Position, int] = field(default_factory=dict)
     """Buttons that come out again, each with the tick at which it does."""
 
@@ -55,6 +56,7 @@ class WorldFacts:
             dict(self.agents),
             dict(self.items),
             dict(self.signs),
+            dict(self.sign_claims),
             dict(self.pressed),
         )
 

@@ -3,11 +3,12 @@
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from beliefnest.errors import BeliefNestError, InputError, WorldError
-from beliefnest.world.frames import BlockGrid
+from beliefnest.world.frames import BlockGrid, PlainClaims
 from beliefnest.world.limits import items_fault
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.scripted_parts import Pending, WorldFacts, checked_box, sum_of, whole_position
@@ -91,7 +92,10 @@ class ScriptedState:
         if self._facts.containers.get(place) is not held:
             pending.containers.add(place)
         pending.blocks[place] = self._block(place)
-        detail = {"position": place, "block": self._registry.text(state)}
+        detail: dict[str, Any] = {"position": place, "block": self._registry.text(state)}
+        if place in self._facts.sign_claims:
+            # A sign that is turned claims what it claimed.
+            detail["claims"] = self._facts.sign_claims[place]
         pending.events.append(Event(EventKind.BLOCK_UPDATE, actor, detail))
 
     def _state_at(self, place: Position) -> int:
@@ -108,16 +112,27 @@ class ScriptedState:
             block = written(self._registry, self._state_at(place), text)
         except InputError as fault:
             raise WorldError(f"nothing is written at {place}: {fault}") from None
-        self._facts.signs.pop(place, None)
+        self._wipe(place)
         if isinstance(block, Sign):
             self._facts.signs[place] = block.text
+
+    def _claim_on(self, place: Position, claims: PlainClaims) -> None:
+        """Let what is written on a sign claim something."""
+        if claims and place not in self._facts.signs:
+            raise WorldError(f"nothing is written at {place} that could claim anything")
+        if claims:
+            self._facts.sign_claims[place] = claims
+
+    def _wipe(self, place: Position) -> None:
+        self._facts.signs.pop(place, None)
+        self._facts.sign_claims.pop(place, None)
 
     def _put(self, place: Position, block: str) -> None:
         state = self._state(block)
         before = self._registry.name(self._state_at(place))
         name = self._registry.name(state)
         if before != name:
-            self._facts.signs.pop(place, None)
+            self._wipe(place)
         self._facts.blocks[self._box.index(place)] = state
         if self._registry.is_container(name):
             if before != name or place not in self._facts.containers:

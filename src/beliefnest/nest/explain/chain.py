@@ -3,10 +3,11 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
-from beliefnest.belief.columns import cell_of
+from beliefnest.belief.columns import cell_of, place_of
 from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.node_view import NodeView
+from beliefnest.belief.testimony import Verdict
 from beliefnest.errors import InputError, PathError
 from beliefnest.nest.explain.element_history import (
     LogStep,
@@ -37,7 +38,7 @@ from beliefnest.timeline.journal import Edit, Entry, ForkPoint
 from beliefnest.world.claims import ClaimKind, claims_of
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath
-from beliefnest.world.values import Point, Position
+from beliefnest.world.values import EventKind, Point, Position
 
 __all__ = ["element_of", "explain"]
 
@@ -293,11 +294,20 @@ def _told(
         return
     node = step.forest.node(path)
     for row, event in enumerate(entry.events):
-        for index, claim in enumerate(claims_of(event)):
+        for index, claim in enumerate(claims_of(event) if event.kind is EventKind.CHAT else ()):
             is_here = claim.cell == element.where
             takes = claim.kind is (ClaimKind.ABSENT if is_here else ClaimKind.LOCATED)
             if takes and step.forest.verdicts[row, index][node].believed:
                 yield HeardClaim(entry.tick, str(event.actor), claim)
+    for (cell, _), told in step.forest.holdings.of(node).told.items():
+        claims = step.forest.context.claims_on(step.forest.block(path, cell))
+        if told.tick != entry.tick:
+            continue
+        for claim, verdict in zip(claims, told.verdicts, strict=False):
+            about = claim.cell == element.where or claim.kind is ClaimKind.LOCATED
+            if about and claim.item is not None and Verdict(verdict).believed:
+                sign = place_of(recording.box, cell)
+                yield HeardClaim(entry.tick, told.speaker, claim, sign)
 
 
 def _elsewhere(
@@ -307,9 +317,10 @@ def _elsewhere(
     forest = step.forest
     after = value_in(forest, path, element)
     held = forest.holdings.of(forest.node(path))
-    for item, sole in held.sole.items() if isinstance(before, Contents) else ():
-        left = after.items if isinstance(after, Contents) else {}
-        if sole.tick != forest.tick or item not in before.items or item in left:
+    had = before.items if isinstance(before, Contents) else {}
+    left = after.items if isinstance(after, Contents) else {}
+    for item, sole in held.sole.items():
+        if sole.tick != forest.tick or item not in had or item in left:
             continue
         where = forest.place_of(path, sole.place)
         if where != element.where:

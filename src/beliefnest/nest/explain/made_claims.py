@@ -5,8 +5,10 @@ from functools import cached_property
 
 import numpy as np
 
+from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.forest import Forest
+from beliefnest.belief.holdings import Holdings
 from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.testimony import Verdict
 from beliefnest.errors import InputError
@@ -14,10 +16,10 @@ from beliefnest.nest.explain.wording import as_known_to
 from beliefnest.nest.past.recording import Recording
 from beliefnest.prompts.text import block_name, block_properties
 from beliefnest.timeline.journal import EntryFilter, ForkPoint, TimelineKey
-from beliefnest.world.claims import Claim, ClaimKind, claims_of
+from beliefnest.world.claims import Claim, ClaimKind, claims_from_plain, claims_of
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
-from beliefnest.world.values import Event, Position
+from beliefnest.world.values import Event, EventKind, Position
 
 __all__ = ["MadeClaim", "claims_made", "says_otherwise"]
 
@@ -27,9 +29,11 @@ class MadeClaim:
 
     Attributes:
         tick: When it was made.
-        speaker: Who made it.
+        speaker: Who made it; None: it stood on a sign from the start, so that nobody is known to
+            have written it.
         addressee: To whom it was whispered; None: it was said aloud.
         text: The words it was made with.
+        sign: Position of the sign on which it is written; None: it was said.
         claim: What was claimed.
         claims_from: Who read it out of the text; None: the speaker said so beside it.
         made_in: Path of the simulator in whose world it was made.
@@ -40,27 +44,30 @@ class MadeClaim:
         recording: Recording,
         key: TimelineKey,
         place: tuple[int, int, int],
-        frame: Frame,
+        until: ForkPoint,
+        tick: int,
+        event: Event,
         claim: Claim,
     ) -> None:
-        event: Event = frame.events[place[1]]
-        self.tick = frame.tick
-        self.speaker = str(event.actor)
+        self.tick = tick
+        self.speaker: str | None = event.actor
         self.addressee: str | None = event.detail.get("to")
         self.text: str = event.detail["text"]
+        self.sign: Position | None = event.detail.get("position")
         self.claims_from: str | None = event.detail.get("claims_from")
         self.claim = claim
         self.made_in = path_text(key.path)
-        self._recording, self._key = recording, key
+        self._recording, self._key, self._until = recording, key, until
         self._entry, self._row, self._index = place
 
     def __repr__(self) -> str:
         to = "" if self.addressee is None else f" to {self.addressee}"
-        return f"<tick {self.tick}: {self.speaker} claims{to} that {self.claim}>"
+        who = self.speaker or f"the sign at {self.sign}"
+        return f"<tick {self.tick}: {who} claims{to} that {self.claim}>"
 
     @cached_property
     def hearers(self) -> tuple[str, ...]:
-        """Who heard it, the speaker excepted, in order of names."""
+        """Who heard it, or has read it so far, the speaker excepted, in order of names."""
         others = [name for name in self._recording.agents if name != self.speaker]
         return tuple(name for name in others if self._was_perceived((*self._key.path, name)))
 
@@ -71,7 +78,9 @@ class MadeClaim:
 
     @cached_property
     def lie(self) -> bool:
-        """Whether the speaker believed otherwise."""
+        """Whether the speaker believed otherwise; without a known speaker it is no lie."""
+        if self.speaker is None:
+            return False
         return self._is_contradicted(normalised((*self._key.path, self.speaker)))
 
     def taken_up(self, path: str) -> bool:
@@ -87,12 +96,10 @@ class MadeClaim:
         """Why it was taken up, or by which condition it was not; errors as for `taken_up`."""
         names = parse_path(path, self._recording.agents)
         grace = self._recording.setting.perception.grace
-        verdict = self._verdict(path)
-        if verdict is not Verdict.NOT_HEARD:
-            return _words(verdict, names, self.speaker, grace)
-        unaware = self._unaware(names)
+        verdict, speaker = self._weighed(path)
+        unaware = self._unaware(names) if verdict is Verdict.NOT_HEARD else names
         if unaware == names:
-            return _words(verdict, names, self.speaker, grace)
+            return _words(verdict, names, speaker, grace, self.sign)
         return f"{as_known_to(unaware[:-1])}{unaware[-1]} does not know of it"
 
     def _unaware(self, path: BeliefPath) -> BeliefPath:
@@ -112,7 +119,20 @@ class MadeClaim:
         """Whether it was perceived in a simulator, as far as that weighs it; errors as above."""
         return self._verdict(path) is not Verdict.NOT_HEARD
 
+    def heard_at(self, path: str) -> int:
+        """Tick at which a simulator perceived it, or for a sign read it; errors as above."""
+        names = parse_path(path, self._recording.agents)
+        if self.sign is None:
+            return self.tick
+        with self._recording.turn:
+            told = self._read(names).told.get(self._written)
+            return self.tick if told is None else told.tick
+
     def _verdict(self, path: str) -> Verdict:
+        return self._weighed(path)[0]
+
+    def _weighed(self, path: str) -> tuple[Verdict, str | None]:
+        """What a simulator made of it, and who is the speaker there."""
         names = parse_path(path, self._recording.agents)
         root = self._key.path
         if names[: len(root)] != root or len(names) == len(root):
@@ -122,9 +142,14 @@ class MadeClaim:
             )
         with self._recording.turn:
             if self._recording.setting.perception.testimony == "none":
-                return Verdict.OFF
+                return Verdict.OFF, self.speaker
+            if self.sign is not None:
+                told = self._read(names).told.get(self._written)
+                if told is None or self._index >= len(told.verdicts):
+                    return Verdict.NOT_HEARD, None
+                return Verdict(told.verdicts[self._index]), told.speaker
             forest = self._after(names)
-            return forest.verdicts[self._row, self._index][forest.node(names)]
+            return forest.verdicts[self._row, self._index][forest.node(names)], self.speaker
 
     def _after(self, path: BeliefPath) -> Forest:
         """A forest with a node, just after the claim."""
@@ -132,8 +157,23 @@ class MadeClaim:
         *_, forest = steps
         return forest
 
+    def _read(self, path: BeliefPath) -> Holdings:
+        """What a node has read on signs so far."""
+        moment = self._until
+        forest = self._recording.history.shared(moment.timeline, path, moment.entries)
+        return forest.holdings.of(forest.node(path))
+
+    @property
+    def _written(self) -> tuple[int, str]:
+        """Cell of its sign, and the text."""
+        if self.sign is None:
+            raise AssertionError("it was said")
+        return cell_of(self._recording.box, self.sign), self.text
+
     def _was_perceived(self, path: BeliefPath) -> bool:
         with self._recording.turn:
+            if self.sign is not None:
+                return self._written in self._read(path).read
             forest = self._after(path)
             first = forest.columns.events_until(self._entry)
             count = forest.count_of_events
@@ -157,16 +197,31 @@ def claims_made(recording: Recording, path: BeliefPath, tick: int | None) -> lis
         claim
         for stretch in recording.stretches(moment)
         if stretch.timeline.path == moment.timeline.path
-        for claim in _told(recording, stretch.timeline, stretch.entries)
+        for claim in _told(recording, stretch.timeline, stretch.entries, moment)
     ]
 
 
-def _told(recording: Recording, key: TimelineKey, count: int) -> Iterator[MadeClaim]:
+def _told(
+    recording: Recording, key: TimelineKey, count: int, until: ForkPoint
+) -> Iterator[MadeClaim]:
+    world = recording.setting.snapshot
+    for place in sorted(world.sign_claims) if not key.path and _is_first(recording, key) else ():
+        detail = {"position": place, "text": world.signs[place]}
+        event = Event(EventKind.BLOCK_UPDATE, None, detail)
+        for index, claim in enumerate(claims_from_plain(world.sign_claims[place])):
+            yield MadeClaim(recording, key, (-1, -1, index), until, world.tick, event, claim)
     for number, entry in recording.journal.filtered(key, 0, count, EntryFilter.EVENTS):
         if isinstance(entry, Frame):
             for row, event in enumerate(entry.events):
-                for index, claim in enumerate(claims_of(event)):
-                    yield MadeClaim(recording, key, (number, row, index), entry, claim)
+                # A sign that was turned claims nothing anew.
+                for index, claim in enumerate(claims_of(event) if "text" in event.detail else ()):
+                    place_of = (number, row, index)
+                    yield MadeClaim(recording, key, place_of, until, entry.tick, event, claim)
+
+
+def _is_first(recording: Recording, key: TimelineKey) -> bool:
+    """Whether a timeline begins where the real world begins."""
+    return recording.journal.info(key).base is None
 
 
 def says_otherwise(held: NodeView, context: BeliefContext, claim: Claim) -> bool:
@@ -214,13 +269,17 @@ def _is_elsewhere(held: NodeView, context: BeliefContext, claim: Claim) -> bool:
     return others or any(claim.item in agent.inventory for agent in held.agents.values())
 
 
-def _words(verdict: Verdict, path: BeliefPath, speaker: str, grace: int) -> str:
+def _words(
+    verdict: Verdict, path: BeliefPath, speaker: str | None, grace: int, sign: Position | None
+) -> str:
     """A verdict in words, with the condition that decided it; each is the view of a believer."""
     me, believers = path[-1], path[:-1]
+    what = f"what {speaker} said" if sign is None else f"what the sign at {sign} says"
+    unheard = f"{me} did not hear it" if sign is None else f"{me} has not read it"
     outer = believers[-1] if believers else None
     words = {
-        Verdict.TAKEN_UP: f"{me} believes what {speaker} said; nothing spoke against it",
-        Verdict.NOT_HEARD: f"{me} did not hear it",
+        Verdict.TAKEN_UP: f"{me} believes {what}; nothing spoke against it",
+        Verdict.NOT_HEARD: unheard,
         Verdict.OFF: "testimony is 'none': what is said is known as text alone",
         Verdict.OWN_PLACE: f"{me} knows where {me} is",
         Verdict.SEES_OTHERWISE: f"{me} perceives how it is, and seeing beats hearing (0)",

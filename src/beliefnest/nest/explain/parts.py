@@ -135,13 +135,15 @@ class HeardClaim:
 
     Attributes:
         tick: When it was made.
-        speaker: Who made it.
+        speaker: Who made it; None: nobody is known to have written it.
         claim: What was claimed.
+        sign: Position of the sign on which it was read; None: it was heard.
     """
 
     tick: int
-    speaker: str
+    speaker: str | None
     claim: Claim
+    sign: Position | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -114,8 +114,8 @@ def _context(level: Level, basis: Basis, name: str) -> str:
 def _heard(level: Level, basis: Basis) -> str:
     holder, speaker, tick = level.holder, basis.speaker, basis.observed_at
     moved = [told for told in level.told if (told.tick, told.speaker) == (tick, speaker)]
-    if speaker is None:
-        return f"{holder} heard so at tick {tick}"
+    if speaker is None and not moved:
+        return f"{holder} read so on a sign at tick {tick}"
     if moved:
         text = "; and ".join(_told_text(level, told) for told in moved)
     elif speaker == holder:
@@ -130,6 +130,10 @@ def _heard(level: Level, basis: Basis) -> str:
 def _told_text(level: Level, told: HeardClaim) -> str:
     """Who made which claim to the holder."""
     holder, speaker = level.holder, told.speaker
+    if told.sign is not None and speaker != holder:
+        by = "" if speaker is None else f", which {speaker} wrote,"
+        sign = f"the sign at {_point(told.sign)}{by}"
+        return f"{holder} read on {sign} at tick {told.tick} that {told.claim}"
     said = f"{holder} said" if speaker == holder else f"{speaker} told {holder}"
     return f"{said} at tick {told.tick} that {told.claim}"
 

@@ -121,7 +121,7 @@ def _said(recording: Recording, matter: Matter[V], end: int) -> list[NotedAct]:
             where = names.get(made.claim.cell)
             said = str(made.claim) if where is None else made.claim.about(where)
             kind = " (a lie)" if made.lie else " (false)" if made.false else ""
-            found.append(NotedAct(made.tick, f"{made.speaker}: {said}{kind}"))
+            found.append(NotedAct(made.tick, f"{made.speaker or 'a sign'}: {said}{kind}"))
     return found
 
 
@@ -133,7 +133,7 @@ def _heard(
     if not path or own == path or recording.setting.perception.testimony == "none":
         return ()
     return tuple(
-        NotedClaim(made.tick, made.taken_up(text))
+        NotedClaim(made.heard_at(text), made.taken_up(text))
         for made in claims_made(recording, own, end)
         if matter.is_claimed(made.claim) and made.is_heard(text) and made.condition(text) != "4"
     )

@@ -10,7 +10,7 @@ import numpy as np
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import BeliefContext
 from beliefnest.timeline.journal import EntryFilter, Journal, TimelineKey
-from beliefnest.world.claims import ClaimKind, claims_of
+from beliefnest.world.claims import ClaimKind, claims_from_plain, claims_of
 from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.signs import is_sign
@@ -30,7 +30,8 @@ class ClaimedBlocks:
         self._context = context
         self._weighs = context.options.testimony == "informed"
         self._read: dict[TimelineKey, int] = {}
-        self.cells = frozenset(_switches(context, snapshot)) if self._weighs else frozenset()
+        found = [*_switches(context, snapshot), *_claimed_at_first(context, snapshot)]
+        self.cells = frozenset(found if self._weighs else ())
         context.track(sorted(self.cells))
 
     def read(self, key: TimelineKey) -> bool:
@@ -61,6 +62,13 @@ class ClaimedBlocks:
     def forget_all(self) -> None:
         """Read all timelines anew."""
         self._read.clear()
+
+
+def _claimed_at_first(context: BeliefContext, snapshot: Snapshot) -> list[int]:
+    """Cells of blocks that are spoken of on signs at the start."""
+    written = snapshot.sign_claims.values()
+    claims = [claim for plain in written for claim in claims_from_plain(plain)]
+    return [cell_of(context.box, c.cell) for c in claims if c.kind is ClaimKind.BLOCK]
 
 
 def _switches(context: BeliefContext, snapshot: Snapshot) -> list[int]:

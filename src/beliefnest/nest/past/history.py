@@ -26,6 +26,7 @@ from beliefnest.timeline.journal import Edit, Entry, EntryFilter, ForkPoint, Jou
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
+from beliefnest.world.values import EventKind, Sign
 
 __all__ = ["History", "context_of"]
 
@@ -84,6 +85,8 @@ class _Stretch:
             else:
                 known = forest.context.number
                 blocks = {cell_of(box, at): known(block) for at, block in edit.blocks.items()}
+                signs = (at for at, block in edit.blocks.items() if isinstance(block, Sign))
+                forest.context.note_signs(cell_of(box, at) for at in signs)
                 contents = {cell_of(box, place): items for place, items in edit.containers.items()}
                 forest.edit(forest.node(edit.path), blocks, contents, edit.tick)
         forest.advance(stop)
@@ -402,7 +405,12 @@ class History:
             last -= 1
         stretch = _Stretch(Columns(self.context, first, forest.count_of_events))
         for _, entry in self._journal.filtered(key, first, last, EntryFilter.CHANGES):
-            bare = replace(entry, agents={}, events=()) if isinstance(entry, Frame) else entry
+            bare = entry
+            if isinstance(entry, Frame):
+                # Who wrote what on signs, and what is claimed there, is told by events.
+                written = tuple(event for event in entry.events if "text" in event.detail)
+                signs = (event for event in written if event.kind is EventKind.BLOCK_UPDATE)
+                bare = replace(entry, agents={}, events=tuple(signs))
             stretch.add(bare)
         if last > first:
             agents = self._journal.agents_after(key, last)

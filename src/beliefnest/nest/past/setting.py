@@ -8,6 +8,7 @@ from beliefnest.errors import InputError, PathError
 from beliefnest.nest.past.unique import unique_fault
 from beliefnest.perception.options import Perception
 from beliefnest.timeline.records import Senses
+from beliefnest.world.claims import claims_from_plain
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.limits import (
     agent_name_fault,
@@ -90,10 +91,13 @@ class Setting:
             fault = fault or agent_name_fault(name)
         for belief in self.initial_beliefs:
             fault = fault or _belief_fault(belief, self.snapshot.box, registry)
-        for item in sorted(self.unique):
-            registry.item_stack(item)
-            fault = fault or unique_fault(item, self.snapshot, self.initial_beliefs)
-        fault = fault or self._people_fault() or self._text_fault()
+        fault = (
+            fault
+            or self._claims_fault()
+            or self._unique_fault()
+            or self._people_fault()
+            or self._text_fault()
+        )
         if fault:
             raise InputError(f"setting {self.name!r}: {fault}")
         seen: set[tuple[str, ...]] = set()
@@ -108,6 +112,22 @@ class Setting:
             seen.add(belief.path)
             for name in belief.agents:
                 parse_path(path_text((name,)), agents)
+
+    def _claims_fault(self) -> str | None:
+        agents = self.snapshot.agents.keys() | self.absent
+        for place, claims in self.snapshot.sign_claims.items():
+            if place not in self.snapshot.signs:
+                return f"nothing is written at {place} that could claim anything; give it a text"
+            for claim in claims_from_plain(claims):
+                claim.check(self.snapshot.box, agents)
+        return None
+
+    def _unique_fault(self) -> str | None:
+        for item in sorted(self.unique):
+            Registry.load().item_stack(item)
+            if fault := unique_fault(item, self.snapshot, self.initial_beliefs):
+                return fault
+        return None
 
     def _people_fault(self) -> str | None:
         for name in sorted(self.people):

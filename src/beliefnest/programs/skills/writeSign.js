@@ -1,16 +1,19 @@
 'use strict'
+const { claims: checked, PARAMETER } = require('./lib/claims')
 const { write } = require('./lib/signs')
 
 module.exports = {
   name: 'writeSign',
-  signature: 'writeSign(bot, position, text)',
-  description: 'Go to the sign and write on its front, over what is there; whoever sees the sign reads it. An empty text wipes it.',
-  fails: 'no way there; no sign there; the text does not fit on it; nothing was written',
+  signature: 'writeSign(bot, position, lines, claims=[])',
+  description: 'Go to the sign and write on its front, over what is there; whoever sees the sign reads it. An empty text wipes it. ' +
+    'What it states can be given as claims as well; who reads a text on a sign for the first time may come to believe those.',
+  fails: 'no way there; no sign there; the text does not fit on it; nothing was written; a claim is none, or there are more than 16',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'position of the sign' },
-    { name: 'text', type: 'string', description: 'up to 4 lines of at most 45 characters, split by \\n' }
+    { name: 'lines', type: 'string', description: 'up to 4 lines of at most 45 characters, split by \\n, or a list of lines' },
+    PARAMETER
   ],
   example: 'await writeSign(bot, new Vec3(4, -51, -3), "tools\\nno food")',
-  run: (context, position, text) => write(context, position, text)
+  run: (context, position, lines, claims) => write(context, position, lines, checked(context, claims))
 }

@@ -25,7 +25,7 @@ def claims_at(forest: Forest, first: int) -> Iterator[tuple[int, int, str, Claim
         return
     for number in range(first, forest.count_of_events):
         event = forest.columns.event(number)
-        for index, claim in enumerate(claims_of(event)):
+        for index, claim in enumerate(claims_of(event) if "text" in event.detail else ()):
             yield number, index, str(event.actor), claim
 
 

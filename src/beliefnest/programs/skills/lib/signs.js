@@ -19,19 +19,22 @@ function textOf (sign) {
   return sign.entity ? sign.getSignText()[0].replace(/\n+$/, '') : ''
 }
 
-/** Goes to a sign and writes on it, over what is there. */
-async function write (context, signPosition, text) {
-  const { bot, fail } = context
+/** Goes to a sign and writes on it, over what is there; a sign that says the text already is left alone. */
+async function write (context, signPosition, lines, claims) {
+  const { bot, fail, emit } = context
   const position = blockPosition(context, 'position', signPosition)
+  const text = Array.isArray(lines) && lines.every(line => typeof line === 'string') ? lines.join('\n') : lines
   if (typeof text !== 'string') fail(`text must be a text; it is ${show(text)}`)
   const flaw = signFlawOf(text)
   if (flaw !== null) fail(`text ${flaw}.`)
   const wanted = text.replace(/\n+$/, '')
+  if (claims.length > 0 && wanted === '') fail('an empty text cannot claim anything. Write a text, or leave out the claims.')
   if (!isUnseen(bot, position)) signAt(context, position)
   await walkToUse(context, position, 'the sign')
   if (textOf(signAt(context, position)) === wanted) return
   await bot.activateBlock(signAt(context, position))
   await answered(context)
+  if (claims.length > 0) emit({ kind: 'claims', detail: { text: wanted, position: [position.x, position.y, position.z], claims } })
   bot.updateSign(signAt(context, position), wanted)
   await answered(context)
   if (textOf(signAt(context, position)) !== wanted) fail(`nothing was written on the sign at ${show(position)}. Go nearer and try again.`)

@@ -1,5 +1,5 @@
 'use strict'
-/** Claims on their way: a skill tells what it is about to say claims, the server what was said. */
+/** Claims on their way: a skill tells what it is about to say or to write claims, the server what was said or written. */
 
 // What was never said, because its program ended first, is not kept for ever.
 const MOST_WAITING = 64
@@ -12,21 +12,23 @@ class Claims {
   }
 
   /**
-   * @param {string} actor who is about to speak
-   * @param {{text: string, to?: string, claims: object[]}} utterance
+   * @param {string} actor who is about to speak, or to write on the sign at `position`
+   * @param {{text: string, to?: string, position?: number[], claims: object[]}} utterance
    * @throws {Error} if a claim speaks of a place outside the box, or of an unknown agent
    */
-  expect (actor, { text, to, claims }) {
+  expect (actor, { text, to, position, claims }) {
     claims.forEach(claim => this.check(claim))
-    this.waiting.push({ actor, text, to, claims })
+    this.waiting.push({ actor, text, to, position: position?.join(), claims })
     if (this.waiting.length > MOST_WAITING) this.waiting.shift()
   }
 
-  /** @returns {object} the event, with what it claims if it is an utterance that was expected */
+  /** @returns {object} the event, with what it claims if it is an utterance or a writing that was expected */
   completed (event) {
-    const index = event.kind !== 'chat'
+    const { kind, actor, detail: { text, to, position } } = event
+    const where = kind === 'block_update' ? position.join() : undefined
+    const index = kind !== 'chat' && kind !== 'block_update'
       ? -1
-      : this.waiting.findIndex(({ actor, text, to }) => actor === event.actor && text === event.detail.text && to === event.detail.to)
+      : this.waiting.findIndex(told => told.actor === actor && told.text === text && told.to === to && told.position === where)
     if (index < 0) return event
     const [{ claims }] = this.waiting.splice(index, 1)
     return { ...event, detail: { ...event.detail, claims } }
