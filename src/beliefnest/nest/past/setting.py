@@ -91,13 +91,8 @@ class Setting:
             fault = fault or agent_name_fault(name)
         for belief in self.initial_beliefs:
             fault = fault or _belief_fault(belief, self.snapshot.box, registry)
-        fault = (
-            fault
-            or self._claims_fault()
-            or self._unique_fault()
-            or self._people_fault()
-            or self._text_fault()
-        )
+        fault = fault or self._claims_fault() or self._unique_fault()
+        fault = fault or self._people_fault() or self._text_fault()
         if fault:
             raise InputError(f"setting {self.name!r}: {fault}")
         seen: set[tuple[str, ...]] = set()
