@@ -30,6 +30,20 @@ test('a sign is written on and read, by skills and by Mineflayer\'s own calls', 
   })
 })
 
+test('who writes on a sign tells beforehand what the text claims', async () => {
+  await withSkills({ agents: AGENTS, blocks: BLOCKS }, async world => {
+    const { bots: { sally }, skills: { sally: own } } = world
+    const claims = [{ kind: 'located', item: 'diamond', place: new Vec3(0.5, -50, 3.5) }]
+    await world.during(own.writeSign(sally, SIGN, ['tools', 'no food'], claims))
+    const told = [{ kind: 'located', item: 'diamond', place: [0, -50, 3] }]
+    assert.deepEqual(world.emitted.filter(({ kind }) => kind === 'claims'), [
+      { actor: 'sally', kind: 'claims', detail: { text: 'tools\nno food', position: PLACE, claims: told } }
+    ])
+    assert.match((await failure(world, own.writeSign(sally, SIGN, '', claims))).message, /empty text cannot claim/)
+    assert.match((await failure(world, own.writeSign(sally, SIGN, 'x', 'y'))).message, /must be a list/)
+  })
+})
+
 test('what does not fit on a sign is refused by name', async () => {
   await withSkills({ agents: AGENTS, blocks: BLOCKS }, async world => {
     const { bots: { sally }, skills } = world
