@@ -188,9 +188,7 @@ class Holdings:
             if item in content.items and Whereabouts("container", cell) not in kept:
                 left = {name: count for name, count in content.items.items() if name != item}
                 rest = (
-                    content
-                    if left
-                    else replace(content, basis=basis, in_sight=False, by_act=False)
+                    content if left else replace(content, basis=basis, in_sight=False, by_act=False)
                 )
                 self.containers[cell] = replace(rest, items=left)
         for agent, held in list(self.inventories.items()):

@@ -101,9 +101,9 @@ class PoseTable:
         if details is None:
             raise AssertionError("nobody was seen in this pose")
         worn = {slot: name for slot, name in details.equipment.items() if name != item}
-        last = self._note(replace(details, equipment=worn))
+        self._table.append(replace(details, equipment=worn))
         yaw, pitch = self.angles(pose)
-        recorded = self.is_recorded(pose)
+        recorded, last = self.is_recorded(pose), len(self._table) - 1
         return self._append(self.position(pose), yaw, pitch, last, recorded=recorded)
 
     def take(self, other: "PoseTable", numbers: Ints, *, recorded: bool = True) -> Ints:
