@@ -47,7 +47,7 @@ class Hall:
     def where(self, path: str) -> list[Position]:
         """Containers in which a node, and that of the reference, believes the diamond to be."""
         found = dict(self.nest[path].state.containers)
-        assert found == self.reference.tree(split(path)).node.containers
+        assert found == self.reference.everything(split(path))["containers"]
         return sorted(place for place, held in found.items() if "diamond" in held.items)
 
     def write(self, name: str = "nora", text: str = "right", claim: bn.Claim = THERE) -> None:

@@ -85,7 +85,7 @@ def _context(level: Level, basis: Basis, name: str) -> str:
     found = [_elsewhere_text(level, each) for each in level.elsewhere if each.tick == tick]
     moved += gone
     match basis.source:
-        case Source.SEEN | Source.WITNESSED if found and not level.acts:
+        case Source.SEEN | Source.WITNESSED if found and all(act.tick < tick for act in level.acts):
             text = f"{_knows(level)}{'; and '.join(found)}"
         case Source.PRIOR:
             text = f"a prior belief, held since tick {tick}"
