@@ -25,7 +25,7 @@ class Owned:
 
     @property
     def is_own(self) -> bool:
-        """Whether this process made it, and not one that this process was forked from."""
+        """True if this process made it, and not one that this process was forked from."""
         return self._owner == os.getpid()
 
     def check_own(self, what: str) -> None:

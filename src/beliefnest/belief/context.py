@@ -134,13 +134,13 @@ class BeliefContext:
         return Basis(tick, Source.HEARD, EventKind.CHAT, self.agents[speaker])
 
     def basis_code(self, basis: Basis) -> int:
-        """The source of a basis as arrays hold it: a row of `SOURCES`, or who was heard."""
+        """Return the source of a basis as arrays hold it: a row of `SOURCES`, or who was heard."""
         if basis.speaker is not None:
             return len(SOURCES) + self.numbers[basis.speaker]
         return SOURCES.index(basis.source)
 
     def basis(self, tick: int, code: int) -> Basis:
-        """The basis that arrays hold as a tick and a code."""
+        """Return the basis that arrays hold as a tick and a code."""
         if code < len(SOURCES):
             return Basis(tick, SOURCES[code])
         return Basis(tick, Source.HEARD, EventKind.CHAT, self.agents[code - len(SOURCES)])
@@ -194,7 +194,7 @@ class BeliefContext:
         return tuple((sign, tuple(c.plain() for c in claims)) for sign, claims in self._signs)
 
     def block(self, number: int) -> Block:
-        """The block of a number; -1 is unknown."""
+        """Return the block of a number; -1 is unknown."""
         return number if number < self.registry.states else self.signs[number]
 
     @cached_property
@@ -210,7 +210,7 @@ class BeliefContext:
         return {number: sign for (sign, _), number in self._signs.items()}
 
     def states(self, numbers: BlockGrid) -> BlockGrid:
-        """Block states of numbers, without what is written."""
+        """Return the block states of numbers, without what is written."""
         if not self._signs or numbers.max(initial=-1) < self.registry.states:
             return numbers
         plain = np.array([sign.state for sign, _ in self._signs], dtype=np.int32)
@@ -242,9 +242,9 @@ class BeliefContext:
         return block_words(self.registry, self.block(number))
 
     def container_name(self, state: int) -> str | None:
-        """Name of the container block of a state; None if it is none, or unknown."""
+        """Return the name of the container block of a state; None if it is none, or unknown."""
         return self.registry.name(state) if state >= 0 and self.holds[state] else None
 
     def block_name(self, state: int) -> str | None:
-        """Name of the block of a state; None if it is unknown."""
+        """Return the name of the block of a state; None if it is unknown."""
         return None if state < 0 else self.registry.name(plain_state(self.block(state)))

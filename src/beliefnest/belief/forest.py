@@ -32,7 +32,7 @@ class EventHistory(Protocol):
     """What happens on a timeline, for those who list it; folding does without."""
 
     def events(self, count: int) -> Sequence[tuple[int, Event]]:
-        """The first events of the timeline, `count` of them or more, each with its tick."""
+        """Return the first events of the timeline, `count` of them or more, each with its tick."""
 
     def before(self, path: BeliefPath) -> Sequence[PerceivedEvent]:
         """What a node perceived before the timeline began, oldest first."""
@@ -116,7 +116,7 @@ class Forest:
         self._readers: WeakSet[StateReader] = WeakSet()
 
     def saved(self) -> tuple[ForestState, Iterator[NodeState]]:
-        """The forest as plain data, having left its stretch: what the next entries need.
+        """Return the forest as plain data, having left its stretch: what the next entries need.
 
         What it knows besides, to ask less often (who looked from where, what is pending), is
         worked out anew. `restored` is the inverse.
@@ -147,7 +147,7 @@ class Forest:
         state: ForestState,
         nodes: Iterable[NodeState],
     ) -> "Forest":
-        """The forest that was saved, with some of its nodes, each after its parent."""
+        """Return the forest that was saved, with some of its nodes, each after its parent."""
         tracked = np.frombuffer(state.tracked, dtype=np.int32)
         context.track(tracked.tolist())
         context.note_signs(state.sign_cells)
@@ -180,18 +180,18 @@ class Forest:
 
     @property
     def has_beliefs(self) -> bool:
-        """Whether there are nodes below node 0."""
+        """True if there are nodes below node 0."""
         return self.table.count > 1
 
     def __contains__(self, path: BeliefPath) -> bool:
         return path in self.table.index
 
     def node(self, path: BeliefPath) -> int:
-        """Number of a node."""
+        """Return the number of a node."""
         return self.table.index[path]
 
     def block(self, path: BeliefPath, cell: int) -> int:
-        """Number of the block that a node holds at a cell; -1: unknown."""
+        """Return the number of the block that a node holds at a cell; -1: unknown."""
         return self.table.block(self.node(path), cell)
 
     def bases(self, path: BeliefPath, cells: Sequence[int]) -> dict[int, Basis | None]:
@@ -215,11 +215,11 @@ class Forest:
         return self.tick if self.is_current(path, agent) else self.table.seen_at(node, number)
 
     def is_current(self, path: BeliefPath, agent: str) -> bool:
-        """Whether a node's pose of an agent is backed by a perception in the last entry."""
+        """Return True if a node's pose of an agent is backed by a perception in the last entry."""
         return self.table.is_current(self.node(path), self.context.numbers[agent])
 
     def place_of(self, path: BeliefPath, place: Whereabouts | None) -> Point | str | None:
-        """A place in a node as users name it: a block, an agent, a point of the floor."""
+        """Return a place in a node as users name it: a block, an agent, a point of the floor."""
         if place is None:
             return None
         if place.kind == "agent":
@@ -230,7 +230,7 @@ class Forest:
         return None if lying is None else lying.position
 
     def is_present(self, path: BeliefPath) -> bool:
-        """Whether a node's owner is present in the parent node (semantics, section 5)."""
+        """Return True if a node's owner is present in the parent node (semantics, section 5)."""
         return self.table.is_present(self.node(path))
 
     @property
@@ -345,12 +345,12 @@ class Forest:
 
     @property
     def _weighs(self) -> bool:
-        """Whether claims change beliefs."""
+        """True if claims change beliefs."""
         return self.context.options.testimony != "none"
 
     @property
     def _reads(self) -> bool:
-        """Whether there are signs on which something may be claimed that changes beliefs."""
+        """True if there are signs on which something may be claimed that changes beliefs."""
         return self._weighs and bool(self.context.sign_cells)
 
     def _changes(self, events: int) -> Changes:
@@ -465,7 +465,7 @@ def _acts(
 
 
 def _by_entry(changes: Changes, first: int) -> dict[int, dict[int, list[Sequence[int]]]]:
-    """Rows of changes by entry and node, in order, the pass having counted from `first`."""
+    """Return rows of changes by entry and node, in order, the pass having counted from `first`."""
     rows: dict[int, dict[int, list[Sequence[int]]]] = {}
     for row in changes.rows[: changes.used[0]].tolist():
         rows.setdefault(first + row[0], {}).setdefault(row[1], []).append(row)

@@ -61,11 +61,11 @@ class Content:
 
     @property
     def current(self) -> bool:
-        """Whether a perception in the last entry backs it."""
+        """True if a perception in the last entry backs it."""
         return self.in_sight or self.by_act
 
     def shows_as(self, other: "Content") -> bool:
-        """Whether two contents in sight are the same to see."""
+        """Return True if two contents in sight are the same to see."""
         seen = self.items, self.complete, self.in_sight
         return seen == (other.items, other.complete, other.in_sight)
 
@@ -145,7 +145,7 @@ class Holdings:
     told: dict[tuple[int, str], SignTold] = field(default_factory=dict)
 
     def copy(self) -> "Holdings":
-        """The same holdings, to be changed apart."""
+        """Return the same holdings, to be changed apart."""
         return Holdings(
             dict(self.containers),
             dict(self.inventories),
@@ -232,7 +232,7 @@ class Holdings:
 
 
 def changed_items(items: Items, change: Items, sign: int) -> Mapping[str, int]:
-    """Items with a change added (sign 1) or subtracted (sign -1), no count below 0."""
+    """Return items with a change added (sign 1) or subtracted (sign -1), no count below 0."""
     result = dict(items)
     for name, count in change.items():
         result[name] = result.get(name, 0) + sign * count
@@ -277,7 +277,7 @@ def witness(holdings: Holdings, cell: int, event: Event, tick: int) -> None:
 
 
 def follow_acts(inventory: Items, acts: Iterable[Event]) -> Items:
-    """Believed possessions of an actor after the visible part of what it did."""
+    """Return believed possessions of an actor after the visible part of what it did."""
     for act in acts:
         sign = _POSSESSION.get(act.kind)
         if sign is not None:

@@ -50,7 +50,7 @@ class RootFacts:
     vitals: dict[int, Vitals] = field(default_factory=dict)
 
     def copy(self) -> "RootFacts":
-        """The same facts, to be changed apart."""
+        """Return the same facts, to be changed apart."""
         return RootFacts(self.seen_at, set(self.edited), dict(self.vitals))
 
 
@@ -96,11 +96,11 @@ class HoldingsTable:
             self.doubt(node, cell)
 
     def of(self, node: int) -> Holdings:
-        """Holdings of a node."""
+        """Return holdings of a node."""
         return self._holdings[node]
 
     def saved(self, node: int) -> SavedHoldings:
-        """Holdings of a node as plain data."""
+        """Return holdings of a node as plain data."""
         doubtful = dict(sorted(self._doubtful.get(node, {}).items()))
         return SavedHoldings(self._holdings[node], doubtful)
 
@@ -113,7 +113,7 @@ class HoldingsTable:
             self._doubtful[node] = dict(zip(saved.doubtful, numbers, strict=True))
 
     def content(self, node: int, cell: int) -> Content:
-        """A container's content in a node; in node 0 it is seen to be so all the time."""
+        """Return a container's content in a node; in node 0 it is seen to be so all the time."""
         content = self._holdings[node].containers[cell]
         if node > 0:
             return content
@@ -122,7 +122,7 @@ class HoldingsTable:
         return Content(content.items, content.complete, basis, in_sight=True)
 
     def inventory(self, node: int, agent: int) -> tuple[Items, bool]:
-        """Believed possessions of an agent, and whether these are known to be all."""
+        """Return believed possessions of an agent, and whether these are known to be all."""
         node = self._knowing(node, agent)
         known = self._holdings[node].inventories.get(agent)
         if node == 0:
@@ -146,14 +146,14 @@ class HoldingsTable:
         return node
 
     def needs_looks(self) -> bool:
-        """Whether there is something to be looked at that is no block and no agent."""
+        """Return True if there is something to be looked at that is no block and no agent."""
         transparent = self._context.options.containers == "transparent"
         if self._context.unique:
             return True
         return transparent or bool(self._doubtful) or any(h.items for h in self._holdings)
 
     def perceives(self, node: int, cell: int, item: str) -> bool:
-        """Whether a node's owner perceives in this entry if an item is in a container."""
+        """Return True if a node's owner perceives in this entry if an item is in a container."""
         if (node, cell) in self._looked_into or (node, cell, item) in self._seen_moved:
             return True
         content = self._holdings[node].containers.get(cell)
@@ -162,7 +162,7 @@ class HoldingsTable:
         return content.complete or item in content.items
 
     def perceives_elsewhere(self, node: int, cell: int, item: str) -> bool:
-        """Whether a node's owner perceives in this entry an item in another container."""
+        """Return True if a node's owner perceives in this entry an item in another container."""
         held, here = self._holdings[node].containers, Whereabouts("container", cell)
         if any(place != here for place in self._found_now.get((node, item), ())):
             return True
@@ -436,7 +436,7 @@ class HoldingsTable:
             del self._doubtful[node]
 
     def _is_gone(self, node: int, cell: int) -> bool:
-        """Whether the owner of a node perceives now that a cell holds no container."""
+        """Return True if the owner of a node perceives now that a cell holds no container."""
         parent = self._table.parent(node)
         state = self._table.block(parent, cell)
         return (

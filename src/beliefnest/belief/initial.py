@@ -32,7 +32,7 @@ def initial_forest(
     paths: Sequence[BeliefPath],
     extra: Sequence[int] = (),
 ) -> Forest:
-    """A forest of the real world, some nodes and those between, after the first perception.
+    """Return a forest of the real world, some nodes and those between, after the first perception.
 
     Args:
         context: What all nodes share.
@@ -80,7 +80,7 @@ def _states_of(context: BeliefContext, names: Iterable[str]) -> npt.NDArray[np.b
 
 
 def _numbers(context: BeliefContext, snapshot: Snapshot) -> BlockGrid:
-    """Numbers of all blocks of the world."""
+    """Return numbers of all blocks of the world."""
     if not snapshot.signs:
         return snapshot.blocks
     numbers = snapshot.blocks.copy()
@@ -179,7 +179,7 @@ def forked_forest(
 def _forked_holdings(
     source: HoldingsTable, node: int, agents: Iterable[int], *, is_root: bool
 ) -> Holdings:
-    """Holdings at a fork; what was current is so until something new is perceived."""
+    """Return holdings at a fork; what was current is so until something new is perceived."""
     copied = source.of(node).copy()
     for cell in copied.containers:
         content = source.content(node, cell)

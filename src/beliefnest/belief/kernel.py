@@ -242,7 +242,7 @@ def _is_common_ground(senses: Senses, facts: Facts, event: int, me: int) -> bool
 
 @inlined
 def _hears(senses: Senses, poses: Poses, nodes: Nodes, node: int, speaker: int) -> bool:
-    """Whether the present owner of a node hears somebody else who speaks aloud."""
+    """Return True if the present owner of a node hears somebody else who speaks aloud."""
     if senses.hearing == HEAR_SEEN:
         known = nodes.pose[nodes.parent[node], speaker] != UNKNOWN
         return bool(nodes.sees[node, speaker] and known)

@@ -114,7 +114,7 @@ class NodeTable:
         self._coded: tuple[npt.NDArray[Any], Row] | None = None
 
     def nodes(self) -> Nodes:
-        """The arrays for the kernel."""
+        """Return the arrays for the kernel."""
         if self._nodes is None:
             rows = {name: row[: self.count] for name, row in self._rows.items()}
             self._nodes = Nodes(
@@ -123,7 +123,7 @@ class NodeTable:
         return self._nodes
 
     def add(self, path: BeliefPath, parent: int) -> int:
-        """A new node that knows nothing; `link` has to follow once its blocks are set."""
+        """Return a new node that knows nothing; `link` has to follow once its blocks are set."""
         node = self._grow()
         self.index[path] = node
         self._rows["parent"][node] = parent
@@ -144,7 +144,7 @@ class NodeTable:
         self.poses = poses
 
     def copy_node(self, other: "NodeTable", source: int, *, is_root: bool, recorded: bool) -> int:
-        """A node of other table as node of these; as node 0 all that it knows is current.
+        """Return a node of other table as node of these; as node 0 all that it knows is current.
 
         Args:
             other: The other table.
@@ -218,7 +218,7 @@ class NodeTable:
         self._rows["equipment"][node, agent] = pose
 
     def worn(self, node: int, agent: int) -> Collection[str]:
-        """Items that an agent is believed to wear or hold."""
+        """Return items that an agent is believed to wear or hold."""
         pose = self.equipment(node, agent)
         details = None if pose < 0 else self.poses.details(pose)
         return () if details is None else details.equipment.values()
@@ -340,33 +340,33 @@ class NodeTable:
         return self._tracked
 
     def spot(self, cell: int) -> int:
-        """Number of a tracked cell; -1: it is not tracked."""
+        """Return the number of a tracked cell; -1: it is not tracked."""
         found = np.flatnonzero(self._tracked == cell)
         return int(found[0]) if len(found) else UNKNOWN
 
     def parent(self, node: int) -> int:
-        """Number of the parent of a node; -1 for node 0."""
+        """Return the number of the parent of a node; -1 for node 0."""
         return int(self._rows["parent"][node])
 
     def owner(self, node: int) -> int:
-        """Number of the agent whose belief a node is; -1 for node 0."""
+        """Return the number of the agent whose belief a node is; -1 for node 0."""
         return int(self._rows["agent"][node])
 
     def block(self, node: int, cell: int) -> int:
-        """Number of a node's block; -1: unknown."""
+        """Return the number of a node's block; -1: unknown."""
         return int(self._rows["blocks"][node, cell])
 
     def blocks(self, node: int) -> BlockGrid:
-        """A copy of the numbers of a node's blocks, of the box's shape."""
+        """Return a copy of the numbers of a node's blocks, of the box's shape."""
         blocks: BlockGrid = self._rows["blocks"][node].astype(np.int32)
         return blocks.reshape(self.context.box.shape)
 
     def pose(self, node: int, agent: int) -> int:
-        """Id of an agent's believed pose; -1: unknown."""
+        """Return the id of an agent's believed pose; -1: unknown."""
         return int(self._rows["pose"][node, agent])
 
     def equipment(self, node: int, agent: int) -> int:
-        """Id of the pose with an agent's believed equipment; -1: unknown."""
+        """Return the id of the pose with an agent's believed equipment; -1: unknown."""
         return int(self._rows["equipment"][node, agent])
 
     def details_of(self, node: int, agent: int) -> PoseDetails | None:
@@ -379,7 +379,7 @@ class NodeTable:
         return int(self._rows["seen_at"][node, agent])
 
     def is_current(self, node: int, agent: int) -> bool:
-        """Whether an agent's pose is current in a node."""
+        """Return True if an agent's pose is current in a node."""
         return bool(self._rows["current"][node, agent])
 
     def present(self) -> npt.NDArray[np.bool_]:
@@ -394,7 +394,7 @@ class NodeTable:
         return node == 0 or self.is_current(self.parent(node), self.owner(node))
 
     def sees_cells(self, node: int, cells: Iterable[int]) -> set[int]:
-        """Those of some cells that the present owner of a node sees in the parent node."""
+        """Return those of some cells that the present owner of a node sees in the parent node."""
         parent = self.parent(node)
         eye = self.pose(parent, self.owner(node))
         wanted = np.array([*cells], dtype=np.int64)
@@ -416,7 +416,7 @@ class NodeTable:
         return cell in self.current_blocks(node, (cell,))
 
     def current_blocks(self, node: int, cells: Iterable[int]) -> set[int]:
-        """Those of some cells whose block that perception backs (semantics, section 5.4)."""
+        """Return those of some cells whose block that perception backs (semantics, section 5.4)."""
         left = set(cells)
         while left and node > 0:
             if not self.is_present(node):

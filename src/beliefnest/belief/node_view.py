@@ -88,11 +88,11 @@ class NodeView:
         return dict(self._forest.holdings.of(self._node).items)
 
     def events(self) -> tuple[PerceivedEvent, ...]:
-        """All perceived events, oldest first."""
+        """Return all perceived events, oldest first."""
         return tuple(self._forest.heard(self._node, self.count_of_events))
 
     def events_since(self, count: int) -> tuple[PerceivedEvent, ...]:
-        """Perceived events but for the timeline's first `count` ones, oldest first."""
+        """Return perceived events but for the timeline's first `count` ones, oldest first."""
         return tuple(self._forest.heard(self._node, self.count_of_events, count))
 
     def perceived_since(self, count: int) -> npt.NDArray[np.bool_]:

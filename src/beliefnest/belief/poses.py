@@ -35,7 +35,7 @@ class Growing:
         self.extend(np.frombuffer(body, self._rows.dtype).reshape(-1, *self._rows.shape[1:]))
 
     def view(self) -> npt.NDArray[Any]:
-        """The rows so far."""
+        """Return the rows so far."""
         if self._waiting:
             count = len(self)
             if count > len(self._rows):
@@ -81,7 +81,7 @@ class PoseTable:
         return len(self._feet)
 
     def add(self, name: str, agent: AgentState) -> int:
-        """Id of a new pose of an agent, which the timeline itself recorded."""
+        """Return the id of a new pose of an agent, which the timeline itself recorded."""
         details = PoseDetails(
             agent.on_ground, agent.equipment, agent.inventory, agent.health, agent.food
         )
@@ -130,12 +130,12 @@ class PoseTable:
         return np.arange(first, len(self), dtype=np.int32)
 
     def position(self, pose: int) -> Point:
-        """Feet of a pose."""
+        """Return feet of a pose."""
         x, y, z = self._feet.view()[pose].tolist()
         return (x, y, z)
 
     def angles(self, pose: int) -> tuple[float, float]:
-        """Yaw and pitch of a pose."""
+        """Return the yaw and pitch of a pose."""
         yaw, pitch = self._angles.view()[pose].tolist()
         return yaw, pitch
 
@@ -148,15 +148,15 @@ class PoseTable:
         return bool(self._recorded.view()[pose])
 
     def speaker(self, pose: int) -> int:
-        """Number of the agent who claimed a pose; `NOBODY`: it is no hearsay."""
+        """Return the number of the agent who claimed a pose; `NOBODY`: it is no hearsay."""
         return int(self._heard.view()[pose])
 
     def arrays(self) -> Poses:
-        """The table for the kernel."""
+        """Return the table for the kernel."""
         return Poses(self._feet.view(), self._angles.view())
 
     def saved(self) -> "SavedPoses":
-        """The table as plain data."""
+        """Return the table as plain data."""
         feet, angles, details, recorded, heard = (
             column.view().tobytes() for column in self._columns
         )
@@ -164,7 +164,7 @@ class PoseTable:
 
     @classmethod
     def restored(cls, saved: "SavedPoses") -> "PoseTable":
-        """The table that was saved."""
+        """Return the table that was saved."""
         restored = cls()
         bodies = (saved.feet, saved.angles, saved.details, saved.recorded, saved.heard)
         for column, body in zip(restored._columns, bodies, strict=True):

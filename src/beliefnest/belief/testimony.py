@@ -47,7 +47,7 @@ class Verdict(StrEnum):
 
     @property
     def believed(self) -> bool:
-        """Whether the node came to hold what was claimed."""
+        """True if the node came to hold what was claimed."""
         return self in (Verdict.TAKEN_UP, Verdict.WORD)
 
     @property
@@ -233,7 +233,7 @@ class Testimony:
     def _informed(
         self, number: int, which: Numbers, speaker: int, claim: Claim, nodes: Nodes
     ) -> list[tuple[Flags, Verdict]]:
-        """Conditions in the order in which they decide, under `informed`."""
+        """Return conditions in the order in which they decide, under `informed`."""
         options = self._context.options
         is_speaker = nodes.agent[which] == speaker
         known, sees_known, missed = self._known(which, speaker, claim, nodes)
@@ -370,7 +370,7 @@ _IS_BELIEVED = np.array([verdict.believed for verdict in _VERDICTS])
 
 
 def stated(context: BeliefContext, text: str, believed: int) -> int:
-    """Number of a claimed block; what is not stated of it stays as it is believed.
+    """Return the number of a claimed block; what is not stated of it stays as it is believed.
 
     Args:
         context: Names and numbers of the blocks.

@@ -84,7 +84,7 @@ class Channel(Owned):
 
     @property
     def lost(self) -> bool:
-        """Whether Node has ended; it will answer nothing more."""
+        """True if Node has ended; it will answer nothing more."""
         return not self._child.alive
 
     def request(
@@ -157,7 +157,7 @@ class Channel(Owned):
     def _answer(
         self, on_frame: FrameHandler | None, percepts: PerceptsHandler | None
     ) -> tuple[dict[str, Any], Exception | None]:
-        """The answer to a request, and why a frame or a question before it was not taken.
+        """Return the answer to a request, and why a frame or a question before it was not taken.
 
         Frames are read to the end all the same, so that the next request finds its answer.
         """

@@ -84,7 +84,7 @@ class Child(Owned):
 
     @property
     def alive(self) -> bool:
-        """Whether it has not ended, and is this process's own."""
+        """True if it has not ended, and is this process's own."""
         return self.is_own and self._process.poll() is None
 
     def ends(self) -> bool:

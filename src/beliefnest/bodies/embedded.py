@@ -31,7 +31,7 @@ class _Telling:
         self._told = sense()
 
     def whole(self) -> dict[str, Any]:
-        """All that it knows, as a message."""
+        """Return all that it knows, as a message."""
         return messages.percepts_message(self._told)
 
     def changes(self) -> dict[str, Any]:
@@ -92,7 +92,7 @@ class EmbeddedBody:
 
     @property
     def lost(self) -> bool:
-        """Whether the Node it lived in has ended."""
+        """True if the Node it lived in has ended."""
         return self._channel.lost
 
     @property
@@ -106,7 +106,7 @@ class EmbeddedBody:
         return self._internal_state
 
     def snapshot(self) -> Snapshot:
-        """All there is in it now."""
+        """Return all there is in it now."""
         return messages.snapshot_of(
             self._channel.request("snapshot", region=self._region), self._box
         )
@@ -243,7 +243,7 @@ class EmbeddedWorld(Owned):
         self._agents |= set(agents)
 
     def another(self) -> "EmbeddedWorld":
-        """One more, with a process of its own."""
+        """Return one more, with a process of its own."""
         other = EmbeddedWorld(self._seed, self._limits)
         other._agents |= self._agents
         return other
@@ -260,7 +260,7 @@ class EmbeddedWorld(Owned):
             self._channel.close()
 
     def _live(self) -> Channel:
-        """The channel to Node, which is started if none is running."""
+        """Return the channel to Node, which is started if none is running."""
         self.check_own("the world")
         if self._closed:
             raise BodyError("this world was closed; open another one")
@@ -279,7 +279,7 @@ def started(
     writable: Path | None = None,
     **more: Any,
 ) -> tuple[Channel, Mapping[str, str]]:
-    """A channel to a new Node with an empty world, and the versions of what runs there.
+    """Return a channel to a new Node with an empty world, and the versions of what runs there.
 
     Args:
         seed: Drives the random numbers of the world itself.

@@ -107,7 +107,7 @@ class Unfinished:
 
     @property
     def is_call(self) -> bool:
-        """Whether it is a skill or a call of the bot, which `await` would have waited for."""
+        """True if it is a skill or a call of the bot, which `await` would have waited for."""
         return " " not in self.what and self.what not in ("setTimeout", "setInterval")
 
     def __str__(self) -> str:
@@ -232,7 +232,7 @@ class ProgramResult:
 
     @property
     def killed(self) -> bool:
-        """Whether the process behind the world ended under it; then nothing of it was kept."""
+        """True if the process behind the world ended under it; then nothing of it was kept."""
         return self.error is not None and self.error.kind == KILLED
 
 
@@ -294,11 +294,11 @@ class Body(Protocol):
 
     @property
     def lost(self) -> bool:
-        """Whether the process behind the world has ended."""
+        """True if the process behind the world has ended."""
 
     @property
     def goes_on(self) -> bool:
-        """Whether time passes in it between the calls; the next call tells what happened."""
+        """True if time passes in it between the calls; the next call tells what happened."""
 
     @property
     def tick(self) -> int:
@@ -309,7 +309,7 @@ class Body(Protocol):
         """What goes on in it besides its snapshot's facts, as of the end of the last call."""
 
     def snapshot(self) -> Snapshot:
-        """All there is in it now."""
+        """Return all there is in it now."""
 
     def run(
         self,
@@ -347,7 +347,7 @@ class World(Protocol):
 
     @property
     def has_physics(self) -> bool:
-        """Whether agents in its bodies stand, fall and are stopped by blocks."""
+        """True if agents in its bodies stand, fall and are stopped by blocks."""
 
     @property
     def versions(self) -> Mapping[str, str]:

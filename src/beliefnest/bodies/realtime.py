@@ -75,7 +75,7 @@ class RealtimeWorld(Owned, ABC):
         self.here()
 
     def here(self) -> frozenset[str]:
-        """The people who are there now."""
+        """Return the people who are there now."""
         told = self._live().request("people", invited=sorted(self._invited))
         return frozenset(told["here"])
 
@@ -108,7 +108,7 @@ class RealtimeWorld(Owned, ABC):
         return RealtimeBody.opened(self._live(), name, seed, snapshot, sink, known)
 
     def another(self) -> EmbeddedWorld:
-        """An embedded world: what is tried out goes as fast as it can, where nobody sees it.
+        """Return an embedded world: what is tried out goes as fast as it can, where nobody sees it.
 
         What is tried from reality begins there as reality is.
         """
@@ -136,7 +136,7 @@ class RealtimeWorld(Owned, ABC):
     @property
     @abstractmethod
     def shows_reality(self) -> bool:
-        """Whether visitors see reality itself; if not, they need to be shown it as beliefs are."""
+        """True if visitors see reality itself; if not, they need to be shown it as beliefs are."""
 
     @property
     def players(self) -> frozenset[str]:
@@ -158,7 +158,7 @@ class RealtimeWorld(Owned, ABC):
         return lags
 
     def _live(self) -> Channel:
-        """The channel to the process of the real world, started if none is running."""
+        """Return the channel to the process of the real world, started if none is running."""
         self.check_own("the world")
         if self._closed:
             raise BodyError("this world was closed; open another one")

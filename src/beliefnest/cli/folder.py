@@ -158,7 +158,7 @@ class RunFolder:
         return RunFolder(path)
 
     def cell(self, folder: Path) -> ConditionFolder:
-        """The part of one condition; `folder` is relative to this one."""
+        """Return the part of one condition; `folder` is relative to this one."""
         return ConditionFolder(self.path / folder)
 
     @property
@@ -190,7 +190,7 @@ class RunFolder:
 
 
 def store_in(run: Path) -> Path:
-    """The store of a run: itself, in its folder, or in the only condition's folder.
+    """Return the store of a run: itself, in its folder, or in the only condition's folder.
 
     Raises:
         InputError: There is none, or there are several.
@@ -212,7 +212,7 @@ def store_in(run: Path) -> Path:
 
 
 def stores_in(run: Path) -> tuple[Path, ...]:
-    """All stores of a run or of a study: itself, or those in its folder.
+    """Return all stores of a run or of a study: itself, or those in its folder.
 
     Raises:
         InputError: There is none.
@@ -224,7 +224,7 @@ def stores_in(run: Path) -> tuple[Path, ...]:
 
 
 def _below(folder: Path) -> tuple[Path, ...]:
-    """The stores in a folder, those of a study's cells included."""
+    """Return the stores in a folder, those of a study's cells included."""
     return tuple(sorted({*folder.rglob(STORE), *StudyFolder(folder).stores()}))
 
 

@@ -154,7 +154,7 @@ def _pairs(given: Sequence[str], option: str, form: str) -> dict[str, str]:
 
 
 def _value(text: str) -> Any:
-    """The value of a parameter: a number, a list and the like as in JSON, else the text."""
+    """Return the value of a parameter: a number, a list and the like as in JSON, else the text."""
     try:
         return json.loads(text)
     except (ValueError, RecursionError):

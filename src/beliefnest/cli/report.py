@@ -92,7 +92,7 @@ def report_json(
     runs: Sequence[Mapping[str, Any]],
     failures: Sequence[Mapping[str, Any]],
 ) -> dict[str, object]:
-    """The whole report.
+    """Return the whole report.
 
     Args:
         scenario: Its name.
@@ -238,7 +238,7 @@ def _verb(scenario: Scenario) -> str:
 
 
 def _verdict(row: OutcomeRow) -> str:
-    """Whether all was as expected, and if not, what was not; `notes` say why."""
+    """Return True if all was as expected, and if not, what was not; `notes` say why."""
     if not row.failures:
         return "[green]yes[/green]"
     names = (printable(failure.partition(": ")[0]) for failure in row.failures)
@@ -263,7 +263,7 @@ def _headings(rows: Iterable[OutcomeRow]) -> list[str]:
 
 
 def _cells(outcome: Outcome) -> dict[str, str]:
-    """Heading to text, for everything that is expected or asked."""
+    """Return the heading to text, for everything that is expected or asked."""
     cells: dict[str, list[str]] = {}
     for each in outcome.expectations:
         state = outcome.state(each.expectation.path)

@@ -22,7 +22,7 @@ def report_html(
     conditions: Mapping[int, str],
     versions: Mapping[str, str],
 ) -> str:
-    """The page of a run.
+    """Return the page of a run.
 
     Args:
         report: The run's report, as in `run.json`.
@@ -52,7 +52,7 @@ def report_html(
 
 
 def command_of(name: str, settings: Mapping[str, Any]) -> str:
-    """The command that makes the same run again."""
+    """Return the command that makes the same run again."""
     words = ["beliefnest", "run", name]
     for condition in settings["conditions"]:
         words += ["--condition", str(condition)]
@@ -64,7 +64,7 @@ def command_of(name: str, settings: Mapping[str, Any]) -> str:
 
 
 def _run(run: Mapping[str, Any], conditions: Mapping[int, str]) -> dict[str, Any]:
-    """One condition, with the files that belong to it."""
+    """Return one condition, with the files that belong to it."""
     folder, number = Path(run["run_dir"]), run["condition"]
     picture = folder / "picture.svg"
     probes = []
@@ -103,7 +103,7 @@ def _verdict(ok: bool | None) -> Markup:
 
 
 def _compact(value: object) -> str:
-    """A value of the report in one line."""
+    """Return a value of the report in one line."""
     if isinstance(value, Mapping):
         if not value:
             return "none"

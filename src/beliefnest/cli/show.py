@@ -172,7 +172,7 @@ def _simulator(options: ShowOptions, nest: RecordedNest) -> PastSimulator:
 
 
 def _scenes(options: ShowOptions, store: Path, stores: Sequence[Path]) -> tuple[Scene, ...]:
-    """The simulator in one run, with the run's name if there are several."""
+    """Return the simulator in one run, with the run's name if there are several."""
     with _opened(store) as (_, nest, _):
         tick = _simulator(options, nest).tick
         (scene,) = nest.scenes(options.path, tick, options.against, height=options.height)
@@ -207,7 +207,7 @@ def chosen_ticks(changes: Sequence[int], end: int, most: int) -> list[int]:
 
 
 def _name_in(store: Path, run: Path) -> str:
-    """A condition by its folder."""
+    """Return a condition by its folder."""
     return str(store.parent.relative_to(run)).replace("-", " ")
 
 
@@ -254,7 +254,7 @@ def _opened(store: Path) -> Iterator[tuple[Scenario, RecordedNest, SqliteJournal
 
 
 def _scenario(journal: SqliteJournal, nest: RecordedNest) -> Scenario:
-    """The scenario of a run; one that was told in code has its setting and no names."""
+    """Return the scenario of a run; one that was told in code has its setting and no names."""
     run = journal.records.run()
     if not run.text:
         return Scenario(nest.setting)
@@ -290,7 +290,7 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
 
 
 def _how_known(state: State, basis: Basis | None, *, current: bool) -> list[str]:
-    """The cell on where a belief comes from and how old it is; none in the real world."""
+    """Return the cell on where a belief comes from and how old it is; none in the real world."""
     if state.owner is None:
         return []
     return ["" if basis is None else memory(state, basis, current=current)]
@@ -340,5 +340,5 @@ def _print_prompts(prompts: Sequence[PromptRecord]) -> None:
 
 
 def _foreign(text: str) -> Text:
-    """A text that others wrote, as it is: square brackets in it are no markup."""
+    """Return a text that others wrote, as it is: square brackets in it are no markup."""
     return Text(printable(text))

@@ -70,7 +70,7 @@ class Calls:
         self.parts = {part: size for part, size in sizes.items() if part in used}
 
     def action(self, skill: str, given: Mapping[str, object]) -> dict[str, Any]:
-        """An action of the space, from names and positions.
+        """Return an action of the space, from names and positions.
 
         Args:
             skill: Name of the skill.
@@ -113,7 +113,7 @@ class Calls:
         return np.int64(self._layout.number(_KINDS[part], value))
 
     def read(self, action: Mapping[str, Any]) -> Call:
-        """The call that an action means.
+        """Return the call that an action means.
 
         Raises:
             InputError: It is no action of the space.

@@ -91,11 +91,11 @@ class BeliefSpace(spaces.Space[dict[str, Any]]):
     """Beliefs as plain data: the objects of `beliefnest show --json`, with what they rest on."""
 
     def contains(self, x: Any) -> bool:
-        """Whether it is such an object."""
+        """Return True if it is such an object."""
         return isinstance(x, dict) and {"containers", "agents", "chat"} <= x.keys()
 
     def sample(self, mask: Any = None, probability: Any = None) -> dict[str, Any]:
-        """The belief of somebody who knows nothing."""
+        """Return the belief of somebody who knows nothing."""
         return {"containers": {}, "agents": {}, "chat": [], "addressees": [], "thoughts": []}
 
     @property
@@ -157,7 +157,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
     @functools.cache  # noqa: B019 - the interface wants the same space for an agent each time
     def observation_space(self, agent: str) -> spaces.Space[Any]:
-        """The space of an agent's observations; the same object each time."""
+        """Return the space of an agent's observations; the same object each time."""
         if self._options.observations == "dict":
             return BeliefSpace()
         return spaces.Dict(
@@ -169,7 +169,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
     @functools.cache  # noqa: B019 - as above
     def action_space(self, agent: str) -> spaces.Space[Any]:
-        """The space of an agent's actions; the same object each time."""
+        """Return the space of an agent's actions; the same object each time."""
         if self._options.actions == "programs":
             return spaces.Text(_LONGEST_PROGRAM, min_length=0, charset=_LETTERS)
         parts: dict[str, spaces.Space[Any]] = {"skill": spaces.Discrete(len(self.skills))}
@@ -183,7 +183,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         return spaces.Dict(parts)
 
     def action(self, skill: str, **parts: object) -> dict[str, Any]:
-        """An action of the structured space, from names and positions.
+        """Return an action of the structured space, from names and positions.
 
         Args:
             skill: Name of a skill.
@@ -268,7 +268,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         """Nothing; `nest.figure()` draws any belief."""
 
     def state(self) -> Any:
-        """The real world, in the form of an observation of nobody's."""
+        """Return the real world, in the form of an observation of nobody's."""
         return self._form(self.nest["/"].state, ())
 
     def close(self) -> None:
@@ -327,7 +327,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 def _nested(
     nested: int | Sequence[str], acting: Sequence[str], agents: Sequence[str]
 ) -> tuple[tuple[str, ...], ...]:
-    """The paths of the beliefs to tell in infos, the deepest first."""
+    """Return the paths of the beliefs to tell in infos, the deepest first."""
     if isinstance(nested, int):
         found = {
             (first, *rest)

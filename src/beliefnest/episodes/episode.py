@@ -260,14 +260,14 @@ class Episode:
 
     @property
     def is_over(self) -> bool:
-        """Whether there is nothing more to play."""
+        """True if there is nothing more to play."""
         if self._nest is None:
             return False
         return self._is_decided or self._is_at_end
 
     @property
     def _is_decided(self) -> bool:
-        """Whether the goal was reached, or cannot be any more."""
+        """True if the goal was reached, or cannot be any more."""
         progress = self._watch()
         return progress.reached is not None or progress.violated is not None
 
@@ -277,7 +277,7 @@ class Episode:
 
     @property
     def success(self) -> bool:
-        """Whether the task's goal was reached."""
+        """True if the task's goal was reached."""
         return self._nest is not None and self._watch().succeeded(over=self.is_over)
 
     @property
@@ -393,7 +393,7 @@ class Episode:
         )
 
     def at(self, round: int) -> "RoundStart[Self]":
-        """The beginning of a round that was played.
+        """Return the beginning of a round that was played.
 
         Raises:
             InputError: There is no such round.
@@ -459,7 +459,7 @@ class Episode:
         return self._nest or self._opened()
 
     def _entered(self) -> Nest:
-        """The nest before anything has happened in it, which people may join."""
+        """Return the nest before anything has happened in it, which people may join."""
         if self._lobby is None:
             self._lobby = Nest.open(
                 self.task.scenario, self._world, self._store, self.seed, self._worlds

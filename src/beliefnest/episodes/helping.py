@@ -100,7 +100,7 @@ class Branching(Protocol):
         """Play to the end."""
 
     def forked(self, round: int, policies: Mapping[str, "str | Policy"]) -> Self:
-        """The same from a round on, on a branch of its own, with other policies."""
+        """Return the same from a round on, on a branch of its own, with other policies."""
 
 
 @dataclass(frozen=True)

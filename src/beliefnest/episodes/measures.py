@@ -107,7 +107,7 @@ class Played(Protocol):
 
     @property
     def success(self) -> bool:
-        """Whether the goal was reached."""
+        """True if the goal was reached."""
 
     @property
     def beginnings(self) -> Sequence[int]:

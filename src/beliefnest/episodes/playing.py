@@ -77,7 +77,7 @@ def look_around(nest: Nest) -> None:
 
 
 def _programs(parts: Sequence[Part]) -> tuple[dict[str, str], dict[str, ProgramPast]]:
-    """The programs of the last part by agent, and what those that go on had done before."""
+    """Return the programs of the last part by agent, and what those that go on had done before."""
     decisions = parts[-1].decisions
     programs = {agent: d.program for agent, d in decisions.items() if d.program}
     past = {

@@ -32,7 +32,7 @@ class Keeps(Protocol):
     """A run that bytes were kept in."""
 
     def kept(self, name: str) -> bytes | None:
-        """The bytes last kept under a name."""
+        """Return the bytes last kept under a name."""
 
 
 class Writes(Keeps, Protocol):
@@ -65,7 +65,7 @@ class Budget(msgspec.Struct, frozen=True, omit_defaults=True):
                 raise InputError(f"{name} of a budget is {value!r}; give at least {least}, or None")
 
     def is_spent(self, ticks: int, spent: Spent) -> bool:
-        """Whether nothing is left after so many ticks, and what policies have spent."""
+        """Return True if nothing is left after so many ticks, and what policies have spent."""
         return (
             (self.ticks is not None and ticks >= self.ticks)
             or (self.tokens is not None and spent.tokens >= self.tokens)
@@ -142,7 +142,7 @@ def ended_as(decision: Decision, result: ProgramResult | None) -> Ended:
 
 
 def holds_episode(nest: Keeps) -> bool:
-    """Whether there is an episode in a run."""
+    """Return True if there is an episode in a run."""
     return nest.kept(_BRANCHES) is not None
 
 
@@ -200,7 +200,7 @@ def kept_in(nest: Keeps) -> tuple[EpisodeStart, dict[str, Branch]]:
 
 
 def branch_of(branches: Mapping[str, Branch], name: str) -> Branch:
-    """An episode's branch; BranchError if it has none of that name."""
+    """Return an episode's branch; BranchError if it has none of that name."""
     if name not in branches:
         raise BranchError(f"the episode has no branch {name!r}; it has {', '.join(branches)}")
     return branches[name]

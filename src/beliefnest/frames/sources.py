@@ -53,14 +53,14 @@ class RecordedCell:
 
 
 def study_of(source: Source) -> StudyResult | None:
-    """The study that a source is; None: it is none."""
+    """Return the study that a source is; None: it is none."""
     if isinstance(source, StudyResult):
         return source
     return StudyResult.read(source) if (Path(source) / "cells").is_dir() else None
 
 
 def cells_of(source: Source) -> Iterator[RecordedCell]:
-    """The cells of a source, in order.
+    """Yield the cells of a source, in order.
 
     Raises:
         InputError: There is no run and no study.

@@ -71,7 +71,7 @@ def episodes_df(source: Source | Iterable[Measures]) -> "pandas.DataFrame":
 
 
 def rounds_df(source: Source) -> "pandas.DataFrame":
-    """One row for each agent in each round of episodes: `cell`, `branch`, `round`, `agent`.
+    """Return one row for each agent in each round of episodes: `cell`, `branch`, `round`, `agent`.
 
     These four tell it from all others; then come its policy, program, and how that ended.
     Arguments and errors as for `requests_df`.
@@ -97,7 +97,7 @@ def probes_df(source: Source) -> "pandas.DataFrame":
 
 
 def requests_df(source: Source) -> "pandas.DataFrame":
-    """One row for each request to a model: `cell`, `request`, `probe`, `messages`, `answer`.
+    """Return one row for each request to a model: `cell`, `request`, `probe`, `messages`, `answer`.
 
     Arguments and errors as for `cells_df`; of a study, cells that were recorded.
     """
@@ -166,7 +166,7 @@ def _cell_row(recorded: RecordedCell) -> Row:
 
 
 def _recorded(source: Source, rows: Any) -> Iterator[Row]:
-    """The rows of every recorded cell, each read at one moment."""
+    """Yield the rows of every recorded cell, each read at one moment."""
     cells = list(cells_of(source))
     if cells and all(each.file is None for each in cells):
         raise InputError(
@@ -265,7 +265,7 @@ def _held(held: Mapping[str, Any]) -> Row:
 
 
 def _plain(value: Any) -> Any:
-    """A value as one cell of a table: structures as JSON."""
+    """Return a value as one cell of a table: structures as JSON."""
     if isinstance(value, list | dict | tuple):
         return json.dumps(value, sort_keys=True)
     return value

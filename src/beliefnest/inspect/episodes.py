@@ -38,7 +38,7 @@ def episode_task(
     players: str | list[str] | None,
     parameters: dict[str, Any],
 ) -> Task:
-    """The task of episodes; each instance is a sample.
+    """Return the task of episodes; each instance is a sample.
 
     Args:
         name: A built-in task or scenario, or the path of a file of either.

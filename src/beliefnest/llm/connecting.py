@@ -24,7 +24,7 @@ class TooManyBytesError(ModelError):
 def bounded_client(
     seconds: float, longest: int, user: tuple[str, str] | None = None
 ) -> "httpx2.AsyncClient":
-    """A client that gives up a response of more than `longest` bytes; the caller closes it.
+    """Return a client that gives up a response of more than `longest` bytes; the caller closes it.
 
     Args:
         seconds: What one step of a request may take.

@@ -34,7 +34,7 @@ class UnusableAnswerError(ModelError):
 
 
 def excerpt(text: str) -> str:
-    """The beginning of a text, on one line, for a message."""
+    """Return the beginning of a text, on one line, for a message."""
     line = on_one_line(text[: 2 * _LONGEST_EXCERPT])
     cut = len(text) > 2 * _LONGEST_EXCERPT or len(line) > _LONGEST_EXCERPT
     return f"{line[:_LONGEST_EXCERPT]}..." if cut else line

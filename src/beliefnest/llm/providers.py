@@ -169,7 +169,7 @@ PROVIDERS: Mapping[str, Provider] = {
 
 
 def _is_near(url: str) -> bool:
-    """Whether a server is on this machine, or has an address of a private network."""
+    """Return True if a server is on this machine, or has an address of a private network."""
     host = urlsplit(url).hostname or ""
     try:
         return host == "localhost" or ip_address(host).is_private

@@ -351,7 +351,7 @@ def _clean(model: RemoteModel, text: str) -> str:
 
 
 def _is_nobody_there(error: BaseException | None) -> bool:
-    """Whether the cause of all was that no connection could be made."""
+    """Return True if the cause of all was that no connection could be made."""
     import httpx2
 
     while error is not None:

@@ -50,14 +50,14 @@ class Connection:
 
     @property
     def holds_answers(self) -> bool:
-        """Whether any kept answer may be used."""
+        """True if any kept answer may be used."""
         if self.cache is None or self.cache_mode != "read":
             return False
         return next(self.cache.glob("*.json"), None) is not None
 
 
 def model_names() -> tuple[str, ...]:
-    """The forms of names that `resolve_model` takes."""
+    """Return the forms of names that `resolve_model` takes."""
     remote = (f"{name}:MODEL" for name in PROVIDERS)
     return ("offline", "replay:FILE", "scripted:FILE", *remote)
 
@@ -69,7 +69,7 @@ def resolve_model(
     limits: AnswerLimits | None = None,
     clock: Clock | None = None,
 ) -> Model:
-    """The model of a name: one request an answer, nothing around it.
+    """Return the model of a name: one request an answer, nothing around it.
 
     Args:
         name: `offline`, `replay:FILE`, `scripted:FILE` or `PROVIDER:MODEL`.
@@ -141,7 +141,7 @@ def is_of_provider(name: str) -> bool:
 
 
 def open_model(name: str, environment: Mapping[str, str], connection: Connection) -> Model:
-    """The model of a name with retries, limits, cache and recording around it.
+    """Return the model of a name with retries, limits, cache and recording around it.
 
     A kept answer costs nothing and is recorded like any other; only models of providers
     are retried, metered and kept. Where answers are kept, a model may lack its key and address:

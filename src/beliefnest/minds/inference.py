@@ -438,7 +438,7 @@ class Inference:
         return _shares(logs)
 
     def _values(self, factor: str) -> npt.NDArray[np.float64]:
-        """Values of a factor, on the axes (actual, rationality, utility, credence)."""
+        """Return values of a factor, on the axes (actual, rationality, utility, credence)."""
         if factor not in self.factors:
             raise InputError(f"no factor {factor!r}; there are {', '.join(self.factors)}")
         kind, _, name = factor.partition(".")

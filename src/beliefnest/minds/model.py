@@ -191,7 +191,7 @@ class MindModel:
 
     @property
     def observer_doubts(self) -> bool:
-        """Whether the observer's own values of the doubted elements are ignored."""
+        """True if the observer's own values of the doubted elements are ignored."""
         return not (self.actual is None or isinstance(self.actual, str)) or self.actual == "unknown"
 
     def _set(self, name: str, value: object) -> None:

@@ -107,7 +107,7 @@ def _step(
     own: npt.NDArray[np.int32],
     side: tuple[int, int],
 ) -> npt.NDArray[np.int32]:
-    """Number of the cell that a step to a side leads to, from each cell."""
+    """Return the number of the cell that a step to a side leads to, from each cell."""
     to = own.copy()
     for up in (-1, 1, 0):
         aside = cells + np.array([side[0], up, side[1]])

@@ -235,7 +235,7 @@ class Scene:
 
 
 def best_height(states: Iterable[State]) -> int:
-    """The y at which most containers are, or else most agents' feet."""
+    """Return the y at which most containers are, or else most agents' feet."""
     found = list(states)
     heights = [place[1] for state in found for place in state.containers] or [
         math.floor(agent.position[1] + 1e-6)
@@ -260,7 +260,7 @@ def read_scene(
     height: int | None = None,
     note: str = "",
 ) -> Scene:
-    """The scene of a simulator.
+    """Return the scene of a simulator.
 
     Args:
         state: What it holds at a tick.
@@ -345,7 +345,7 @@ def _cell(state: State, at: Position, wrong: Mapping[Position | str, Wrong]) -> 
 def read_stores(
     state: State, level: int, labels: Labels, wrong: Mapping[Position | str, Wrong]
 ) -> tuple[Store, ...]:
-    """The containers of a state.
+    """Return the containers of a state.
 
     Args:
         state: What a simulator holds.

@@ -84,7 +84,7 @@ def build_scenario(
     condition: int | None,
     conditions: Mapping[int, Mapping[str, Any]],
 ) -> ScenarioContent:
-    """The scenario that a document describes, its condition merged in already.
+    """Return the scenario that a document describes, its condition merged in already.
 
     Raises:
         ScenarioError: Something in it makes no sense; the message names file, line and key.
@@ -168,7 +168,7 @@ class _Builder:
         )
 
     def _unique(self, initial: Sequence[InitialBelief]) -> frozenset[str]:
-        """Items of which there is one, which world and initial beliefs do not contradict."""
+        """Return items of which there is one, which world and initial beliefs do not contradict."""
         found = set()
         for number, name in enumerate(self._file.unique):
             path = ("unique", number)
@@ -180,7 +180,7 @@ class _Builder:
         return frozenset(found)
 
     def probe(self, number: int, entry: ProbeEntry) -> Probe:
-        """One probe, its template read."""
+        """Return one probe, its template read."""
         path = ("probes", number)
         believers = self._check_belief_path((*path, "path"), entry.path)
         if entry.acts_in is not None:
@@ -205,7 +205,7 @@ class _Builder:
         )
 
     def _expect(self, path: KeyPath, entry: ExpectEntry) -> tuple[Expected, ...]:
-        """All that is expected of a probe."""
+        """Return all that is expected of a probe."""
         expected: list[Expected] = []
         if entry.opens is not None:
             self._check_container((*path, "opens"), entry.opens)
@@ -270,7 +270,7 @@ class _Builder:
         return Answers(entry.question, right, options, wrong, entry.reason)
 
     def expectation(self, number: int, entry: ExpectationEntry) -> Expectation:
-        """One expectation."""
+        """Return one expectation."""
         path = ("expectations", number)
         self._check_belief_path((*path, "path"), entry.path)
         return Expectation(entry.path, self._expected(path, entry), entry.label)
@@ -327,7 +327,7 @@ class _Builder:
         )
 
     def _state_text(self, path: KeyPath, text: str | None) -> str | None:
-        """A block state as states are written everywhere."""
+        """Return a block state as states are written everywhere."""
         if text is None:
             return None
         with self._document.naming(path):

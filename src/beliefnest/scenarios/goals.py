@@ -39,16 +39,16 @@ class GoalFacts(Protocol):
     """What conditions ask of a state: the real one, a believed or an imagined one."""
 
     def items_in(self, place: Position) -> Items:
-        """Items known to be in a container; none where nothing is known."""
+        """Return items known to be in a container; none where nothing is known."""
 
     def items_of(self, agent: str) -> Items:
-        """Items that an agent is known to have."""
+        """Return items that an agent is known to have."""
 
     def feet_of(self, agent: str) -> Point | None:
         """Where an agent stands; None: unknown."""
 
     def block(self, place: Position) -> str | None:
-        """Block state text; None: unknown."""
+        """Return the block state text; None: unknown."""
 
 
 Look = Callable[[BeliefPath], GoalFacts]
@@ -62,12 +62,12 @@ class StateFacts:
     state: State
 
     def items_in(self, place: Position) -> Items:
-        """Items known to be in a container."""
+        """Return items known to be in a container."""
         known = self.state.containers.get(place)
         return {} if known is None else known.items
 
     def items_of(self, agent: str) -> Items:
-        """Items that an agent is known to have."""
+        """Return items that an agent is known to have."""
         return self.state.agents[agent].inventory
 
     def feet_of(self, agent: str) -> Point | None:
@@ -75,7 +75,7 @@ class StateFacts:
         return self.state.agents[agent].position
 
     def block(self, place: Position) -> str | None:
-        """Block state text."""
+        """Return the block state text."""
         return self.state.blocks[place]
 
 
@@ -88,7 +88,7 @@ class ItemsIn:
     count: int = 1
 
     def holds(self, facts: GoalFacts) -> bool:
-        """Whether it does."""
+        """Return True if it does."""
         return facts.items_in(self.place).get(self.item, 0) >= self.count
 
     def __str__(self) -> str:
@@ -104,7 +104,7 @@ class ItemsWith:
     count: int = 1
 
     def holds(self, facts: GoalFacts) -> bool:
-        """Whether it has."""
+        """Return True if it has."""
         return facts.items_of(self.agent).get(self.item, 0) >= self.count
 
     def __str__(self) -> str:
@@ -120,7 +120,7 @@ class AgentAt:
     within: float = 1.0
 
     def holds(self, facts: GoalFacts) -> bool:
-        """Whether it stands there."""
+        """Return True if it stands there."""
         feet = facts.feet_of(self.agent)
         return feet is not None and self.distance(feet) <= self.within
 
@@ -146,7 +146,7 @@ class BlockIs:
     state: str
 
     def holds(self, facts: GoalFacts) -> bool:
-        """Whether it is."""
+        """Return True if it is."""
         there = facts.block(self.place)
         return there is not None and agrees(there, self.state)
 
@@ -169,7 +169,7 @@ class BlocksAlike:
     property: str = ""
 
     def holds(self, facts: GoalFacts) -> bool:
-        """Whether they agree."""
+        """Return True if they agree."""
         wanted = self.wanted(facts)
         return wanted is not None and wanted == self._of(facts.block(self.place))
 
@@ -197,11 +197,11 @@ class LeversHeld:
     sites: tuple[tuple[Position, ...], ...]
 
     def holds(self, facts: GoalFacts) -> bool:
-        """Whether they are."""
+        """Return True if they are."""
         return any(self.missing(facts, site) == (0, 0.0) for site in self.known(facts))
 
     def known(self, facts: GoalFacts) -> list[tuple[Position, ...]]:
-        """The sites whose levers are known."""
+        """Return the sites whose levers are known."""
         return [
             site
             for site in self.sites
@@ -241,7 +241,7 @@ class GoalCondition:
     path: BeliefPath = ()
 
     def holds(self, look: Look) -> bool:
-        """Whether it is the case there."""
+        """Return True if it is the case there."""
         return self.fact.holds(look(self.path))
 
     def __str__(self) -> str:
@@ -348,13 +348,13 @@ class Progress:
             self.reached = tick
 
     def succeeded(self, *, over: bool) -> bool:
-        """Whether the goal is reached, given whether the episode has come to its end."""
+        """Return True if the goal is reached, given whether the episode has come to its end."""
         if self.violated is not None:
             return False
         return self.reached is not None or (over and not self.goal.reach)
 
     def came_true(self) -> Sequence[tuple[str, int | None]]:
-        """All conditions in words, each with the tick at which it came true first."""
+        """Return all conditions in words, each with the tick at which it came true first."""
         return [
             (str(each), self.first.get(number)) for number, each in enumerate(self.goal.conditions)
         ]
@@ -367,7 +367,7 @@ def looking_at(states: Mapping[BeliefPath, State]) -> Look:
 
 @cache
 def agrees(there: str, wanted: str) -> bool:
-    """Whether a block is in a state; properties that are not named may be any."""
+    """Return True if a block is in a state; properties that are not named may be any."""
     name, stated = parse_state(wanted)
     is_named, properties = parse_state(there)
     return is_named == name and stated.items() <= properties.items()

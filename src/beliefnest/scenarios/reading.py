@@ -35,7 +35,7 @@ _TOO_MUCH = (
 
 
 def read_yaml(path: Path) -> Document:
-    """The document in a YAML file, with the templates that were kept beside it, if any.
+    """Return the document in a YAML file, with the templates that were kept beside it, if any.
 
     Raises:
         ScenarioError: The file cannot be read, or is not one YAML mapping.
@@ -52,7 +52,7 @@ def templates_file(path: Path) -> Path:
 
 
 def template_text(document: Document, path: KeyPath, name: str) -> str:
-    """The text of a template that a document names, and that is none of the built-in ones.
+    """Return the text of a template that a document names, and that is none of the built-in ones.
 
     Args:
         document: Keeps it, or says in which folder it is.
@@ -72,7 +72,7 @@ def template_text(document: Document, path: KeyPath, name: str) -> str:
 
 
 def parse_yaml(text: str, source: str) -> Document:
-    """The document that a YAML text holds.
+    """Return the document that a YAML text holds.
 
     Args:
         text: The text.
@@ -120,7 +120,7 @@ def _templates(path: Path) -> dict[str, str]:
 
 
 def _parser() -> YAML:
-    """A parser that gives up what is nested too deep or too much before it holds it."""
+    """Return a parser that gives up what is nested too deep or too much before it holds it."""
     parser = YAML(typ="rt", pure=True)
     parser.Composer = _Composer
     parser.Constructor = _Constructor
@@ -202,7 +202,7 @@ def _line(lines: Mapping[object, list[int]], key: object, default: int) -> int:
 
 
 def _scalar(value: object) -> object:
-    """The plain value of a scalar that remembers how it was written."""
+    """Return the plain value of a scalar that remembers how it was written."""
     for kind in (bool, int, float, str):
         if isinstance(value, kind):
             return kind(value)

@@ -39,7 +39,7 @@ def usage_json(usage: Usage) -> dict[str, object]:
 
 
 def expectation_json(outcome: ExpectationOutcome) -> dict[str, object]:
-    """Whether a simulator holds what was expected of it."""
+    """Return True if a simulator holds what was expected of it."""
     return {
         **_expected_of(outcome.expectation),
         "ok": outcome.ok,
@@ -48,7 +48,7 @@ def expectation_json(outcome: ExpectationOutcome) -> dict[str, object]:
 
 
 def expected_json(expected: tuple[Expected, ...]) -> dict[str, object] | None:
-    """All that is expected of a probe, with the keys of a scenario file; None: nothing."""
+    """Return all that is expected of a probe, with the keys of a scenario file; None: nothing."""
     found: dict[str, Any] = {}
     for each in expected:
         for key, value in _one(each).items():

@@ -39,7 +39,7 @@ class StudyKeyError(InputError):
 
 
 def several(key: str, names: object) -> tuple[str, ...]:
-    """Names or paths; one alone is a list of one.
+    """Return names or paths; one alone is a list of one.
 
     Raises:
         StudyKeyError: It is neither.
@@ -51,7 +51,7 @@ def several(key: str, names: object) -> tuple[str, ...]:
 
 
 def checked_columns(names: object, known: Sequence[str]) -> list[str]:
-    """Names of columns, as they are; one alone is a list of one.
+    """Return names of columns, as they are; one alone is a list of one.
 
     Raises:
         StudyKeyError: It is neither.
@@ -65,7 +65,7 @@ def checked_columns(names: object, known: Sequence[str]) -> list[str]:
 
 
 def checked_conditions(conditions: object) -> tuple[int, ...] | None:
-    """Numbers of conditions, also as texts; one alone is a list of one, None stays None.
+    """Return numbers of conditions, also as texts; one alone is a list of one, None stays None.
 
     Raises:
         StudyKeyError: It is neither, or an empty list.
@@ -97,19 +97,19 @@ def check_count(key: str, number: object) -> None:
 
 
 def is_whole(number: object) -> TypeGuard[int]:
-    """Whether it is a whole number."""
+    """Return True if it is a whole number."""
     return isinstance(number, int) and not isinstance(number, bool)
 
 
 def is_amount(number: object) -> TypeGuard[float]:
-    """Whether it is a finite number that is not below 0."""
+    """Return True if it is a finite number that is not below 0."""
     if isinstance(number, bool) or not isinstance(number, int | float):
         return False
     return math.isfinite(number) and number >= 0
 
 
 def is_count(number: object) -> bool:
-    """Whether it is a whole number, at least 1."""
+    """Return True if it is a whole number, at least 1."""
     return is_whole(number) and number >= 1
 
 
@@ -149,7 +149,7 @@ def checked_lists(variations: Mapping[str, Sequence[Any]]) -> None:
 
 
 def _is_plain(value: object) -> bool:
-    """Whether it can stand in a file."""
+    """Return True if it can stand in a file."""
     if isinstance(value, Mapping):
         return all(isinstance(key, str) and _is_plain(inner) for key, inner in value.items())
     if isinstance(value, list | tuple):

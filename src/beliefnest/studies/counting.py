@@ -20,7 +20,7 @@ _Z95 = 1.959963984540054
 def count_rows(
     rows: Sequence[Row], by: Sequence[str], means: Mapping[str, bool] | None = None
 ) -> list[dict[str, Any]]:
-    """Count for each group the rows that are right, and compute how sure their share is.
+    """Return the count for each group the rows that are right, and compute how sure their share is.
 
     Rows in which nothing was expected, or which have no result, are counted and not judged. Of a
     row and its copies (`copy_of`) one is counted; `copies` are those that are left out. Intervals

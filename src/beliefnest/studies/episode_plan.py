@@ -61,7 +61,7 @@ class EpisodeKey:
         return digest(self.content_json())[:16]
 
     def content_json(self) -> dict[str, Any]:
-        """All of it as plain values."""
+        """Return all of it as plain values."""
         return {
             "task": self.task,
             "content": self.content,
@@ -169,7 +169,7 @@ class _Place:
     variation: Variation
 
     def task(self, seed: int) -> Task:
-        """An instance."""
+        """Return an instance."""
         if self.document is None:
             return Task.load(self.name, seed, **self.variation.values)
         varied = self.variation

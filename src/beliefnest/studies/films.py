@@ -221,7 +221,7 @@ def _film(entry: Mapping[str, Any], world: Mapping[str, Any]) -> Film:
 
 
 def _letters(human: Mapping[str, Any], kind: str) -> tuple[str, ...]:
-    """Names of goals in a key such as `desire_KLM_mean_1to7`."""
+    """Return names of goals in a key such as `desire_KLM_mean_1to7`."""
     for key in human:
         if found := re.match(rf"{kind}_([A-Z]+)_mean", key):
             return tuple(found[1])

@@ -38,7 +38,7 @@ class Counted(Protocol):
         """Return the rows of `summary` as plain values."""
 
     def apart(self, between: str) -> Sequence[str]:
-        """The columns in whose groups a column is compared."""
+        """Return the columns in whose groups a column is compared."""
 
     def paired(
         self, between: str, by: Sequence[str] = ()

@@ -50,7 +50,7 @@ class Key(Protocol):
         """Drives every random number of the cell."""
 
     def content_json(self) -> dict[str, Any]:
-        """All of it as plain values."""
+        """Return all of it as plain values."""
 
 
 class Keyed(Protocol):
@@ -97,7 +97,7 @@ class CellKey:
         return digest(self.content_json())[:16]
 
     def content_json(self) -> dict[str, Any]:
-        """All of it as plain values."""
+        """Return all of it as plain values."""
         return {
             "scenario": self.scenario,
             "content": self.content,
@@ -128,7 +128,7 @@ class CellKey:
 
 
 def digest(value: object) -> str:
-    """A hash of plain values, the same on every machine."""
+    """Return a hash of plain values, the same on every machine."""
     return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
 
 
@@ -138,7 +138,7 @@ def cell_seed(*parts: object) -> int:
 
 
 def variation_id(*parts: object) -> str:
-    """Name an independent variation by the plain values that tell it from others.
+    """Return the name an independent variation by the plain values that tell it from others.
 
     The name is the same on every machine and in every shard, and begins with a letter, so that no
     reader of tables takes it for a number.
@@ -213,7 +213,7 @@ class Plan(Generic[C]):
     invalid: tuple[Invalid, ...]
 
     def shard(self, number: int, count: int) -> "Plan[C]":
-        """One of several parts that together are the plan; a cell is always in the same one.
+        """Return one of several parts that together are the plan; a cell is always in the same one.
 
         Args:
             number: From 1.
@@ -224,7 +224,7 @@ class Plan(Generic[C]):
 
 
 def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan[Cell]:
-    """The plan of a study.
+    """Return the plan of a study.
 
     Args:
         design: What is combined.
@@ -293,7 +293,7 @@ def _conditions(design: Design, document: Document) -> Sequence[int | None]:
 
 
 def _unknown_conditions(design: Design, name: str, document: Document) -> Iterator[Invalid]:
-    """Conditions that are asked for, and that a scenario with conditions does not have."""
+    """Yield conditions that are asked for, and that a scenario with conditions does not have."""
     numbers = condition_numbers(document)
     for number in design.conditions or () if numbers != (None,) else ():
         if number not in numbers:
@@ -319,7 +319,7 @@ def _scenario(
 def _by_template(
     design: Design, document: Document, scenario: Scenario, variation: Variation
 ) -> list[tuple[Template | None, Scenario]]:
-    """The scenario with each of the study's templates in place of its own."""
+    """Return the scenario with each of the study's templates in place of its own."""
     if not design.templates:
         return [(None, scenario)]
     return [

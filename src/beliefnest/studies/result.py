@@ -133,11 +133,11 @@ class StudyResult:
         return plain_frame({name: Typed([row[name] for row in counted]) for name in columns})
 
     def counted(self, by: Sequence[str]) -> list[dict[str, Any]]:
-        """The rows of `summary` as plain values."""
+        """Return the rows of `summary` as plain values."""
         return count_rows(self.rows, by, self.table.means)
 
     def paired(self, between: str, by: Sequence[str] = ()) -> list[tuple[tuple[Any, ...], Pairs]]:
-        """The rows of `differences` as values: those of `by`, and what is compared.
+        """Return the rows of `differences` as values: those of `by`, and what is compared.
 
         Raises:
             InputError: Rows are not told apart by the column.

@@ -56,13 +56,13 @@ program."""
 
 
 def variation_columns(plan: Mapping[str, Any]) -> list[str]:
-    """Names of the columns that say what was varied, in the order of the plan."""
+    """Return names of the columns that say what was varied, in the order of the plan."""
     names = (name for cell in plan["cells"] for name in cell["key"]["variation"])
     return list(dict.fromkeys(names))
 
 
 def _probe_rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """The rows of a plan, see `rows_with_copies`.
+    """Yield the rows of a plan, see `rows_with_copies`.
 
     A cell that failed has a row for each of its probes, all with the outcome `error` and its
     reason; one without probes has a single row, which tells of its expectations.
@@ -150,14 +150,14 @@ def _beliefs(expectations: list[Mapping[str, Any]]) -> dict[str, Any]:
 
 
 def plain_value(value: Any) -> Any:
-    """A value as one cell of a table: places as `x,y,z`, other structures as JSON."""
+    """Return a value as one cell of a table: places as `x,y,z`, other structures as JSON."""
     if isinstance(value, list) and value and all(isinstance(n, int | float) for n in value):
         return _place(value)
     return json.dumps(value, sort_keys=True) if isinstance(value, list | dict) else value
 
 
 def _order(path: str) -> int:
-    """Count the agents in whose beliefs a path leads: 0 for the real world."""
+    """Return the count the agents in whose beliefs a path leads: 0 for the real world."""
     return len(normalised(filter(None, path.split("/"))))
 
 

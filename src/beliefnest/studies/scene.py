@@ -26,7 +26,7 @@ class SceneChange(Protocol):
     """What becomes of values, by their kind."""
 
     def value(self, kind: Kind, value: Any) -> Any:
-        """The new value.
+        """Return the new value.
 
         Raises:
             BeliefNestError: It cannot be changed for certain.
@@ -188,7 +188,7 @@ _SHAPE: Mapping[str, Any] = {
 
 
 def changed_scene(document: Document, change: SceneChange) -> Document:
-    """A document that says the same of another scene.
+    """Return a document that says the same of another scene.
 
     Args:
         document: Its condition merged in and its parameters filled in.
@@ -209,7 +209,7 @@ def changed_scene(document: Document, change: SceneChange) -> Document:
 
 
 def _templates(document: Document, change: SceneChange) -> Iterator[tuple[str, str]]:
-    """The templates in files that probes name, as they are in the other scene."""
+    """Yield the templates in files that probes name, as they are in the other scene."""
     probes = document.root.value.get("probes")
     for number, probe in enumerate(probes.value if probes is not None else ()):
         named = probe.value.get("template")

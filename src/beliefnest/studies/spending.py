@@ -47,7 +47,7 @@ class SharedBudget(RunSpending):
 
     @classmethod
     def of(cls, limits: RunLimits, file: Path) -> "SharedBudget":
-        """The budget of a study whose answers are counted in a file."""
+        """Return the budget of a study whose answers are counted in a file."""
         return cls(limits=limits, file=file)
 
 

@@ -56,7 +56,7 @@ class StudyFolder:
 
     @staticmethod
     def existing(path: str | Path) -> "StudyFolder":
-        """The folder of a study that is there; InputError if there is none."""
+        """Return the folder of a study that is there; InputError if there is none."""
         folder = StudyFolder(Path(path))
         if not folder.cells.is_dir():
             raise InputError(f"there is no study at {path}")
@@ -82,15 +82,15 @@ class StudyFolder:
         return self.path / "spent.jsonl"
 
     def run(self, cell: str) -> Path:
-        """The recorded run of a cell."""
+        """Return the recorded run of a cell."""
         return self.path / "runs" / f"{cell}.bn"
 
     def stores(self) -> list[Path]:
-        """The recorded runs of all cells."""
+        """Return the recorded runs of all cells."""
         return sorted((self.path / "runs").glob("*.bn"))
 
     def names(self) -> set[str]:
-        """Names of the cells that have ended."""
+        """Return names of the cells that have ended."""
         return {file.stem for file in self.cells.glob("*.json")}
 
     def cell(self, name: str) -> dict[str, Any] | None:
@@ -203,7 +203,7 @@ class StudyFolder:
 
 
 def _subjects(plan: Mapping[str, Any]) -> set[str]:
-    """Names of scenarios and tasks that are played."""
+    """Return names of scenarios and tasks that are played."""
     keys = (cell["key"] for cell in plan["cells"])
     return {str(key.get("scenario") or key["task"]) for key in keys}
 

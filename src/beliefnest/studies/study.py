@@ -151,7 +151,7 @@ class Study:
 
     @classmethod
     def load(cls, file: str | Path, claims_from: str | None = None) -> Self:
-        """The study that a YAML file describes.
+        """Return the study that a YAML file describes.
 
         Args:
             file: The file.
@@ -182,7 +182,7 @@ class Study:
         return self._design
 
     def plan(self) -> Plan[Cell] | Plan[EpisodeCell]:
-        """All cells, each checked, and the combinations that make no scenario or episode.
+        """Return all cells, each checked, and the combinations that make no scenario or episode.
 
         Raises:
             ScenarioError: A scenario is wrong as it is written.
@@ -333,7 +333,7 @@ def _constraints(constraints: Sequence[Constraint]) -> tuple[Constraint, ...]:
 
 
 def checked_shard(shard: tuple[int, int]) -> tuple[int, int]:
-    """A shard's number and count, as they are.
+    """Return a shard's number and count, as they are.
 
     Raises:
         InputError: There is no such shard.

@@ -43,5 +43,5 @@ class Table:
     means: Mapping[str, bool] = field(default_factory=dict)
 
     def names(self, varied: Iterable[str]) -> tuple[str, ...]:
-        """Names of all columns, with those of what varies."""
+        """Return names of all columns, with those of what varies."""
         return (*self.first, *varied, *self.columns)

@@ -201,7 +201,7 @@ class Database(Owned):
             raise self._fault(fault) from fault
 
     def rows(self, sql: str, values: Iterable[object] = ()) -> list[Row]:
-        """All rows a query returns."""
+        """Return all rows a query returns."""
         self.check_own(str(self.path))
         try:
             return self._connection.execute(sql, tuple(values)).fetchall()
@@ -209,14 +209,14 @@ class Database(Owned):
             raise self._fault(fault) from fault
 
     def row(self, sql: str, values: Iterable[object] = ()) -> Row | None:
-        """The first row a query returns, or None."""
+        """Return the first row a query returns, or None."""
         rows = self.rows(sql, values)
         return rows[0] if rows else None
 
     def sound_rows(
         self, columns: str, rest: str, values: Iterable[object], what: str
     ) -> Iterator[Row]:
-        """Columns of the rows that the rest of a query chooses; StoreError if one is damaged.
+        """Yield columns of the rows that the rest of a query chooses; StoreError if one is damaged.
 
         `what` names them in its message.
         """

@@ -189,7 +189,7 @@ FIRST_ENTRY = -1
 
 
 def timeline_row(info: TimelineInfo) -> Row:
-    """The row of a timeline."""
+    """Return the row of a timeline."""
     base = info.base
     return _row(
         "timelines",
@@ -204,7 +204,7 @@ def timeline_row(info: TimelineInfo) -> Row:
 
 
 def entry_rows(key: TimelineKey, number: int, entry: Entry, registry: Registry) -> Iterator[Row]:
-    """The rows of one entry; UnknownNameError if a block state is none of the registry's."""
+    """Yield the rows of one entry; UnknownNameError if a block state is none of the registry's."""
     place = _place(key, number, entry.tick)
     edited = None if isinstance(entry, Frame) else path_text(entry.path)
     yield from _block_rows(place, entry.blocks.items(), registry, edited)
@@ -226,7 +226,7 @@ def entry_rows(key: TimelineKey, number: int, entry: Entry, registry: Registry) 
 
 
 def snapshot_rows(key: TimelineKey, snapshot: Snapshot, registry: Registry) -> Iterator[Row]:
-    """The rows of a timeline's first state; of the blocks, those that are not air."""
+    """Yield the rows of a timeline's first state; of the blocks, those that are not air."""
     place = _place(key, FIRST_ENTRY, snapshot.tick)
     low = snapshot.box.low
     cells = (
@@ -243,12 +243,12 @@ def snapshot_rows(key: TimelineKey, snapshot: Snapshot, registry: Registry) -> I
 
 
 def run_row(run: RunRecord, versions: Sequence[Mapping[str, str]]) -> Row:
-    """The row of the run itself."""
+    """Return the row of the run itself."""
     return _row("run", run, condition=run.condition or None, versions=versions)
 
 
 def program_row(program: ProgramRecord) -> Row:
-    """The row of a program that ran."""
+    """Return the row of a program that ran."""
     path, detail = path_text(program.path), _program_detail(program)
     return _row("programs", program, path=path, call=program.group, detail=detail)
 
@@ -265,20 +265,20 @@ def _program_detail(program: ProgramRecord) -> dict[str, str]:
 
 
 def prompt_row(prompt: PromptRecord) -> Row:
-    """The row of a request to a model."""
+    """Return the row of a request to a model."""
     place = _on_timeline(prompt.path, prompt.timeline, prompt.tick)
     messages = [{"role": role, "text": text} for role, text in prompt.messages]
     return _row("prompts", prompt, **place, messages=messages)
 
 
 def belief_row(row: BeliefRow) -> Row:
-    """The row of one node's state at one tick."""
+    """Return the row of one node's state at one tick."""
     place = _on_timeline(row.path, row.timeline, row.tick)
     return "beliefs", {**place, "state": dict(row.state), "blocks": dict(row.blocks)}
 
 
 def _row(table: str, record: object, **others: object) -> Row:
-    """A row of `others` and, in the other columns, what the record has under their names."""
+    """Return a row of `others` and, in the other columns, what the record has under their names."""
     columns = TABLES[table]
     return table, {
         name: others[name] if name in others else getattr(record, name) for name in columns

@@ -171,7 +171,7 @@ class Trace:
 
 
 def load_trace(path: Path, registry: Registry) -> Trace:
-    """The history in a file, all of whose lines are good.
+    """Return the history in a file, all of whose lines are good.
 
     Raises:
         InputError: The file cannot be read or has bad lines; the message names them.
@@ -191,7 +191,7 @@ def load_trace(path: Path, registry: Registry) -> Trace:
 
 
 def read_trace(lines: Iterable[bytes], registry: Registry) -> Trace:
-    """The history in lines of JSON; bad ones are left out and listed.
+    """Return the history in lines of JSON; bad ones are left out and listed.
 
     Raises:
         InputError: The first line is bad, so that nothing after it can be judged.
@@ -269,7 +269,7 @@ class _Reader:
         )
 
     def frame(self, line: _TickLine) -> Frame:
-        """The frame of a line; nothing is remembered of a line that raises."""
+        """Return the frame of a line; nothing is remembered of a line that raises."""
         if line.tick <= self._tick:
             raise InputError(f"tick {line.tick} does not come after tick {self._tick}")
         _check(_tick_fault(line.tick))
@@ -406,7 +406,7 @@ class _Reader:
 
 
 def _lines(file: BinaryIO) -> Iterator[bytes]:
-    """The lines of a file, none of which goes on for ever."""
+    """Yield the lines of a file, none of which goes on for ever."""
     while line := file.readline(_LONGEST_LINE + 1):
         if len(line) > _LONGEST_LINE:
             raise InputError(f"a line is longer than {_LONGEST_LINE:,} bytes")

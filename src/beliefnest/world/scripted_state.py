@@ -99,11 +99,11 @@ class ScriptedState:
         pending.events.append(Event(EventKind.BLOCK_UPDATE, actor, detail))
 
     def _state_at(self, place: Position) -> int:
-        """Block state at a position; air outside the box."""
+        """Return the block state at a position; air outside the box."""
         return int(self._facts.blocks[self._box.index(place)]) if place in self._box else AIR
 
     def _block(self, place: Position) -> Block:
-        """The block at a position, with what is written on it."""
+        """Return the block at a position, with what is written on it."""
         state = self._state_at(place)
         return Sign(state, self._facts.signs[place]) if place in self._facts.signs else state
 

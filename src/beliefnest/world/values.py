@@ -95,7 +95,7 @@ class Box:
             raise PositionError(f"position {position} is outside the box {self.low}..{self.high}")
 
     def index(self, position: Position) -> tuple[int, int, int]:
-        """Index of a position in a dense array of shape `shape`."""
+        """Return the index of a position in a dense array of shape `shape`."""
         return (
             position[0] - self.low[0],
             position[1] - self.low[1],
@@ -103,7 +103,7 @@ class Box:
         )
 
     def positions(self) -> Iterator[Position]:
-        """All block positions, x slowest, z fastest (the order of a dense array)."""
+        """Yield all block positions, x slowest, z fastest (the order of a dense array)."""
         for x in range(self.low[0], self.high[0] + 1):
             for y in range(self.low[1], self.high[1] + 1):
                 for z in range(self.low[2], self.high[2] + 1):
@@ -181,7 +181,7 @@ class AgentState:
     food: float = 20.0
 
     def moved(self, position: Point, yaw: float, pitch: float) -> "AgentState":
-        """The agent elsewhere, as `dataclasses.replace` makes it in a third of the time."""
+        """Return the agent elsewhere, as `dataclasses.replace` makes it in a third of the time."""
         return AgentState(
             position,
             yaw,

@@ -66,11 +66,11 @@ class Bodies:
         return path in self._embodied
 
     def lives(self) -> Lives:
-        """The processes that one call on bodies may use up."""
+        """Return the processes that one call on bodies may use up."""
         return Lives(self.forget_lost)
 
     def of(self, path: BeliefPath) -> Body:
-        """The body of a simulator in control mode, made if there is none yet.
+        """Return the body of a simulator in control mode, made if there is none yet.
 
         Raises:
             BranchError: The simulator is in follow mode.

@@ -27,7 +27,7 @@ class Earshot:
 
     @property
     def is_global(self) -> bool:
-        """Whether everybody hears everything."""
+        """True if everybody hears everything."""
         return self._history.context.options.hearing == "global"
 
     def begin(self) -> None:
@@ -35,7 +35,7 @@ class Earshot:
         self._world.hearing(everybody=self.is_global)
 
     def awaits(self, frame: Frame) -> bool:
-        """Whether somebody has to be told of what is said in a frame."""
+        """Return True if somebody has to be told of what is said in a frame."""
         return not self.is_global and any(map(_is_aloud, frame.events))
 
     def tell(self, key: TimelineKey, frame: Frame, entries: int) -> None:

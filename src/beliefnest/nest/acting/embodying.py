@@ -57,7 +57,7 @@ class Embodying:
 
     @property
     def follows(self) -> bool:
-        """Whether any simulator stands in Minecraft."""
+        """True if any simulator stands in Minecraft."""
         return bool(self._standing)
 
     def begin(self, path: BeliefPath, unknown: str) -> None:

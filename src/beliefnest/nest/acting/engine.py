@@ -170,7 +170,7 @@ class Engine:
 
     @_surviving
     def body(self, path: BeliefPath) -> Body:
-        """The body of a simulator in control mode; see `Bodies.of`."""
+        """Return the body of a simulator in control mode; see `Bodies.of`."""
         return self.bodies.of(path)
 
     @_shown

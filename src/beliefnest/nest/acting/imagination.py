@@ -41,7 +41,7 @@ class _News:
     happened: list[tuple[int, Event]] = field(default_factory=list)
 
     def events(self, count: int) -> Sequence[tuple[int, Event]]:
-        """All events since then."""
+        """Return all events since then."""
         return self.happened
 
     def before(self, path: BeliefPath) -> Sequence[PerceivedEvent]:
@@ -65,11 +65,11 @@ class Performer:
 
     @property
     def is_done(self) -> bool:
-        """Whether nothing is left."""
+        """True if nothing is left."""
         return not self.calls
 
     def again(self) -> "Performer":
-        """One that begins the call under way anew, as in a fork."""
+        """Return one that begins the call under way anew, as in a fork."""
         return Performer(self.calls)
 
 
@@ -156,7 +156,7 @@ class Imagination:
         return self.world.now
 
     def is_unknown(self, place: Position) -> bool:
-        """Whether the believer does not know the block at a position of the box."""
+        """Return True if the believer does not know the block at a position of the box."""
         index = self.world.box.index(place)
         return bool(self._unknown[index]) and int(self.world.blocks[index]) == 0
 
@@ -172,7 +172,7 @@ class Imagination:
         return self._standing().may_lead((x, y, z), InReach(place, REACH))
 
     def knows(self, path: BeliefPath) -> bool:
-        """Whether beliefs are followed as deep as a path below the root."""
+        """Return True if beliefs are followed as deep as a path below the root."""
         whole = normalised((*self.root, *path))
         return whole == self.root or (self._forest is not None and whole in self._forest)
 
@@ -206,7 +206,7 @@ class Imagination:
         return tuple(_print(NodeView(forest, node)) for node in nodes)
 
     def fork(self) -> "Imagination":
-        """The same once more, to go another way."""
+        """Return the same once more, to go another way."""
         forest, news = self._fold(), _News()
         if forest is not None:
             nodes = [path for path in forest.paths if path != self.root]
@@ -233,7 +233,7 @@ class Imagination:
         return made
 
     def doubting(self, speakers: Collection[str]) -> tuple["Imagination", frozenset[Position]]:
-        """The same with what some have said of containers taken for lies.
+        """Return the same with what some have said of containers taken for lies.
 
         Returns:
             That, and the containers without the things that were claimed to be in them.
@@ -337,7 +337,7 @@ class Imagination:
             self._news.happened += events
 
     def _with(self, path: BeliefPath) -> Forest:
-        """The forest as of now, which has to hold a node."""
+        """Return the forest as of now, which has to hold a node."""
         forest = self._fold()
         if forest is None or path not in forest:
             raise PathError(f"{path_text(path)} is deeper than this imagination goes")
@@ -365,7 +365,7 @@ def _print(view: NodeView) -> tuple[object, ...]:
 
 
 def _advance(performer: Performer) -> bool:
-    """A tick of the call under way; whether it has ended."""
+    """Return a tick of the call under way; whether it has ended."""
     if performer.doing is None:
         return False
     try:

@@ -46,11 +46,11 @@ class BodySpace:
     blocks: BlockGrid
 
     def state(self, cell: Position) -> int:
-        """Block state at a cell; -1 where it is unknown, air outside the box."""
+        """Return the block state at a cell; -1 where it is unknown, air outside the box."""
         return int(self.blocks[self.box.index(cell)]) if cell in self.box else self.registry.air
 
     def boxes_at(self, cell: Position) -> Iterator[BoxBounds]:
-        """Collision boxes of the block at a cell, in the coordinates of the box.
+        """Yield the collision boxes of the block at a cell, in the coordinates of the box.
 
         Invisible walls stand beside the box.
         """
@@ -64,7 +64,7 @@ class BodySpace:
             yield (x + x0, y + y0, z + z0, x + x1, y + y1, z + z1)
 
     def hits(self, room: BoxBounds) -> Iterator[BoxBounds]:
-        """Collision boxes that reach into a room by more than a touch."""
+        """Yield the collision boxes that reach into a room by more than a touch."""
         x0, y0, z0, x1, y1, z1 = room
         xs, zs = _span(x0, x1), _span(z0, z1)
         # A shape may reach half a block out of its own cell, upwards.
@@ -79,7 +79,7 @@ class BodySpace:
         return not any(True for _ in self.hits(_body(*places)))
 
     def has_floor(self, place: Point) -> bool:
-        """Whether known blocks hold an agent up."""
+        """Return True if known blocks hold an agent up."""
         x, y, z = place
         low = (x - HALF_WIDTH, y - _SETTLES, z - HALF_WIDTH)
         return any(True for _ in self.hits((*low, x + HALF_WIDTH, y, z + HALF_WIDTH)))
@@ -106,7 +106,7 @@ class BodySpace:
         return [top for top in sorted(tops) if self.is_free((x + 0.5, top, z + 0.5))]
 
     def is_doorway(self, place: Point) -> bool:
-        """Whether the feet are in the block of a shut door."""
+        """Return True if the feet are in the block of a shut door."""
         state = self.state(_cell(place))
         named = state >= 0 and self.registry.name(state).endswith("_door")
         return named and is_open(self.registry, state) is False
@@ -158,7 +158,7 @@ def placed(
 
 
 def moved_agents(agents: Mapping[str, AgentState], moves: Placed) -> dict[str, AgentState]:
-    """The agents that are moved, where they begin."""
+    """Return the agents that are moved, where they begin."""
     return {
         name: replace(agents[name], position=to, on_ground=True) for name, (_, to) in moves.items()
     }
@@ -179,7 +179,7 @@ def _can_be(space: BodySpace, agent: AgentState) -> bool:
 
 
 def _is_taken(place: Point, taken: Sequence[Point]) -> bool:
-    """Whether somebody's feet are in the same block."""
+    """Return True if somebody's feet are in the same block."""
     return _cell(place) in map(_cell, taken)
 
 
@@ -203,7 +203,7 @@ def _places(space: BodySpace, place: Point) -> Iterator[Point]:
 
 
 def _levels(space: BodySpace, cell: Position) -> list[float]:
-    """The heights of a cell, or its lower face if the floor there is unknown."""
+    """Return the heights of a cell, or its lower face if the floor there is unknown."""
     x, y, z = cell
     known = space.heights(cell)
     if known or space.state((x, y - 1, z)) >= 0 or not space.is_free((x + 0.5, y, z + 0.5)):
@@ -212,7 +212,7 @@ def _levels(space: BodySpace, cell: Position) -> list[float]:
 
 
 def _walkable(space: BodySpace, goal: Position) -> set[Position]:
-    """Cells from whose middle one can walk to the middle of a cell, itself included."""
+    """Return cells from whose middle one can walk to the middle of a cell, itself included."""
     near = set(_cells_near(goal))
     waiting = [(goal, height) for height in _levels(space, goal)]
     seen = set(waiting)
@@ -246,7 +246,7 @@ def _cell(place: Point) -> Position:
 
 
 def _body(*places: Point) -> BoxBounds:
-    """The room that an agent takes up at places and between them."""
+    """Return the room that an agent takes up at places and between them."""
     xs, ys, zs = zip(*places, strict=True)
     return (
         min(xs) - HALF_WIDTH,

@@ -51,7 +51,7 @@ class _RecordedCall:
     past: Mapping[str, ProgramPast]
 
     def made(self, entry: Entry) -> bool:
-        """Whether an entry lies in its time."""
+        """Return True if an entry lies in its time."""
         return self.tick < entry.tick <= self.tick + self.ticks
 
 

@@ -16,7 +16,7 @@ __all__ = ["Sensing", "believer_of"]
 
 
 def believer_of(path: BeliefPath, agent: str) -> BeliefPath:
-    """The node that an agent of a simulator reads from.
+    """Return the node that an agent of a simulator reads from.
 
     In its own belief that is the simulator itself: all there is is what it believes.
     """
@@ -60,7 +60,7 @@ class Sensing:
         return self._last
 
     def _reading(self, entries: int) -> NodeView:
-        """The agent's belief after so many entries."""
+        """Return the agent's belief after so many entries."""
         believer = believer_of(self._key.path, self._agent)
         return self._history.reading(self._key, believer, entries)
 

@@ -49,7 +49,7 @@ def element_of(
     agent: str | None,
     block: Position | None,
 ) -> Element:
-    """The one element that is asked for; errors as those of `ShownSimulator.explain`."""
+    """Return the one element that is asked for; errors as those of `ShownSimulator.explain`."""
     given = [name for name in (container, agent, block) if name is not None]
     if len(given) != 1:
         raise InputError(
@@ -77,7 +77,7 @@ def _inside(recording: Recording, place: Position | None) -> Position:
 def explain(
     recording: Recording, path: BeliefPath, tick: int | None, element: Element
 ) -> Explanation:
-    """The chain of perceptions behind what a node holds of an element at a tick; None: now.
+    """Return the chain of perceptions behind what a node holds of an element at a tick; None: now.
 
     Raises:
         TickError: The tick is in the future, or before the start of everything.
@@ -313,7 +313,7 @@ def _told(
 def _elsewhere(
     step: LogStep, path: BeliefPath, element: Element, before: Value
 ) -> Iterable[SeenElsewhere]:
-    """The unique items that one entry took out of a container because they are elsewhere."""
+    """Return the unique items that one entry took out of a container because they are elsewhere."""
     forest = step.forest
     after = value_in(forest, path, element)
     held = forest.holdings.of(forest.node(path))
@@ -328,7 +328,7 @@ def _elsewhere(
 
 
 def _entry(recording: Recording, step: LogStep) -> Entry | None:
-    """The entry that a step took in; None at the beginning of a timeline."""
+    """Return the entry that a step took in; None at the beginning of a timeline."""
     count = step.forest.position
     return next(recording.journal.entries(step.timeline, count - 1, count)) if count else None
 
@@ -351,7 +351,7 @@ def _sightings(
     element: Element,
     acts: Iterable[PerceivedEvent],
 ) -> tuple[Sighting, ...]:
-    """The looks that would have shown a change: at who did it, and at the element."""
+    """Return the looks that would have shown a change: at who did it, and at the element."""
     box = recording.box
     if isinstance(element.where, str):
         return (sighting_of_agent(parent, box, viewer, element.where),)

@@ -35,7 +35,7 @@ class LogStep:
 
 
 def cells_of(element: Element, box: Box) -> Sequence[int]:
-    """Cells whose basis has to be followed; contents carry theirs along."""
+    """Return cells whose basis has to be followed; contents carry theirs along."""
     if isinstance(element.where, str) or element.kind == "container":
         return ()
     return (cell_of(box, element.where),)
@@ -49,7 +49,7 @@ def steps_since(
     tick: int,
     element: Element,
 ) -> Iterator[LogStep]:
-    """The forest of a node after each entry from just before `tick` to a moment."""
+    """Yield the forest of a node after each entry from just before `tick` to a moment."""
     info = journal.info(moment.timeline)
     if info.base is not None and tick <= info.start:
         yield from steps_since(history, journal, path, info.base, tick, element)
@@ -87,7 +87,7 @@ def observed_at(forest: Forest, path: BeliefPath, element: Element) -> int | Non
 
 
 def is_current(forest: Forest, path: BeliefPath, element: Element) -> bool:
-    """Whether a node's value of an element is backed by a perception in the last entry."""
+    """Return True if a node's value of an element is backed by a perception in the last entry."""
     if isinstance(element.where, str):
         return forest.is_current(path, element.where)
     node, cell = forest.node(path), cell_of(forest.context.box, element.where)
@@ -98,14 +98,14 @@ def is_current(forest: Forest, path: BeliefPath, element: Element) -> bool:
 
 
 def touches(element: Element, event: PerceivedEvent) -> bool:
-    """Whether an event is about an element's content or block; moves of agents are none."""
+    """Return True if an event is about an element's content or block; moves of agents are none."""
     return element.kind != "agent" and event.detail.get("position") == element.where
 
 
 def last_change(
     history: History, journal: Journal, moment: ForkPoint, element: Element
 ) -> Entry | None:
-    """The last entry of a timeline that changed an element in its own world."""
+    """Return the last entry of a timeline that changed an element in its own world."""
     path = moment.timeline.path
     held: object = _bare(value_in(next(history.steps(moment.timeline, path, 0, 0)), path, element))
     last = None

@@ -73,18 +73,18 @@ class MadeClaim:
 
     @cached_property
     def false(self) -> bool:
-        """Whether the world it was made in said otherwise at its tick."""
+        """True if the world it was made in said otherwise at its tick."""
         return self._is_contradicted(self._key.path)
 
     @cached_property
     def lie(self) -> bool:
-        """Whether the speaker believed otherwise; without a known speaker it is no lie."""
+        """True if the speaker believed otherwise; without a known speaker it is no lie."""
         if self.speaker is None:
             return False
         return self._is_contradicted(normalised((*self._key.path, self.speaker)))
 
     def taken_up(self, path: str) -> bool:
-        """Whether it changed what a simulator holds, or holds the speaker to believe.
+        """Return True if it changed what a simulator holds, or holds the speaker to believe.
 
         Raises:
             PathError: The path is malformed or names an unknown agent.
@@ -108,7 +108,7 @@ class MadeClaim:
         return next((way for way in ways if not self._was_perceived(way)), path)
 
     def condition(self, path: str) -> str | None:
-        """The condition (`0`, `1a`, `1b`, `3`, `4`; semantics, section 8); errors as above.
+        """Return the condition (`0`, `1a`, `1b`, `3`, `4`; semantics, section 8); errors as above.
 
         None where none had to: it was taken up, was not heard, is about its hearer's own place,
         or testimony is off.
@@ -152,7 +152,7 @@ class MadeClaim:
             return forest.verdicts[self._row, self._index][forest.node(names)], self.speaker
 
     def _after(self, path: BeliefPath) -> Forest:
-        """A forest with a node, just after the claim."""
+        """Return a forest with a node, just after the claim."""
         steps = self._recording.history.steps(self._key, path, self._entry, self._entry + 1)
         *_, forest = steps
         return forest
@@ -188,7 +188,7 @@ class MadeClaim:
 
 
 def claims_made(recording: Recording, path: BeliefPath, tick: int | None) -> list[MadeClaim]:
-    """All claims made in a simulator, or in what it follows, up to a tick (None: all)."""
+    """Return all claims made in a simulator, or in what it follows, up to a tick (None: all)."""
     moment = recording.moment(path)
     if tick is not None:
         # A tick to come is no fault: what was claimed by then is what was claimed by now.
@@ -220,12 +220,12 @@ def _told(
 
 
 def _is_first(recording: Recording, key: TimelineKey) -> bool:
-    """Whether a timeline begins where the real world begins."""
+    """Return True if a timeline begins where the real world begins."""
     return recording.journal.info(key).base is None
 
 
 def says_otherwise(held: NodeView, context: BeliefContext, claim: Claim) -> bool:
-    """Whether a state contradicts a claim; what it does not know it does not contradict."""
+    """Return True if a state contradicts a claim; what it does not know it does not contradict."""
     match claim.kind:
         case ClaimKind.POSITION:
             believed = held.agents[str(claim.agent)].position

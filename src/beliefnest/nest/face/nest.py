@@ -194,7 +194,7 @@ class Nest(Joining, Visiting):
         return self["/"].scripted
 
     def __getitem__(self, path: str) -> Simulator:
-        """The simulator of a belief path; `/` is the real world."""
+        """Return the simulator of a belief path; `/` is the real world."""
         return Simulator(self._engine, parse_path(path, self.agents))
 
     @in_turn
@@ -206,7 +206,7 @@ class Nest(Joining, Visiting):
 
     @in_turn
     def at(self, tick: int) -> Past:
-        """All simulators as they were at a past tick.
+        """Return all simulators as they were at a past tick.
 
         Raises:
             TickError: The tick is no whole number, in the future or before the start.
@@ -288,7 +288,7 @@ class Nest(Joining, Visiting):
     def each_tick(
         self, paths: Sequence[str], after: int, until: int
     ) -> Iterator[tuple[int, Mapping[str, State]]]:
-        """Several simulators at each tick of the real world's timeline with something new.
+        """Yield several simulators at each tick of the real world's timeline with something new.
 
         All of them follow; read their states before asking for the next tick.
 

@@ -150,7 +150,7 @@ class Overlay:
                 self._feet.pop(name, None)
 
     def agreeing(self) -> int:
-        """The alternatives that agree with what the node holds."""
+        """Return the alternatives that agree with what the node holds."""
         assert self._held is not None
         agrees = [True] * len(self._names)
         for place, state in self._held.blocks.items():

@@ -101,7 +101,7 @@ class Reading:
 
     @property
     def is_whole(self) -> bool:
-        """Whether all entries of the ticks that were read are in it."""
+        """True if all entries of the ticks that were read are in it."""
         if self._key is None:
             return False
         return self.recording.journal.entries_until(self._key, self.latest) == self._position
@@ -113,7 +113,7 @@ class Reading:
 
     @property
     def has_seen(self) -> bool:
-        """Whether the agent was current at any tick."""
+        """True if the agent was current at any tick."""
         return any(moment.cell is not None for moment in self.moments)
 
     def _enter(self, key: TimelineKey, start: int, tick: int) -> None:
@@ -148,7 +148,7 @@ class Reading:
                 claims = []
 
     def _claims(self, key: TimelineKey, position: int) -> list[Claim]:
-        """Claims that the agent took up in the last of some entries."""
+        """Return claims that the agent took up in the last of some entries."""
         entry = next(self.recording.journal.entries(key, position - 1, position))
         return list(self._taken_up(entry)) if entry.tick == self.question.since else []
 

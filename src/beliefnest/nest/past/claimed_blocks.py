@@ -65,7 +65,7 @@ class ClaimedBlocks:
 
 
 def _claimed_at_first(context: BeliefContext, snapshot: Snapshot) -> list[int]:
-    """Cells of blocks that are spoken of on signs at the start."""
+    """Return cells of blocks that are spoken of on signs at the start."""
     written = snapshot.sign_claims.values()
     claims = [claim for plain in written for claim in claims_from_plain(plain)]
     return [cell_of(context.box, c.cell) for c in claims if c.kind is ClaimKind.BLOCK]

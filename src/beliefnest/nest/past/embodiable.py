@@ -46,14 +46,14 @@ def chest_places(
 def with_chests(
     registry: Registry, box: Box, blocks: BlockGrid, contents: Mapping[Position, Items]
 ) -> BlockGrid:
-    """Believed blocks, -1 unknown, with the chests that a body puts; see `chest_places`."""
+    """Return believed blocks, -1 unknown, with the chests that a body puts; see `chest_places`."""
     return with_chests_at(registry, box, blocks, chest_places(registry, box, blocks, contents))
 
 
 def with_chests_at(
     registry: Registry, box: Box, blocks: BlockGrid, places: Iterable[Position]
 ) -> BlockGrid:
-    """Believed blocks with chests at some places; the same array if there are none."""
+    """Return believed blocks with chests at some places; the same array if there are none."""
     cells = [box.index(place) for place in places]
     if not cells:
         return blocks
@@ -135,7 +135,7 @@ def _inside(box: Box, agent: AgentState) -> AgentState:
 
 
 def _laden(registry: Registry, agent: AgentState) -> AgentState:
-    """The agent with as much as it can carry; what it wears or holds comes first."""
+    """Return the agent with as much as it can carry; what it wears or holds comes first."""
     worn = [name for slot, name in agent.equipment.items() if slot in _WORN]
     carried = _without(agent.inventory, worn)
     off_hand = int("off_hand" in agent.equipment)

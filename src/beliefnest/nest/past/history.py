@@ -132,7 +132,7 @@ class History:
         return NodeView(self.shared(key, path, position), path, tick)
 
     def shared(self, key: TimelineKey, path: BeliefPath, position: int) -> Forest:
-        """A forest with a node, after some entries of a timeline.
+        """Return a forest with a node, after some entries of a timeline.
 
         It goes on with whoever asks next, so read it at once.
         """
@@ -163,7 +163,7 @@ class History:
             yield forest
 
     def walk(self, key: TimelineKey, paths: Sequence[BeliefPath]) -> Forest:
-        """A forest with several nodes at a timeline's beginning; it is the caller's own.
+        """Return a forest with several nodes at a timeline's beginning; it is the caller's own.
 
         `advance` takes it on.
         """
@@ -252,7 +252,7 @@ class History:
     def current_blocks(
         self, key: TimelineKey, path: BeliefPath, position: int, cells: Iterable[int]
     ) -> set[int]:
-        """Those of some cells whose block a perception in the last of some entries backs."""
+        """Return those of some cells whose block a perception in the last of some entries backs."""
         base = self._journal.info(key).base
         edited = None if base is None else self._edited_at_first(key, path, position)
         if base is not None and edited is not None:
@@ -307,7 +307,7 @@ class History:
             self._pasts.clear()
 
     def _past(self, key: TimelineKey, path: BeliefPath, position: int) -> Forest | None:
-        """The last forest at hand with a node that lies no later than a position."""
+        """Return the last forest at hand with a node that lies no later than a position."""
         found = None
         for other, forest in self._pasts:
             if other == key and path in forest and forest.position <= position:
@@ -341,7 +341,7 @@ class History:
     def _folded(
         self, key: TimelineKey, path: BeliefPath, position: int, extra: Sequence[int] = ()
     ) -> Forest:
-        """A new forest of a node and its ancestors, after some entries of a timeline."""
+        """Return a new forest of a node and its ancestors, after some entries of a timeline."""
         self._keep_up(key)
         forest = None
         if not extra:
@@ -353,12 +353,12 @@ class History:
     def _saved(
         self, key: TimelineKey, position: int, path: BeliefPath | None = None, after: int = 0
     ) -> Forest | None:
-        """The last checkpoint that serves: `Checkpoints.before`."""
+        """Return the last checkpoint that serves: `Checkpoints.before`."""
         found = self._checkpoints.before(key, position, self._log(key), path, after)
         return found if found is None or self._claimed.cells <= found.since else None
 
     def _begun(self, key: TimelineKey, path: BeliefPath, extra: Sequence[int] = ()) -> Forest:
-        """A forest of a node and its ancestors, at a timeline's beginning."""
+        """Return a forest of a node and its ancestors, at a timeline's beginning."""
         base = self._journal.info(key).base
         if base is None:
             return self._initial(key, (path,), extra)
@@ -372,7 +372,7 @@ class History:
     def _initial(
         self, key: TimelineKey, paths: Sequence[BeliefPath], extra: Sequence[int] = ()
     ) -> Forest:
-        """A forest of some nodes and their ancestors, where the real world begins."""
+        """Return a forest of some nodes and their ancestors, where the real world begins."""
         setting = self._setting
         return initial_forest(
             self.context,
@@ -426,7 +426,7 @@ class History:
         return next(self._journal.entries(key, number, number + 1))
 
     def _stretch(self, key: TimelineKey, position: int, wanted: int) -> _Stretch:
-        """The stretch that an entry lies in, read as far as is wanted."""
+        """Return the stretch that an entry lies in, read as far as is wanted."""
         number = position // self._pace.stretch
         first, end = number * self._pace.stretch, (number + 1) * self._pace.stretch
         stretch = self._stretches.pop((key, number), None)

@@ -24,7 +24,7 @@ def fork_of_belief(journal: Journal, key: TimelineKey) -> tuple[TimelineInfo, Fo
 
 
 def placing_frame(journal: Journal, info: TimelineInfo) -> Frame | None:
-    """The frame that says who was moved when a timeline began; None if nobody was."""
+    """Return the frame that says who was moved when a timeline began; None if nobody was."""
     if info.base is None or info.entries == 0:
         return None
     first = next(iter(journal.entries(info.key, 0, 1)))

@@ -82,7 +82,7 @@ class Recording:
         return self.journal.records
 
     def on(self, key: TimelineKey) -> Self:
-        """The same with a simulator on a timeline, and none below it on another."""
+        """Return the same with a simulator on a timeline, and none below it on another."""
         other = copy(self)
         above = {p: k for p, k in self.selected.items() if key.path[: len(p)] == p}
         other.selected = {**above, key.path: key}
@@ -96,7 +96,7 @@ class Recording:
         raise BranchError("the nest was not opened; use Nest.open or Nest(world)")
 
     def info(self, path: BeliefPath) -> TimelineInfo:
-        """The timeline that a node's state comes from."""
+        """Return the timeline that a node's state comes from."""
         return self.journal.info(self.controller(path))
 
     def place_of(self, key: TimelineKey, tick: int) -> tuple[TimelineKey, int]:
@@ -137,18 +137,18 @@ class Recording:
         return ForkPoint(*self.place_of(info.key, tick), tick)
 
     def reading(self, path: BeliefPath, tick: int | None = None) -> NodeView:
-        """A node's state now, or at a past tick; TickError as for `moment`."""
+        """Return a node's state now, or at a past tick; TickError as for `moment`."""
         moment = self.moment(path, tick)
         return self.history.reading(moment.timeline, path, moment.entries, moment.tick)
 
     def state(self, path: BeliefPath, tick: int | None = None) -> LiveState:
-        """The view of a node's state now, or at a past tick; TickError as for `moment`."""
+        """Return the view of a node's state now, or at a past tick; TickError as for `moment`."""
         moment = self.moment(path, tick)
         reading = self.history.reading(moment.timeline, path, moment.entries, moment.tick)
         return self.view_of(reading, moment)
 
     def states(self, paths: Iterable[BeliefPath]) -> Mapping[BeliefPath, LiveState]:
-        """The views of several nodes' states now, by path."""
+        """Return the views of several nodes' states now, by path."""
         wanted = list(paths)
         together: dict[TimelineKey, list[BeliefPath]] = {}
         for path in wanted:
@@ -158,7 +158,7 @@ class Recording:
         return {path: self.state(path) for path in wanted}
 
     def view_of(self, reading: NodeView, moment: ForkPoint) -> LiveState:
-        """The view of a node's state that was read at a moment."""
+        """Return the view of a node's state that was read at a moment."""
         return LiveState(self.history, moment, reading, self.turn)
 
     def close(self) -> None:

@@ -55,7 +55,7 @@ def _names_first(static: str | Position) -> tuple[bool, str | Position]:
 
 
 def encode_start(setting: Setting, world: str) -> bytes:
-    """Bytes of a setting and the name of the world it was opened in.
+    """Return bytes of a setting and the name of the world it was opened in.
 
     Raises:
         StoreError: Something in it is no value of a world.

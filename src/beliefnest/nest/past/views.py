@@ -69,7 +69,7 @@ class _Blocks:
     __hash__ = None  # type: ignore[assignment]  # compared by value, and values are large
 
     def named(self, names: frozenset[str]) -> dict[Position, str]:
-        """Known blocks of some names."""
+        """Return known blocks of some names."""
         registry, grid = self._context.registry, self.grid
         # One more, at the end, for what is unknown.
         wanted = np.zeros(registry.states + 1, dtype=np.bool_)
@@ -91,7 +91,7 @@ class _Blocks:
         return {place: texts.get(place, "") for place in places}
 
     def current(self, position: Position) -> bool:
-        """Whether the block is backed by a perception in this tick."""
+        """Return True if the block is backed by a perception in this tick."""
         cell = self._cell(position)
         if cell not in self._currents:
             cells = self._asked_with(cell, self._currents)
@@ -112,7 +112,7 @@ class _Blocks:
         return self._bases[cell]
 
     def _asked_with(self, cell: int, known: Collection[int]) -> Sequence[int]:
-        """The cells to find out about along with one.
+        """Return the cells to find out about along with one.
 
         Who asks for a few will ask for all, and in a small box all cost little more than one.
         """

@@ -83,7 +83,7 @@ def explanation_of(
 def look_of(
     reader: Reader, key: TimelineKey, path: BeliefPath, tick: int, viewer: str, target: str
 ) -> list[Any] | None:
-    """The look of an agent at a thing in a node: `[how it ended, distance, blocker]`.
+    """Return the look of an agent at a thing in a node: `[how it ended, distance, blocker]`.
 
     Args:
         reader: Where to read.
@@ -237,7 +237,7 @@ def _explanations(
 
 
 def _deeds(reader: Reader, info: TimelineInfo) -> list[int]:
-    """Ticks at which something was done that beliefs are about, and the last one."""
+    """Return ticks at which something was done that beliefs are about, and the last one."""
     ticks = {
         entry.tick
         for entry in reader.entries(info.key, 0, info.entries)

@@ -121,7 +121,7 @@ class RunData:
             line.tracks[path] = TrackRows(recorder.tracks[0], self._palette)
 
     def nodes(self) -> Iterable[tuple[TimelineInfo, BeliefPath]]:
-        """All that is recorded: each timeline with each node of it, shallow ones first."""
+        """Return all that is recorded: each timeline with each node of it, shallow ones first."""
         for line in self._lines.values():
             for path in line.tracks:
                 yield line.info, path
@@ -158,7 +158,7 @@ class RunData:
         return self._lines[info.key]
 
     def keys(self) -> Sequence[TimelineKey]:
-        """The timelines, by the numbers that the page knows them by."""
+        """Return the timelines, by the numbers that the page knows them by."""
         return list(self._lines)
 
     def _line_update(self, line: _Line) -> dict[str, Any]:

@@ -235,7 +235,7 @@ class TrackRecorder:
         last.code, last.seen_at = code, stale
 
     def _stands_there(self, pose_id: npt.NDArray[np.int32]) -> npt.NDArray[np.bool_]:
-        """Whether poses are those of the timeline's own node."""
+        """Return True if poses are those of the timeline's own node."""
         own = self._forest.table.nodes().pose[0]
         there: npt.NDArray[np.bool_] = (pose_id >= 0) & (own >= 0)
         for table in self._forest.poses.arrays():
@@ -244,7 +244,7 @@ class TrackRecorder:
         return there
 
     def _stale(self, at: int, agent: int, tick: int, *, current: bool) -> Row:
-        """The row of an agent that is not where it stands in the timeline's world now."""
+        """Return the row of an agent that is not where it stands in the timeline's world now."""
         table, poses = self._forest.table, self._forest.poses
         number = self._numbers[at]
         pose_id = table.pose(number, agent)
@@ -299,7 +299,7 @@ class TrackRecorder:
                 _put(rows, [tick, held])
 
     def _owners(self) -> set[int]:
-        """Numbers of the nodes in which possessions of agents may have changed."""
+        """Return numbers of the nodes in which possessions of agents may have changed."""
         forest, last = self._forest, self._last
         looks = [forest.table.details_of(0, agent) for agent in range(len(last.looks))]
         # An agent's own possessions are what the parent node holds of them.

@@ -86,7 +86,7 @@ def page_app(
     token: str | None,
     is_ending: Callable[[], bool] = lambda: False,
 ) -> Starlette:
-    """The application.
+    """Return the application.
 
     Args:
         host: What is shown.
