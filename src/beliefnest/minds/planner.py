@@ -18,12 +18,14 @@ import numpy.typing as npt
 from beliefnest.minds.relaxing import relax
 from beliefnest.minds.stage import Stage, numbers_in
 
-__all__ = ["Knowledge", "PlanRules", "Planner", "planner_for"]
+__all__ = ["Knowledge", "PlanRules", "Planner", "count_values", "planner_for"]
 
 Floats = npt.NDArray[np.float64]
 
 Knowledge = tuple[int, int]
 """Alternatives that are possible by percepts, and those that are believed: a part of them."""
+
+_MOST_COUNTED = 4096
 
 _ROOM = 256 * 2**20
 """Bytes of values that all planners keep together."""
@@ -199,6 +201,22 @@ class Planner:
         flat = table.reshape(len(cells), -1)
         relax(flat, inner, mixes, rules.discount, rules.step_cost)
         return _Values(rows, table)
+
+
+def count_values(stage: Stage, credences: int) -> int:
+    """Return how many values a utility takes, over all sets that percepts can lead to."""
+    masks = sorted({*np.unique(stage.same).tolist(), *np.unique(stage.content).tolist()})
+    everyone = (1 << len(stage.moves)) - 1
+    sets, waiting, total = {everyone}, [everyone], 0
+    while waiting and len(sets) < _MOST_COUNTED:
+        current = waiting.pop()
+        first = numbers_in(current)[0]
+        cells = int((stage.same[first] & current == current).sum())
+        total += cells * (1 if current & (current - 1) == 0 else credences)
+        smaller = {current & mask for mask in masks} - sets - {0}
+        sets |= smaller
+        waiting += smaller
+    return max(1, total)
 
 
 class _Cache:

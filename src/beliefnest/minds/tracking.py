@@ -8,7 +8,7 @@ of probabilities of all evidence so far; -inf stands for what is impossible alon
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import ceil
 
 import numpy as np
@@ -625,6 +625,10 @@ class Tracker:
         ticks = moment.tick - gap.start
         usual = round(ticks / self.hypotheses.step_ticks)
         last = gap.moments[-1]
+        if not last.scene.can_stand(moment.cell):
+            # The observer did not know until now that one can stand there.
+            last = replace(last, scene=moment.scene)
+            gap.moments[-1] = last
         found: list[Mapping[State, Floats]] = []
         for actual in range(self.hypotheses.alternatives):
             stage = self._stage_of(last.scene, gap.cell, moment.cell)

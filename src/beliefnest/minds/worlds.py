@@ -23,8 +23,8 @@ __all__ = ["Pose", "World", "Worlds", "middle_of"]
 Pose = tuple[Point, float, float]
 """Feet, yaw and pitch."""
 
-# A block's cube, with shapes that reach half a block out of it, lies within this distance.
-_REACH = 1.75
+# Radius of a block's cube, and of its shape, which may reach half a block out along one axis.
+_CUBE, _SHAPE = 0.88, 1.25
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,47 +166,59 @@ class Worlds:
         everyone = (1 << count) - 1
         if not self.can_differ:
             return [everyone] * count
-        eye = (feet[0], feet[1] + EYE_HEIGHT, feet[2])
-        cells = self._candidates(eye)
-        seen: dict[int, npt.NDArray[np.bool_]] = {}
-        percepts = []
-        for world, plain in zip(self.worlds, self._geometry_of, strict=True):
-            seeing = self._round[id(plain)] if all_round else plain
-            if id(plain) not in seen:
-                places = cells + np.array(self.box.low, dtype=np.int64)
-                seen[id(plain)] = seeing.sees_blocks(eye, yaw, pitch, places)
-            percepts.append(self._percept(world, seeing, (eye, yaw, pitch), cells, seen[id(plain)]))
+        look: Pose = ((feet[0], feet[1] + EYE_HEIGHT, feet[2]), yaw, pitch)
+        percepts: list[object] = self._percepts(look, self._doubted, range(count), all_round)
+        by_percept: dict[object, list[int]] = {}
+        for number, percept in enumerate(percepts):
+            by_percept.setdefault(percept, []).append(number)
+        for percept, group in by_percept.items():
+            if len({id(self._geometry_of[number]) for number in group}) > 1:
+                # What is in doubt looks the same in these, but may hide different things.
+                behind = self._percepts(look, self._candidates(look[0]), group, all_round)
+                for number, further in zip(group, behind, strict=True):
+                    percepts[number] = (percept, further)
         masks: dict[object, int] = {}
         for number, percept in enumerate(percepts):
             masks[percept] = masks.get(percept, 0) | 1 << number
         return [masks[percept] for percept in percepts]
 
+    def _percepts(
+        self, look: Pose, cells: npt.NDArray[np.int64], which: Sequence[int], all_round: bool
+    ) -> list[object]:
+        """What is perceived of some cells, and of agents and items, in some alternatives."""
+        seen: dict[int, npt.NDArray[np.bool_]] = {}
+        percepts: list[object] = []
+        for number in which:
+            plain = self._geometry_of[number]
+            seeing = self._round[id(plain)] if all_round else plain
+            if id(plain) not in seen:
+                places = cells + np.array(self.box.low, dtype=np.int64)
+                seen[id(plain)] = seeing.sees_blocks(*look, places)
+            percepts.append(
+                self._percept(self.worlds[number], seeing, look, cells, seen[id(plain)])
+            )
+        return percepts
+
     def _candidates(self, eye: Point) -> npt.NDArray[np.int64]:
         """Indices of cells whose sight from a place can depend on the alternative."""
-        if self.has_one_view:
-            return self._doubted
         far = self._sight.max_visible_distance
         middles, place = self._middles, np.array(eye)
         wanted = np.zeros(len(middles), dtype=np.bool_)
-        shape = np.array(self.box.shape)
-        flat = self._doubted @ np.array([shape[1] * shape[2], shape[2], 1])
-        wanted[flat] = True
         away = middles - place
         distance = np.sqrt((away**2).sum(axis=1))
         for hiding in self._hiding - place:
             length = float(np.sqrt((hiding**2).sum()))
-            if far is not None and length > far + 2 * _REACH:
+            if far is not None and length > far + _SHAPE:
                 continue
-            if length <= 2 * _REACH:
+            if length <= _SHAPE:
                 wanted[:] = True
                 break
             # Lines from the eye to a cell that come near the hiding one: within two cones.
             with np.errstate(divide="ignore", invalid="ignore"):
                 cosine = np.clip(away @ hiding / (distance * length), -1, 1)
-                spread = math.asin(_REACH / length) + np.arcsin(
-                    np.minimum(1, _REACH / np.maximum(distance, _REACH))
-                )
-            wanted |= (np.arccos(cosine) <= spread) | (distance <= _REACH)
+            spread = math.asin(_SHAPE / length) + np.arcsin(_CUBE / np.maximum(distance, _CUBE))
+            behind = distance >= length - _SHAPE - _CUBE
+            wanted |= (behind & (np.arccos(cosine) <= spread)) | (distance <= _CUBE)
         if far is not None:
             wanted &= distance <= far + 1e-6
         found: npt.NDArray[np.int64] = np.argwhere(wanted.reshape(self.box.shape))

@@ -14,6 +14,7 @@ from beliefnest.nest.explain.chain import element_of, explain
 from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs
 from beliefnest.nest.explain.explanation import Explanation
 from beliefnest.nest.explain.made_claims import MadeClaim, claims_made
+from beliefnest.nest.face.ticks import tick_of
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
@@ -129,9 +130,9 @@ class ShownSimulator(ABC):
         """
         from beliefnest.nest.inferring.asking import infer_in
 
-        last = self._tick if until is None else until
+        last = self._tick if until is None else tick_of(until)
         recording, path = self._recording, self._path
-        return infer_in(recording, path, model, since, last, ended=ended, smooth=smooth)
+        return infer_in(recording, path, model, tick_of(since), last, ended=ended, smooth=smooth)
 
     @in_turn
     def credence(
@@ -170,8 +171,8 @@ class ShownSimulator(ABC):
         model = MindModel(
             agent, {"any": {"at": (0, 0, 0)}}, {"any": 0}, doubt, rows, actual, lapse=lapse
         )
-        last = self._tick if tick is None else tick
-        return credence_in(self._recording, self._path, model, since, last)
+        last = self._tick if tick is None else tick_of(tick)
+        return credence_in(self._recording, self._path, model, tick_of(since), last)
 
     @property
     @in_turn

@@ -6,10 +6,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from beliefnest.errors import InputError
+from beliefnest.errors import InputError, TickError
 from beliefnest.minds.evidence import Moment
 from beliefnest.minds.inference import Inference, reported_credence
 from beliefnest.minds.model import MindModel
+from beliefnest.minds.planner import count_values
 from beliefnest.minds.tracking import Hypotheses, Tracker, known_after
 from beliefnest.nest.inferring.reading import Question, Reading
 from beliefnest.nest.past.recording import Recording
@@ -18,7 +19,7 @@ from beliefnest.world.paths import BeliefPath, path_text
 __all__ = ["credence_in", "infer_in"]
 
 _ROOM = 2**27
-"""Bytes that values of one knowledge may take in one chunk of utilities."""
+"""Bytes that values may take in one chunk of utilities."""
 
 _MOST_READINGS, _MOST_FILTERS = 8, 4
 
@@ -89,8 +90,12 @@ def _work_on(
     recording: Recording, path: BeliefPath, model: MindModel, since: int, until: int | None
 ) -> _Work:
     """Return the reading of a node up to a tick, gone on with where there is one."""
-    question = _question(recording, path, model, since)
     moment = recording.moment(path, until)
+    question = _question(recording, path, model, since)
+    if question.since > moment.tick:
+        raise TickError(
+            f"since is {since}, after the last tick, {moment.tick}; give an earlier one"
+        )
     key = ("inference", moment.timeline, repr(question))
     known = recording.remembered.pop(key, None)
     if isinstance(known, _Work) and known.goes_on(recording, moment.tick):
@@ -112,6 +117,8 @@ def _work_on(
 def _question(recording: Recording, path: BeliefPath, model: MindModel, since: int) -> Question:
     first = recording.stretches(recording.moment(path))[0]
     begin = recording.journal.info(first.timeline).start
+    if since != 0 and since < begin:
+        raise TickError(f"since is {since}, before the start, which is tick {begin}")
     return Question(
         path,
         model.agent,
@@ -188,9 +195,8 @@ def _chunks(model: MindModel, moments: Sequence[Moment]) -> list[slice]:
     """Parts of the utilities whose values fit into memory."""
     first = next(moment for moment in moments if moment.cell is not None)
     assert first.cell is not None
-    cells = len(first.scene.stage(first.cell).cells)
-    each = cells * len(model.credence_rows) * 8
-    size = max(1, _ROOM // each)
+    values = count_values(first.scene.stage(first.cell), len(model.credence_rows))
+    size = max(1, _ROOM // (8 * values))
     count = len(model.utility_rows)
     return [slice(start, min(start + size, count)) for start in range(0, count, size)]
 
