@@ -49,6 +49,7 @@ class Hypotheses:
 
     Attributes:
         rules: Costs and discount.
+        goals: Names of the goals.
         utilities: float64 (utilities, goals).
         credences: float64 (credences, alternatives).
         rationalities: Inverse temperatures.
@@ -57,6 +58,7 @@ class Hypotheses:
     """
 
     rules: PlanRules
+    goals: tuple[str, ...]
     utilities: Floats
     credences: Floats
     rationalities: tuple[float, ...]
@@ -81,6 +83,7 @@ class Hypotheses:
         )
         return cls(
             rules,
+            tuple(model.goals),
             model.utility_rows[utilities],
             model.credence_rows[credences],
             model.rationalities[rationalities],
@@ -365,7 +368,7 @@ class Tracker:
             stage = self._stage(before)
             self.states = self._did(stage, moment)
             if moment.act is not None:
-                text = f"acts on goal number {moment.act + 1} at {cell}"
+                text = f"acts on goal {self.hypotheses.goals[moment.act]} at {cell}"
                 self._over = True
             else:
                 text = f"opens the container at {moment.opened}"
