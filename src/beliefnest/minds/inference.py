@@ -1,7 +1,7 @@
 """The result of an inference: a posterior over hypotheses at every tick, and questions to it."""
 
 import math
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -10,9 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.errors import InputError, TickError
+from beliefnest.minds.hypotheses import log_sum
 from beliefnest.minds.looking_back import sampled_cells, smoothed_steps
 from beliefnest.minds.model import MindModel
-from beliefnest.minds.tracking import Step, Tracker, log_sum
+from beliefnest.minds.tracking import Step, Tracker
 from beliefnest.world.values import Position
 
 if TYPE_CHECKING:  # Few results become tables.
@@ -21,9 +22,6 @@ if TYPE_CHECKING:  # Few results become tables.
 __all__ = ["Change", "Impossible", "Inference", "SampledPath", "reported_credence"]
 
 Floats = npt.NDArray[np.float64]
-Value = Hashable
-
-_AXES = "actual, rationality, utility, credence"
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.minds.tracking import Action, Hypotheses, Layer, State, Step, Tracker, log_sum
+from beliefnest.minds.hypotheses import Action, Hypotheses, Layer, State, log_sum
+from beliefnest.minds.tracking import Step, Tracker
 from beliefnest.world.values import Position
 
 __all__ = ["sampled_cells", "smoothed_steps"]

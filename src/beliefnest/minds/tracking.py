@@ -7,7 +7,7 @@ states in which the observer would have seen the agent, or would not, vanish. We
 of probabilities of all evidence so far; -inf stands for what is impossible alone.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import ceil
 
@@ -15,106 +15,26 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.minds.evidence import Moment
-from beliefnest.minds.model import MindModel
-from beliefnest.minds.planner import Knowledge, Planner, PlanRules, planner_for
+from beliefnest.minds.hypotheses import (
+    Hypotheses,
+    Layer,
+    State,
+    States,
+    Sums,
+    conditioned,
+    joined,
+    log_sum,
+    told,
+)
+from beliefnest.minds.planner import Knowledge
 from beliefnest.minds.scene import Scene
 from beliefnest.minds.stage import Stage, shortest
 from beliefnest.minds.worlds import middle_of
-from beliefnest.world.values import Position
+from beliefnest.world.values import EYE_HEIGHT, Position
 
-__all__ = [
-    "Action",
-    "Hypotheses",
-    "Layer",
-    "State",
-    "States",
-    "Step",
-    "Tracker",
-    "known_after",
-    "log_sum",
-]
+__all__ = ["Step", "Tracker", "known_after"]
 
 Floats = npt.NDArray[np.float64]
-
-State = tuple[Position, int, int, bool]
-"""A cell, the knowledge (possible, believed), and whether the course has ended."""
-
-States = tuple[Mapping[State, Floats], ...]
-"""By actual alternative and state, log weights (rationalities, utilities, credences)."""
-
-
-@dataclass(frozen=True, eq=False)
-class Hypotheses:
-    """The part of a model's hypotheses that is worked on at once.
-
-    Attributes:
-        rules: Costs and discount.
-        goals: Names of the goals.
-        utilities: float64 (utilities, goals).
-        credences: float64 (credences, alternatives).
-        rationalities: Inverse temperatures.
-        step_ticks: Ticks without movement that are a stay.
-        stays: Whether these are evidence.
-    """
-
-    rules: PlanRules
-    goals: tuple[str, ...]
-    utilities: Floats
-    credences: Floats
-    rationalities: tuple[float, ...]
-    step_ticks: int
-    stays: bool
-
-    @classmethod
-    def of(
-        cls,
-        model: MindModel,
-        step_ticks: int,
-        utilities: slice = slice(None),
-        credences: slice = slice(None),
-        rationalities: slice = slice(None),
-    ) -> "Hypotheses":
-        """Return some of the hypotheses of a model."""
-        rules = PlanRules(
-            float(model.discount),
-            float(model.step_cost),
-            float(model.stay_cost),
-            float(model.act_cost),
-        )
-        return cls(
-            rules,
-            tuple(model.goals),
-            model.utility_rows[utilities],
-            model.credence_rows[credences],
-            model.rationalities[rationalities],
-            step_ticks,
-            model.stays,
-        )
-
-    @property
-    def alternatives(self) -> int:
-        """Number of alternatives."""
-        return int(self.credences.shape[1])
-
-    @property
-    def shape(self) -> tuple[int, int, int]:
-        """Numbers of rationalities, utilities and credences."""
-        return len(self.rationalities), len(self.utilities), len(self.credences)
-
-    def planner(self, stage: Stage) -> Planner:
-        """Return the planner of a stage."""
-        return planner_for(stage, self.rules, self.utilities, self.credences)
-
-    def log_policy(self, stage: Stage, cell: Position, knowledge: Knowledge) -> Floats:
-        """Log probabilities (actions, rationalities, utilities, credences or 1) in a state."""
-        q = self.planner(stage).q(stage.index[cell], knowledge)
-        betas = np.array(self.rationalities)[:, None, None]
-        # An action that there is not has no probability, however irrational the agent is.
-        there = np.logical_or.reduce(np.isfinite(q), axis=(1, 2))
-        scaled = np.where(there[:, None, None], q, 0.0)[:, None] * betas
-        scaled[~there] = -np.inf
-        policy: Floats = scaled - log_sum(scaled)
-        return policy
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,71 +59,6 @@ class Step:
     agrees: int
     is_movement: bool
     is_possible: bool = True
-
-
-def log_sum(parts: Floats) -> Floats:
-    """Log of the sum of exponentials along the first axis; -inf where all are."""
-    top = parts.max(axis=0)
-    safe = np.where(np.isfinite(top), top, 0.0)
-    with np.errstate(divide="ignore"):
-        total: Floats = safe + np.log(np.exp(parts - safe).sum(axis=0))
-    return total
-
-
-def _joined(parts: Iterable[Floats]) -> Floats:
-    listed = list(parts)
-    return listed[0] if len(listed) == 1 else log_sum(np.stack(listed))
-
-
-Action = tuple[Stage, Position, Knowledge, tuple[int, ...]]
-"""A stage, a cell, a knowledge, and the numbers of actions."""
-
-Edge = tuple[State, State, Action | None]
-"""A state, the one that it becomes, and by which actions; None: by none."""
-
-
-@dataclass(frozen=True, eq=False)
-class Layer:
-    """How states became others in one part of a tick; kept for what looks back.
-
-    Attributes:
-        tick: When.
-        edges: From which state to which.
-        before: The weights before.
-    """
-
-    tick: int
-    edges: list[Edge]
-    before: Mapping[State, Floats]
-
-
-class _Sums:
-    """Weights being added up by state; edges are listed where a layer is kept."""
-
-    def __init__(self, layer: Layer | None = None) -> None:
-        self._parts: dict[State, list[Floats]] = {}
-        self._layer = layer
-
-    def add(
-        self,
-        state: State,
-        weights: Floats,
-        source: State,
-        policy: Floats | None = None,
-        action: Action | None = None,
-    ) -> None:
-        """Add the weights of a source, times the policy's sum over some actions."""
-        if policy is not None and action is not None:
-            chosen = list(action[3])
-            part = policy[chosen[0]] if len(chosen) == 1 else log_sum(policy[chosen])
-            weights = weights + part
-        self._parts.setdefault(state, []).append(weights)
-        if self._layer is not None:
-            self._layer.edges.append((source, state, action))
-
-    def total(self) -> dict[State, Floats]:
-        """Return the sums."""
-        return {state: _joined(parts) for state, parts in self._parts.items()}
 
 
 @dataclass
@@ -281,11 +136,6 @@ class Tracker:
             self._claims,
         )
 
-    @property
-    def is_over(self) -> bool:
-        """Whether no further evidence counts: the agent acted, or nothing explains its course."""
-        return self._over
-
     def follow(self, moments: Sequence[Moment], until: int) -> None:
         """Take moments into account that follow the latest one, and quiet ticks up to one."""
         for moment in moments:
@@ -319,7 +169,7 @@ class Tracker:
         zeros = np.zeros(self.hypotheses.shape)
         knowledge = (everyone, everyone)
         for mask in self._claims:
-            knowledge = _told(knowledge, mask)
+            knowledge = told(knowledge, mask)
         start: State = (moment.cell, *knowledge, False)
         self.states = tuple({start: zeros} for _ in range(self.hypotheses.alternatives))
         self.trail = tuple([] for _ in self.states)
@@ -458,7 +308,7 @@ class Tracker:
         actual: int,
         weights: Mapping[State, Floats],
         cell: Position,
-        sums: _Sums,
+        sums: Sums,
     ) -> None:
         """One action without a perceived event, after which the agent is seen in a cell."""
         for state, weight in weights.items():
@@ -578,7 +428,7 @@ class Tracker:
         return list(parts.values())
 
     def _spread(
-        self, stage: Stage, actual: int, weights: Mapping[State, Floats], sums: _Sums
+        self, stage: Stage, actual: int, weights: Mapping[State, Floats], sums: Sums
     ) -> None:
         """One action of an agent out of sight."""
         steps = stage.moves.shape[2]
@@ -603,7 +453,7 @@ class Tracker:
                 is_opening = box < len(stage.boxes)
                 after = knowledge
                 if is_opening:
-                    after = _conditioned(knowledge, int(stage.content[box, actual]))
+                    after = conditioned(knowledge, int(stage.content[box, actual]))
                 sums.add((place, *after, not is_opening), weight, state, policy, by)
 
     def _hidden(
@@ -614,7 +464,7 @@ class Tracker:
             return weights
         feet, yaw, pitch = moment.watch
         cells = sorted({state[0] for state in weights})
-        eye = (feet[0], feet[1] + _EYE, feet[2])
+        eye = (feet[0], feet[1] + EYE_HEIGHT, feet[2])
         geometry = moment.scene.worlds.geometry(actual)
         seen = geometry.sees_agents(eye, yaw, pitch, [middle_of(cell) for cell in cells])
         visible = {cell for cell, is_seen in zip(cells, seen.tolist(), strict=True) if is_seen}
@@ -698,8 +548,8 @@ class Tracker:
                 knowledge = (possible, believed)
                 if not has_ended:
                     for learnt in moment.learnt:
-                        knowledge = _conditioned(knowledge, learnt[actual])
-                    knowledge = _conditioned(knowledge, moment.alike[actual])
+                        knowledge = conditioned(knowledge, learnt[actual])
+                    knowledge = conditioned(knowledge, moment.alike[actual])
                 sums.add((place, *knowledge, has_ended), weight, state)
             found.append(self._told_of(actual, sums.total(), moment))
         self.states = tuple(found)
@@ -731,7 +581,7 @@ class Tracker:
             place, possible, believed, has_ended = state
             knowledge = (possible, believed)
             for mask in () if has_ended else moment.claims:
-                knowledge = _told(knowledge, mask)
+                knowledge = told(knowledge, mask)
             sums.add((place, *knowledge, has_ended), weight, state)
         return sums.total()
 
@@ -751,7 +601,7 @@ class Tracker:
         return sums.total()
 
     def _perceived_by_plan(
-        self, stage: Stage, actual: int, weights: Mapping[State, Floats], sums: _Sums
+        self, stage: Stage, actual: int, weights: Mapping[State, Floats], sums: Sums
     ) -> None:
         for state, weight in weights.items():
             place, possible, believed, has_ended = state
@@ -759,7 +609,7 @@ class Tracker:
                 sums.add(state, weight, state)
                 continue
             same = int(stage.same[actual, stage.index[place]])
-            sums.add((place, *_conditioned((possible, believed), same), False), weight, state)
+            sums.add((place, *conditioned((possible, believed), same), False), weight, state)
 
     # Records
 
@@ -796,40 +646,25 @@ class Tracker:
             np.isfinite(weight).any() for weights in self.states for weight in weights.values()
         )
 
-    def _sums(self, actual: int, tick: int, before: Mapping[State, Floats]) -> _Sums:
+    def _sums(self, actual: int, tick: int, before: Mapping[State, Floats]) -> Sums:
         """Begin a layer of an alternative, if layers are kept."""
         if not self.keeps:
-            return _Sums()
+            return Sums()
         layer = Layer(tick, [], before)
         self.trail[actual].append(layer)
-        return _Sums(layer)
+        return Sums(layer)
 
     def _note(self, tick: int, text: str, *, is_movement: bool) -> None:
         shape = (self.hypotheses.alternatives, *self.hypotheses.shape)
         total = np.full(shape, -np.inf)
         for actual, weights in enumerate(self.states):
             if weights:
-                total[actual] = _joined(weights.values())
+                total[actual] = joined(weights.values())
         is_possible = bool(np.isfinite(total).any())
         masses = self.masses()
         self.steps.append(Step(tick, text, total, masses, self._agrees, is_movement, is_possible))
         if not is_possible:
             self._over = True
-
-
-_EYE = 1.62
-
-
-def _conditioned(knowledge: Knowledge, mask: int) -> Knowledge:
-    """Knowledge after a percept that a set of alternatives agrees with; it overrides claims."""
-    possible = knowledge[0] & mask
-    return possible, knowledge[1] & mask or possible
-
-
-def _told(knowledge: Knowledge, mask: int) -> Knowledge:
-    """Knowledge after a claim was taken up that is true in a set of alternatives."""
-    possible, believed = knowledge
-    return possible, believed & mask or possible & mask or believed
 
 
 def _last_until(moments: Sequence[Moment], tick: int) -> Moment:
@@ -851,10 +686,10 @@ def known_after(moments: Sequence[Moment], alternatives: int) -> list[Knowledge]
         knowledge = (everyone, everyone)
         for moment in moments:
             for learnt in moment.learnt:
-                knowledge = _conditioned(knowledge, learnt[actual])
+                knowledge = conditioned(knowledge, learnt[actual])
             if moment.alike:
-                knowledge = _conditioned(knowledge, moment.alike[actual])
+                knowledge = conditioned(knowledge, moment.alike[actual])
             for mask in moment.claims:
-                knowledge = _told(knowledge, mask)
+                knowledge = told(knowledge, mask)
         found.append(knowledge)
     return found

@@ -8,10 +8,11 @@ import numpy as np
 
 from beliefnest.errors import InputError, TickError
 from beliefnest.minds.evidence import Moment
+from beliefnest.minds.hypotheses import Hypotheses
 from beliefnest.minds.inference import Inference, reported_credence
 from beliefnest.minds.model import MindModel
 from beliefnest.minds.planner import count_values
-from beliefnest.minds.tracking import Hypotheses, Tracker, known_after
+from beliefnest.minds.tracking import Tracker, known_after
 from beliefnest.nest.inferring.reading import Question, Reading
 from beliefnest.nest.past.recording import Recording
 from beliefnest.world.paths import BeliefPath, path_text

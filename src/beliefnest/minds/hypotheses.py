@@ -1,0 +1,188 @@
+"""Hypotheses that are worked on together, and weights of states being added up.
+
+Weights are logarithms of probabilities; -inf stands for what is impossible alone.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.minds.model import MindModel
+from beliefnest.minds.planner import Knowledge, Planner, PlanRules, planner_for
+from beliefnest.minds.stage import Stage
+from beliefnest.world.values import Position
+
+__all__ = [
+    "Action",
+    "Hypotheses",
+    "Layer",
+    "State",
+    "States",
+    "Sums",
+    "conditioned",
+    "joined",
+    "log_sum",
+    "told",
+]
+
+Floats = npt.NDArray[np.float64]
+
+State = tuple[Position, int, int, bool]
+"""A cell, the knowledge (possible, believed), and whether the course has ended."""
+
+States = tuple[Mapping[State, Floats], ...]
+"""By actual alternative and state, log weights (rationalities, utilities, credences)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Hypotheses:
+    """The part of a model's hypotheses that is worked on at once.
+
+    Attributes:
+        rules: Costs and discount.
+        goals: Names of the goals.
+        utilities: float64 (utilities, goals).
+        credences: float64 (credences, alternatives).
+        rationalities: Inverse temperatures.
+        step_ticks: Ticks without movement that are a stay.
+        stays: Whether these are evidence.
+    """
+
+    rules: PlanRules
+    goals: tuple[str, ...]
+    utilities: Floats
+    credences: Floats
+    rationalities: tuple[float, ...]
+    step_ticks: int
+    stays: bool
+
+    @classmethod
+    def of(
+        cls,
+        model: MindModel,
+        step_ticks: int,
+        utilities: slice = slice(None),
+        credences: slice = slice(None),
+        rationalities: slice = slice(None),
+    ) -> "Hypotheses":
+        """Return some of the hypotheses of a model."""
+        rules = PlanRules(
+            float(model.discount),
+            float(model.step_cost),
+            float(model.stay_cost),
+            float(model.act_cost),
+        )
+        return cls(
+            rules,
+            tuple(model.goals),
+            model.utility_rows[utilities],
+            model.credence_rows[credences],
+            model.rationalities[rationalities],
+            step_ticks,
+            model.stays,
+        )
+
+    @property
+    def alternatives(self) -> int:
+        """Number of alternatives."""
+        return int(self.credences.shape[1])
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Numbers of rationalities, utilities and credences."""
+        return len(self.rationalities), len(self.utilities), len(self.credences)
+
+    def planner(self, stage: Stage) -> Planner:
+        """Return the planner of a stage."""
+        return planner_for(stage, self.rules, self.utilities, self.credences)
+
+    def log_policy(self, stage: Stage, cell: Position, knowledge: Knowledge) -> Floats:
+        """Log probabilities (actions, rationalities, utilities, credences or 1) in a state."""
+        q = self.planner(stage).q(stage.index[cell], knowledge)
+        betas = np.array(self.rationalities)[:, None, None]
+        # An action that there is not has no probability, however irrational the agent is.
+        there = np.logical_or.reduce(np.isfinite(q), axis=(1, 2))
+        scaled = np.where(there[:, None, None], q, 0.0)[:, None] * betas
+        scaled[~there] = -np.inf
+        policy: Floats = scaled - log_sum(scaled)
+        return policy
+
+
+def log_sum(parts: Floats) -> Floats:
+    """Log of the sum of exponentials along the first axis; -inf where all are."""
+    top = parts.max(axis=0)
+    safe = np.where(np.isfinite(top), top, 0.0)
+    with np.errstate(divide="ignore"):
+        total: Floats = safe + np.log(np.exp(parts - safe).sum(axis=0))
+    return total
+
+
+def joined(parts: Iterable[Floats]) -> Floats:
+    """Return the log of the sum of the exponentials of some arrays."""
+    listed = list(parts)
+    return listed[0] if len(listed) == 1 else log_sum(np.stack(listed))
+
+
+Action = tuple[Stage, Position, Knowledge, tuple[int, ...]]
+"""A stage, a cell, a knowledge, and the numbers of actions."""
+
+Edge = tuple[State, State, Action | None]
+"""A state, the one that it becomes, and by which actions; None: by none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """How states became others in one part of a tick; kept for what looks back.
+
+    Attributes:
+        tick: When.
+        edges: From which state to which.
+        before: The weights before.
+    """
+
+    tick: int
+    edges: list[Edge]
+    before: Mapping[State, Floats]
+
+
+class Sums:
+    """Weights being added up by state; edges are listed where a layer is kept."""
+
+    def __init__(self, layer: Layer | None = None) -> None:
+        self._parts: dict[State, list[Floats]] = {}
+        self._layer = layer
+
+    def add(
+        self,
+        state: State,
+        weights: Floats,
+        source: State,
+        policy: Floats | None = None,
+        action: Action | None = None,
+    ) -> None:
+        """Add the weights of a source, times the policy's sum over some actions."""
+        if policy is not None and action is not None:
+            chosen = list(action[3])
+            part = policy[chosen[0]] if len(chosen) == 1 else log_sum(policy[chosen])
+            weights = weights + part
+        self._parts.setdefault(state, []).append(weights)
+        if self._layer is not None:
+            self._layer.edges.append((source, state, action))
+
+    def total(self) -> dict[State, Floats]:
+        """Return the sums."""
+        return {state: joined(parts) for state, parts in self._parts.items()}
+
+
+def conditioned(knowledge: Knowledge, mask: int) -> Knowledge:
+    """Knowledge after a percept that a set of alternatives agrees with; it overrides claims."""
+    possible = knowledge[0] & mask
+    return possible, knowledge[1] & mask or possible
+
+
+def told(knowledge: Knowledge, mask: int) -> Knowledge:
+    """Knowledge after a claim was taken up that is true in a set of alternatives."""
+    possible, believed = knowledge
+    return possible, believed & mask or possible & mask or believed
