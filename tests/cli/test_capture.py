@@ -163,6 +163,18 @@ def test_what_cannot_be_captured_is_said_in_a_line(
     assert not Path("out.yaml").exists()
 
 
+def test_a_file_that_unpacks_to_more_than_the_limit_is_refused(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    # A gzip file may have several members: here 5 of 161 MB of zeros, together 805 MB.
+    Path("bomb.nbt").write_bytes(gzip.compress(bytes(161_000_000), 1) * 5)
+    assert run_command_line(["capture", "bomb.nbt", "-o", "out.yaml"]) == 2
+    assert capsys.readouterr().err == (
+        "beliefnest: bomb.nbt: it unpacks to more than 256 MiB, the limit for a place; give a file "
+        "of a smaller place\n"
+    )
+    assert not Path("out.yaml").exists()
+
+
 def test_nothing_is_written_over(tmp_path, capsys):
     out = tmp_path / "mine.yaml"
     out.write_text("mine")

@@ -237,6 +237,26 @@ def test_files_of_a_slightly_other_form_are_read_or_refused(
         Path("run/run.json").write_text(report)
 
 
+@pytest.mark.parametrize("case", ["cell", "episode cell"])
+def test_a_cell_without_its_seed_is_refused(
+    made: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+    case: str,
+) -> None:
+    pattern, command = CASES[case]
+    folder = tmp_path / "copy"
+    shutil.copytree(made, folder)
+    monkeypatch.chdir(folder)
+    path = next(iter(sorted(Path().glob(pattern))))
+    cell = json.loads(path.read_text())
+    del cell["seed"]
+    path.write_text(json.dumps(cell))
+    assert run_command_line(command) == 2
+    assert "delete it to run it again" in capfd.readouterr().err
+
+
 def _limited(size: int) -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 

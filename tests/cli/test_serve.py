@@ -23,6 +23,15 @@ def test_the_address_can_be_connected_to_as_soon_as_it_is_known() -> None:
         socket.create_connection(listener.getsockname(), timeout=120).close()
 
 
+@pytest.mark.parametrize("address", ["[" * 9000, "\u202e", "a..b"])
+def test_an_address_that_is_no_host_name_is_refused(
+    address: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_command_line(["serve", "run", "--port", "-5", "--address", address]) == 2
+    told = capsys.readouterr().err
+    assert "is no host name; give an address of this machine with --address" in told
+
+
 def test_ctrl_c_ends_it_without_complaint_while_a_page_listens(tmp_path: Path) -> None:
     store = tmp_path / "run.bn"
     world = bn.ScriptedWorld(((0, 0, 0), (4, 2, 4)), {}, {"ann": (1.5, 0, 1.5)})

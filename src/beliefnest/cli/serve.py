@@ -105,6 +105,13 @@ def listening(options: ServeOptions) -> Iterator[socket.socket]:
     Raises:
         InputError: The address cannot be listened on.
     """
+    try:
+        options.address.encode("idna")
+    except UnicodeError:
+        # `bind` would raise TypeError for it.
+        raise InputError(
+            f"{options.address} is no host name; give an address of this machine with --address"
+        ) from None
     family = socket.AF_INET6 if ":" in options.address else socket.AF_INET
     with socket.socket(family, socket.SOCK_STREAM) as listener:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

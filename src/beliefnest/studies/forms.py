@@ -20,6 +20,7 @@ class _StudyProbe(ProbeForm, kw_only=True):
 
 class _Played(msgspec.Struct):
     error: None
+    seed: int
     ticks: int
     expectations: list[ExpectationForm]
     probes: list[_StudyProbe]
@@ -28,6 +29,7 @@ class _Played(msgspec.Struct):
 
 class _Episode(msgspec.Struct):
     error: None
+    seed: int
     why_not: str
     measures: Measures
     run: str = ""

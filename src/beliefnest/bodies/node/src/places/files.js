@@ -23,7 +23,7 @@ const LONGEST_VARINT = 5
  * @throws {BadRequest} if it is no such file
  */
 async function readPlace (bytes) {
-  const data = await dataOf(Buffer.from(bytes))
+  const data = dataOf(Buffer.from(bytes))
   const root = data.Schematic ?? data
   if (root.Materials !== undefined) throw new BadRequest('it is a schematic of before Minecraft 1.13, which has numbers in place of names; save it anew as .schem')
   const place = Array.isArray(root.size) ? structure(root) : sponge(root)
@@ -32,13 +32,25 @@ async function readPlace (bytes) {
   return { shape: place.shape, palette: place.palette, blocks: new Uint8Array(place.blocks.buffer), ...found }
 }
 
-async function dataOf (bytes) {
+/**
+ * Parse a file that may be packed with gzip, once: `nbt.parse` would unpack further layers without a bound.
+ */
+function dataOf (bytes) {
   try {
-    const plain = GZIP.every((byte, index) => bytes[index] === byte) ? zlib.gunzipSync(bytes, { maxOutputLength: MOST_BYTES }) : bytes
-    const { parsed } = await nbt.parse(plain, 'big')
-    return nbt.simplify(parsed)
+    return nbt.simplify(nbt.parseUncompressed(unpacked(bytes), 'big'))
   } catch (error) {
+    if (error instanceof BadRequest) throw error
     throw new BadRequest(`it is no file of the game's data: ${error.message}`)
+  }
+}
+
+function unpacked (bytes) {
+  if (GZIP.some((byte, index) => bytes[index] !== byte)) return bytes
+  try {
+    return zlib.gunzipSync(bytes, { maxOutputLength: MOST_BYTES })
+  } catch (error) {
+    if (error.code !== 'ERR_BUFFER_TOO_LARGE') throw error
+    throw new BadRequest(`it unpacks to more than ${MOST_BYTES / 2 ** 20} MiB, the limit for a place; give a file of a smaller place`)
   }
 }
 

@@ -89,3 +89,12 @@ test('what is no such file is refused with a sentence', async () => {
   ]
   for (const [bytes, said] of cases) await assert.rejects(readPlace(bytes), { message: said, kind: 'bad_request' })
 })
+
+test('a file that unpacks to more than the limit is refused with the limit', async () => {
+  const zeros = zlib.gzipSync(Buffer.alloc(256 * 2 ** 20 + 1), { level: 1 })
+  await assert.rejects(readPlace(zeros), { message: 'it unpacks to more than 256 MiB, the limit for a place; give a file of a smaller place', kind: 'bad_request' })
+})
+
+test('a file that is packed twice is not unpacked twice', async () => {
+  await assert.rejects(readPlace(zlib.gzipSync(schem2())), { message: /no file of the game's data/, kind: 'bad_request' })
+})
