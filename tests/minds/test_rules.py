@@ -82,7 +82,7 @@ def test_a_gap_is_the_sum_over_all_courses():
 
 
 def sees(nest, cell):
-    """Whether Ann would see Bob in the middle of a cell."""
+    """Return whether Ann would see Bob in the middle of a cell."""
     view = nest._recording.reading(("ann",))
     ann = view.agents["ann"].position
     eye = (ann[0], ann[1] + 1.62, ann[2])
@@ -126,7 +126,7 @@ def test_speech_is_no_stay():
 
 
 def reached(world, goal, **further):
-    """Whether a goal can be reached."""
+    """Return whether a goal can be reached."""
     nest = bn.Nest(world)
     world.step(1)
     try:
@@ -232,3 +232,52 @@ def test_rationality_may_be_a_factor():
     inference = nest["/"].infer(plain({"at": (5, 1, 0)}, rationality=[0.1, 3.0]))
     assert inference.mean("rationality") > 1.55
     assert set(inference.marginal("rationality")) == {0.1, 3.0}
+
+
+def test_a_gap_of_several_ticks_an_action_has_its_actions_rounded():
+    walls = [(x, 1) for x in range(5) if x != 2]
+    world = lane(5, 3, walls, agents={"bob": (2, 0), "ann": (0, 0)})
+    nest = bn.Nest(world, static_blocks=[(x, 0, z) for x in range(5) for z in range(3)])
+    walk(world, (2, 2))
+    world.step(5)
+    walk(world, (2, 0))
+    model = plain({"at": (0, 1, 2)}, step_ticks=2)
+    assert not nest.at(3)["/ann"].state.agents["bob"].current
+    inference = nest["/ann"].infer(model)
+    assert inference.impossible is None
+    # Gone at tick 1, seen again at tick 7: from tick 0 that is 7 ticks, or 4 actions.
+    filtered = nest["/ann"].infer(model, until=6)
+    assert len([tick for tick in filtered.ticks if tick > 0]) == 3
+    for tick in range(1, 7):
+        early = nest["/ann"].infer(model, until=tick)
+        assert sum(early.marginal("cell").values()) == pytest.approx(1)
+
+
+def test_since_and_until_are_ticks_of_the_timeline():
+    world = lane(5)
+    nest = bn.Nest(world)
+    walk(world, (1, 0), (2, 0), (3, 0))
+    model = plain({"at": (4, 1, 0)})
+    late = nest["/"].infer(model, since=2)
+    assert late.ticks == (2, 3)
+    assert nest["/"].infer(model, since=3).mean("utility.G") == pytest.approx(10)
+    for since in (-1, 9):
+        with pytest.raises(bn.TickError):
+            nest["/"].infer(model, since=since)
+    with pytest.raises(bn.TickError):
+        late.mean("utility.G", tick=1)
+
+
+def test_a_fork_and_what_happens_in_it_is_read_too():
+    world = lane(5, agents={"bob": (0, 0), "ann": (4, 0)})
+    nest = bn.Nest(world)
+    walk(world, (1, 0), (2, 0))
+    model = plain({"at": (4, 1, 0)})
+    before = nest["/ann"].infer(model)
+    nest["/ann"].switch("try")
+    forked = nest["/ann"].infer(model)
+    np.testing.assert_allclose(forked.posterior(), before.posterior(), atol=1e-12)
+    nest["/ann"].scripted.place_agent("bob", (3.5, 1, 0.5))
+    after = nest["/ann"].infer(model)
+    assert after.mean("utility.G") > forked.mean("utility.G")
+    assert nest["/"].infer(model).posterior().tobytes() == before.posterior().tobytes()

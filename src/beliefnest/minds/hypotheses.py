@@ -134,7 +134,7 @@ Edge = tuple[State, State, Action | None]
 
 @dataclass(frozen=True, eq=False)
 class Layer:
-    """How states became others in one part of a tick; kept for what looks back.
+    """Transitions of states in one part of a tick, kept for looking back.
 
     Attributes:
         tick: When.

@@ -55,7 +55,7 @@ class SampledPath:
 
 @dataclass(frozen=True)
 class Change:
-    """What one piece of evidence changed.
+    """Effect of one piece of evidence on the marginals.
 
     Attributes:
         tick: When.

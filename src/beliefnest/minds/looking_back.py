@@ -96,7 +96,7 @@ def _smoothed(
 
 
 def _boundary(layers: Sequence[Layer], tick: int) -> int:
-    """How many layers lie at a tick or before."""
+    """Count the layers at a tick or before."""
     return sum(layer.tick <= tick for layer in layers)
 
 

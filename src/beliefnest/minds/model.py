@@ -36,7 +36,7 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What an agent may want to reach: exactly one of the fields is set.
+    """Thing that an agent may want to reach: exactly one field is set.
 
     Attributes:
         at: The cell in which to stand.
@@ -67,7 +67,7 @@ class Alternative:
 
     @property
     def elements(self) -> frozenset[tuple[str, object]]:
-        """What it sets, without the values."""
+        """Elements that it sets, without the values."""
         return frozenset(
             (kind, key)
             for kind, edits in (

@@ -71,7 +71,7 @@ class Planner:
         return sum(each.table.nbytes for each in self._solved.values())
 
     def actions(self, cell: int, knowledge: Knowledge) -> npt.NDArray[np.bool_]:
-        """Which actions there are: stay, steps, openings, acts on goals."""
+        """Return which actions are available: stay, steps, openings, acts on goals."""
         stage, possible = self.stage, knowledge[0]
         free = np.ones(1 + stage.moves.shape[2], dtype=np.bool_)
         opens = [

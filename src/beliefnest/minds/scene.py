@@ -161,7 +161,7 @@ class Scene:
     def _in_reach(
         self, cells: Sequence[Position], places: Sequence[Position]
     ) -> npt.NDArray[np.bool_]:
-        """Which cells are, or neighbour, one of some places."""
+        """Mark the cells that are, or neighbour, one of some places."""
         reached = np.zeros(len(cells), dtype=np.bool_)
         for place in places:
             away = np.abs(np.array(cells, dtype=np.int64) - np.array(place))

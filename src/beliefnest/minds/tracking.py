@@ -182,6 +182,9 @@ class Tracker:
             self._moment, self.tick = moment, moment.tick
             self._agree(moment)
             return
+        if self._moment is not None and moment.tick == self._moment.tick:
+            self._fork(moment)
+            return
         if moment.cell is None:
             if self._gap is None:
                 assert self._cell is not None and self._moment is not None
@@ -202,6 +205,22 @@ class Tracker:
             self._reappear(moment)
             return
         self._see(moment)
+
+    def _fork(self, moment: Moment) -> None:
+        """Go on in a fork, in which an agent out of sight stands where it was seen last."""
+        if self._gap is not None and moment.cell is not None:
+            self.states = self._gap.before
+            for layers, mark in zip(self.trail, self._gap.marks, strict=True):
+                del layers[mark:]
+            self._gap = None
+        self._quiet = 0
+        self._cell = moment.cell or self._cell
+        if moment.cell is None:
+            self._moment = moment
+            self._agree(moment)
+        else:
+            self._perceive(moment)
+            self._note(moment.tick, f"perceives at {moment.cell}", is_movement=False)
 
     def _see(self, moment: Moment) -> None:
         """Explain what the agent does in sight."""
@@ -390,7 +409,7 @@ class Tracker:
     # Gaps
 
     def _due(self, tick: int) -> bool:
-        """Whether the next action of a gap has ended at a tick."""
+        """Return whether the next action of a gap has ended at a tick."""
         assert self._gap is not None
         return tick >= self._gap.start + (self._gap.count + 1) * self.hypotheses.step_ticks
 

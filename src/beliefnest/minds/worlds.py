@@ -101,7 +101,7 @@ class Worlds:
 
     @cached_property
     def has_one_view(self) -> bool:
-        """Whether all alternatives let the same lines of sight through."""
+        """Return whether all alternatives let the same lines of sight through."""
         return len({id(each) for each in self._geometry_of}) == 1
 
     @cached_property
@@ -150,7 +150,7 @@ class Worlds:
 
     @property
     def can_differ(self) -> bool:
-        """Whether any look at all can tell alternatives apart."""
+        """Return whether any look can tell alternatives apart."""
         return bool(len(self._doubted) or self._doubted_contents or self._doubted_agents)
 
     def alike(self, feet: Point, yaw: float, pitch: float, *, all_round: bool) -> list[int]:
@@ -185,7 +185,7 @@ class Worlds:
     def _percepts(
         self, look: Pose, cells: npt.NDArray[np.int64], which: Sequence[int], all_round: bool
     ) -> list[object]:
-        """What is perceived of some cells, and of agents and items, in some alternatives."""
+        """List what is perceived of cells, agents and items in some alternatives."""
         seen: dict[int, npt.NDArray[np.bool_]] = {}
         percepts: list[object] = []
         for number in which:
@@ -232,7 +232,7 @@ class Worlds:
         cells: npt.NDArray[np.int64],
         seen: npt.NDArray[np.bool_],
     ) -> tuple[object, ...]:
-        """What is perceived of the candidates in an alternative, as a value to compare."""
+        """Return the percept of candidates in an alternative, as a value to compare."""
         states = world.blocks[tuple(cells.T)]
         blocks = np.where(seen & (states >= 0), states, -1).tobytes()
         contents: list[object] = []

@@ -68,7 +68,7 @@ class _Work:
     filters: dict[bytes, tuple[int, list[Tracker]]] = field(default_factory=dict)
 
     def goes_on(self, recording: Recording, until: int) -> bool:
-        """Whether nothing has been added to the timeline at ticks that were read."""
+        """Return whether the timeline has no new entries at ticks that were read."""
         same = recording.history.generation == self.generation
         return same and self.reading.latest <= until and self.reading.is_whole
 

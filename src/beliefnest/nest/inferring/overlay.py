@@ -30,7 +30,7 @@ _NEAR = 0.5
 
 @dataclass(frozen=True)
 class _Held:
-    """What the node held of the doubted elements."""
+    """Doubted elements as the node held them."""
 
     blocks: Mapping[Position, int]
     contents: Mapping[Position, ContainerBelief | None]
@@ -168,7 +168,7 @@ class Overlay:
         return sum(1 << a for a, does in enumerate(agrees) if does)
 
     def worlds(self, view: NodeView) -> list[World]:
-        """What the node holds, with the edits of each alternative."""
+        """Return what the node holds, with the edits of each alternative."""
         count = len(self._names)
         contents: dict[Position, Items] = {
             place: dict(held.items)
@@ -224,7 +224,7 @@ class Overlay:
         )
 
     def _is(self, text: str, state: int) -> bool:
-        """Whether a state is the one that a text names, with the properties that it names."""
+        """Return whether a state has the name and the properties of a text."""
         if state < 0:
             return False
         name, chosen = parse_state(text)

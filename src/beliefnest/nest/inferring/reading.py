@@ -1,4 +1,4 @@
-"""What an observer perceived of an agent, read from one node and its timeline."""
+"""Course of an agent as an observer perceived it, read from one node and its timeline."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -27,7 +27,7 @@ _NO_DEEDS = (EventKind.MOVE_TO, EventKind.BLOCK_UPDATE)
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """What is to be read.
+    """Request to read one agent's course from one node.
 
     Attributes:
         path: The observer's node.
@@ -199,7 +199,7 @@ class Reading:
         )
 
     def _learnt(self, events: Sequence[PerceivedEvent]) -> tuple[tuple[int, ...], ...]:
-        """What the agent learns of the containers in doubt that it uses."""
+        """Return what the agent learns of the containers in doubt that it uses."""
         assert self._overlay is not None
         used = {
             _place(event)
@@ -214,7 +214,7 @@ class Reading:
         )
 
     def _done(self, events: Sequence[PerceivedEvent]) -> tuple[Position | None, int | None, bool]:
-        """What the agent is perceived to do: what it opens, the goal it acts on, anything else."""
+        """Return what the agent opens, the goal it acts on, and whether it does more."""
         assert self._overlay is not None
         opened, act, deed = None, None, False
         for event in events:
