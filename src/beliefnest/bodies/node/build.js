@@ -36,7 +36,7 @@ async function build (outdir) {
   fs.writeFileSync(path.join(outdir, 'licenses.txt'), licenseTexts(folders))
 }
 
-/** Puts a file of no other files into the bundle, short: an engine reads it whole each time that one is made. */
+/** Put a file of no other files into the bundle, short: an engine reads it whole each time that one is made. */
 async function share (file, outdir) {
   const { code } = await esbuild.transform(fs.readFileSync(file, 'utf8'), { minifySyntax: true, minifyWhitespace: true, target: 'es2022' })
   fs.writeFileSync(path.join(outdir, path.basename(file)), code)

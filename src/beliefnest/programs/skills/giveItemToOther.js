@@ -10,7 +10,7 @@ const TOO_NEAR = 1.5
 const PICKUP_TICKS = 200
 const CHEST_HEIGHT = 1
 
-/** Watches who picks up the items of a kind that appear from now on. */
+/** Watch who picks up the items of a kind that appear from now on. */
 function watch ({ bot, listen }, item) {
   const { entity: own } = bot
   const lying = new Map()

@@ -38,7 +38,7 @@ async function nextTicks (context) {
   await answered(context)
 }
 
-/** Puts one piece of fuel in; fails if the furnace does not take it. */
+/** Put one piece of fuel in; fails if the furnace does not take it. */
 async function feed (context, furnace, fuel) {
   const { bot, fail } = context
   await furnace.putFuel(fuel.id, null, 1)
@@ -48,7 +48,7 @@ async function feed (context, furnace, fuel) {
   fail(`${fuel.name} does not burn. Use a fuel such as coal or planks.`)
 }
 
-/** Smelts what lies in the furnace, with a piece of fuel always ready, until the fuel runs out. */
+/** Smelt what lies in the furnace, with a piece of fuel always ready, until the fuel runs out. */
 async function smelt (context, furnace, position, item, fuel, wanted) {
   const { bot, fail } = context
   const done = () => furnace.outputItem()?.count ?? 0
@@ -73,7 +73,7 @@ function checkOpen ({ bot, fail }, furnace) {
   if (bot.currentWindow !== furnace) fail('the furnace was closed before everything was taken out.')
 }
 
-/** Takes everything out; returns the item that was made, or null, and how many of it came out. */
+/** Take everything out; returns the item that was made, or null, and how many of it came out. */
 async function emptyFurnace (context, furnace) {
   checkOpen(context, furnace)
   if (furnace.inputItem()) await furnace.takeInput()

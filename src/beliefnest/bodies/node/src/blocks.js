@@ -10,7 +10,7 @@ const { Vec3 } = require('vec3')
 // Blocks of a column at one height.
 const LAYER = 256
 
-/** Makes the chunk columns and worlds of a version remember what they were asked for; once is enough. */
+/** Make the chunk columns and worlds of a version remember what they were asked for; once is enough. */
 function rememberBlocks (registry) {
   const Chunk = require('prismarine-chunk')(registry)
   const World = require('prismarine-world')(registry)
@@ -35,7 +35,7 @@ function maker (registry) {
   }
 }
 
-/** Makes `getBlock` of a column find again what it made, as long as the place keeps its state. */
+/** Make `getBlock` of a column find again what it made, as long as the place keeps its state. */
 function rememberIn (Chunk, make) {
   const { setBlockStateId, setBlockEntity, load } = Chunk.prototype
   Object.assign(Chunk.prototype, {
@@ -127,7 +127,7 @@ const LAYOUT = {
 }
 
 /**
- * Copies all blocks the same way, so that they share one layout. V8 keeps an object that gets many properties
+ * Copy all blocks the same way, so that they share one layout. V8 keeps an object that gets many properties
  * one by one, as from Object.assign, in a hash table, several times slower to read.
  */
 function copier (Block) {

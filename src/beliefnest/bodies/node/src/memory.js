@@ -21,7 +21,7 @@ class Memory {
     Object.assign(this, { past: [...past], now, signal, entries: [] })
   }
 
-  /** Takes note of a call; `answer` is what came of it if it was over before the cut, else null. */
+  /** Take note of a call; `answer` is what came of it if it was over before the cut, else null. */
   note (name, args) {
     const given = JSON.stringify(plain(args))
     let known = this.past.shift() ?? null
@@ -35,7 +35,7 @@ class Memory {
     return entry
   }
 
-  /** Does what a skill does, or gives what came of it before. */
+  /** Do what a skill does, or gives what came of it before. */
   async call (name, args, act) {
     const entry = this.note(name, args)
     if (entry.answer !== null) return recalled(name, JSON.parse(entry.answer))
@@ -50,7 +50,7 @@ class Memory {
     }
   }
 
-  /** Says something, unless it was said before. */
+  /** Say something, unless it was said before. */
   say (name, words, speak) {
     const entry = this.note(name, words)
     if (entry.answer !== null) return undefined

@@ -40,7 +40,7 @@ class RequestHandler {
     }
   }
 
-  /** Does what can be done for the next request while the other side works on the answer to the last. */
+  /** Do what can be done for the next request while the other side works on the answer to the last. */
   async prepare () {
     await this.sandbox?.prepare()
   }

@@ -110,7 +110,7 @@ class Runner {
   }
 
   /**
-   * Brings the body of an agent whose program has ended to rest: what it does from then on must not depend on how long
+   * Bring the body of an agent whose program has ended to rest: what it does from then on must not depend on how long
    * others' programs go on.
    */
   async bringToRest (region, run) {
@@ -119,7 +119,7 @@ class Runner {
     run.rests = await this.regions.bodies.stand(region, run.agent, region.tick < run.endTick + LANDING_TICKS)
   }
 
-  /** Ends, once, what a program that has ended left under way. */
+  /** End, once, what a program that has ended left under way. */
   async breakOff (region, run) {
     if (run.isBrokenOff) return
     run.isBrokenOff = true
@@ -128,9 +128,9 @@ class Runner {
   }
 
   /**
-   * Lets programs that read percepts alone have what came of the tick that is over.
+   * Let programs that read percepts alone have what came of the tick that is over.
    * @param {boolean} changed whether anything did; if not, there is nothing new to perceive
-   * @returns {Promise<boolean>} whether programs go on
+   * @returns {Promise<boolean>} true if programs go on
    */
   async look (region, runs, changed) {
     const limited = runs.filter(({ view, result, crash }) => view !== null && (result ?? crash) === null)
@@ -142,8 +142,8 @@ class Runner {
   }
 
   /**
-   * Lets the program of the agent in whose bot something was thrown fail with it, or the only one there is.
-   * @returns {boolean} whether there is such a program
+   * Let the program of the agent in whose bot something was thrown fail with it, or the only one there is.
+   * @returns {boolean} true if there is such a program
    */
   blame (region, runs, { error, agent, lost }) {
     const own = runs.find(each => each.agent === agent)

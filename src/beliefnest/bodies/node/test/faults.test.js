@@ -10,7 +10,7 @@ const { scopeOf } = require('../src/scope')
 const both = { sally: agent([0.5, FLOOR, 0.5]), anne: agent([-4.5, FLOOR, 3.5]) }
 const sandbox = createSandbox()
 
-/** Runs programs in the region the harness is in, and runs `meanwhile` once they have begun. */
+/** Run programs in the region the harness is in, and runs `meanwhile` once they have begun. */
 async function run (world, programs, meanwhile) {
   const { regions, region } = world
   const here = Object.assign(Object.create(regions), { get: () => region, resumed: (_, action) => action() })

@@ -41,7 +41,7 @@ class Node {
     return this.request('hello', { protocol: 3, seed, minecraft: '1.20.4' })
   }
 
-  /** Ends the process as Python's end would. */
+  /** End the process as Python's end would. */
   async close () {
     this.child.stdio[4].destroy()
     this.child.stdio[3].destroy()

@@ -12,7 +12,7 @@ describe('programs', () => {
   })
   after(() => node.close())
 
-  /** Runs programs in a new region; gives tick, results and the frames of the run. */
+  /** Run programs in a new region; gives tick, results and the frames of the run. */
   async function run (programs, timeoutTicks = 100, more = {}) {
     const name = `region ${regions++}`
     await node.request('create_region', region(name, more))

@@ -16,7 +16,7 @@ function numbers () {
   return () => next++
 }
 
-/** @returns {Promise<boolean>} whether the server acknowledged what has this number, or a later one, in time */
+/** @returns {Promise<boolean>} true if the server acknowledged what has this number, or a later one, in time */
 function acknowledged ({ bot: { _client: client }, wait }, number) {
   const ended = new AbortController()
   return new Promise(resolve => {
@@ -32,7 +32,7 @@ function acknowledged ({ bot: { _client: client }, wait }, number) {
 }
 
 /**
- * Resolves when the server has done all that the bot has asked for so far, and the bot knows what
+ * Resolve when the server has done all that the bot has asked for so far, and the bot knows what
  * came of it. Servers acknowledge acts on blocks at the end of the tick in which they come, after
  * all else that came of that tick; this act is one that does nothing.
  */

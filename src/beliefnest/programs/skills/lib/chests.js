@@ -21,7 +21,7 @@ function checkLid ({ bot, fail }, block) {
   fail(`the chest at ${show(block.position)} cannot be opened: ${above.name} lies on its lid. Remove it first.`)
 }
 
-/** Goes to the container, opens it, hands its window to `action`, and closes it whatever happens. */
+/** Go to the container, opens it, hands its window to `action`, and closes it whatever happens. */
 async function withContainer (context, position, action) {
   const { bot } = context
   if (!isUnseen(bot, position)) findContainer(context, position)
@@ -61,7 +61,7 @@ function owned (window, item) {
 }
 
 /**
- * Moves up to so many of each item from one part of a window ("chest", "inventory") to the other.
+ * Move up to so many of each item from one part of a window ("chest", "inventory") to the other.
  * @param {[object, number][]} wanted
  * @returns {Promise<{item: object, count: number, there: number, room: number, moved: number}[]>} `moved` is
  *   what the server let through: somebody else may look into the same chest

@@ -37,7 +37,7 @@ async function stepThrough (context, far, near) {
   return stepUntil(context, () => bot.entity.position.xzDistanceTo(centre) < near, STEP_TICKS)
 }
 
-/** Opens or shuts the door at a position, if it is not so and moves by hand; @returns {Promise<boolean>} whether it is so */
+/** Open or shuts the door at a position, if it is not so and moves by hand; @returns {Promise<boolean>} true if it is so */
 async function bring (context, position, open) {
   const { bot } = context
   const isSo = () => bot.blockAt(position).getProperties().open === open
@@ -114,12 +114,12 @@ async function pass (context, { door, near, far, isLast }, { closeDoors }) {
 }
 
 /**
- * Goes through the doors that lie between the bot and a goal, each at most once from each side.
+ * Go through the doors that lie between the bot and a goal, each at most once from each side.
  * @param {object} goal of the pathfinder
  * @param {Vec3} target near which the goal is
  * @param {Set<string>} tried legs that were gone already, added to
  * @param {{openDoors: boolean, closeDoors: boolean}} doors whether to open shut ones, and to shut those gone through
- * @returns {Promise<boolean>} whether it went through any; false: no way through doors is known
+ * @returns {Promise<boolean>} true if it went through any; false: no way through doors is known
  */
 async function passDoors (context, goal, target, tried, doors) {
   const legs = await planThrough(context, goal, target, tried, doors)

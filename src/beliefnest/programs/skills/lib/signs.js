@@ -19,7 +19,7 @@ function textOf (sign) {
   return sign.entity ? sign.getSignText()[0].replace(/\n+$/, '') : ''
 }
 
-/** Goes to a sign and writes on it, over what is there; a sign that says the text already is left alone. */
+/** Go to a sign and writes on it, over what is there; a sign that says the text already is left alone. */
 async function write (context, signPosition, lines, claims) {
   const { bot, fail, emit } = context
   const position = blockPosition(context, 'position', signPosition)
@@ -40,7 +40,7 @@ async function write (context, signPosition, lines, claims) {
   if (textOf(signAt(context, position)) !== wanted) fail(`nothing was written on the sign at ${show(position)}. Go nearer and try again.`)
 }
 
-/** Looks at a sign and gives what is written on it. */
+/** Look at a sign and gives what is written on it. */
 async function read (context, signPosition) {
   const position = blockPosition(context, 'position', signPosition)
   signAt(context, position)

@@ -3,9 +3,9 @@
 const { until } = require('./waiting')
 
 /**
- * Goes on to where the bot looks until a condition holds. It is judged step by step: a busy machine takes many
+ * Go on to where the bot looks until a condition holds. It is judged step by step: a busy machine takes many
  * steps at once, and who looks after them is far beyond.
- * @returns {Promise<boolean>} whether it came to hold within `limit` ticks
+ * @returns {Promise<boolean>} true if it came to hold within `limit` ticks
  */
 async function stepUntil (context, condition, limit) {
   const { bot, listen } = context

@@ -12,7 +12,7 @@ const LEVER = { called: 'lever', is: name => name === 'lever' }
 const DOOR = { called: 'door', is: name => /(_door|_trapdoor|_fence_gate)$/.test(name) }
 const BUTTON = { called: 'button', is: name => name.endsWith('_button') }
 
-/** Goes to a lever and brings it into a state; does nothing if it is in it already. */
+/** Go to a lever and brings it into a state; does nothing if it is in it already. */
 async function switchLever (context, leverPosition, powered) {
   const { bot, fail } = context
   const { position, block } = await goTo(context, leverPosition, LEVER)
@@ -22,7 +22,7 @@ async function switchLever (context, leverPosition, powered) {
   if (block().getProperties().powered !== powered) fail(`the lever at ${show(position)} did not move. Go nearer and try again.`)
 }
 
-/** Goes to a button and presses it; one that is pressed already is waited for first. */
+/** Go to a button and presses it; one that is pressed already is waited for first. */
 async function pressButton (context, buttonPosition) {
   const { bot, fail } = context
   const { position, block } = await goTo(context, buttonPosition, BUTTON)
@@ -40,7 +40,7 @@ async function pressButton (context, buttonPosition) {
   if (!moved) fail(`the button at ${show(position)} did not move. Go nearer and try again.`)
 }
 
-/** Goes to a door, a trapdoor or a gate and opens or shuts it; does nothing if it is so already. */
+/** Go to a door, a trapdoor or a gate and opens or shuts it; does nothing if it is so already. */
 async function useDoor (context, doorPosition, open) {
   const { bot, fail } = context
   const position = blockPosition(context, 'position', doorPosition)
@@ -57,7 +57,7 @@ async function useDoor (context, doorPosition, open) {
   if (block().getProperties().open !== open) fail(`the ${name} at ${show(position)} did not move. Go nearer and try again.`)
 }
 
-/** Walks to a switch; `block` looks it up, and fails if it is no such switch any more. */
+/** Walk to a switch; `block` looks it up, and fails if it is no such switch any more. */
 async function goTo (context, place, { called, is }) {
   const { bot, fail } = context
   const position = blockPosition(context, 'position', place)

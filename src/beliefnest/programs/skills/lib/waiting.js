@@ -2,7 +2,7 @@
 
 const TICK_MS = 50
 
-/** Resolves after a number of ticks of a clock that counts milliseconds; never once the signal is aborted. */
+/** Resolve after a number of ticks of a clock that counts milliseconds; never once the signal is aborted. */
 function byTimer (number, signal) {
   return new Promise(resolve => {
     const timer = setTimeout(resolve, number * TICK_MS)
@@ -10,12 +10,12 @@ function byTimer (number, signal) {
   })
 }
 
-/** Resolves after a number of ticks of the world's time. */
+/** Resolve after a number of ticks of the world's time. */
 function ticks ({ wait }, number) {
   return wait(number)
 }
 
-/** Looks at a condition every tick; @returns {Promise<boolean>} whether it held within `limit` ticks */
+/** Look at a condition every tick; @returns {Promise<boolean>} true if it held within `limit` ticks */
 async function until ({ wait }, condition, limit) {
   for (let passed = 0; !condition(); passed++) {
     if (passed >= limit) return false

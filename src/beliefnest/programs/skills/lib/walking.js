@@ -25,7 +25,7 @@ const noPath = () => Object.assign(new Error('no way'), { name: 'NoPath' })
 const rounded = ({ x, y, z }) => show({ x: Math.round(x * 10) / 10, y: Math.round(y * 10) / 10, z: Math.round(z * 10) / 10 })
 const centreOf = block => block.offset(0.5, 0.5, 0.5)
 
-/** Stands still: what is left of the last step would carry on. */
+/** Stand still: what is left of the last step would carry on. */
 async function settle (context) {
   const { bot } = context
   bot.clearControlStates()
@@ -70,7 +70,7 @@ async function walk (context, goal, arrived, target, what, doors = ANY_DOOR) {
     `${near.toFixed(1)} blocks away. Go somewhere else, or clear the way first.`, fault ?? noPath())
 }
 
-/** Walks to within `dist` blocks of a position. */
+/** Walk to within `dist` blocks of a position. */
 async function walkNear (context, target, dist, what = 'the position', doors = ANY_DOOR) {
   const { bot, goals } = context
   const block = target.floored()
@@ -123,7 +123,7 @@ async function stepToView (context, block) {
   await settle(context)
 }
 
-/** Walks to where a block can be used. */
+/** Walk to where a block can be used. */
 async function walkToUse (context, block, what) {
   const { goal, arrived } = viewpoint(context, block, (_, eye) => canUse(context.bot, eye, block))
   await walk(context, goal, arrived, block, what)

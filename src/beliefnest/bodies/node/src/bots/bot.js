@@ -19,7 +19,7 @@ const REAL_TIME = {}
 const CONTROLS = ['forward', 'back', 'left', 'right', 'jump', 'sprint', 'sneak']
 
 /**
- * Starts a bot; it is usable `INJECTION_MS` of virtual time later.
+ * Start a bot; it is usable `INJECTION_MS` of virtual time later.
  * @param {object} client a connection's client end
  * @param {{charge?: (ms: number) => void}} clock pays for searches for paths; without `charge` time is real
  */
@@ -44,7 +44,7 @@ function startBot (client, clock) {
 }
 
 /**
- * Gives a bot `beginSecond()`. A bot that stands tells where it is, and emits `move`, a second after it last did so. It keeps
+ * Give a bot `beginSecond()`. A bot that stands tells where it is, and emits `move`, a second after it last did so. It keeps
  * that time in the object that it hands over with each packet, and no snapshot has it.
  */
 function keepSecond (bot, client) {
@@ -58,7 +58,7 @@ function keepSecond (bot, client) {
 }
 
 /**
- * Makes a bot stand still and finish what it was doing: path, digging, controls, window; how it looks
+ * Make a bot stand still and finish what it was doing: path, digging, controls, window; how it looks
  * for paths is as at first.
  * @returns {string[]} what it was doing
  */
@@ -84,7 +84,7 @@ function letGo (bot) {
   bot.deactivateItem()
 }
 
-/** Lets a bot that was put somewhere stand, or fall: a client takes who is placed for one in the air. */
+/** Let a bot that was put somewhere stand, or fall: a client takes who is placed for one in the air. */
 function ground (bot, onGround) {
   bot.entity.onGround = onGround
   if (onGround) bot.entity.velocity.y = STANDING_VELOCITY

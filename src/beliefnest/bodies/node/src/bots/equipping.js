@@ -4,7 +4,7 @@
 const HOTBAR_SIZE = 9
 
 /**
- * Lets what is taken into the hand out of a full hotbar's reach change places with what is held.
+ * Let what is taken into the hand out of a full hotbar's reach change places with what is held.
  * Mineflayer takes the slots in turn, by a count that no snapshot has.
  */
 function equipHeldSlot (bot) {

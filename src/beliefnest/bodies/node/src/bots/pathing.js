@@ -44,7 +44,7 @@ function chargePathfinder (bot, clock, unknownAt) {
 }
 
 /**
- * Lets searches end after as many nodes as their limits of time stand for. A search that ends a tick without a
+ * Let searches end after as many nodes as their limits of time stand for. A search that ends a tick without a
  * path counts as one without a way, so that a process that gets no processor for 40 ms would lose its way.
  */
 function countNodes (pathfinder) {

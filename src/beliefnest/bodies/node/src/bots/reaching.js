@@ -10,7 +10,7 @@ const USES = {
   craft: (recipe, count, table) => table
 }
 
-/** Lets the bot's calls that use blocks reject where the server would refuse them. */
+/** Let the bot's calls that use blocks reject where the server would refuse them. */
 function refuseUnreachable (bot) {
   const check = (name, position) => {
     const why = hindranceOf(bot, position)

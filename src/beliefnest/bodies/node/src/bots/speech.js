@@ -4,7 +4,7 @@
 const TICK_MS = 50
 
 /**
- * Lets a bot take so many ticks for each thing it says, one after the other, and remember what a program says by it.
+ * Let a bot take so many ticks for each thing it says, one after the other, and remember what a program says by it.
  * @param {object} bot
  * @param {object} options
  * @param {number} options.ticks if above 0, what says something gives a promise
@@ -30,7 +30,7 @@ function ruleSpeech (bot, { ticks, memory, signal }) {
   return { over: () => last, undo: () => { Object.assign(bot, { chat, whisper }) } }
 }
 
-/** Resolves after so many ticks, or when the signal is aborted. */
+/** Resolve after so many ticks, or when the signal is aborted. */
 function passed (ticks, signal) {
   return new Promise(resolve => {
     const end = () => {

@@ -31,13 +31,13 @@ class Channel {
     stream.on('data', chunk => this.take(chunk))
   }
 
-  /** Sends a message, and what `post` kept back before it. */
+  /** Send a message, and what `post` kept back before it. */
   send (message) {
     this.post(message)
     this.flush()
   }
 
-  /** Sends a message soon: a few at a time cost far less than each by itself. */
+  /** Send a message soon: a few at a time cost far less than each by itself. */
   post (message) {
     const body = this.encoder.encodeSharedRef(message)
     const packet = Buffer.allocUnsafe(HEADER + body.length)
@@ -47,7 +47,7 @@ class Channel {
     if (this.unsent.length >= MAX_UNSENT) this.flush()
   }
 
-  /** Sends a message, and what `post` kept back, if nothing was sent for a second. */
+  /** Send a message, and what `post` kept back, if nothing was sent for a second. */
   beat (message) {
     if (realNow() - this.written >= BEAT_MS) this.send(message)
   }

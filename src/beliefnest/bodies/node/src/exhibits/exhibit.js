@@ -23,7 +23,7 @@ class Exhibit {
   }
 
   /**
-   * Takes note of what is another than it was.
+   * Take note of what is another than it was.
    * @param {object} changes as `show` of the channel has them
    * @returns {{signs: number[][]}} positions of signs that show another text now
    */

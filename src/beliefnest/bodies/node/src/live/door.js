@@ -98,7 +98,7 @@ class Door {
     return listening.socketServer.address().port
   }
 
-  /** Sends everybody away with a sentence; resolves when all have heard it, or do not listen. */
+  /** Send everybody away with a sentence; resolves when all have heard it, or do not listen. */
   async close () {
     const clients = Object.values(this.listening.clients)
     this.listening.socketServer.close()
@@ -108,7 +108,7 @@ class Door {
   }
 
   /**
-   * Says who may come; who is there and may no longer be is sent away, and who looks at something and may come again is told.
+   * Say who may come; who is there and may no longer be is sent away, and who looks at something and may come again is told.
    * @returns {string[]} who is there
    */
   invite (names) {
@@ -123,7 +123,7 @@ class Door {
     return [...this.present.keys()].sort()
   }
 
-  /** Lets time stand still, or go on; people are told. */
+  /** Let time stand still, or go on; people are told. */
   async pause (isPaused) {
     if (!await this.regions.pause(isPaused)) return
     for (const { player } of this.present.values()) player.system(isPaused ? 'Time stands still.' : 'Time goes on.')
@@ -131,7 +131,7 @@ class Door {
     else for (const end of this.standstill.end()) if (this.present.get(end.username)?.player._client === end) this.greet(end.release())
   }
 
-  /** Lets somebody in as the agent that they are, or else to look; to whom neither is open it says why, or what is given. */
+  /** Let somebody in as the agent that they are, or else to look; to whom neither is open it says why, or what is given. */
   greet (client, parting) {
     this.inTurn(() => {
       if (client.ended) return
@@ -154,8 +154,8 @@ class Door {
   }
 
   /**
-   * Takes a person, an agent or a visitor, to where `/tp X Y Z` says, if they may go there.
-   * @returns {boolean} whether it is that command
+   * Take a person, an agent or a visitor, to where `/tp X Y Z` says, if they may go there.
+   * @returns {boolean} true if it is that command
    */
   travel (end, command, tell) {
     const { x, y, z, who = end.username } = TRAVEL.exec(command)?.groups ?? {}
@@ -250,7 +250,7 @@ class Door {
   }
 }
 
-/** Says so to a game of another version than ours; who only asks who is here gets an answer all the same. */
+/** Say so to a game of another version than ours; who only asks who is here gets an answer all the same. */
 function refuseVersion (client, asked, { version, minecraftVersion }) {
   if (asked.protocolVersion === version || asked.nextState !== LOGIN) return
   // The library answers of its own, and then lets in who does not leave by itself: it is to hear neither of the version nor of the login.
@@ -259,7 +259,7 @@ function refuseVersion (client, asked, { version, minecraftVersion }) {
   setImmediate(() => client.end(`This is Minecraft ${minecraftVersion}; start the game in that version`))
 }
 
-/** Tells a person who is an agent from now on who else is there. */
+/** Tell a person who is an agent from now on who else is there. */
 function equip (end, region) {
   ease(end, end.player.id)
   const others = [...region.bodies.keys()].filter(agent => agent !== end.username).sort()

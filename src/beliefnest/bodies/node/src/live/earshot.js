@@ -25,14 +25,14 @@ class Earshot {
     }
   }
 
-  /** Takes note of the frame that tells what was said. */
+  /** Take note of the frame that tells what was said. */
   framed ({ tick, events }) {
     const count = events.filter(({ kind, detail }) => kind === 'chat' && detail.to === undefined).length
     if (count > 0) this.waiting.push({ tick, lines: this.said.splice(0, count) })
   }
 
   /**
-   * Tells people what they heard.
+   * Tell people what they heard.
    * @param {number} tick of the frame
    * @param {string[][]} heard by whom, for each thing said aloud in it
    */
@@ -47,7 +47,7 @@ class Earshot {
     for (const agent of agents) if (agent !== speaker) this.personOf(agent)?.system(text)
   }
 
-  /** Forgets what was said in what has not happened. */
+  /** Forget what was said in what has not happened. */
   forget () {
     this.said.length = 0
     this.waiting.length = 0

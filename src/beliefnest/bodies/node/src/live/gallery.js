@@ -74,7 +74,7 @@ class Gallery {
     return [...this.exhibits.values()].find(exhibit => exhibit.holds(place, MARGIN)) ?? null
   }
 
-  /** Lets a client look. @returns {Visitor} */
+  /** Let a client look. @returns {Visitor} */
   admit (client, onCommand) {
     const visitor = new Visitor(client, this, onCommand)
     this.visitors.add(visitor)

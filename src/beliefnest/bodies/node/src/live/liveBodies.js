@@ -10,14 +10,14 @@ const { join } = require('../regions/joining')
 const HALF_WIDTH = 0.3
 
 class LiveBodies extends Bodies {
-  /** Lets agents in; from the first moment they have what they are to have. */
+  /** Let agents in; from the first moment they have what they are to have. */
   start (region, agent, state) {
     const started = super.start(region, agent, state)
     started.player.setPossessions(state)
     return started
   }
 
-  /** Ends what a program left under way; a bot that still waits for something is made anew at once. */
+  /** End what a program left under way; a bot that still waits for something is made anew at once. */
   async rest (region, agent, clean) {
     const { bot, player } = region.bodies.get(agent)
     stopBot(bot)
@@ -27,20 +27,20 @@ class LiveBodies extends Bodies {
     if (!clean) await this.standIn(region, agent)
   }
 
-  /** Lets bodies be: time goes on between the calls, too. */
+  /** Let bodies be: time goes on between the calls, too. */
   async stand () {
     return true
   }
 
   async finish () {}
 
-  /** Puts a new bot in the place of whoever an agent's body is: nobody sees a difference. */
+  /** Put a new bot in the place of whoever an agent's body is: nobody sees a difference. */
   async standIn (region, agent) {
     const state = this.leave(region, agent)
     await this.add(region, { [agent]: state })
   }
 
-  /** Puts a person in the place of a bot. @returns {object} the player */
+  /** Put a person in the place of a bot. @returns {object} the player */
   seat (region, end) {
     const state = this.leave(region, end.username)
     const player = join(this.serv, region, end, state)

@@ -21,7 +21,7 @@ class LiveClock {
     return action()
   }
 
-  /** Resolves when that much more time has passed, and what follows at once has happened. A tick's ends when it is due. */
+  /** Resolve when that much more time has passed, and what follows at once has happened. A tick's ends when it is due. */
   async advance (ms) {
     if (ms === TICK_MS) await this.tickEnds()
     else if (ms > 0) await sleep(ms)

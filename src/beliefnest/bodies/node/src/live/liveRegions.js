@@ -53,7 +53,7 @@ class LiveRegions extends Regions {
     else this.waiting.push(frame)
   }
 
-  /** Runs one action after the other. */
+  /** Run one action after the other. */
   async alone (action) {
     const before = this.turn
     const { promise, resolve } = Promise.withResolvers()
@@ -81,13 +81,13 @@ class LiveRegions extends Regions {
     return made
   }
 
-  /** Remembers which region there is, from the moment at which somebody may come to be in it. */
+  /** Remember which region there is, from the moment at which somebody may come to be in it. */
   async restoreState (region, internalState) {
     this.open = region
     await super.restoreState(region, internalState)
   }
 
-  /** Lets time pass where no call does. */
+  /** Let time pass where no call does. */
   async goOn (region) {
     this.clock.due = performance.now()
     while (this.open === region && this.failure === null) {
@@ -99,7 +99,7 @@ class LiveRegions extends Regions {
     }
   }
 
-  /** Lets time stand still, or go on again. @returns {Promise<boolean>} whether that is something else than before */
+  /** Let time stand still, or go on again. @returns {Promise<boolean>} true if that is something else than before */
   async pause (isPaused) {
     return this.alone(() => {
       if (isPaused === (this.standstill !== null)) return false
@@ -109,7 +109,7 @@ class LiveRegions extends Regions {
     })
   }
 
-  /** Runs a call on the region: its ticks are then the call's to take. */
+  /** Run a call on the region: its ticks are then the call's to take. */
   async resumed (region, action) {
     return this.alone(async () => {
       if (this.failure !== null) throw this.failure
@@ -126,7 +126,7 @@ class LiveRegions extends Regions {
     })
   }
 
-  /** Makes the region so; what happened there since the last call is forgotten with what it led to. */
+  /** Make the region so; what happened there since the last call is forgotten with what it led to. */
   async apply (request) {
     await this.door
     return this.alone(async () => {

@@ -14,7 +14,7 @@ class Standstill {
     this.missed = new Set()
   }
 
-  /** @returns {boolean} whether what a person's client sent must not be done, which it is told */
+  /** @returns {boolean} true if what a person's client sent must not be done, which it is told */
   takes ({ player }, name, { x, y, z }) {
     if (!this.isOn || player === null || HARMLESS.includes(name)) return false
     if (MOVES.includes(name)) {

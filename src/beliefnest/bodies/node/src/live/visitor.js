@@ -42,7 +42,7 @@ class Visitor {
     this.end.write('system_chat', { content: this.gallery.serv._createNetworkEncodedChatComponent(text), isActionBar: false })
   }
 
-  /** Puts them at a place of the server's world, and shows them what is there. */
+  /** Put them at a place of the server's world, and shows them what is there. */
   enter (exhibit, { x, y, z }) {
     const { end, gallery } = this
     this.exhibit = exhibit
@@ -107,7 +107,7 @@ class Visitor {
     this.fill()
   }
 
-  /** Shows what is in what they look into; what they moved there is undone. */
+  /** Show what is in what they look into; what they moved there is undone. */
   fill () {
     if (this.window === null) return
     const found = inside(this.exhibit, this.window.place, this.gallery.states, this.gallery.serv)

@@ -17,7 +17,7 @@ class End extends EventEmitter {
 }
 
 /**
- * Hands a packet to those who listen for it at a server's end; they may be async.
+ * Hand a packet to those who listen for it at a server's end; they may be async.
  * @param {(error: Error) => void} report hears what such a one throws later
  */
 function handOver (end, name, params, report) {

@@ -41,7 +41,7 @@ class TcpEnd extends End {
     if (!this.client.ended && !this.isReleased) this.client.end(reason)
   }
 
-  /** Ends, and leaves the client connected for another end. @returns {import('minecraft-protocol').Client} */
+  /** End, and leaves the client connected for another end. @returns {import('minecraft-protocol').Client} */
   release () {
     for (const [event, listener] of Object.entries(this.heard)) this.client.off(event, listener)
     this.isReleased = true

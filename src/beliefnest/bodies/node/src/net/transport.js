@@ -36,7 +36,7 @@ class MemoryEnd extends End {
   }
 
   /**
-   * Sends a packet; the other end gets it after the code that runs now.
+   * Send a packet; the other end gets it after the code that runs now.
    * @throws {Error} if a bot sends without end
    */
   write (name, params) {
@@ -49,7 +49,7 @@ class MemoryEnd extends End {
     for (const [name, params] of packets) this.write(name, params)
   }
 
-  /** Ends both sides at once. */
+  /** End both sides at once. */
   end (reason) {
     if (this.ended) return
     this.ended = true
@@ -67,7 +67,7 @@ class ClientEnd extends MemoryEnd {
   most = MOST_AT_ONCE
   isCut = false
 
-  /** Lets nothing through any more but where the bot is, which falls as long as it is in the air. */
+  /** Let nothing through any more but where the bot is, which falls as long as it is in the air. */
   cut () {
     this.isCut = true
   }
@@ -77,7 +77,7 @@ class ClientEnd extends MemoryEnd {
     else if (MOVES.includes(name)) super.write('position', params)
   }
 
-  /** Lets an action of the host send on, however much the bot has sent: what stops a bot must reach the server. */
+  /** Let an action of the host send on, however much the bot has sent: what stops a bot must reach the server. */
   beyond (action) {
     this.most = Infinity
     try {
@@ -139,7 +139,7 @@ class Mail {
     setImmediate(() => this.handOver())
   }
 
-  /** Drops what was sent and has not arrived. */
+  /** Drop what was sent and has not arrived. */
   clear () {
     this.waiting.length = 0
     this.scheduled = false

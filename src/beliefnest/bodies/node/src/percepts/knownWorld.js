@@ -53,14 +53,14 @@ class KnownWorld {
     return text === undefined ? block : Object.assign(block, { entity: {}, getSignText: () => [text, ''] })
   }
 
-  /** Learns all that is written on signs, as [x, y, z, text]. */
+  /** Learn all that is written on signs, as [x, y, z, text]. */
   readSigns (signs) {
     for (const index of this.texts.keys()) this.blocks[index] = null
     this.texts = new Map(signs.map(([x, y, z, text]) => [this.box.index(x, y, z), text]))
     for (const index of this.texts.keys()) this.blocks[index] = null
   }
 
-  /** Learns what is in a place, -1 for nothing; @returns {{before: ?object, after: ?object}} blocks */
+  /** Learn what is in a place, -1 for nothing; @returns {{before: ?object, after: ?object}} blocks */
   learn (x, y, z, state) {
     const before = this.blockIn(x, y, z)
     const index = this.box.index(x, y, z)

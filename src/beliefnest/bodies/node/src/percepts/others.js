@@ -63,7 +63,7 @@ class Others {
     return Object.create(entity, { id: { value: id } })
   }
 
-  /** Learns how somebody is seen now; null: not any more. @returns {[string, object][]} events for the program */
+  /** Learn how somebody is seen now; null: not any more. @returns {[string, object][]} events for the program */
   see (name, pose) {
     const known = this.byName.get(name)
     if (pose === null) {
@@ -78,7 +78,7 @@ class Others {
     return [[known === undefined ? 'entitySpawn' : 'entityMoved', entity]]
   }
 
-  /** Learns what lies where; null: not any more. @returns {[string, object][]} events for the program */
+  /** Learn what lies where; null: not any more. @returns {[string, object][]} events for the program */
   find (number, item) {
     const known = this.items.get(number)
     if (item === null) {

@@ -95,12 +95,12 @@ class View {
     }
   }
 
-  /** Resolves when what came of this tick has been perceived. */
+  /** Resolve when what came of this tick has been perceived. */
   perceived () {
     return new Promise(resolve => { this.waiting.push(resolve) })
   }
 
-  /** Takes PERCEPTS, what has changed since the last; null: nothing has. */
+  /** Take PERCEPTS, what has changed since the last; null: nothing has. */
   update (changes) {
     // A program listens only once it has come as far as that.
     const listens = [...HEARING].some(event => this.emitter.listenerCount(event) > 0)
@@ -134,7 +134,7 @@ class View {
     return [['whisper', speaker, text], ['messagestr', `${speaker} whispers to you: ${text}`]]
   }
 
-  /** Lets go of the bot; @returns {object} it */
+  /** Let go of the bot; @returns {object} it */
   close () {
     for (const { event, listener } of this.forwarded.splice(0)) this.body.removeListener(event, listener)
     this.body.removeListener('playerCollect', this.onCollect)

@@ -17,7 +17,7 @@ const isSolid = block => block.boundingBox === 'block'
 
 class Walker {
   /**
-   * Gives a view of a bot its pathfinder.
+   * Give a view of a bot its pathfinder.
    * @param {object} view see view.js
    * @param {import('./knownWorld').KnownWorld} known
    * @param {import('../time/clock').Clock} clock
@@ -77,7 +77,7 @@ class Walker {
     }
   }
 
-  /** Lets ways be looked for anew where what was learnt is not what they count on. */
+  /** Let ways be looked for anew where what was learnt is not what they count on. */
   learn (before, after) {
     if (after === null) return
     const { position } = after

@@ -20,7 +20,7 @@ class Bodies {
   }
 
   /**
-   * Lets agents into the active region, all at the same time; costs `INJECTION_MS`.
+   * Let agents into the active region, all at the same time; costs `INJECTION_MS`.
    * @param {import('./region').Region} region
    * @param {object} agents AGENT by name
    */
@@ -60,7 +60,7 @@ class Bodies {
   }
 
   /**
-   * Makes agents of the active region as asked; null: not there.
+   * Make agents of the active region as asked; null: not there.
    * @param {import('./region').Region} region
    * @param {object} agents AGENT or null by name
    */
@@ -91,7 +91,7 @@ class Bodies {
   }
 
   /**
-   * Puts agents exactly where the channel says they are; those who stand stop gliding.
+   * Put agents exactly where the channel says they are; those who stand stop gliding.
    * @param {import('./region').Region} region
    * @param {Iterable<string>} [agents] names; by default everybody
    */
@@ -114,8 +114,8 @@ class Bodies {
   }
 
   /**
-   * Lets an agent stand where it is, unless it is in the air and may take its time to come down.
-   * @returns {Promise<boolean>} whether it does
+   * Let an agent stand where it is, unless it is in the air and may take its time to come down.
+   * @returns {Promise<boolean>} true if it does
    */
   async stand (region, agent, hasTime) {
     if (hasTime && !region.bodies.get(agent).player.onGround) return false
@@ -124,7 +124,7 @@ class Bodies {
   }
 
   /**
-   * Ends what is under way with an agent, so that nothing of it needs to be told.
+   * End what is under way with an agent, so that nothing of it needs to be told.
    * @param {boolean} clean whether nothing that its bot was asked to do is still waited for; what is would go on
    *   whenever time does, so that from now on nothing but the bot's fall reaches the server
    */
@@ -137,7 +137,7 @@ class Bodies {
     if (!clean) bot._client.cut()
   }
 
-  /** Ends a run: makes all bots of the region anew if one was cut off from the server. */
+  /** End a run: makes all bots of the region anew if one was cut off from the server. */
   async finish (region) {
     if (![...region.bodies.values()].some(({ bot }) => bot._client.isCut)) return
     const goesOn = this.serv.internalState(region)
@@ -160,7 +160,7 @@ class Bodies {
     })
   }
 
-  /** Takes an agent out of the active region. */
+  /** Take an agent out of the active region. */
   remove (region, agent) {
     const { bot, player } = region.bodies.get(agent)
     region.bodies.delete(agent)

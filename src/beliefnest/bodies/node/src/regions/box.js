@@ -23,7 +23,7 @@ class Box {
     return ((x - this.low[0]) * this.shape[1] + y - this.low[1]) * this.shape[2] + z - this.low[2]
   }
 
-  /** Calls `visit(x, y, z, index)` for every position in array order. */
+  /** Call `visit(x, y, z, index)` for every position in array order. */
   forEach (visit) {
     let index = 0
     for (let x = this.low[0]; x <= this.high[0]; x++) {

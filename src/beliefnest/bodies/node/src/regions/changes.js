@@ -51,7 +51,7 @@ function applyItems (serv, region, items) {
   }
 }
 
-/** Runs what may refuse its arguments with a RangeError; `where` says which. */
+/** Run what may refuse its arguments with a RangeError; `where` says which. */
 function orBadRequest (action, where = '') {
   try {
     return action()

@@ -16,7 +16,7 @@ function columnsOf (box, origin) {
 }
 
 /**
- * Builds a region's columns in the world.
+ * Build a region's columns in the world.
  * @param {object} serv
  * @param {import('./region').Region} region
  * @param {Int32Array} states of the box, in its array order

@@ -72,7 +72,7 @@ function factsOf (serv, region) {
   }
 }
 
-/** Puts what lies in a region exactly where the channel says it does. */
+/** Put what lies in a region exactly where the channel says it does. */
 function settleItems (serv, region) {
   for (const entity of serv.itemEntities(place => region.contains(place))) {
     const [x, y, z] = region.toScenario(entity.position).map(rounded).map(toStep)

@@ -2,7 +2,7 @@
 /** How an agent as the channel describes it becomes a player of a server in this process. */
 
 /**
- * Lets a player of the active region join, where and as the agent is.
+ * Let a player of the active region join, where and as the agent is.
  * @param {object} serv
  * @param {import('./region').Region} region
  * @param {object} end the server's end of its connection
@@ -20,7 +20,7 @@ function join (serv, region, end, state) {
   })
 }
 
-/** Shows a player who has joined the world and those who are there. */
+/** Show a player who has joined the world and those who are there. */
 function showWorld (player, columns) {
   player.sendWorld(columns)
   player.meet()

@@ -36,7 +36,7 @@ class Place {
     return body
   }
 
-  /** Runs an action as code of an agent's program; what it throws is a fault of that. */
+  /** Run an action as code of an agent's program; what it throws is a fault of that. */
   runAs (agent, action) {
     try {
       action()

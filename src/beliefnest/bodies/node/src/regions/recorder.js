@@ -65,12 +65,12 @@ class Recorder {
     return text === '' ? [x, y, z, state] : [x, y, z, state, text]
   }
 
-  /** Lets go of claims that were told and never said: nothing of a call or branch is left to the next. */
+  /** Let go of claims that were told and never said: nothing of a call or branch is left to the next. */
   forgetClaims () {
     this.claims = new Claims(this.region)
   }
 
-  /** Takes the present state as known, so that frames tell only what differs from it. */
+  /** Take the present state as known, so that frames tell only what differs from it. */
   settle () {
     this.changes('agents', this.facts.agents())
     this.changes('items', this.facts.items())

@@ -41,7 +41,7 @@ class Region extends Place {
     this.context.run(agent, action)
   }
 
-  /** Lets random numbers depend on seed and tick alone, not on what was drawn before. */
+  /** Let random numbers depend on seed and tick alone, not on what was drawn before. */
   reseed () {
     this.context.random = new Random(`${this.seed} ${this.tick}`)
   }

@@ -42,7 +42,7 @@ class Regions {
     return region
   }
 
-  /** Runs `action` in a region: its clock, its random numbers, its part of the server. */
+  /** Run `action` in a region: its clock, its random numbers, its part of the server. */
   async inside (region, action) {
     this.serv.region = region
     try {
@@ -94,7 +94,7 @@ class Regions {
     return this.snapshot(region)
   }
 
-  /** Makes a region that is as its SNAPSHOT says go on as its internal state says; null: with nothing under way. */
+  /** Make a region that is as its SNAPSHOT says go on as its internal state says; null: with nothing under way. */
   async restoreState (region, internalState) {
     this.serv.restoreState(region, internalState?.byteLength > 0 ? decode(internalState) : {})
     await this.clock.advance(0)
@@ -121,7 +121,7 @@ class Regions {
   }
 
   /**
-   * Runs `action` in a region that goes on as one made anew from its snapshot would, so that
+   * Run `action` in a region that goes on as one made anew from its snapshot would, so that
    * neither an end of the process nor a visit to another branch can be seen in what follows.
    * @returns {Promise<{tick: number, internal_state: Uint8Array}>}
    */
@@ -140,7 +140,7 @@ class Regions {
   /**
    * One tick of the active region; its frame is sent if anything changed.
    * @param {() => Promise<void>} [before] what is to happen before the frame is made
-   * @returns {Promise<boolean>} whether anything changed
+   * @returns {Promise<boolean>} true if anything changed
    */
   async tick (region, before) {
     await this.clock.advance(TICK_MS)

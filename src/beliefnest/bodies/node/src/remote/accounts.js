@@ -25,7 +25,7 @@ function withAccount (folder, player, tell) {
   }
 }
 
-/** Keeps a client from connecting with another player's account than the one it is for: the login fails. */
+/** Keep a client from connecting with another player's account than the one it is for: the login fails. */
 function requireName (client, player) {
   client.once('session', ({ selectedProfile: { name } }) => {
     if (name === player) return

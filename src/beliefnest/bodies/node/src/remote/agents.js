@@ -45,7 +45,7 @@ class Agents {
     this.latest = new Map()
   }
 
-  /** Lets agents in, a few at the same time. */
+  /** Let agents in, a few at the same time. */
   async add (agents, patienceMs) {
     const { operator } = this
     const players = Object.keys(operator.bot.players)
@@ -60,7 +60,7 @@ class Agents {
     await this.place(agents)
   }
 
-  /** Lets one agent in, by its bot or by a person who is there already. */
+  /** Let one agent in, by its bot or by a person who is there already. */
   async enter (agent, isThere, patienceMs) {
     const { operator, region } = this
     const witness = new Witness(agent, region, this.scene, this.Item)
@@ -92,7 +92,7 @@ class Agents {
     }
   }
 
-  /** Sends away who may no longer be an agent. @returns {string[]} the agents who are people now */
+  /** Send away who may no longer be an agent. @returns {string[]} the agents who are people now */
   invite () {
     const { operator, commands } = this
     for (const [agent, link] of this.links) {
@@ -109,7 +109,7 @@ class Agents {
     return [...this.links.values()].filter(({ isHere }) => isHere).map(({ bot }) => bot)
   }
 
-  /** Lets an agent leave. */
+  /** Let an agent leave. */
   async remove (agent) {
     this.scene.people.leave(agent)
     const link = this.links.get(agent)
@@ -128,7 +128,7 @@ class Agents {
     bot.physicsEnabled = true
   }
 
-  /** Makes agents be where, and have what, they are to. */
+  /** Make agents be where, and have what, they are to. */
   async place (agents) {
     const { operator } = this
     const placing = Object.entries(agents)
@@ -195,7 +195,7 @@ class Agents {
     if (isHere && !bot.currentWindow) bot._syncWindow(bot.inventory).catch(() => {})
   }
 
-  /** Resolves when a bot has been shown the box, or the part of it that the server shows from there. */
+  /** Resolve when a bot has been shown the box, or the part of it that the server shows from there. */
   async sees (bot) {
     await this.operator.shown(bot, this.region.box, COLUMNS_TICKS)
     const here = bot.entity.position.toArray().map(Math.floor)
@@ -245,7 +245,7 @@ class Agents {
   }
 
   /**
-   * Ends what agents were doing; resolves when all they did has been handled and seen. Bots that were cut off are waited for:
+   * End what agents were doing; resolves when all they did has been handled and seen. Bots that were cut off are waited for:
    * whether a program failed with its bot alone, or the server has ended, shows only then.
    * @throws {Unplayable} if one does not come back
    */
@@ -265,12 +265,12 @@ class Agents {
     await this.operator.until(() => this.scene.isQuiet)
   }
 
-  /** Resolves when the server has handled what an agent's client has sent, and the client what was sent to it before. */
+  /** Resolve when the server has handled what an agent's client has sent, and the client what was sent to it before. */
   async answered (agent) {
     await this.operator.hasSettled(this.bot(agent), this.operator.patienceTicks)
   }
 
-  /** Resolves when all agents and the operator are connected. @throws {Unplayable} if one was given up */
+  /** Resolve when all agents and the operator are connected. @throws {Unplayable} if one was given up */
   async present () {
     for (const link of [this.operator.link, ...this.links.values()]) await link.present()
   }

@@ -24,7 +24,7 @@ class Guide extends Operator {
     return this.operator.ask(command)
   }
 
-  /** Resolves when what the operator typed is done, and the guide has been told of it. */
+  /** Resolve when what the operator typed is done, and the guide has been told of it. */
   async settled () {
     await this.operator.settled()
     await super.settled()

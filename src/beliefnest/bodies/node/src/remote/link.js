@@ -112,13 +112,13 @@ class Link extends EventEmitter {
     this.reconnect(reason)
   }
 
-  /** Lets a person be this player. */
+  /** Let a person be this player. */
   yield () {
     this.isYielded = true
     this.emit('yielded')
   }
 
-  /** Comes in again after a person had this player's place. */
+  /** Come in again after a person had this player's place. */
   takeBack () {
     if (!this.isYielded || this.closed) return
     this.isYielded = false
@@ -147,7 +147,7 @@ class Link extends EventEmitter {
     }
   }
 
-  /** Resolves when the player is connected and has arrived, or a person is it. @throws {Unplayable} if it was given up */
+  /** Resolve when the player is connected and has arrived, or a person is it. @throws {Unplayable} if it was given up */
   async present () {
     while (!this.isReady && !(this.isYielded && this.isForPerson)) {
       if (this.failure !== null) throw this.failure

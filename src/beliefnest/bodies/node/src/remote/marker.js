@@ -21,7 +21,7 @@ class Marker {
     this.link.on('failed', error => process.stderr.write(`${name}: ${error.message}\n`))
   }
 
-  /** Lets it in. @throws {Unplayable} if the server does not */
+  /** Let it in. @throws {Unplayable} if the server does not */
   async open (pose) {
     this.pose = pose
     await this.link.open()

@@ -85,7 +85,7 @@ class Operator {
   }
 
   /**
-   * Waits for the commands that are needed: a server may tell of some first, and of all later.
+   * Wait for the commands that are needed: a server may tell of some first, and of all later.
    * @param {(text: string) => void} tell shows something to the user
    * @throws {Unplayable} if they do not come within the patience
    */
@@ -98,7 +98,7 @@ class Operator {
   }
 
   /**
-   * Resolves when the server has done what was typed before and has told of it.
+   * Resolve when the server has done what was typed before and has told of it.
    * @throws {Unplayable} if the server does not answer within its patience
    */
   async settled () {
@@ -110,7 +110,7 @@ class Operator {
     throw reasons.stalled(this.server, this.server.patience)
   }
 
-  /** @returns {Promise<boolean>} whether the server has done within so many ticks what a player's client has sent */
+  /** @returns {Promise<boolean>} true if the server has done within so many ticks what a player's client has sent */
   hasSettled (bot, ticks) {
     return this.settling.settled(bot, (condition, limit) => this.until(condition, limit), ticks)
   }
@@ -145,10 +145,10 @@ class Operator {
   }
 
   /**
-   * Waits for what the server does in its own time: a slow one, or a slow machine, is waited for longer.
+   * Wait for what the server does in its own time: a slow one, or a slow machine, is waited for longer.
    * @param {() => boolean} condition
    * @param {number} [ticks] of the server
-   * @returns {Promise<boolean>} whether the condition came to hold before the server had gone on by so many ticks
+   * @returns {Promise<boolean>} true if the condition came to hold before the server had gone on by so many ticks
    * @throws {Unplayable} if the server stands still, or the operator's connection is given up
    */
   async until (condition, ticks = ANSWER_TICKS) {
@@ -170,7 +170,7 @@ class Operator {
   }
 
   /**
-   * Does what needs the operator's connection all the time; what it has typed may be lost with that.
+   * Do what needs the operator's connection all the time; what it has typed may be lost with that.
    * @param {() => Promise} action
    * @throws {Unplayable} as soon as the connection is lost
    */
@@ -187,8 +187,8 @@ class Operator {
   }
 
   /**
-   * Waits until a player has been shown a box, as long as the server shows it more of that.
-   * @returns {Promise<boolean>} whether it has been shown all
+   * Wait until a player has been shown a box, as long as the server shows it more of that.
+   * @returns {Promise<boolean>} true if it has been shown all
    */
   async shown (bot, box, ticks) {
     for (let lacking = columnsLacking(bot, box); lacking > 0; lacking = columnsLacking(bot, box)) {
@@ -213,7 +213,7 @@ class Operator {
     return states
   }
 
-  /** Resolves when the operator's client is at a place. */
+  /** Resolve when the operator's client is at a place. */
   async go (command, [x, y, z]) {
     const there = new Vec3(x, y, z)
     this.type(command)
@@ -221,7 +221,7 @@ class Operator {
   }
 
   /**
-   * Looks into a container from above.
+   * Look into a container from above.
    * @param {object} commands of commandsFor
    * @returns {Promise<Array | null>} its stacks by slot; null if it does not open
    */

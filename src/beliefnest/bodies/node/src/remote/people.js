@@ -40,7 +40,7 @@ class People {
     this.away.delete(agent)
   }
 
-  /** Follows the operator's connection. */
+  /** Follow the operator's connection. */
   attach (bot) {
     bot.on('entitySwingArm', ({ username }) => this.here.get(username)?.swing(this.region.tick))
     bot.on('chat', (speaker, text) => this.said(speaker, text))

@@ -99,7 +99,7 @@ class Person {
     this.ask().catch(error => this.witness.scene.fail(error))
   }
 
-  /** Asks the server what they have; without an answer it stays what was known. */
+  /** Ask the server what they have; without an answer it stays what was known. */
   async ask () {
     if (!this.operator.can('data')) return
     this.isAsking = true

@@ -135,7 +135,7 @@ class RemoteExhibit {
     this.later(() => marker?.close())
   }
 
-  /** Lets everybody leave, and puts back what was there before. */
+  /** Let everybody leave, and puts back what was there before. */
   async close () {
     const { guide, setup, scene, saved, regions: { server } } = this
     guide.operator.link.off('back', this.onBack)

@@ -17,7 +17,7 @@ class RemotePlace extends Place {
     this.pulse = null
   }
 
-  /** Counts on from a tick, from now. */
+  /** Count on from a tick, from now. */
   rebase (tick) {
     this.tick = tick
     this.start = this.clock.age - tick

@@ -80,7 +80,7 @@ class RemoteRegions {
     return this.snapshot(region)
   }
 
-  /** Makes the place so; after a lost connection nothing more is made. @throws {Unplayable} as soon as it is lost */
+  /** Make the place so; after a lost connection nothing more is made. @throws {Unplayable} as soon as it is lost */
   async make (action) {
     try {
       return await this.operator.attended(action)
@@ -90,7 +90,7 @@ class RemoteRegions {
     }
   }
 
-  /** Begins a player's connection. @param {{x: number, z: number}} origin of what it is to take for the world's middle */
+  /** Begin a player's connection. @param {{x: number, z: number}} origin of what it is to take for the world's middle */
   connection (username, origin) {
     const { version, server, unseen: hidden } = this
     return connect({ host: server.host, port: server.port, version, username, origin, hidden, login: server.loginOf(username) })
@@ -156,7 +156,7 @@ class RemoteRegions {
     region.pulse = setInterval(() => this.tickUndriven(open), POLL_MS)
   }
 
-  /** Takes as known what was asked for: where the server has it otherwise, the next frame tells that. */
+  /** Take as known what was asked for: where the server has it otherwise, the next frame tells that. */
   know ({ region, scene }, agents) {
     scene.endTick()
     region.recorder.settle()
@@ -177,7 +177,7 @@ class RemoteRegions {
     this.makeFrame(open)
   }
 
-  /** @returns {boolean} whether anything has changed */
+  /** @returns {boolean} true if anything has changed */
   makeFrame ({ region, scene, agents }) {
     scene.endTick()
     agents.endTick()
@@ -188,7 +188,7 @@ class RemoteRegions {
     return true
   }
 
-  /** Runs a call on a region: its ticks are then the call's to take. */
+  /** Run a call on a region: its ticks are then the call's to take. */
   async resumed (region, action) {
     await this.present()
     region.faults.length = 0
@@ -204,7 +204,7 @@ class RemoteRegions {
   }
 
   /**
-   * Says whose places people may take; who has one of another agent is sent away.
+   * Say whose places people may take; who has one of another agent is sent away.
    * @returns {string[]} who is there
    */
   invite (names) {
@@ -213,7 +213,7 @@ class RemoteRegions {
     return this.open === null ? [] : this.open.agents.invite()
   }
 
-  /** The next tick; what happened in it is sent. @returns {Promise<boolean>} whether anything has */
+  /** The next tick; what happened in it is sent. @returns {Promise<boolean>} true if anything has */
   async tick (region, before) {
     while (region.now() <= region.tick) {
       try {
@@ -234,7 +234,7 @@ class RemoteRegions {
     throw error
   }
 
-  /** Resolves when all players are connected. @throws {Unplayable} if the place was, or has to be, given up */
+  /** Resolve when all players are connected. @throws {Unplayable} if the place was, or has to be, given up */
   async present () {
     if (this.failure !== null) throw this.failure
     await this.open.agents.present().catch(error => this.fail(error))
@@ -248,7 +248,7 @@ class RemoteRegions {
     })
   }
 
-  /** Makes the place so; what happened there since the last call is forgotten with what it led to. */
+  /** Make the place so; what happened there since the last call is forgotten with what it led to. */
   async apply ({ region: name, blocks, containers, agents, items, tick, signs = [] }) {
     const region = this.get(name)
     region.isDriven = true
@@ -291,7 +291,7 @@ class RemoteRegions {
     if (this.failure !== null) throw this.failure
   }
 
-  /** Lets agents leave and puts back what was there, unless it is to be kept. */
+  /** Let agents leave and puts back what was there, unless it is to be kept. */
   async giveUp (open) {
     const { region, agents, saved } = open
     clearInterval(region.pulse)
@@ -321,7 +321,7 @@ class RemoteRegions {
     }
   }
 
-  /** Ends all that is open. */
+  /** End all that is open. */
   async close () {
     if (this.open !== null) await this.giveUp(this.open)
     await this.operator.link.close()

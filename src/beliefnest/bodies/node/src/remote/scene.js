@@ -56,7 +56,7 @@ class Scene {
     this.serv = servFor(this)
   }
 
-  /** Takes the states of the box as what is there. */
+  /** Take the states of the box as what is there. */
   settle (states) {
     this.blocks = states.slice()
   }
@@ -140,7 +140,7 @@ class Scene {
     else tell(who)
   }
 
-  /** Calls `tell` with the witness of who is seen to have acted on a place, now or within a moment; if somebody is. */
+  /** Call `tell` with the witness of who is seen to have acted on a place, now or within a moment; if somebody is. */
   explainLater (position, tell) {
     this.unexplained.push({ position: vecOf(position), tick: this.region.tick, tell })
   }
@@ -216,7 +216,7 @@ class Scene {
     return this.expected.length === 0
   }
 
-  /** Follows the operator's connection. */
+  /** Follow the operator's connection. */
   attach (bot, client) {
     bot.on('blockUpdate', (_, block) => { if (block !== null) this.blockChanged(block.position, this.mapping.fromServer(block.stateId)) })
     bot.on('messagestr', text => this.heardBy(null, text))

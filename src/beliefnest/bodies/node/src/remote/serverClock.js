@@ -23,7 +23,7 @@ class ServerClock {
     this.lookedAt = now()
   }
 
-  /** Takes what the server says; one whose age has fallen was set up anew, and is counted on from here. */
+  /** Take what the server says; one whose age has fallen was set up anew, and is counted on from here. */
   tell (age) {
     if (this.told !== null && age < this.told) this.offset = this.latest - age
     if (this.told !== null && age > this.told) this.tickMs = Math.max(TICK_MS, this.silence / (age - this.told))

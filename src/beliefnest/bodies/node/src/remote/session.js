@@ -40,7 +40,7 @@ async function beginSession (server, tell = () => {}) {
   return { operator, clock, version, theirs }
 }
 
-/** Looks whether the operator can do what is needed, and tells what is lacking besides. @throws {Unplayable} if it cannot */
+/** Look whether the operator can do what is needed, and tells what is lacking besides. @throws {Unplayable} if it cannot */
 async function look (operator, tell) {
   const { clock, server } = operator
   await operator.until(() => clock.isSet)

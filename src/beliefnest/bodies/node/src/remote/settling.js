@@ -21,7 +21,7 @@ class ByCompletions {
     bot._client.chat(`/${command}`)
   }
 
-  /** @returns {Promise<boolean>} whether the server has done within so many ticks what the client has sent */
+  /** @returns {Promise<boolean>} true if the server has done within so many ticks what the client has sent */
   async settled ({ _client: client }, until, ticks) {
     const number = this.last = this.last % MOST_NUMBERS + 1
     let isAnswered = false
@@ -79,7 +79,7 @@ class ByWaiting {
   }
 }
 
-/** @returns {Promise<boolean>} whether a server answers requests for completions; false if its time goes on without an answer */
+/** @returns {Promise<boolean>} true if a server answers requests for completions; false if its time goes on without an answer */
 function answersCompletions (operator) {
   return new ByCompletions().settled(operator.bot, (condition, ticks) => operator.until(condition, ticks), SILENT_TICKS)
 }

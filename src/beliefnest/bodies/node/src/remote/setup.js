@@ -37,7 +37,7 @@ class Setup {
     this.Item = require('prismarine-item')(registry)
   }
 
-  /** Brings the operator to where it sees all of the box, unseen itself. */
+  /** Bring the operator to where it sees all of the box, unseen itself. */
   async arrive () {
     const { operator, commands, region: { box } } = this
     operator.type(commands.mode(operator.link.name, 'spectator'))
@@ -69,7 +69,7 @@ class Setup {
   }
 
   /**
-   * Makes the blocks of the box so.
+   * Make the blocks of the box so.
    * @returns {Promise<Int32Array>} what is there then: the same blocks, as the server connects them
    * @throws {BadRequest} if the server builds something else
    */
@@ -113,7 +113,7 @@ class Setup {
   }
 
   /**
-   * Makes containers hold exactly this, and looks into them.
+   * Make containers hold exactly this, and looks into them.
    * @param {Array} containers [x, y, z, ITEMS]
    */
   async stock (containers) {
@@ -165,7 +165,7 @@ class Setup {
   }
 
   /**
-   * Lets exactly this be written on the signs of the box.
+   * Let exactly this be written on the signs of the box.
    * @param {Array} signs [x, y, z, text]
    */
   async write (signs) {
@@ -186,7 +186,7 @@ class Setup {
   }
 
   /**
-   * Lets an agent open a gate beside its eyes, which is there for no longer.
+   * Let an agent open a gate beside its eyes, which is there for no longer.
    * @throws {Unplayable} if the server does not let it
    */
   async requireUse (bot) {
@@ -210,7 +210,7 @@ class Setup {
     if (!opened) throw reasons.spawnProtected(operator.server)
   }
 
-  /** Lets exactly these items lie in the box. */
+  /** Let exactly these items lie in the box. */
   async lay (items) {
     const { operator, commands, scene } = this
     operator.type(commands.removeItems())

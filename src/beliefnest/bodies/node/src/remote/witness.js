@@ -55,7 +55,7 @@ class Witness extends EventEmitter {
     this.emit('event', { kind, detail })
   }
 
-  /** Follows a connection, from its first packet on. */
+  /** Follow a connection, from its first packet on. */
   attach (bot, client) {
     this.bot = bot
     this.windows.reset()

@@ -93,7 +93,7 @@ function buildGoal (exchange, wire, where, { depth, made } = { depth: 0, made: {
   return built
 }
 
-/** Lets the program pay where a goal looks along rays; it is reached at once when there is no fuel left. */
+/** Let the program pay where a goal looks along rays; it is reached at once when there is no fuel left. */
 function payForRays (exchange, goal) {
   const { isEnd, pos } = goal
   goal.isEnd = (node) => {

@@ -73,7 +73,7 @@ class Engine {
     return this.make(limits, scope)
   }
 
-  /** Makes a guest beforehand, for a program with the limits and the scope of the last one. */
+  /** Make a guest beforehand, for a program with the limits and the scope of the last one. */
   async prepare () {
     if (this.last === null || this.ready !== null) return
     const { key, limits, scope } = this.last
@@ -90,7 +90,7 @@ class Engine {
     return guest
   }
 
-  /** Takes a guest back that has ended and is not on the stack; it must not be used any more. */
+  /** Take a guest back that has ended and is not on the stack; it must not be used any more. */
   close (guest) {
     this.memories.give(guest.memory, guest.limits.memory)
   }
@@ -150,7 +150,7 @@ class Guest {
   }
 
   /**
-   * Starts the program.
+   * Start the program.
    * @param {{text: string, marks: number}} program `text` of a function of (marks, ...parameters) that returns a promise
    * @param {{host: function(string): string, now: function(): number, random: function(): number}} world
    */
@@ -172,7 +172,7 @@ class Guest {
   }
 
   /**
-   * Asks the interpreter, not the program, which could lie or break what it would say it with.
+   * Ask the interpreter, not the program, which could lie or break what it would say it with.
    * @returns {?{ok: boolean, error: object}} how the program ended, null while it goes on
    */
   result () {
@@ -198,7 +198,7 @@ class Guest {
   }
 
   /**
-   * Hands a message to the guest and lets everything run that can run.
+   * Hand a message to the guest and lets everything run that can run.
    * @param {Array} message
    * @returns {{ok: boolean, value: *}}
    */
@@ -216,8 +216,8 @@ class Guest {
   }
 
   /**
-   * Takes fuel for work that the host does on the program's behalf.
-   * @returns {boolean} whether there was enough; a guest without any ends when it next runs
+   * Take fuel for work that the host does on the program's behalf.
+   * @returns {boolean} true if there was enough; a guest without any ends when it next runs
    */
   charge (units) {
     if (this.ended) return false
@@ -226,7 +226,7 @@ class Guest {
     return fuel.value > GRACE
   }
 
-  /** Ends the guest: what runs of it stops within `LAST_BREATH`. */
+  /** End the guest: what runs of it stops within `LAST_BREATH`. */
   end (kind, detail, stack) {
     if (this.ended) return
     this.fuelAtEnd = this.used

@@ -41,7 +41,7 @@ class Exchange {
     this.states = new Map()
   }
 
-  /** Takes fuel for what a value of the program makes the host do. */
+  /** Take fuel for what a value of the program makes the host do. */
   pay (units) {
     if (!this.spend(units)) throw new RefusedError('the program has no fuel left for that')
   }

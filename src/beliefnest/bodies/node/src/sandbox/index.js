@@ -11,7 +11,7 @@ const MAX_FUEL = 2_000_000_000
 const GUEST_NAMES = ['Vec3', 'goals', 'Movements', 'located', 'absent', 'positionOf', 'blockAt']
 
 /**
- * Compiles the interpreter, once for any number of runs.
+ * Compile the interpreter, once for any number of runs.
  * @param {{fuel?: number, memory?: number}} [options] limits of a run: fuel in loop turns and calls
  *   of the interpreter (about one per bytecode instruction), memory in bytes
  * @param {() => void} [alive] hears now and then that a program computes within its limits
@@ -26,7 +26,7 @@ function createSandbox (options = {}, alive = () => {}) {
 }
 
 /**
- * Runs one program.
+ * Run one program.
  * @param {Engine} engine
  * @param {object} request
  * @param {string} request.code the body of an async function, or one whole function of `bot`

@@ -25,7 +25,7 @@ class Memories {
     return memory
   }
 
-  /** Takes back a memory that nothing uses any more; `bytes` as when it was taken. */
+  /** Take back a memory that nothing uses any more; `bytes` as when it was taken. */
   give (memory, bytes) {
     if (memory.buffer.byteLength > INITIAL_PAGES * PAGE || this.free.length >= MOST_KEPT) return
     this.free.push({ memory, maximum: INITIAL_PAGES + Math.ceil(bytes / PAGE) })

@@ -32,7 +32,7 @@ class ProgramSyntaxError extends Error {
 }
 
 /**
- * Reads a program and prepares it for execution.
+ * Read a program and prepares it for execution.
  * @param {string} given the body of an async function, or function declarations only, of which the
  *   last async one (or the only one) is called with `bot`
  * @param {string[]} parameters the names in scope, `bot` among them

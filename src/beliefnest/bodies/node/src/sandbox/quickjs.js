@@ -68,7 +68,7 @@ class QuickJS {
     return new QuickJS(glue, instance.exports, tracker)
   }
 
-  /** Makes a runtime and a context in it. */
+  /** Make a runtime and a context in it. */
   create (stackBytes) {
     this.runtime = this.ffi.QTS_NewRuntime()
     this.ffi.QTS_RuntimeSetMaxStackSize(this.runtime, stackBytes)
@@ -88,7 +88,7 @@ class QuickJS {
     return { pages, runtime: this.runtime, context: this.context }
   }
 
-  /** Takes the state another instance of the same module saved; this one must be as new. */
+  /** Take the state another instance of the same module saved; this one must be as new. */
   restore ({ pages, runtime, context }) {
     for (const { place, bytes } of pages) this.glue.HEAPU8.set(bytes, place)
     this.runtime = runtime
@@ -177,7 +177,7 @@ class QuickJS {
   }
 
   /**
-   * Runs promise jobs.
+   * Run promise jobs.
    * @throws {GuestException}
    */
   runJobs (most) {

@@ -29,7 +29,7 @@ function addTracker (table, told) {
   return table.grow(1, new WebAssembly.Instance(typed, { h: { t: track } }).exports.t)
 }
 
-/** Lets a runtime call the function of that number. */
+/** Let a runtime call the function of that number. */
 function setTracker (memory, runtime, number) {
   new Uint32Array(memory, runtime + PLACE, 1)[0] = number
 }

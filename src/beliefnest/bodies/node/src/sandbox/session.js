@@ -49,7 +49,7 @@ class Session {
   }
 
   /**
-   * Starts the program.
+   * Start the program.
    * @param {{text: string, marks: number}} program
    */
   begin (program) {
@@ -76,7 +76,7 @@ class Session {
     }
   }
 
-  /** Ends the run; what comes first counts. */
+  /** End the run; what comes first counts. */
   finish (outcome) {
     if (this.outcome !== null) return
     this.outcome = outcome
@@ -90,8 +90,8 @@ class Session {
   }
 
   /**
-   * Takes fuel for work of the host that no code of the program waits for, such as a search for a way.
-   * @returns {boolean} whether the program goes on
+   * Take fuel for work of the host that no code of the program waits for, such as a search for a way.
+   * @returns {boolean} true if the program goes on
    */
   spend (units) {
     if (this.outcome === null && this.guest.charge(units) === false) {

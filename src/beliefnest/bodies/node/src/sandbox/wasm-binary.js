@@ -38,7 +38,7 @@ class Reader {
     throw new Error(`the number before byte ${this.position} of a section is too long`)
   }
 
-  /** Skips a signed LEB128 number of any width. */
+  /** Skip a signed LEB128 number of any width. */
   skipSigned () {
     while (this.byte() >= 0x80);
   }

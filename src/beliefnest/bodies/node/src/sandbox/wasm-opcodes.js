@@ -35,7 +35,7 @@ const TABLE = Array.from({ length: 256 }, (_, op) =>
   SINGLE.get(op) ?? RANGES.find(([low, high]) => op >= low && op <= high)?.[2])
 
 /**
- * Moves the reader behind the immediates of an instruction.
+ * Move the reader behind the immediates of an instruction.
  * @param {import('./wasm-binary').Reader} reader stands behind the opcode
  * @param {number} op
  * @returns {number|undefined} the second opcode byte of a prefixed instruction

@@ -16,7 +16,7 @@ module.exports.server = serv => {
   serv._createNetworkEncodedChatComponent = text => serv._createChatComponent(text).toNetworkFormat()
   /** What a player types that begins with a slash and is no whisper. */
   serv.command = (player, command) => player.system(`Agents have no commands: /${command.split(' ')[0]} was not run.`)
-  /** Tells the players what one of them has said. */
+  /** Tell the players what one of them has said. */
   serv.tellSaid = (speaker, text) => { for (const player of serv.players) player.system(text) }
 }
 

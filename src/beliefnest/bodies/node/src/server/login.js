@@ -9,7 +9,7 @@ module.exports.name = 'login'
 
 module.exports.server = serv => {
   /**
-   * Lets a player into the active region.
+   * Let a player into the active region.
    * @param {import('events').EventEmitter} end the server's end of its connection
    * @param {object} start `{position: Vec3 (server), yaw, pitch, onGround, health, food}`
    * @returns {object} the player

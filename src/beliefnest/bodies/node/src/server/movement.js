@@ -30,7 +30,7 @@ module.exports.player = player => {
   })
   player._client.on('flying', ({ onGround }) => { player.onGround = onGround })
 
-  /** Puts the player somewhere, at once and exactly; a missing angle stays. */
+  /** Put the player somewhere, at once and exactly; a missing angle stays. */
   player.place = (position, yaw = player.pose.yaw, pitch = player.pose.pitch) => {
     player.pose = { yaw, pitch }
     showTurn(player)
@@ -48,7 +48,7 @@ module.exports.player = player => {
 }
 
 module.exports.entity = entity => {
-  /** Moves an entity and tells those who see it. */
+  /** Move an entity and tells those who see it. */
   entity.sendPosition = async (position, onGround) => {
     entity.onGround = onGround
     if (!entity.position.equals(position)) moveTo(entity, position.x, position.y, position.z)

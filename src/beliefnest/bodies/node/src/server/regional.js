@@ -11,7 +11,7 @@ function regionalState () {
   return { players: [], entities: {}, uuidToPlayer: {}, entityMaxId: 0 }
 }
 
-/** Makes the regional properties of `serv` those of `serv.region`. */
+/** Make the regional properties of `serv` those of `serv.region`. */
 function makeRegional (serv) {
   serv.region = null
   const startUp = regionalState()

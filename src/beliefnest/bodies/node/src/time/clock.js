@@ -36,12 +36,12 @@ class Context {
     return this.time + this.charged
   }
 
-  /** Makes the context's date, which need not rise, that of `ms` after its beginning; what waits goes on waiting. */
+  /** Make the context's date, which need not rise, that of `ms` after its beginning; what waits goes on waiting. */
   setDate (ms) {
     this.shift = ms - this.time
   }
 
-  /** Runs `action` as code of an owner; what it throws is reported. */
+  /** Run `action` as code of an owner; what it throws is reported. */
   run (owner, action) {
     this.owner = owner
     try {
@@ -67,7 +67,7 @@ class Clock {
   }
 
   /**
-   * Makes running code pay for thinking: the active context's clock reads `ms` later until
+   * Make running code pay for thinking: the active context's clock reads `ms` later until
    * its current callback ends. Without it a search that is bounded by time never ends.
    */
   charge (ms) {
@@ -75,7 +75,7 @@ class Clock {
   }
 
   /**
-   * Runs `action` with `context` active, then everything it left to do at once.
+   * Run `action` with `context` active, then everything it left to do at once.
    * Calls must not overlap.
    */
   async within (context, action) {
@@ -91,7 +91,7 @@ class Clock {
     }
   }
 
-  /** Lets the active context's time pass, firing its timers in order. */
+  /** Let the active context's time pass, firing its timers in order. */
   async advance (ms) {
     const context = this.active
     const end = context.time + ms
@@ -122,7 +122,7 @@ function rethrow (error) {
   throw error
 }
 
-/** Resolves when all microtasks and process.nextTick callbacks have run. */
+/** Resolve when all microtasks and process.nextTick callbacks have run. */
 function drain () {
   return new Promise(resolve => { realSetImmediate(resolve) })
 }

@@ -22,7 +22,7 @@ class Random {
     return this.drawn.fraction()
   }
 
-  /** Fills a byte array. */
+  /** Fill a byte array. */
   fill (bytes) {
     for (let i = 0; i < bytes.length; i++) bytes[i] = this.nextUint32() >>> 24
     return bytes

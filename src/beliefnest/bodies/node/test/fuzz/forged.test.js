@@ -163,7 +163,7 @@ describe('forged at random', () => {
     }
   }
 
-  /** Makes a region that went on be as a snapshot of it says. */
+  /** Make a region that went on be as a snapshot of it says. */
   async function returnTo (region, past) {
     const now = await snapshot(region)
     const [before, after] = [now, past].map(({ blocks }) => new Int32Array(blocks.slice().buffer))

@@ -31,7 +31,7 @@ afterEach(async () => {
   await here([])
 })
 
-/** Lets time pass until those people are there. */
+/** Let time pass until those people are there. */
 async function here (names) {
   for (;;) {
     const { here: present } = await node.request('people', { invited: ['anne'] })
@@ -53,7 +53,7 @@ async function anneIn () {
   return client
 }
 
-/** Lets what was sent arrive, and some time pass. */
+/** Let what was sent arrive, and some time pass. */
 async function settled (client) {
   const heard = once(client, 'system_chat')
   client.write('chat_command', { command: 'settled', timestamp: 0n, salt: 0n, argumentSignatures: [], messageCount: 0, acknowledged: Buffer.alloc(3) })

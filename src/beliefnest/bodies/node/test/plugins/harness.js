@@ -15,7 +15,7 @@ const FLOOR = BOX[0][1] + 1
 const LIMIT = 2000
 
 /**
- * Runs `body(world)` in a region with a stone floor.
+ * Run `body(world)` in a region with a stone floor.
  * @param {object} setting `agents` (AGENT by name), `blocks` ([x, y, z, name, properties]),
  *   `containers` ([x, y, z, ITEMS]), `box` (inclusive corners)
  */
@@ -43,7 +43,7 @@ function worldOf (regions, frames) {
       await regions.tick(region)
     }
   }
-  /** Lets time pass until a promise is settled; gives its outcome. */
+  /** Let time pass until a promise is settled; gives its outcome. */
   async function during (promise) {
     let settled = false
     const done = () => { settled = true }

@@ -17,7 +17,7 @@ describe('a program with a real bot', () => {
   })
   after(() => node.close())
 
-  /** Runs sally's program in a fresh region and returns its result. */
+  /** Run sally's program in a fresh region and returns its result. */
   async function run (code, more = {}) {
     const name = `real-${count++}`
     const agents = {

@@ -16,7 +16,7 @@ const { agent, BOX } = require('../harness')
 const FLOOR = BOX[0][1] + 1
 
 /**
- * Runs `body(world)` where there is a stone floor; see embedded.js for what a world offers.
+ * Run `body(world)` where there is a stone floor; see embedded.js for what a world offers.
  * @param {object} setting `agents` (AGENT by name), `blocks` ([x, y, z, name, properties]),
  *   `containers` ([x, y, z, ITEMS]), `box` (inclusive corners), `signal` of the skills
  */

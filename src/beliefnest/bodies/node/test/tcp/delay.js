@@ -3,7 +3,7 @@
 const net = require('node:net')
 
 /**
- * Opens a port that leads to another one of this machine.
+ * Open a port that leads to another one of this machine.
  * @param {number} target port
  * @param {number} milliseconds each way
  * @returns {Promise<number>} the port

@@ -40,7 +40,7 @@ class Places {
   }
 
   /**
-   * Makes a place with a stone floor, to which its agents can come.
+   * Make a place with a stone floor, to which its agents can come.
    * @param {object} setting `place` its name, `box`, `blocks` as [x, y, z, name, properties], `containers`,
    *   `agents` AGENT by name, `players` name on the server by agent
    * @returns {{x: number, z: number}} where scenario (0, y, 0) lies
@@ -63,7 +63,7 @@ class Places {
     return { x: origin.x, z: origin.z }
   }
 
-  /** Lets in whom a connection belongs to. */
+  /** Let in whom a connection belongs to. */
   join (client) {
     const guest = this.expected.get(client.username)
     if (guest === undefined) return client.end(`nobody called ${client.username} is expected`)
@@ -96,7 +96,7 @@ class Places {
     if (frame !== null) events.push(...frame.events)
   }
 
-  /** Resolves when everything the place's clients sent before they heard of this call has been handled. */
+  /** Resolve when everything the place's clients sent before they heard of this call has been handled. */
   async settled (place) {
     await Promise.all([...place.players.values()].map(({ _client }) => {
       if (_client.client.ended) return null
@@ -106,7 +106,7 @@ class Places {
     }))
   }
 
-  /** Lets ticks pass, between all that was on its way before and all that is on its way after. */
+  /** Let ticks pass, between all that was on its way before and all that is on its way after. */
   async pass (place, ticks) {
     await this.settled(place)
     const last = place.region.tick + ticks

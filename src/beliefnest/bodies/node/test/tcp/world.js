@@ -56,7 +56,7 @@ class Server {
   }
 }
 
-/** Runs `body(world)` in a place of its own; any number may run at the same time. */
+/** Run `body(world)` in a place of its own; any number may run at the same time. */
 async function inWorld (server, { agents, blocks, containers, box }, body) {
   const port = await server.started
   const registry = require('prismarine-registry')(versions.minecraft)

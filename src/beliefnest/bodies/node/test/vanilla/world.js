@@ -88,7 +88,7 @@ class OpenWorld {
     }))
   }
 
-  /** Refuses who does not find room, as the game does. */
+  /** Refuse who does not find room, as the game does. */
   admit (client) {
     client.on('packet', () => { if (++this.packets.heard === this.packets.diesAt) process.kill(process.pid, 'SIGKILL') })
     if (this.serv.players.length >= this.room) client.end('full', JSON.stringify({ translate: 'multiplayer.disconnect.server_full' }))
@@ -133,7 +133,7 @@ class OpenWorld {
     if (region.tick % AGE_EVERY === 0) this.tellAge(serv.players)
   }
 
-  /** Sends everybody away and ends, as the game does. */
+  /** Send everybody away and ends, as the game does. */
   stop () {
     let here = this.serv.players.length
     if (here === 0) process.exit(0)
@@ -185,7 +185,7 @@ function speakOlder (end, { loginPacket: { dimensionCodec } }) {
   end.write = (name, params) => write.call(end, name, older[name]?.(params) ?? params)
 }
 
-/** Stands still, as a server does that is busy with something else. */
+/** Stand still, as a server does that is busy with something else. */
 function stall (milliseconds) {
   Atomics.wait(new Int32Array(new SharedArrayBuffer(4)), 0, 0, milliseconds)
 }
@@ -197,7 +197,7 @@ function openRegion (age) {
   return region
 }
 
-/** Lets there be air where something is force-loaded far away, and shows it to those who come near. */
+/** Let there be air where something is force-loaded far away, and shows it to those who come near. */
 function loadFar (serv, columns) {
   const Chunk = require('prismarine-chunk')(serv.registry)
   serv.loadColumns = (x1, z1, x2, z2) => {

@@ -32,7 +32,7 @@ export class App {
     this.drawHeader()
   }
 
-  /** Draws with the next picture of the browser, once. */
+  /** Draw with the next picture of the browser, once. */
   later () {
     this.due ??= requestAnimationFrame(() => {
       this.due = undefined

@@ -38,7 +38,7 @@ export class Chooser {
     for (const listener of this.listeners) listener(this.choice, changes)
   }
 
-  /** Writes the address, not more than ten times a second: browsers refuse more. */
+  /** Write the address, not more than ten times a second: browsers refuse more. */
   keepAddress () {
     if (this.waiting) return
     this.waiting = setTimeout(() => {

@@ -25,7 +25,7 @@ function present (children) {
   return children.filter(child => child !== null && child !== undefined)
 }
 
-/** Puts children, those that are there, in place of an element's own. */
+/** Put children, those that are there, in place of an element's own. */
 export function refill (parent, ...children) {
   parent.replaceChildren(...present(children))
 }

@@ -44,7 +44,7 @@ function forgetToken () {
   if (location.search) history.replaceState(null, '', location.pathname + location.hash)
 }
 
-/** Waits for a run that has not begun yet. */
+/** Wait for a run that has not begun yet. */
 async function waiting (runs, content) {
   refill(root, element('p', { class: 'failed', role: 'status' }, 'The run has not begun yet …'))
   await new Promise(resolve => {
@@ -59,7 +59,7 @@ async function waiting (runs, content) {
   })
 }
 
-/** Takes what the server tells of runs that go on; a stream that broke off goes on where it was. */
+/** Take what the server tells of runs that go on; a stream that broke off goes on where it was. */
 function follow (app, runs, source, content) {
   const stream = new EventSource(`api/live?from=${content.count}`)
   stream.onmessage = ({ data, lastEventId }) => {

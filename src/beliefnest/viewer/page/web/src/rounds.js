@@ -35,7 +35,7 @@ export class Rounds {
     this.at = now
   }
 
-  /** Scrolls to a round, and leaves the rest of the page where it is. */
+  /** Scroll to a round, and leaves the rest of the page where it is. */
   show (round) {
     if (round) this.element.scrollTop = round.offsetTop - (this.element.clientHeight - round.offsetHeight) / 2
   }
@@ -99,7 +99,7 @@ export class Rounds {
   }
 }
 
-/** @returns {boolean} whether a branch of an episode can still go on */
+/** @returns {boolean} true if a branch of an episode can still go on */
 function isOpen (run, branch) {
   const played = new Set(branch.parts.map(part => part.round)).size
   return branch.reached === null && branch.violated === null && played < run.episode.rounds

@@ -25,7 +25,7 @@ const NOSE = new ConeGeometry(0.12, 0.32, 10)
 const RING = new TorusGeometry(0.5, 0.045, 8, 32)
 const UNSEEN = new Color('#55535c')
 
-/** @returns {boolean} whether the browser can draw in three dimensions */
+/** @returns {boolean} true if the browser can draw in three dimensions */
 export function hasWebGL () {
   try {
     return document.createElement('canvas').getContext('webgl2') !== null
@@ -132,12 +132,12 @@ export class Space {
     return this.materials.get(name)
   }
 
-  /** Lets go of the lines of the last picture, whose points are their own. */
+  /** Let go of the lines of the last picture, whose points are their own. */
   dropLines () {
     for (const each of this.figures.children) if (each.userData.own) each.geometry.dispose()
   }
 
-  /** Takes away the labels of what is not in the picture any more. */
+  /** Take away the labels of what is not in the picture any more. */
   dropTags () {
     const shown = new Set(this.marks.map(({ made }) => made))
     for (const [thing, made] of this.tags) {

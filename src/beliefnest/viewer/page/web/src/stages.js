@@ -87,7 +87,7 @@ export class Stages {
     fillOptions(this.storey, Array.from({ length: run.shape[1] }, (_, n) => [String(low + n), String(low + n)]), String(storey))
   }
 
-  /** Turns the camera to a run once; later its user turns it. */
+  /** Turn the camera to a run once; later its user turns it. */
   aim ({ run, beside, track }) {
     if (this.aimed === run) return
     this.aimed = run

@@ -123,7 +123,7 @@ module.exports = function defineBorder (env) {
     return Array.isArray(wire) ? each(wire, decode) : decoders[wire.$](wire)
   }
 
-  /** Asks the host; what follows the action is JSON. */
+  /** Ask the host; what follows the action is JSON. */
   function ask (action, ...parts) {
     let text = '["' + action + '"'
     for (let i = 0; i < parts.length; i++) text += ',' + parts[i]

@@ -1,6 +1,6 @@
 'use strict'
 /**
- * Starts a program and takes what the host says to it afterwards.
+ * Start a program and takes what the host says to it afterwards.
  * Runs inside QuickJS: the function is handed over as text and must not refer to anything outside it.
  */
 module.exports = function defineMain (env) {

@@ -27,12 +27,12 @@ module.exports.server = (serv) => {
   blocks.stateWith = (block, properties) => encode(
     registry, block.name, { ...block.properties, ...properties })
 
-  /** Tells a player what is there, whether or not it changed. */
+  /** Tell a player what is there, whether or not it changed. */
   blocks.send = (player, position) => player._client.write('block_change', {
     location: position, type: serv.overworld.sync.getBlockStateId(position),
   })
 
-  /** Sets a block as it is, and nothing else: what is beside it does not take notice. */
+  /** Set a block as it is, and nothing else: what is beside it does not take notice. */
   blocks.put = (position, stateId, player = null) => {
     const before = serv.overworld.sync.getBlockStateId(position)
     if (before === stateId) return null

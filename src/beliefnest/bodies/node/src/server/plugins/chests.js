@@ -16,7 +16,7 @@ function isBlocked (serv, position) {
   return serv.blocks.at(position).name !== 'barrel' && isFullCube(above) && !above.transparent
 }
 
-/** Shows whether somebody looks in. */
+/** Show whether somebody looks in. */
 function showLid (serv, position) {
   const block = serv.blocks.at(position)
   const count = serv.containers.viewers(position).filter(({ gameMode }) => gameMode !== SPECTATOR).length

@@ -19,7 +19,7 @@ module.exports.server = (serv) => {
     player.itemInHand()?.type ?? null, false, serv.blocks.at(player.eyes()).name === 'water',
     !player.onGround, player.itemInHand()?.enchants ?? [], {})
 
-  /** Breaks a block for a player, with what it drops. */
+  /** Break a block for a player, with what it drops. */
   serv.mine = (player, position) => {
     const block = serv.blocks.at(position)
     const drops = dropsOf(serv.registry, block, player.itemInHand(), Math.random)

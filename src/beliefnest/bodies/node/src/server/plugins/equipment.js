@@ -23,7 +23,7 @@ module.exports.player = (player, serv) => {
     }
   }
 
-  /** Tells those near what changed since the last time. */
+  /** Tell those near what changed since the last time. */
   player.refreshEquipment = () => {
     const now = worn()
     const changes = now.flatMap((item, part) => (equal(item, shown[part]) ? [] : [entry(item, part)]))
@@ -31,7 +31,7 @@ module.exports.player = (player, serv) => {
     send(serv.players.filter((other) => other !== player), changes)
   }
 
-  /** Tells one player all of it, empty hands too: bots tell what never was there from what is there no more. */
+  /** Tell one player all of it, empty hands too: bots tell what never was there from what is there no more. */
   player.showEquipment = (other) => send([other], worn().map(entry))
 
   player._client.on('held_item_slot', ({ slotId }) => {

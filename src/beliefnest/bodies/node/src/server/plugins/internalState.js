@@ -19,6 +19,6 @@ module.exports.server = (serv) => {
   serv.internalState = (region) => Object.fromEntries(
     parts.map(([name, { save }]) => [name, save(region)]).filter(([, rows]) => rows.length > 0))
 
-  /** Makes what goes on in a region be as `serv.internalState` said. */
+  /** Make what goes on in a region be as `serv.internalState` said. */
   serv.restoreState = (region, parted) => parts.forEach(([name, { restore }]) => restore(parted[name] ?? [], region))
 }

@@ -26,7 +26,7 @@ module.exports.server = (serv) => {
     })
   }
   serv.recallPlayer = (uuid) => left().get(uuid)
-  /** Makes a player who has left unknown, so that a later one of that name starts empty. */
+  /** Make a player who has left unknown, so that a later one of that name starts empty. */
   serv.forgetPlayer = (uuid) => left().delete(uuid)
 
   serv.keeps('slots', {
@@ -46,7 +46,7 @@ module.exports.player = (player, serv) => {
   player.inventory = serv.makeInventory()
   const recalled = () => serv.recallPlayer(player._client.uuid)
 
-  /** Stores an item; returns what did not fit, or null. */
+  /** Store an item; returns what did not fit, or null. */
   player.storeItem = (item) => {
     const rest = store(storage(player.inventory.slots), item, STORE_ORDER)
     player.inventoryChanged()
@@ -69,7 +69,7 @@ module.exports.player = (player, serv) => {
     return known.possessions
   }
 
-  /** Makes the player have exactly this. @throws RangeError where it cannot. */
+  /** Make the player have exactly this. @throws RangeError where it cannot. */
   player.setPossessions = ({ inventory = {}, equipment = {} }) => {
     carry(0, layOut(serv, player.inventory.slots.length, { inventory, equipment }, player.username))
     player.windows.cursor = null
@@ -92,7 +92,7 @@ module.exports.player = (player, serv) => {
     return asUsual ? null : [player.heldItemSlot, ...rowsOf(slots)]
   }
 
-  /** Puts what the player has into the slots that `saveSlots` told. */
+  /** Put what the player has into the slots that `saveSlots` told. */
   player.restoreSlots = ([held, ...rows] = [0]) => {
     const before = player.possessions()
     const plain = usual()

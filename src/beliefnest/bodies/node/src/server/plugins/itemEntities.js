@@ -59,7 +59,7 @@ module.exports.server = (serv) => {
 
   serv.removeItem = (id) => serv.entities[id].destroy()
 
-  /** Puts an item somewhere, at once. */
+  /** Put an item somewhere, at once. */
   serv.placeItem = (entity, position) => {
     if (position.equals(entity.position)) return
     entity.position = position

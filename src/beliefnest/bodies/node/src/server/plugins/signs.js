@@ -33,7 +33,7 @@ module.exports.server = (serv) => {
   /** The text of a sign; empty where nothing is written, or no sign stands. */
   signs.get = (position) => texts.get(keyOf(position))?.text ?? ''
 
-  /** Writes on a sign. @throws RangeError where there is none, or the text does not fit */
+  /** Write on a sign. @throws RangeError where there is none, or the text does not fit */
   signs.set = (position, text, player = null) => {
     const { name } = serv.blocks.at(position)
     if (!isSign(name)) throw new RangeError(`there is no sign, but ${name}`)
@@ -77,7 +77,7 @@ module.exports.player = (player, serv) => {
     player._client.write('tile_entity_data', signPacket(position, serv.blocks.at(position).name, serv.signs.get(position)))
   }
 
-  /** Tells what is written in the columns that the player was sent. */
+  /** Tell what is written in the columns that the player was sent. */
   player.sendSigns = () => serv.signs.positions((position) => serv.region.contains(position)).forEach(player.sendSign)
 
   player._client.on('update_sign', ({ location, isFrontText, text1, text2, text3, text4 }) => {

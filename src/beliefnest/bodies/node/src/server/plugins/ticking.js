@@ -45,7 +45,7 @@ module.exports.server = (serv) => {
     },
   })
 
-  /** Drops what plugins keep about a part of the world that is given up. */
+  /** Drop what plugins keep about a part of the world that is given up. */
   serv.forgetRegion = (within) => {
     countdowns = elsewhere(within)
     forgetters.forEach((forget) => forget(within))

@@ -16,7 +16,7 @@ module.exports.player = (player, serv) => {
   let ledgers = []
 
   /**
-   * Opens a window on the containers at `window.positions` (see PlayerWindows.open), of which
+   * Open a window on the containers at `window.positions` (see PlayerWindows.open), of which
    * the one at `clicked` was used.
    */
   player.lookInto = (window, clicked) => {

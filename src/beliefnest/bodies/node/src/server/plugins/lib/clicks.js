@@ -17,7 +17,7 @@ function capacity (menu, slot, item) {
   return menu.mayPlace(slot, item) ? Math.min(item.stackSize, menu.limit(slot, item)) : 0
 }
 
-/** Puts up to `count` of `item` into a slot that is empty or alike; returns what is left. */
+/** Put up to `count` of `item` into a slot that is empty or alike; returns what is left. */
 function put (menu, slot, item, count) {
   const there = menu.get(slot)
   if (there && !alike(there, item)) return item
@@ -78,7 +78,7 @@ function takeResultToCursor (menu, cursor, result) {
   return withCount(cursor, cursor.count + menu.takeResult().count)
 }
 
-/** Stores an item in the first fitting of `slots`: alike stacks first; returns what is left. */
+/** Store an item in the first fitting of `slots`: alike stacks first; returns what is left. */
 function store (menu, item, slots) {
   let left = item
   for (const slot of slots) {
@@ -143,7 +143,7 @@ function clickOutside (cursor, mouseButton) {
 }
 
 /**
- * Applies a click; returns `{cursor, dropped}`, or null for a click that is not known
+ * Apply a click; returns `{cursor, dropped}`, or null for a click that is not known
  * (dragging, double clicks, a slot that does not exist), which changes nothing.
  */
 function click (menu, cursor, { slot, mouseButton, mode }) {

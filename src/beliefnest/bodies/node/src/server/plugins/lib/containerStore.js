@@ -18,7 +18,7 @@ class ContainerStore {
   }
 
   /**
-   * Declares a kind of block that holds items.
+   * Declare a kind of block that holds items.
    * @param {string} name of the block
    * @param {number} size in slots
    * @param {(stacks: object[]) => object[] | null} arrange gives the slots a content is set into,
@@ -42,7 +42,7 @@ class ContainerStore {
     return this.stored.get(key).slots
   }
 
-  /** Takes note of a container that was built with its region, if there is one. */
+  /** Take note of a container that was built with its region, if there is one. */
   stand (position) {
     if (this.kindAt(position) !== undefined) this.slots(position)
   }
@@ -64,7 +64,7 @@ class ContainerStore {
     return countByName(this.stored.get(keyOf(position))?.slots ?? [])
   }
 
-  /** Makes a container hold exactly this. @throws RangeError where it cannot */
+  /** Make a container hold exactly this. @throws RangeError where it cannot */
   set (position, counts) {
     const kind = this.kindAt(position)
     if (kind === undefined) {
@@ -98,7 +98,7 @@ class ContainerStore {
     })
   }
 
-  /** Puts what containers hold into the slots that `save` told. */
+  /** Put what containers hold into the slots that `save` told. */
   restore (rows, region) {
     const told = new Map(rows.map(([x, y, z, ...slots]) => [keyOf(region.toServer([x, y, z])), slots]))
     for (const position of this.positions((place) => region.contains(place))) {
@@ -110,7 +110,7 @@ class ContainerStore {
     }
   }
 
-  /** Takes note that another block came; returns the items that were inside the old one. */
+  /** Take note that another block came; returns the items that were inside the old one. */
   blockChanged (position, before, after) {
     if (before === after || !(this.kinds.has(before) || this.kinds.has(after))) return []
     const items = this.stored.get(keyOf(position))?.slots.filter(Boolean) ?? []
@@ -137,7 +137,7 @@ class ContainerStore {
     return places.sort((a, b) => byPlace(listOf(a), listOf(b)))
   }
 
-  /** Drops all that is known of a part of the world. */
+  /** Drop all that is known of a part of the world. */
   forget (within) {
     this.positions(within).forEach((position) => this.drop(position))
     this.drainChanges(within)

@@ -50,7 +50,7 @@ function light (fire, slots, makeItem) {
 /**
  * One tick of a furnace; changes `fire` and `slots`.
  * @param {(name: string, count: number) => object} makeItem
- * @returns {boolean} whether a slot changed
+ * @returns {boolean} true if a slot changed
  */
 function burn (fire, kind, slots, makeItem) {
   let changed = false

@@ -56,7 +56,7 @@ function match (recipes, stacks, width) {
   return recipes.shaped.get(shapeKey(rows)) ?? recipes.shapeless.get(bagKey(ids))
 }
 
-/** Uses up one of each ingredient of slots[1..width*width]. */
+/** Use up one of each ingredient of slots[1..width*width]. */
 function consume (slots, width, makeItem) {
   for (let i = 1; i <= width * width; i++) {
     const item = slots[i]

@@ -23,7 +23,7 @@ const metadataOf = (Item, { id, item }) => ({
   metadata: [{ key: METADATA_ITEM, type: 'item_stack', value: Item.toNotch(item) }],
 })
 
-/** Makes an entity of the server a dropped item; `thrown` as in throws.js; `itemId` and `itemCount` are those of `item`. */
+/** Make an entity of the server a dropped item; `thrown` as in throws.js; `itemId` and `itemCount` are those of `item`. */
 function becomeItem (entity, Item, { item, velocity, delay, born, thrown }) {
   Object.assign(entity, {
     uuid: `00000000-0000-4000-8000-${entity.id.toString(16).padStart(12, '0')}`,

@@ -19,7 +19,7 @@ function createLedger (positions, read) {
     pending.set(key, entry)
   }
 
-  /** Runs a move; returns the parts it changed. */
+  /** Run a move; returns the parts it changed. */
   function record (run) {
     const before = positions.map((position) => read(position).map((item) => item))
     run()

@@ -49,7 +49,7 @@ class PlayerWindows {
     })
   }
 
-  /** Tells the client all of the current window. */
+  /** Tell the client all of the current window. */
   sendAll () {
     const { current: window, serv: { Item } } = this
     this.stateId += 1
@@ -62,7 +62,7 @@ class PlayerWindows {
     })
   }
 
-  /** Tells the client every slot in which it shows something else. */
+  /** Tell the client every slot in which it shows something else. */
   sync () {
     const { own, opened } = this
     if (opened) this.syncWindow(opened, () => true)
@@ -76,7 +76,7 @@ class PlayerWindows {
   }
 
   /**
-   * Opens a window.
+   * Open a window.
    * @param {object} window `{type, title, menu, positions, around(run), leave(giveBack), closed()}`:
    *   `type` and `title` as the client shows it, `positions` of the blocks it shows the content
    *   of, if any; `around` runs each click; when it closes, `leave` gives back what lies in the
@@ -94,7 +94,7 @@ class PlayerWindows {
     this.sendAll()
   }
 
-  /** Ends the opened window, or the look into the own one; what the cursor carries goes back. */
+  /** End the opened window, or the look into the own one; what the cursor carries goes back. */
   close () {
     const { opened, cursor } = this
     const giveBack = (item) => this.giveBack(item)
@@ -108,7 +108,7 @@ class PlayerWindows {
     this.player.inventoryChanged()
   }
 
-  /** Ends all that is under way in windows, as in the next call nobody remembers it. */
+  /** End all that is under way in windows, as in the next call nobody remembers it. */
   rest () {
     const { menu } = this.own
     const inGrid = () => range(0, menu.craftSlots + 1).some((slot) => menu.get(slot))
@@ -121,7 +121,7 @@ class PlayerWindows {
     this.lastId = 0
   }
 
-  /** Ends the opened window although the client did not ask for it. */
+  /** End the opened window although the client did not ask for it. */
   forceClose () {
     if (!this.opened) return
     this.client.write('close_window', { windowId: this.opened.id })
