@@ -5,7 +5,7 @@ const { answered } = require('./lib/answers')
 const { walkToUse } = require('./lib/walking')
 const { countOf } = require('./lib/inventory')
 
-/** Ingredients of so many crafts that the inventory lacks, as [name, number]. */
+/** Return the ingredients that the inventory lacks for `times` crafts of a recipe, as [name, number]. */
 function lacking (bot, recipe, times) {
   return recipe.delta.filter(({ count }) => count < 0)
     .map(({ id, count }) => [bot.registry.items[id].name, -count * times - bot.inventory.count(id, null)])
@@ -14,7 +14,7 @@ function lacking (bot, recipe, times) {
 
 const total = list => list.reduce((sum, [, missing]) => sum + missing, 0)
 
-/** The recipe that can be made, or else the one that lacks least. */
+/** Return a recipe that can be crafted now, or else the recipe that lacks the fewest items. */
 function choose ({ bot, fail }, item, wanted, hasTable) {
   const all = bot.recipesAll(item.id, null, true)
   if (all.length === 0) fail(`there is no recipe for ${item.name}. Get it in another way.`)

@@ -6,7 +6,10 @@ const { ticks } = require('./lib/waiting')
 
 const SLACK = 1
 
-/** The goal by itself lets the other go as far again before the way is looked for anew. */
+/**
+ * Make a follow goal search for a new path as soon as the entity changes its block. By itself the goal waits until the
+ * entity has moved `range` blocks further.
+ */
 function closely (goal) {
   goal.hasChanged = () => {
     const { x, y, z } = goal.entity.position.floored()
@@ -38,7 +41,7 @@ module.exports = {
     await ticks(context, duration)
     bot.pathfinder.setGoal(null)
     await settle(context)
-    // The pathfinder, too, counts from block to block.
+    // Count in whole blocks, as the pathfinder does.
     const away = bot.entity.position.floored().distanceTo(body.position.floored())
     if (away > near + SLACK) fail(`${otherName} is ${away.toFixed(1)} blocks away after ${duration} ticks. Follow longer, or there is no way on foot.`)
   }

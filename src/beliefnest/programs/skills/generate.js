@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Writes what people and programs read about the skills, from their manifests:
- * docs/skills.md, and manifests.json for the Python side. `node generate.js` writes both.
+ * Writer of the generated texts about the skills. `node generate.js` writes docs/skills.md for people and
+ * manifests.json for the Python side, both from the manifests.
  */
 const fs = require('node:fs')
 const path = require('node:path')
@@ -35,12 +35,12 @@ function markdown ({ name, signature, description, parameters, example, fails })
   ].join('\n')
 }
 
-/** @returns {string} docs/skills.md */
+/** Return the text of docs/skills.md. @returns {string} */
 function documentation () {
   return [INTRODUCTION, ...SKILLS.map(markdown)].join('\n')
 }
 
-/** @returns {string} manifests.json: the manifests without their code */
+/** Return the text of manifests.json: the manifests without their code. @returns {string} */
 function manifest () {
   const entries = SKILLS.map(({ name, signature, description, parameters, example }) => ({ name, signature, description, parameters, example }))
   return `${JSON.stringify(entries, null, 2)}\n`

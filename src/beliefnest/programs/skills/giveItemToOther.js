@@ -10,7 +10,7 @@ const TOO_NEAR = 1.5
 const PICKUP_TICKS = 200
 const CHEST_HEIGHT = 1
 
-/** Watch who picks up the items of a kind that appear from now on. */
+/** Count who picks up which items of a kind, among those that appear nearby from now on. */
 function watch ({ bot, listen }, item) {
   const { entity: own } = bot
   const lying = new Map()
@@ -51,7 +51,7 @@ module.exports = {
     await walkNear(context, body.position.clone(), NEAR, otherName)
     if (bot.entity.position.distanceTo(body.position) < TOO_NEAR) await stepBack(context, body)
     await bot.lookAt(body.position.offset(0, CHEST_HEIGHT, 0), true)
-    // The server hears of the look one tick later.
+    // Wait until the server knows the new view direction; it learns it one tick later.
     await ticks(context, 2)
     const watcher = watch(context, item)
     try {
@@ -65,7 +65,7 @@ module.exports = {
   }
 }
 
-/** Who stands too near would pick up its own toss. */
+/** Step back, so that the bot does not pick up the items that it tossed. */
 async function stepBack (context, body) {
   const { bot } = context
   await bot.lookAt(body.position.offset(0, CHEST_HEIGHT, 0), true)

@@ -1,8 +1,8 @@
 'use strict'
 /**
- * The skills: what a program can do besides Mineflayer's own calls. Each file is one manifest
- * `{name, signature, description, fails, parameters, example, run(context, ...args)}`; `fails` says when, `args` are the
- * arguments of the signature without `bot`, which is `context.bot`.
+ * Skills: the functions that a program can call besides Mineflayer's own. Each file holds one manifest `{name,
+ * signature, description, fails, parameters, example, run(context, ...args)}`. `fails` lists the reasons of failure.
+ * `args` are the arguments of the signature without `bot`, which is `context.bot`.
  */
 const { numbers } = require('./lib/answers')
 const { show, shortened } = require('./lib/arguments')
@@ -48,18 +48,19 @@ const SKILLS = [
 ]
 
 /**
- * The skills of one bot, as functions of the arguments in their signatures.
+ * Return the skills of one bot, as functions of the arguments in their signatures.
  * @param {object} body
  * @param {object} body.bot a Mineflayer bot with pathfinder
- * @param {(event: {kind: string, detail: object}) => void} body.emit hears what only the skill
- *   knows; positions in `detail` are as the bot speaks them
+ * @param {(event: {kind: string, detail: object}) => void} body.emit receives the events that only the skill knows of;
+ *   positions in `detail` are in the bot's coordinates
  * @param {Function} body.Vec3
  * @param {object} body.goals of mineflayer-pathfinder
- * @param {AbortSignal} [body.signal] once it is aborted, a skill that still runs does nothing more
- * @param {(number: number, signal?: AbortSignal) => Promise<void>} [body.wait] resolves after so many ticks of the world; never
- *   once its signal is aborted
- * @param {object | null} [body.memory] `call(name, args, act)` does what a skill does, or gives what came of it before
- * @returns {Object<string, Function>} by name; each rejects with an Error that has `skill`
+ * @param {AbortSignal} [body.signal] when it is aborted, running skills fail and do nothing more
+ * @param {(number: number, signal?: AbortSignal) => Promise<void>} [body.wait] resolves after `number` ticks of the
+ *   world; never once its signal is aborted
+ * @param {object | null} [body.memory] memory of a resumed program: its `call(name, args, act)` runs a skill, or
+ *   returns the result from before the interruption
+ * @returns {Object<string, Function>} skills by name; each rejects with an Error that has a property `skill`
  */
 function bindSkills ({ bot, emit, Vec3, goals, signal, wait = byTimer, memory = null }) {
   const body = { bot, emit, Vec3, goals, wait, nextNumber: numbers(), inTurn: turns(wait) }
@@ -67,8 +68,8 @@ function bindSkills ({ bot, emit, Vec3, goals, signal, wait = byTimer, memory = 
 }
 
 /**
- * The bot and `emit`, until the signal is aborted; whoever uses them then fails. `listen(event, listener)`
- * gives a function that ends it, at any time.
+ * Return guarded versions of the bot and `emit`, which fail once the signal is aborted, and `listen(event, listener)`,
+ * which returns a function that removes the listener at any time.
  */
 function untilAborted ({ bot, emit }, signal, fail) {
   const check = () => { if (signal?.aborted) fail('the program that called it has ended') }

@@ -9,7 +9,9 @@ const FACES = [[0, -1, 0], [0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 
 const FREE = new Set(['air', 'cave_air', 'void_air', 'water', 'lava', 'short_grass', 'tall_grass', 'fern', 'snow', 'dead_bush', 'vine'])
 const OPENS = /chest$|barrel|furnace|smoker|crafting_table|_door$|_trapdoor$|_gate$|_bed$|lever|_button$/
 
-/** Blocks beside the place that something can be put against: those that do nothing when used first. */
+/**
+ * Return the blocks next to a position against which an item can be placed; blocks that react to a click come last.
+ */
 function references ({ bot }, place) {
   return FACES.map(([x, y, z]) => bot.blockAt(place.offset(x, y, z)))
     .filter(block => block && block.boundingBox === 'block' && block.name !== 'barrier')

@@ -31,14 +31,14 @@ function checkEmpty ({ fail }, furnace, item, fuel) {
   if (output) fail(`${output.count} ${output.name} lie in the furnace. Take them out first.`)
 }
 
-/** The furnace has had time to light or go out, and the bot knows. */
+/** Wait until the furnace has had time to light or go out, and the bot has received its state. */
 async function nextTicks (context) {
   await answered(context)
   await ticks(context, LIGHTING_TICKS)
   await answered(context)
 }
 
-/** Put one piece of fuel in; fails if the furnace does not take it. */
+/** Put one piece of fuel in; fail if the furnace does not accept it. */
 async function feed (context, furnace, fuel) {
   const { bot, fail } = context
   await furnace.putFuel(fuel.id, null, 1)
@@ -48,7 +48,7 @@ async function feed (context, furnace, fuel) {
   fail(`${fuel.name} does not burn. Use a fuel such as coal or planks.`)
 }
 
-/** Smelt what lies in the furnace, with a piece of fuel always ready, until the fuel runs out. */
+/** Smelt the items in the furnace, and keep one piece of fuel ready, until the fuel runs out. */
 async function smelt (context, furnace, position, item, fuel, wanted) {
   const { bot, fail } = context
   const done = () => furnace.outputItem()?.count ?? 0
@@ -68,12 +68,15 @@ async function smelt (context, furnace, position, item, fuel, wanted) {
 
 const countOfWindow = (window, type) => window.countRange(window.inventoryStart, window.inventoryEnd, type, null)
 
-// Without it clicks meant for the furnace would go to the inventory.
+// Fail if the furnace was closed: clicks meant for it would go to the inventory.
 function checkOpen ({ bot, fail }, furnace) {
   if (bot.currentWindow !== furnace) fail('the furnace was closed before everything was taken out.')
 }
 
-/** Take everything out; returns the item that was made, or null, and how many of it came out. */
+/**
+ * Take everything out of the furnace. Return the product and the number of pieces that came out, or null if there is
+ * no product.
+ */
 async function emptyFurnace (context, furnace) {
   checkOpen(context, furnace)
   if (furnace.inputItem()) await furnace.takeInput()

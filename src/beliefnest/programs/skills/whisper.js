@@ -4,7 +4,7 @@ const { claims: checked, PARAMETER } = require('./lib/claims')
 const { speech } = require('./lib/speech')
 const { ticks } = require('./lib/waiting')
 
-// With the longest name there is, it fits into one message of the game.
+// Together with the longest name, this fits into one message of the game.
 const LONGEST = 230
 
 module.exports = {

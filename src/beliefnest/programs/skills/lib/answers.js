@@ -1,22 +1,25 @@
 'use strict'
 /**
- * Waiting for the server's word. A bot shows what it does before the server has heard of it: a block
- * it mined is gone, an item it clicked has moved. On a server that is far away that may be undone
- * later, and what comes of it (what a block drops) is not there yet.
+ * Waiting for the server's acknowledgement. A bot shows the effect of an act before the server has received it: a
+ * mined block is gone, a clicked item has moved. A remote server may undo this later, and further effects, such as the
+ * items that a block drops, arrive only with its answer.
  */
 const ANSWER_TICKS = 600
 const CANCEL_DIGGING = 1
 const FACE_DOWN = 0
-// Mineflayer numbers what it asks from 0.
+// Numbers of our own requests. Mineflayer numbers its requests from 0, so ours begin far above.
 const FIRST = 1_000_000
 
-/** @returns {() => number} numbers of questions, each once */
+/** Return a function that returns a new request number on each call. @returns {() => number} */
 function numbers () {
   let next = FIRST
   return () => next++
 }
 
-/** @returns {Promise<boolean>} true if the server acknowledged what has this number, or a later one, in time */
+/**
+ * Wait until the server acknowledges a request.
+ * @returns {Promise<boolean>} true if the server acknowledged this number, or a later one, in time
+ */
 function acknowledged ({ bot: { _client: client }, wait }, number) {
   const ended = new AbortController()
   return new Promise(resolve => {
@@ -32,9 +35,10 @@ function acknowledged ({ bot: { _client: client }, wait }, number) {
 }
 
 /**
- * Resolve when the server has done all that the bot has asked for so far, and the bot knows what
- * came of it. Servers acknowledge acts on blocks at the end of the tick in which they come, after
- * all else that came of that tick; this act is one that does nothing.
+ * Resolve when the server has handled all requests of the bot so far and the bot has received their effects.
+ *
+ * A server acknowledges block acts at the end of the tick in which they arrive, after all other effects of that tick.
+ * This function sends a block act that does nothing and waits for its acknowledgement.
  */
 async function answered (context) {
   const { bot, fail, nextNumber } = context

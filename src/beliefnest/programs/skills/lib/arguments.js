@@ -1,12 +1,12 @@
 'use strict'
-/** Checks of what a program handed to a skill; every `fail(message)` throws. */
+/** Checks of the arguments that a program passes to a skill. Every `fail(message)` throws. */
 
 const MOST_SHOWN = 200
 const LONGEST_NAME = 100
 
 /**
- * What a value is, for a message: primitives and places themselves, all else by its kind, for making a text of what
- * the game is made of takes long and tells more than a program may know.
+ * Return a value as text for a message. Primitives and positions are shown themselves, other values only by their
+ * type: turning game objects into text is slow and would show more than a program may know.
  */
 function show (value) {
   if (typeof value === 'string') return `"${shortened(value)}"`
@@ -23,7 +23,7 @@ function shortened (text, most = MOST_SHOWN) {
   return (text.length > most ? `${text.slice(0, most - 4)} ...` : text).toWellFormed()
 }
 
-/** @returns {Vec3} a finite position */
+/** Return a position if its coordinates are finite; fail otherwise. @returns {Vec3} */
 function position ({ Vec3, fail }, name, value) {
   const parts = [value?.x, value?.y, value?.z]
   if (!parts.every(Number.isFinite)) {
@@ -32,7 +32,7 @@ function position ({ Vec3, fail }, name, value) {
   return new Vec3(...parts)
 }
 
-/** @returns {Vec3} the position of the block a position lies in */
+/** Return the position of the block that contains a position. @returns {Vec3} */
 function blockPosition (context, name, value) {
   return position(context, name, value).floored()
 }
@@ -47,7 +47,7 @@ function distance ({ fail }, name, value) {
   return value
 }
 
-/** @returns {object} settings that are true or false, those left out as in `defaults` */
+/** Return true-or-false options, with `defaults` for those that are left out. @returns {object} */
 function flags ({ fail }, name, value, defaults) {
   const names = Object.keys(defaults)
   const given = value !== null && typeof value === 'object' && !Array.isArray(value) ? Object.entries(value) : null
@@ -64,7 +64,10 @@ function text ({ fail }, name, value) {
   return value
 }
 
-/** Names that contain what was asked for or the other way round, for a hint; none for what is too long to be one. */
+/**
+ * Return a hint that lists the names that contain the given name or are contained in it; empty if the name is too long
+ * or nothing is similar.
+ */
 function similar (name, names) {
   if (name.length > LONGEST_NAME) return ''
   const close = names.filter(other => other.includes(name) || name.includes(other)).slice(0, 4)
@@ -73,7 +76,7 @@ function similar (name, names) {
 
 const entryOf = (table, name) => (typeof name === 'string' && Object.hasOwn(table, name) ? table[name] : undefined)
 
-/** @returns {object} minecraft-data's entry of an item */
+/** Return minecraft-data's entry of an item. @returns {object} */
 function item ({ bot, fail }, name, value) {
   const found = entryOf(bot.registry.itemsByName, value)
   if (!found) {
@@ -83,7 +86,7 @@ function item ({ bot, fail }, name, value) {
   return found
 }
 
-/** @returns {object} minecraft-data's entry of a block */
+/** Return minecraft-data's entry of a block. @returns {object} */
 function block ({ bot, fail }, name, value) {
   const found = entryOf(bot.registry.blocksByName, value)
   if (!found) {
@@ -93,7 +96,7 @@ function block ({ bot, fail }, name, value) {
   return found
 }
 
-/** @returns {[object, number][]} entries of items and how many of each */
+/** Return minecraft-data's entries of items, each with its count. @returns {[object, number][]} */
 function items (context, name, value) {
   const entries = value !== null && typeof value === 'object' && !Array.isArray(value) ? Object.entries(value) : []
   if (entries.length === 0) {
@@ -103,7 +106,7 @@ function items (context, name, value) {
   return entries.map(([key, number]) => [item(context, `each name in ${name}`, key), count(context, `${name}.${key}`, number)])
 }
 
-/** @returns {string} the name of another agent that is here */
+/** Return the name of another agent that is present; fail otherwise. @returns {string} */
 function otherAgent ({ bot, fail }, name, value) {
   const others = Object.keys(bot.players).filter(other => other !== bot.username)
   if (!others.includes(value)) {

@@ -21,7 +21,7 @@ function checkLid ({ bot, fail }, block) {
   fail(`the chest at ${show(block.position)} cannot be opened: ${above.name} lies on its lid. Remove it first.`)
 }
 
-/** Go to the container, opens it, hands its window to `action`, and closes it whatever happens. */
+/** Go to the container, open it, call `action` with its window, and close it in any case. */
 async function withContainer (context, position, action) {
   const { bot } = context
   if (!isUnseen(bot, position)) findContainer(context, position)
@@ -37,7 +37,7 @@ async function withContainer (context, position, action) {
   }
 }
 
-/** How many of an item can still be put into slots start..end of a window. */
+/** Return how many more of an item fit into slots start..end of a window. */
 function roomFor (window, start, end, item) {
   return window.slots.slice(start, end).reduce((room, slot) => {
     if (!slot) return room + item.stackSize
@@ -54,17 +54,17 @@ function transfer (bot, window, [sourceStart, sourceEnd], [destStart, destEnd], 
   return bot.transfer({ window, itemType: item.id, metadata: null, count, sourceStart, sourceEnd, destStart, destEnd })
 }
 
-/** How many of an item the bot has, on the cursor too. */
+/** Return how many of an item the bot has, those on the cursor included. */
 function owned (window, item) {
   const { selectedItem } = window
   return window.countRange(...partsOf(window).inventory, item.id, null) + (selectedItem?.type === item.id ? selectedItem.count : 0)
 }
 
 /**
- * Move up to so many of each item from one part of a window ("chest", "inventory") to the other.
- * @param {[object, number][]} wanted
- * @returns {Promise<{item: object, count: number, there: number, room: number, moved: number}[]>} `moved` is
- *   what the server let through: somebody else may look into the same chest
+ * Move items from one part of a window ("chest", "inventory") to the other.
+ * @param {[object, number][]} wanted items and the most to move of each
+ * @returns {Promise<{item: object, count: number, there: number, room: number, moved: number}[]>} `moved` is the
+ *   number that the server accepted: another player may use the same chest
  */
 async function move (context, window, from, to, wanted) {
   const { bot, fail } = context

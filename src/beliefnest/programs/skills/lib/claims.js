@@ -39,7 +39,7 @@ function valuesOf ({ type, values, num_values: count }) {
   return values ?? Array.from({ length: count }, (_, number) => String(number))
 }
 
-/** @returns {object[]} claims as plain data: `{kind, place: [x, y, z], item | agent | state}` */
+/** Return claims as plain data: `{kind, place: [x, y, z], item | agent | state}`. @returns {object[]} */
 function claims (context, value) {
   const list = value === undefined || value === null ? [] : value
   if (!Array.isArray(list) || list.length > MOST) {
@@ -58,7 +58,7 @@ function claims (context, value) {
 const MAKING = 'what it says, for those who understand: [located(item, containerPosition), absent(item, containerPosition), ' +
   'positionOf(name, position), blockAt(position, state)]; none if left out'
 
-/** The parameter `claims` of a manifest. */
+/** Parameter `claims` of a manifest. */
 const PARAMETER = { name: 'claims', type: 'Claim[]', description: MAKING }
 
 module.exports = { claims, PARAMETER }

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Going through doors and gates, which the pathfinder takes for walls: when it finds no way, one through doors is looked for
- * before the bot goes anywhere. Iron doors are gone through where they are open.
+ * Walking through doors and gates, which the pathfinder treats as walls. When the pathfinder finds no path, this
+ * module plans a path through doors before the bot moves. It uses iron doors only where they are open.
  */
 const { answered } = require('./answers')
 const { stepUntil } = require('./stepping')
@@ -15,13 +15,13 @@ const CLEAR = 0.15
 
 const byHand = block => !block.name.startsWith('iron_')
 
-/** The two places beside a door, in its passage. */
+/** Return the two positions next to a door, in the direction of its passage. */
 function sidesOf (block) {
   const [x, z] = ['north', 'south'].includes(block.getProperties().facing) ? [0, 1] : [1, 0]
   return [block.position.offset(x, 0, z), block.position.offset(-x, 0, -z)]
 }
 
-/** Doors that may be gone through, those that lie best first. */
+/** Return the doors that the bot may walk through, those with the shortest detour first. */
 function doorsBy (bot, target, { openDoors }) {
   const length = door => door.distanceTo(bot.entity.position) + door.distanceTo(target)
   const passable = block => DOORWAY.test(block.name) && ((openDoors && byHand(block)) || block.getProperties().open)
@@ -37,7 +37,10 @@ async function stepThrough (context, far, near) {
   return stepUntil(context, () => bot.entity.position.xzDistanceTo(centre) < near, STEP_TICKS)
 }
 
-/** Open or shuts the door at a position, if it is not so and moves by hand; @returns {Promise<boolean>} true if it is so */
+/**
+ * Open or shut the door at a position, if needed and if it can be moved by hand.
+ * @returns {Promise<boolean>} true if the door is in the wanted state afterwards
+ */
 async function bring (context, position, open) {
   const { bot } = context
   const isSo = () => bot.blockAt(position).getProperties().open === open
@@ -48,8 +51,8 @@ async function bring (context, position, open) {
 }
 
 /**
- * Whether a way leads from a place to a goal. A search takes as long as a tick of thinking and no fuel, so that walks of one
- * bot that search at the same time take turns, one search a tick.
+ * Return true if a path leads from a position to a goal. A search costs one tick of thinking time and no fuel;
+ * therefore concurrent searches of one bot take turns, one search a tick.
  */
 function leads ({ bot, inTurn }, from, goal) {
   const { movements, thinkTimeout: timeout } = bot.pathfinder
@@ -59,7 +62,10 @@ function leads ({ bot, inTurn }, from, goal) {
 const middleOf = place => place.offset(0.5, 0, 0.5)
 const legKey = ({ door, near }) => `${door} from ${near}`
 
-/** The doors that can be got to from a place, each as a leg of a way: what side it is gone to from, and where it leads. */
+/**
+ * Return the doors that can be reached from a position, each as a leg: the side from which the bot enters and the side
+ * to which the door leads.
+ */
 async function legsFrom (context, from, doors, tried) {
   const legs = []
   for (const door of doors) {
@@ -75,9 +81,10 @@ async function legsFrom (context, from, doors, tried) {
 }
 
 /**
- * The legs of a way through doors: from the place that lies best on, and into a doorway only where the goal is met in no other place.
- * @param {Set<string>} tried legs that are not to be in it
- * @returns {Promise<object[] | null>} null if there is none
+ * Return the legs of a path through doors. This is a best-first search: it expands the position with the smallest path
+ * length plus distance to the target. A leg ends in a doorway only if no other position meets the goal.
+ * @param {Set<string>} tried legs that the plan must not contain
+ * @returns {Promise<object[] | null>} null if there is no such path
  */
 async function planThrough (context, goal, target, tried, doors) {
   let left = doorsBy(context.bot, target, doors)
@@ -106,7 +113,7 @@ async function pass (context, { door, near, far, isLast }, { closeDoors }) {
   await bot.pathfinder.goto(beside)
   if (!await bring(context, door, true) || !await stepThrough(context, far, isLast ? CLEAR : ARRIVED)) return false
   if (closeDoors && !isLast) {
-    // Who still stands in the doorway would be stuck in the door.
+    // A bot that still stands in the doorway would be stuck in the shut door.
     await stepThrough(context, far, CLEAR)
     await bring(context, door, false)
   }
@@ -114,12 +121,13 @@ async function pass (context, { door, near, far, isLast }, { closeDoors }) {
 }
 
 /**
- * Go through the doors that lie between the bot and a goal, each at most once from each side.
+ * Walk through the doors between the bot and a goal, through each door at most once from each side.
  * @param {object} goal of the pathfinder
- * @param {Vec3} target near which the goal is
- * @param {Set<string>} tried legs that were gone already, added to
- * @param {{openDoors: boolean, closeDoors: boolean}} doors whether to open shut ones, and to shut those gone through
- * @returns {Promise<boolean>} true if it went through any; false: no way through doors is known
+ * @param {Vec3} target position near the goal
+ * @param {Set<string>} tried legs that were walked already; this function adds to it
+ * @param {{openDoors: boolean, closeDoors: boolean}} doors whether to open shut doors, and whether to shut doors
+ *   afterwards
+ * @returns {Promise<boolean>} true if a path through doors was found, false if none is known
  */
 async function passDoors (context, goal, target, tried, doors) {
   const legs = await planThrough(context, goal, target, tried, doors)

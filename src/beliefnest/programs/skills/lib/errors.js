@@ -1,5 +1,5 @@
 'use strict'
-/** Errors for the writer of a program: what was asked, what was found, what to do. */
+/** Error for the author of a program. Its message says what was asked, what was found and what to do. */
 
 class SkillError extends Error {
   /**

@@ -1,9 +1,9 @@
 'use strict'
 
-/** How many of an item the bot carries. */
+/** Return how many of an item the bot carries. */
 const countOf = (bot, item) => bot.inventory.count(item.id, null)
 
-/** The stack to take an item from, or a failure that says what is there instead. */
+/** Return the stack to take an item from; fail with a list of the inventory if there is none. */
 function stackOf ({ bot, fail }, item) {
   const stack = bot.inventory.findInventoryItem(item.id, null, false)
   if (!stack) fail(`the inventory holds no ${item.name}; it holds: ${contents(bot)}. Get some first.`)

@@ -1,13 +1,13 @@
 'use strict'
 /**
- * What there is to say of places that a bot knows nothing of. The bot of a program that reads percepts alone has `perceived()`,
- * which resolves when what came of the present tick has been perceived.
+ * Positions of which a bot knows nothing. A bot of a program that reads only percepts has a method `perceived()`,
+ * which resolves when the percepts of the present tick have arrived.
  */
 
-/** Whether what is in a place has to be found out by going there. */
+/** Return true if the bot can learn only by going there which block is at a position. */
 const isUnseen = (bot, position) => bot.perceived !== undefined && bot.blockAt(position) === null
 
-/** What is found in a place, for a message. */
+/** Return the name of a block for a message, or words for an unknown block. */
 const nameOf = (bot, block) => block?.name ?? (bot.perceived === undefined ? 'nothing that is loaded' : 'nothing that you know of')
 
 module.exports = { isUnseen, nameOf }

@@ -1,5 +1,5 @@
 'use strict'
-/** Breaking blocks with the best tool at hand, and picking up what falls out. */
+/** Mining blocks with the best carried tool, and picking up the drops. */
 const { show } = require('./arguments')
 const { centreOf, walk, walkToUse } = require('./walking')
 const { isUnseen, nameOf } = require('./known')
@@ -21,7 +21,7 @@ function findBlock ({ bot, fail }, position, name) {
 
 const timeWith = (block, item) => block.digTime(item?.type ?? null, false, false, false, item?.enchants ?? [], {})
 
-/** Take the tool in hand that mines a block fastest; fails if none gets anything out of it. */
+/** Hold the tool that mines a block fastest; fail if no carried tool yields any drops. */
 async function takeTool ({ bot, fail }, block) {
   const { harvestTools, name } = block
   const able = item => !harvestTools || Boolean(item && harvestTools[item.type])
@@ -49,7 +49,7 @@ async function pickUp (context, entity) {
   fail(`${entity.getDroppedItem()?.name ?? 'an item'} was left lying at ${show(at)}: the inventory has no room for it. Put something away first.`)
 }
 
-/** Dig until the server agrees: one that is late says that the block was not dug for long enough. */
+/** Dig until the server confirms it. A server that lags may find that the block was not dug for long enough. */
 async function digOut (context, { name, position }) {
   const { bot } = context
   for (let tries = 0; tries < MOST_TRIES && bot.blockAt(position).name === name; tries++) {
@@ -58,7 +58,7 @@ async function digOut (context, { name, position }) {
   }
 }
 
-/** Go to a block, mines it and picks up what it drops. */
+/** Go to a block, mine it and pick up its drops. */
 async function mine (context, position, name) {
   const { bot } = context
   if (!isUnseen(bot, position)) findBlock(context, position, name)

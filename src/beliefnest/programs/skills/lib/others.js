@@ -1,7 +1,7 @@
 'use strict'
 const { otherAgent } = require('./arguments')
 
-/** The other agent's body as the bot sees it, or a failure. */
+/** Return the other agent's entity as the bot sees it; fail if it sees none. */
 function bodyOf (context, name, value) {
   const { bot, fail } = context
   const other = otherAgent(context, name, value)

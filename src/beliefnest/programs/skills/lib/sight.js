@@ -1,31 +1,31 @@
 'use strict'
 /**
- * Whether something can be used from an eye: near enough, and with a free line to it. Blocks are in the way where
- * their boxes are, glass as well; what has no box is not. Coordinates in blocks, of whatever frame the eye is in.
+ * Reach and line of sight: whether an eye is near enough to use something, with a free line to it. All boxes of blocks
+ * obstruct, glass too; blocks without boxes do not. Coordinates are in blocks, in the frame of the eye.
  */
 
-/** How far the middle of a block may be from the eye. */
+/** Largest distance from the eye to the middle of a block. */
 const REACH = 6
-/** How high above their feet people who stand have their eyes. */
+/** Height of the eyes above the feet of a standing player. */
 const EYE_HEIGHT = 1.62
 const SNEAKING_EYES = 1.27
-/** How much of a line may lie within a box: touching is not entering. */
+/** Length of a line inside a box that still counts as touching, not as entering. */
 const TOUCH = 1e-9
 const CUBE = [[0, 0, 0, 1, 1, 1]]
 const AXES = ['x', 'y', 'z']
-/** Where on each face lines end, as parts of its edges. */
+/** Positions of the end points of lines on each face, as fractions of its edges. */
 const GRID = [0.01, 0.25, 0.5, 0.75, 0.99]
-/** Points within the block that lines may end in, from its middle. */
+/** End points of lines within a block, relative to its middle. */
 const INNER = [[0, 0, 0], [0.45, 0, 0], [-0.45, 0, 0], [0, 0.45, 0], [0, -0.45, 0], [0, 0, 0.45], [0, 0, -0.45]]
 
 const listOf = ({ x, y, z }) => [x, y, z]
 
-/** The boxes of a block in the world, cut at its upper side: fences are not higher to a hand. */
+/** Return the boxes of a block in world coordinates, cut at the block's top: fences are not higher for a hand. */
 function boxesAt (shapes, [x, y, z]) {
   return shapes.filter(shape => shape[1] < 1).map(([x0, y0, z0, x1, y1, z1]) => [x + x0, y + y0, z + z0, x + x1, y + Math.min(y1, 1), z + z1])
 }
 
-/** The boxes of all blocks that lines from the eye to a block can meet, but for its own. */
+/** Return the boxes of all blocks that a line from the eye to a block can meet, except those of the block itself. */
 function between (shapesAt, eye, block) {
   const [low, high] = [Math.min, Math.max].map(pick => eye.map((value, axis) => pick(Math.floor(value), block[axis])))
   const boxes = []
@@ -39,7 +39,7 @@ function between (shapesAt, eye, block) {
   return boxes
 }
 
-/** Whether the line between two points goes through the inside of a box. */
+/** Return true if the line between two points passes through the inside of a box. */
 function enters (from, to, box) {
   let [begin, end, length] = [0, 1, 0]
   for (let axis = 0; axis < 3; axis++) {
@@ -56,7 +56,7 @@ function enters (from, to, box) {
   return (end - begin) * length > TOUCH
 }
 
-/** Points on those faces of a box that are turned to the eye. */
+/** Yield points on those faces of a box that face the eye. */
 function * facePoints (eye, box) {
   for (let axis = 0; axis < 3; axis++) {
     const side = eye[axis] < box[axis] ? axis : eye[axis] > box[axis + 3] ? axis + 3 : null
@@ -80,8 +80,8 @@ function * targets (eye, boxes, [x, y, z]) {
 }
 
 /**
- * Whether there is a free line from an eye to a block: to a face of one of its boxes, or to a point within it.
- * @param {(x: number, y: number, z: number) => number[][]} shapesAt boxes of a block, from 0 to 1
+ * Return true if a free line leads from an eye to a block: to a face of one of its boxes, or to a point within it.
+ * @param {(x: number, y: number, z: number) => number[][]} shapesAt returns the boxes of a block, from 0 to 1
  * @param {{x: number, y: number, z: number}} from the eye
  * @param {{x: number, y: number, z: number}} position of the block
  */
@@ -95,26 +95,29 @@ function sees (shapesAt, from, position) {
   return false
 }
 
-/** How far the middle of a block is from an eye. */
+/** Return the distance from an eye to the middle of a block. */
 function distanceTo (eye, block) {
   return Math.hypot(...AXES.map(axis => block[axis] + 0.5 - eye[axis]))
 }
 
 const inReach = (eye, block) => distanceTo(eye, block) <= REACH
 
-/** @returns {string | null} why a block cannot be used from an eye; null if it can. Arguments as of `sees` */
+/**
+ * Return why a block cannot be used from an eye, or null if it can. Arguments as of `sees`.
+ * @returns {string | null}
+ */
 function hindrance (shapesAt, eye, block) {
   if (!inReach(eye, block)) return `it is ${distanceTo(eye, block).toFixed(1)} blocks away, an arm reaches ${REACH}`
   return sees(shapesAt, eye, block) ? null : 'no free line of sight'
 }
 
-/** Where the eye of somebody is whose feet are at a position. */
+/** Return the position of the eye of a player whose feet are at a position. */
 const eyeAbove = (feet, sneaks) => feet.offset(0, sneaks ? SNEAKING_EYES : EYE_HEIGHT, 0)
 
-/** Boxes of the blocks that a bot knows, as `sees` asks for them. */
+/** Return a function that returns the boxes of a block that a bot knows, in the form that `sees` takes. */
 const shapesOf = bot => (x, y, z) => bot.world.blockIn(x, y, z)?.shapes ?? []
 
-/** @returns {string | null} as `hindrance`, for a bot as it stands and for the blocks it knows */
+/** Return the same as `hindrance`, for a bot where it stands and for the blocks it knows. @returns {string | null} */
 function hindranceOf (bot, position, place = bot.entity.position) {
   return hindrance(shapesOf(bot), eyeAbove(place, bot.getControlState('sneak')), position)
 }

@@ -5,7 +5,7 @@ const { isUnseen, nameOf } = require('./known')
 const { signFlawOf } = require('./text')
 const { walkToUse } = require('./walking')
 
-/** @returns {object} the sign at a position, looked up anew */
+/** Return the current state of the sign at a position; fail if there is no sign. @returns {object} */
 function signAt ({ bot, fail }, position) {
   const found = bot.blockAt(position)
   if (!found?.name.endsWith('_sign')) {
@@ -14,12 +14,12 @@ function signAt ({ bot, fail }, position) {
   return found
 }
 
-/** @returns {string} what is written on the front of a sign, without empty lines at the end */
+/** Return the text on the front of a sign, without empty lines at the end. @returns {string} */
 function textOf (sign) {
   return sign.entity ? sign.getSignText()[0].replace(/\n+$/, '') : ''
 }
 
-/** Go to a sign and writes on it, over what is there; a sign that says the text already is left alone. */
+/** Go to a sign and replace its text; do nothing if the sign has this text already. */
 async function write (context, signPosition, lines, claims) {
   const { bot, fail, emit } = context
   const position = blockPosition(context, 'position', signPosition)
@@ -40,7 +40,7 @@ async function write (context, signPosition, lines, claims) {
   if (textOf(signAt(context, position)) !== wanted) fail(`nothing was written on the sign at ${show(position)}. Go nearer and try again.`)
 }
 
-/** Look at a sign and gives what is written on it. */
+/** Look at a sign and return its text. */
 async function read (context, signPosition) {
   const position = blockPosition(context, 'position', signPosition)
   signAt(context, position)

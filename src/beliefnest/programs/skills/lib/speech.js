@@ -2,7 +2,7 @@
 const { show, text } = require('./arguments')
 const { flawOf } = require('./text')
 
-/** @returns {string} what can be uttered at once, or a failure */
+/** Return a text that can be uttered as one message; fail otherwise. @returns {string} */
 function utterance (context, name, value, longest) {
   const words = text(context, name, value)
   const flaw = flawOf(words, longest)
@@ -10,7 +10,7 @@ function utterance (context, name, value, longest) {
   return words
 }
 
-/** @returns {string} what can be said at once: an utterance that is no command */
+/** Return a text that can be said: an utterance that is not a command. @returns {string} */
 function speech (context, name, value, longest) {
   const words = utterance(context, name, value, longest)
   if (words.trimStart().startsWith('/')) context.fail(`${name} must not begin with a slash, agents have no commands; it is ${show(words)}`)

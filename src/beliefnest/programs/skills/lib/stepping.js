@@ -1,17 +1,17 @@
 'use strict'
-/** Going straight on, without a search for a way. */
+/** Walking straight ahead, without a search for a path. */
 const { until } = require('./waiting')
 
 /**
- * Go on to where the bot looks until a condition holds. It is judged step by step: a busy machine takes many
- * steps at once, and who looks after them is far beyond.
+ * Walk in the direction of view until a condition holds. The condition is checked at every physics step: a busy
+ * machine makes many steps at once, and a check after them would come too late.
  * @returns {Promise<boolean>} true if it came to hold within `limit` ticks
  */
 async function stepUntil (context, condition, limit) {
   const { bot, listen } = context
   let arrived = false
   let fault = null
-  // Whoever makes the steps must not get what is thrown to a program that has ended.
+  // Keep a fault of the condition here: physics must not throw the error of a program that has ended.
   const stop = listen('physicsTick', () => {
     if (arrived || fault !== null) return
     try {

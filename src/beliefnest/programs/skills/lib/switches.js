@@ -5,14 +5,14 @@ const { isUnseen, nameOf } = require('./known')
 const { answered } = require('./answers')
 const { until } = require('./waiting')
 
-// A wooden button comes out again after 30 ticks.
+// A wooden button stays pressed for 30 ticks.
 const PRESSED_TICKS = 40
 
 const LEVER = { called: 'lever', is: name => name === 'lever' }
 const DOOR = { called: 'door', is: name => /(_door|_trapdoor|_fence_gate)$/.test(name) }
 const BUTTON = { called: 'button', is: name => name.endsWith('_button') }
 
-/** Go to a lever and brings it into a state; does nothing if it is in it already. */
+/** Go to a lever and switch it on or off; do nothing if it is in that state already. */
 async function switchLever (context, leverPosition, powered) {
   const { bot, fail } = context
   const { position, block } = await goTo(context, leverPosition, LEVER)
@@ -22,14 +22,14 @@ async function switchLever (context, leverPosition, powered) {
   if (block().getProperties().powered !== powered) fail(`the lever at ${show(position)} did not move. Go nearer and try again.`)
 }
 
-/** Go to a button and presses it; one that is pressed already is waited for first. */
+/** Go to a button and press it; if it is pressed already, first wait until it comes out. */
 async function pressButton (context, buttonPosition) {
   const { bot, fail } = context
   const { position, block } = await goTo(context, buttonPosition, BUTTON)
   const pressed = () => block().getProperties().powered
   if (!await until(context, () => !pressed(), PRESSED_TICKS)) fail(`the button at ${show(position)} stays pressed. Try again later.`)
   let moved = false
-  // A button that the server is slow to tell of may be out again by then.
+  // Listen for the change: on a slow server the button may be out again before the answer arrives.
   const stop = context.listen(`blockUpdate:${position}`, () => { moved ||= pressed() })
   try {
     await bot.activateBlock(block())
@@ -40,7 +40,7 @@ async function pressButton (context, buttonPosition) {
   if (!moved) fail(`the button at ${show(position)} did not move. Go nearer and try again.`)
 }
 
-/** Go to a door, a trapdoor or a gate and opens or shuts it; does nothing if it is so already. */
+/** Go to a door, trapdoor or gate and open or shut it; do nothing if it is in that state already. */
 async function useDoor (context, doorPosition, open) {
   const { bot, fail } = context
   const position = blockPosition(context, 'position', doorPosition)
@@ -57,7 +57,7 @@ async function useDoor (context, doorPosition, open) {
   if (block().getProperties().open !== open) fail(`the ${name} at ${show(position)} did not move. Go nearer and try again.`)
 }
 
-/** Walk to a switch; `block` looks it up, and fails if it is no such switch any more. */
+/** Walk to a switch. The returned `block()` looks the block up, and fails if it is no such switch any more. */
 async function goTo (context, place, { called, is }) {
   const { bot, fail } = context
   const position = blockPosition(context, 'position', place)

@@ -1,16 +1,17 @@
 'use strict'
-/** What an agent can utter at once: say, whisper, think, or call a gesture; and what it can write on a sign. */
+/** Limits of texts: of one utterance (say, whisper, think or gesture) and of a sign. */
 
 const LONGEST = 256
 const SIGN_LINES = 4
 const SIGN_LINE = 45
-// C0 and C1 controls (line breaks and ESC among them) and the two separators of lines that are none.
+// C0 and C1 control characters (line breaks and ESC among them) and the separators U+2028 and U+2029.
 const CONTROLS = /[\u0000-\u001f\u007f-\u009f\u2028\u2029]/ // eslint-disable-line no-control-regex -- these are what is looked for
 
 /**
+ * Return what is wrong with an utterance, as the end of a sentence.
  * @param {string} text
  * @param {number} [longest] in UTF-16 units, as the game counts
- * @returns {string | null} what the text would have to be instead; null if it can be uttered
+ * @returns {string | null} the requirement that the text breaks; null if the text can be uttered
  */
 function flawOf (text, longest = LONGEST) {
   if (text.length > longest) return `must have at most ${longest} characters; it has ${text.length}. Say it in parts`
@@ -20,7 +21,10 @@ function flawOf (text, longest = LONGEST) {
   return `must be one line without control characters; character ${found.index + 1} is U+${code}. Say lines one after the other`
 }
 
-/** @returns {string | null} what a text would have to be instead for a sign; null if it can be written */
+/**
+ * Return what is wrong with the text of a sign, as the end of a sentence; null if it can be written.
+ * @returns {string | null}
+ */
 function signFlawOf (text) {
   const lines = text.split('\n')
   if (lines.length > SIGN_LINES) return `must have at most ${SIGN_LINES} lines; it has ${lines.length}. Use another sign`

@@ -2,7 +2,7 @@
 
 const TICK_MS = 50
 
-/** Resolve after a number of ticks of a clock that counts milliseconds; never once the signal is aborted. */
+/** Resolve after a number of ticks of real time (50 ms each); never once the signal is aborted. */
 function byTimer (number, signal) {
   return new Promise(resolve => {
     const timer = setTimeout(resolve, number * TICK_MS)
@@ -15,7 +15,7 @@ function ticks ({ wait }, number) {
   return wait(number)
 }
 
-/** Look at a condition every tick; @returns {Promise<boolean>} true if it held within `limit` ticks */
+/** Check a condition every tick. @returns {Promise<boolean>} true if it held within `limit` ticks */
 async function until ({ wait }, condition, limit) {
   for (let passed = 0; !condition(); passed++) {
     if (passed >= limit) return false
@@ -25,9 +25,10 @@ async function until ({ wait }, condition, limit) {
 }
 
 /**
- * @param {(number: number) => Promise<void>} wait for ticks
- * @returns {(action: () => any) => Promise<any>} runs actions one after the other, each that had to wait in a tick of its
- *   own; who waits for nobody is not held up
+ * Return a function that runs actions one after the other. An action that has to wait for another one starts in a new
+ * tick; an action that does not have to wait starts at once.
+ * @param {(number: number) => Promise<void>} wait resolves after a number of ticks
+ * @returns {(action: () => any) => Promise<any>}
  */
 function turns (wait) {
   let last = null

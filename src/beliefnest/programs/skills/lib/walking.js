@@ -1,5 +1,5 @@
 'use strict'
-/** Walking: every walk ends where it was to go, or in an error that says how near it came. */
+/** Walking. Every walk ends at its goal, or in an error that says how far away the bot is. */
 const { until } = require('./waiting')
 const { show } = require('./arguments')
 const { passDoors } = require('./doors')
@@ -25,7 +25,7 @@ const noPath = () => Object.assign(new Error('no way'), { name: 'NoPath' })
 const rounded = ({ x, y, z }) => show({ x: Math.round(x * 10) / 10, y: Math.round(y * 10) / 10, z: Math.round(z * 10) / 10 })
 const centreOf = block => block.offset(0.5, 0.5, 0.5)
 
-/** Stand still: what is left of the last step would carry on. */
+/** Stop moving and wait until the bot stands; otherwise the speed of its last step would carry it on. */
 async function settle (context) {
   const { bot } = context
   bot.clearControlStates()
@@ -33,7 +33,10 @@ async function settle (context) {
   await until(context, () => Math.abs(velocity.x) < STILL && Math.abs(velocity.z) < STILL && bot.entity.onGround, SETTLE_TICKS)
 }
 
-/** One search for a way, and the walk along it; @returns {Promise<Error | null>} why it ended early */
+/**
+ * Search once for a path and walk along it.
+ * @returns {Promise<Error | null>} the reason why the walk ended early; null if it did not
+ */
 async function attempt (context, goal) {
   try {
     await context.bot.pathfinder.goto(goal)
@@ -47,12 +50,14 @@ async function attempt (context, goal) {
 }
 
 /**
+ * Walk to a goal, through doors if needed; fail if the bot does not arrive.
  * @param {object} context of the skill
- * @param {object} goal of the pathfinder
- * @param {() => boolean} arrived judged by where the bot really stands
- * @param {Vec3} target for the message
- * @param {string} what for the message, e.g. "the chest"
- * @param {{openDoors: boolean, closeDoors: boolean}} doors what may be done with those on the way
+ * @param {object} goal goal of the pathfinder
+ * @param {() => boolean} arrived true if the bot's true position meets the goal
+ * @param {Vec3} target position for the message
+ * @param {string} what name of the target for the message, e.g. "the chest"
+ * @param {{openDoors: boolean, closeDoors: boolean}} doors whether to open shut doors on the way, and whether to shut
+ *   doors afterwards
  */
 async function walk (context, goal, arrived, target, what, doors = ANY_DOOR) {
   const { bot, fail } = context
@@ -81,8 +86,8 @@ async function walkNear (context, target, dist, what = 'the position', doors = A
 const SAMPLES = [[0, 0, 0], [0.45, 0, 0], [-0.45, 0, 0], [0, 0.45, 0], [0, -0.45, 0], [0, 0, 0.45], [0, 0, -0.45]]
 
 /**
- * Whether a block can be used from an eye with ease: near enough, with nothing before its centre or one of its sides.
- * Rays leave out the block the eye is in, whose boxes the server does not leave out.
+ * Return true if a block can easily be used from an eye: it is near enough, and nothing obstructs its centre or one of
+ * its sides. The raycast leaves out the block that contains the eye; `canSee` does not, as the server does not.
  */
 function canUse (bot, eye, block) {
   if (eye.distanceTo(centreOf(block)) > REACH) return false
@@ -94,25 +99,22 @@ function canUse (bot, eye, block) {
   }) && canSee(bot, eye, block)
 }
 
-/** Whether the server finds a free line from an eye to a block. */
+/** Return true if the server finds a free line from an eye to a block. */
 const canSee = (bot, eye, block) => sees(shapesOf(bot), eye, block)
 
-/** A goal of the pathfinder, and whether it is reached, judged by the eyes of who stands at a place. */
+/** Return a pathfinder goal and a function `arrived`, both judged from the eye of a player at a position. */
 function viewpoint ({ bot, goals }, block, accepts) {
   const goal = new goals.GoalNear(block.x, block.y, block.z, REACH)
   goal.isEnd = node => accepts(node, node.offset(0.5, EYE_HEIGHT, 0.5))
   const arrived = () => {
     const { position } = bot.entity
-    // The last step ends somewhere in the block that was aimed at.
+    // The last step may end anywhere in the target block.
     return accepts(position.floored(), position.offset(0, EYE_HEIGHT, 0)) || goal.isEnd(position.floored())
   }
   return { goal, arrived }
 }
 
-/**
- * What can be used from the middle of the block somebody stands on cannot always be from its edge: goes there
- * if the server would refuse it from here.
- */
+/** Go to the middle of the bot's block if the server refuses the use from here but would accept it from there. */
 async function stepToView (context, block) {
   const { bot } = context
   const middle = bot.entity.position.floored().offset(0.5, 0, 0.5)

@@ -1,4 +1,4 @@
-/** Makes the page's program and style: `node build.js [OUTDIR]`; Python puts them into the page. */
+/** Build of the page's program and style sheet: `node build.js [OUTDIR]`. Python inserts both into the page. */
 
 import fs from 'node:fs'
 import path from 'node:path'
@@ -27,7 +27,7 @@ async function build (outdir) {
   fs.writeFileSync(path.join(outdir, 'packages.json'), `${JSON.stringify(packages, null, 1)}\n`)
 }
 
-/** @returns {object} version and licence by name of the packages that the program has code of */
+/** Return version and licence, by name, of the packages whose code is in the program. @returns {object} */
 function packagesOf (metafile) {
   const found = {}
   for (const input of Object.keys(metafile.inputs)) {

@@ -14,7 +14,7 @@ export default [
     files: ['**/*.js'],
     languageOptions: { ecmaVersion: 2024, sourceType: 'module' },
     linterOptions: { reportUnusedDisableDirectives: 'error' },
-    // A module is strict by itself.
+    // Modules are always in strict mode.
     rules: { ...rules, strict: 'off' }
   },
   { files: ['src/**/*.js'], languageOptions: { globals: Object.fromEntries(BROWSER.map(name => [name, 'readonly'])) } },

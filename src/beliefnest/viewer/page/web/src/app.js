@@ -1,4 +1,4 @@
-/** The parts of the page, and how they are drawn together. */
+/** Parts of the page, and how they are drawn together. */
 
 import { Clock } from './clock.js'
 import { Detail } from './detail.js'
@@ -32,7 +32,7 @@ export class App {
     this.drawHeader()
   }
 
-  /** Draw with the next picture of the browser, once. */
+  /** Draw in the browser's next animation frame, at most once per frame. */
   later () {
     this.due ??= requestAnimationFrame(() => {
       this.due = undefined
@@ -55,7 +55,11 @@ export class App {
     this.clock.draw(scene)
   }
 
-  /** @returns {object} what is chosen, made whole: what an address tells may not be there any more */
+  /**
+   * Return the current selection with defaults in place of missing parts; an address may name things that no longer
+   * exist.
+   * @returns {object}
+   */
   scene () {
     const choice = this.chooser.choice
     const run = this.runs[choice.run] ?? this.runs[0]
@@ -72,7 +76,7 @@ export class App {
     return Object.assign(scene, this.view(scene, track, tick))
   }
 
-  /** What an agent sees in a track, and its look at what is chosen. */
+  /** Return the blocks that an agent sees in a track, and its line of sight to the chosen thing. */
   view ({ run, viewer, chosen }, track, tick) {
     if (viewer === null) return { look: null, seen: null, seenVersion: '', ray: null }
     const runs = this.source.sight(run, track, tick, viewer)
@@ -135,7 +139,7 @@ export class App {
     }
   }
 
-  /** A run has grown: goes on with it, if the end was looked at, and to what was asked for. */
+  /** Show the new part of a run that has grown: move on if its end was shown, and go to the requested place. */
   grown (number) {
     const wanted = this.waitingFor
     if (wanted && this.runs[wanted.run].timelines[wanted.on]?.track(wanted.at)) {

@@ -1,10 +1,10 @@
-/** What is looked at: kept in the address, so that every view has a link. */
+/** Selection of what the page shows. The address keeps it, so that every view has a link. */
 
 const NUMBERS = new Set(['run', 'on', 'tick'])
 
 export const DEFAULTS = { run: 0, on: 0, at: '/', beside: '/', tick: null, thing: null, sees: null, view: null, cut: null, note: null }
 
-/** @returns {object} the choice that an address's hash tells */
+/** Return the selection that an address's hash encodes. @returns {object} */
 export function readHash (hash, first = {}) {
   const told = Object.fromEntries(new URLSearchParams(hash.replace(/^#/, '')))
   const choice = { ...DEFAULTS, ...first }
@@ -21,9 +21,11 @@ export function hashOf (choice) {
   return '#' + told.map(([name, value]) => `${name}=${encodeURIComponent(value).replaceAll('%2F', '/')}`).join('&')
 }
 
-/** The choice, its listeners, and the address. */
+/** Selection, its listeners, and the address that keeps it. */
 export class Chooser {
-  /** @param {object} first - what is shown where the address tells nothing */
+  /**
+   * @param {object} first - selection where the address says nothing
+   */
   constructor (first) {
     this.choice = readHash(location.hash, first)
     this.listeners = []
@@ -38,7 +40,7 @@ export class Chooser {
     for (const listener of this.listeners) listener(this.choice, changes)
   }
 
-  /** Write the address, not more than ten times a second: browsers refuse more. */
+  /** Write the address, at most ten times a second: browsers refuse more. */
   keepAddress () {
     if (this.waiting) return
     this.waiting = setTimeout(() => {
@@ -46,7 +48,7 @@ export class Chooser {
       try {
         history.replaceState(null, '', hashOf(this.choice))
       } catch {
-        // In a frame without an address of its own there is nothing to be kept.
+        // A frame without an address of its own cannot keep the selection.
         this.keepAddress = () => {}
       }
     }, 100)

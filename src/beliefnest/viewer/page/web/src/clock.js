@@ -1,4 +1,4 @@
-/** Time below the pictures: scrubbing, playing, what happened, who perceived it, branches to jump into. */
+/** Time line below the pictures: scrubbing, playing, events and who perceived them, branches to jump to. */
 
 import { badge, button, element, refill, seconds, svg } from './elements.js'
 import { claimNoteOf, notesOf, verdictWords } from './notes.js'
@@ -146,7 +146,7 @@ export class Clock {
   }
 }
 
-/** A path, cut in its middle where there is no room for it: its end tells whose belief it is. */
+/** Return an element with a path. A long path is cut in its middle, because its end names the believing agent. */
 function pathName (kind, path, before = '') {
   const tail = path.slice(-Math.min(TAIL, Math.floor(path.length / 2)))
   return element('span', { class: `${kind} cut`, title: path }, element('span', { class: 'head' }, `${before}${path.slice(0, path.length - tail.length)}`), element('span', { class: 'tail' }, tail))
@@ -157,7 +157,10 @@ function claimLine (said, kind, verdict) {
   return element('span', { class: 'claim' }, `claims: ${said}`, kind ? element('strong', { class: 'mark false' }, ` ${kind}`) : null, told ? ` · ${told}` : null)
 }
 
-/** @returns {object[]} events and notes of a timeline in order; walking is not listed, nor block updates but for what is written on signs */
+/**
+ * Return events and notes of a timeline in order. Walking is left out, and so are block updates except texts on signs.
+ * @returns {object[]}
+ */
 function listed (run, timeline) {
   const mark = `${timeline.events.length} ${run.programs.length} ${run.prompts.length}`
   if (timeline.listed?.mark !== mark) {

@@ -1,4 +1,4 @@
-/** Words beside the pictures: what a simulator holds, and why it holds what was clicked. */
+/** Texts beside the pictures: the content of a simulator, and the reasons for the clicked belief. */
 
 import { badge, button, element, itemsText, pointText, refill } from './elements.js'
 import { lookWords } from './ray.js'
@@ -59,7 +59,7 @@ export class Detail {
     this.shown = version
     if (noted) refill(this.chosen, ...noteParts(noted))
     else if (choice.thing) this.drawThing(scene)
-    else refill(this.chosen, element('p', { class: 'hint' }, 'Click an agent, a container, a block or an event: why it is held is told here.'))
+    else refill(this.chosen, element('p', { class: 'hint' }, 'Click an agent, a container, a block or an event to see here why it is believed.'))
   }
 
   drawThing (scene) {
@@ -75,7 +75,7 @@ export class Detail {
       element('h4', {}, 'Why'), why,
       button('Copy a link to this', 'copy a link to this view', event => copyLink(event.currentTarget), { class: 'link' }))
     clearTimeout(this.waiting)
-    // While time runs there is no need to ask at every tick.
+    // While time runs, do not ask at every tick.
     this.waiting = setTimeout(() => this.explain(scene, thing, why), this.source.live ? 120 : 0)
   }
 
@@ -98,7 +98,7 @@ export class Detail {
   }
 }
 
-/** @returns {string} whose belief a simulator is */
+/** Return the words that say whose belief a simulator is. @returns {string} */
 export function believesText (track) {
   if (track.path === '/') return 'Reality'
   if (track.path === track.timeline.facts.path) return `${track.path}, acted out`
@@ -136,7 +136,10 @@ function blockText ({ text, says }) {
   return says === undefined ? text : `${text} that says “${says}”`
 }
 
-/** What the data itself says of a thing, where the whole chain was not written into the page. */
+/**
+ * Return elements with the grounds that the page's own data has for a belief, for pages without the full chain of
+ * perceptions.
+ */
 function groundParts (run, track, tick, thing) {
   const number = Number(thing.slice(1))
   const held = thing[0] === 'c' ? track.contents(number, tick) : thing[0] === 'a' ? track.agent(number, tick) : null
@@ -147,7 +150,7 @@ function groundParts (run, track, tick, thing) {
     const source = teller !== null ? `${teller} said so` : held.source === 'prior' ? 'a prior belief' : `${held.source}${event}`
     parts.push(element('p', {}, held.current ? 'It is perceived at this tick.' : `It rests on tick ${held.seenAt}: ${source}.`))
   }
-  parts.push(element('p', { class: 'hint' }, 'The whole chain of perceptions is told by “beliefnest serve RUN”.'))
+  parts.push(element('p', { class: 'hint' }, 'Run “beliefnest serve RUN” to see the whole chain of perceptions.'))
   return parts
 }
 

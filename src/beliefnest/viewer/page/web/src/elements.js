@@ -1,4 +1,4 @@
-/** Elements from data; texts are texts, whatever is in them. */
+/** Elements from data. Strings become text nodes, never markup. */
 
 const SVG = 'http://www.w3.org/2000/svg'
 
@@ -25,17 +25,17 @@ function present (children) {
   return children.filter(child => child !== null && child !== undefined)
 }
 
-/** Put children, those that are there, in place of an element's own. */
+/** Replace an element's children; children that are null or undefined are left out. */
 export function refill (parent, ...children) {
   parent.replaceChildren(...present(children))
 }
 
-/** A button with words, or with a sign whose words are read aloud and shown when pointed at. */
+/** Return a button that shows a sign, with words for screen readers and as a tooltip. */
 export function button (sign, words, onclick, attributes = {}) {
   return element('button', { type: 'button', title: words, 'aria-label': words, onclick, ...attributes }, sign)
 }
 
-/** An agent's disc: its letters and rings tell it apart where colours do not. */
+/** Return an agent's disc. Letters and rings distinguish agents for readers who cannot distinguish the colours. */
 export function badge (look, { small = false, ghost = false } = {}) {
   const made = element('span', { class: `badge${small ? ' small' : ''}${ghost ? ' ghost' : ''}`, 'aria-hidden': 'true' }, look.badge)
   made.style.background = look.colour
@@ -48,7 +48,7 @@ export function seconds (ticks) {
   return `${(ticks / 20).toFixed(1)} s`
 }
 
-/** @returns {string} a number with its noun */
+/** Return a number with its noun, such as "2 events". @returns {string} */
 export function count (number, noun) {
   return number === 1 ? `1 ${noun}` : `${number} ${noun}s`
 }

@@ -1,11 +1,12 @@
-/** Labels that do not lie over each other. */
+/** Placement of labels without overlaps. */
 
 const TRIES = 8
 
 /**
- * @param {object[]} taken - boxes that are taken: left, top, width, height
- * @param {object} wanted - the box that is wanted
- * @returns {object} the nearest free box above it or below it
+ * Return the free box nearest to the wanted one, above or below it.
+ * @param {object[]} taken - boxes of other labels: left, top, width, height
+ * @param {object} wanted - the wanted box
+ * @returns {object}
  */
 export function apart (taken, wanted) {
   for (let step = 0; step <= TRIES; step++) {

@@ -1,4 +1,4 @@
-/** The page: reads its data, and draws what is chosen. */
+/** Entry point of the page: reads its data and draws the selection. */
 
 import { Chooser } from './choice.js'
 import { App } from './app.js'
@@ -33,18 +33,21 @@ function take (runs, number, told) {
   runs[number].put(told)
 }
 
-/** Where nothing was chosen yet, what the scenario asks about is shown, beside reality. */
+/**
+ * Return the first view, for an address without a selection: the simulator that the scenario asks about, beside
+ * reality.
+ */
 function firstView (runs, first) {
   const [asked] = runs[0].head.asked
   return { ...(asked === undefined ? {} : { at: asked }), ...first }
 }
 
-/** A cookie knows the token by now; nobody is to read it off the address. */
+/** Remove the token from the address, where others could read it; a cookie holds it now. */
 function forgetToken () {
   if (location.search) history.replaceState(null, '', location.pathname + location.hash)
 }
 
-/** Wait for a run that has not begun yet. */
+/** Wait for the beginning of a run. */
 async function waiting (runs, content) {
   refill(root, element('p', { class: 'failed', role: 'status' }, 'The run has not begun yet …'))
   await new Promise(resolve => {
@@ -59,7 +62,7 @@ async function waiting (runs, content) {
   })
 }
 
-/** Take what the server tells of runs that go on; a stream that broke off goes on where it was. */
+/** Receive what the server sends about runs in progress; after a break, continue where the stream stopped. */
 function follow (app, runs, source, content) {
   const stream = new EventSource(`api/live?from=${content.count}`)
   stream.onmessage = ({ data, lastEventId }) => {
@@ -70,7 +73,7 @@ function follow (app, runs, source, content) {
     app.grown(run)
   }
   stream.onerror = () => {
-    app.tell('The server does not answer; what is shown is what it told last.')
+    app.tell('The server does not answer. The page shows the last data it received.')
     stream.close()
     setTimeout(() => follow(app, runs, source, content), 1000)
   }

@@ -1,8 +1,8 @@
-/** Programs, prompts and answers of models, as marks on the time line and as texts. */
+/** Programs, prompts and model responses, as marks on the time line and as texts. */
 
 import { count } from './elements.js'
 
-/** @returns {object[]} what to list beside events: t, key, text, actor */
+/** Return the notes to list beside events: t, key, text, actor. @returns {object[]} */
 export function notesOf (run, timeline) {
   const { path, branch } = timeline.facts
   const programs = run.programs.map((each, number) => ({ each, number }))
@@ -14,7 +14,7 @@ export function notesOf (run, timeline) {
   return [...programs, ...prompts]
 }
 
-/** @returns {object|null} title, facts and texts of a note */
+/** Return title, facts and texts of a note; null if there is none of that name. @returns {object|null} */
 export function noteNamed (run, name) {
   const [kind, number] = (name ?? '').split('-')
   if (kind === 'program' && run.programs[number]) return programNote(run.programs[number])
@@ -23,12 +23,12 @@ export function noteNamed (run, name) {
   return null
 }
 
-/** @returns {string} the name of the note of an event with claims */
+/** Return the name of the note of an event with claims. @returns {string} */
 export function claimNoteOf (timeline, number) {
   return `claim-${timeline.number}.${number}`
 }
 
-/** @returns {string} what became of a claim in a simulator, shortly; empty: nothing that is known */
+/** Return the outcome of a claim in a simulator in a few words; empty if it is unknown. @returns {string} */
 export function verdictWords (verdict) {
   if (verdict === null) return ''
   const condition = verdict.condition === null ? '' : ` (${verdict.condition})`

@@ -1,4 +1,4 @@
-/** A simulator from above: blocks on a canvas, and over it what can be pointed at. */
+/** Simulator from above: blocks on a canvas, and clickable shapes on top of it. */
 
 import { element, refill, svg } from './elements.js'
 import { apart } from './labels.js'
@@ -12,7 +12,7 @@ const BOLD = 7.6
 const RING = 1.4
 const LINE = 14
 
-/** Draws plans into an element that it fills. */
+/** Plan of a simulator, drawn into an element that it fills. */
 export class Plan {
   constructor (choose) {
     this.choose = choose
@@ -23,6 +23,7 @@ export class Plan {
   }
 
   /**
+   * Draw a scene.
    * @param {object} scene - run, track, tick, things, storey, seen (Uint8Array or null), ray, chosen, dark
    */
   draw (scene) {
@@ -66,17 +67,17 @@ export class Plan {
     }
   }
 
-  /** @returns {number[]} where a point of the world lies on the plan */
+  /** Return where a point of the world lies on the plan. @returns {number[]} */
   at (x, z) {
     return [(x - this.low[0]) * this.size, (z - this.low[2]) * this.size]
   }
 
-  /** What of the plan agents take, which no text is to lie on. */
+  /** Return the boxes that agents take on the plan; no text may lie on them. */
   discs ({ things }) {
     const r = this.radius()
     return things.agents.filter(each => each.pose !== null).map(({ pose }) => {
       const [x, y] = this.at(pose.x, pose.z)
-      // A ring around it is wider; its own name begins just below it.
+      // The ring around the agent is wider than its disc; the agent's own name begins just below it.
       return { left: x - RING * r, top: y - r, width: 2 * RING * r, height: 2 * r - 1 }
     })
   }
@@ -85,7 +86,7 @@ export class Plan {
     return Math.max(7, 0.42 * this.size)
   }
 
-  /** A text near a thing, moved up or down where it would lie over another one. */
+  /** Return a text near a thing, moved up or down if it would overlap another one. */
   label (x, y, text, wrong) {
     const width = (wrong ? BOLD : LETTER) * text.length
     const free = apart(this.labelled, { left: x - width / 2, top: y - LINE, width, height: LINE })
@@ -210,7 +211,7 @@ function paintCell (paint, run, at, state, below, tones) {
   }
 }
 
-/** A block's boxes from above; one that stands open is drawn as its thin side. */
+/** Draw a block's boxes from above; an open door is drawn as its thin side. */
 function shape (paint, [i, k, scale], block, tones) {
   for (const [x0, , z0, x1, , z1] of block.boxes) {
     const [left, top] = [(i + x0 / 32) * scale, (k + z0 / 32) * scale]

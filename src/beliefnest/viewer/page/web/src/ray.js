@@ -1,11 +1,12 @@
-/** The line of a look that Python judged, for drawing. */
+/** Lines of sight, judged by Python, as data for drawing. */
 
 const EYE = 1.62
 const MIDDLE = 0.9
 
 /**
- * @param {Array|null} look - how it ended, distance, [x, y, z, name] of the blocker or null
- * @returns {object|null} from, to, stop, whether it is seen, blocker; null where there is no line
+ * Return a line of sight for drawing.
+ * @param {Array|null} look - outcome, distance, and [x, y, z, name] of the obstructing block or null
+ * @returns {object|null} from, to, stop, whether the target is seen, blocker; null if there is no line
  */
 export function rayOf (run, track, tick, viewer, thing, look) {
   const here = track.agent(viewer, tick)
@@ -27,7 +28,7 @@ function targetOf (run, track, tick, thing) {
   return { x: x + 0.5, y: y + 0.5, z: z + 0.5 }
 }
 
-/** Where a line comes to the cell of a block. */
+/** Return where a line enters the cell of a block. */
 function entry (from, to, cell) {
   let first = 0
   ;['x', 'y', 'z'].forEach((axis, at) => {
@@ -40,7 +41,7 @@ function entry (from, to, cell) {
   return Object.fromEntries(['x', 'y', 'z'].map(axis => [axis, from[axis] + share * (to[axis] - from[axis])]))
 }
 
-/** @returns {string} a look in words */
+/** Return a line of sight in words. @returns {string} */
 export function lookWords (run, viewer, thing, look) {
   const name = run.head.agents[viewer].name
   const target = run.thingName(thing)

@@ -1,4 +1,4 @@
-/** The rounds of an episode: who did what in each, when the goal was reached, branches at a round. */
+/** Rounds of an episode: the acts of each agent per round, when the goal was reached, branches from a round. */
 
 import { badge, element, refill } from './elements.js'
 
@@ -35,7 +35,7 @@ export class Rounds {
     this.at = now
   }
 
-  /** Scroll to a round, and leaves the rest of the page where it is. */
+  /** Scroll to a round, without moving the rest of the page. */
   show (round) {
     if (round) this.element.scrollTop = round.offsetTop - (this.element.clientHeight - round.offsetHeight) / 2
   }
@@ -99,18 +99,18 @@ export class Rounds {
   }
 }
 
-/** @returns {boolean} true if a branch of an episode can still go on */
+/** Return true if a branch of an episode can still continue. @returns {boolean} */
 function isOpen (run, branch) {
   const played = new Set(branch.parts.map(part => part.round)).size
   return branch.reached === null && branch.violated === null && played < run.episode.rounds
 }
 
-/** @returns {object|undefined} the timeline of the real world that a timeline is, or comes from */
+/** Return the timeline of the real world that a timeline is, or belongs to. @returns {object|undefined} */
 function realLine (run, timeline) {
   return timeline.facts.path === '/' ? timeline : run.timelines[0]
 }
 
-/** @returns {object[]} branches of the real world that begin where a round does */
+/** Return the branches of the real world that begin at the start of a round. @returns {object[]} */
 function forksAt (run, line, part) {
   return run.timelines.filter(other => other.base === line && other.facts.path === '/' && other.facts.start === part.t && run.episode.branches[other.facts.branch])
 }

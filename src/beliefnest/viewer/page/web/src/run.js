@@ -1,6 +1,6 @@
 /**
- * A run as Python exported it: timelines, and on each of them tracks of simulators, as rows that begin
- * with a tick. Updates add rows; nothing here works out what anybody believes.
+ * Run as Python exported it: timelines, and for each timeline tracks of simulators. A track consists of rows that
+ * begin with a tick. Updates add rows; this module computes no beliefs.
  */
 
 export const UNKNOWN = 0
@@ -9,7 +9,7 @@ export const STALE = 2
 
 const MILLI = 1000
 
-/** @returns {number} index of the last row at or before a tick; -1 if there is none */
+/** Return the index of the last row at or before a tick; -1 if there is none. @returns {number} */
 export function rowIndex (rows, tick, tickOf = row => row[0]) {
   let low = 0
   let high = rows.length
@@ -30,7 +30,7 @@ function put (list, [first, rows]) {
   for (const row of rows) list.push(row)
 }
 
-/** Where one agent stood in the world of a timeline. */
+/** Poses of one agent in the world of a timeline. */
 class Stand {
   constructor () {
     this.ticks = []
@@ -57,7 +57,7 @@ function poseOf ([x, y, z, yaw, pitch]) {
   return { x: x / MILLI, y: y / MILLI, z: z / MILLI, yaw: yaw / MILLI, pitch: pitch / MILLI }
 }
 
-/** What one simulator holds over the ticks of one timeline. */
+/** Content of one simulator over the ticks of one timeline. */
 class Track {
   constructor (timeline, path) {
     this.timeline = timeline
@@ -82,7 +82,7 @@ class Track {
     return this.lists[name] ?? []
   }
 
-  /** @returns {Int16Array} numbers of block states; -1 is unknown. It changes with the next call. */
+  /** Return numbers of block states; -1 is unknown. The next call overwrites the array. @returns {Int16Array} */
   grid (tick) {
     if (this.first === null) return new Int16Array(0)
     const rows = this.list('blocks')
@@ -97,12 +97,12 @@ class Track {
     return this.cursor.grid
   }
 
-  /** @returns {string} the same for as long as no block changes */
+  /** Return a text that stays the same as long as no block changes. @returns {string} */
   gridVersion (tick) {
     return `${this.timeline.number} ${this.path} ${rowIndex(this.list('blocks'), tick)} ${this.list('blocks').length}`
   }
 
-  /** @returns {object|null} where an agent is believed to be; null if that is unknown */
+  /** Return the believed pose of an agent; null if it is unknown. @returns {object|null} */
   agent (number, tick) {
     const row = rowAt(this.list(`agents ${number}`), tick)
     if (row === undefined || row[1] === UNKNOWN) return null
@@ -118,13 +118,16 @@ class Track {
     return { ...poseOf(pose), current, seenAt: current ? tick : seenAt, source, holds, speaker }
   }
 
-  /** @returns {Array} [items, complete] an agent is believed to have */
+  /**
+   * Return [items, complete]: the items that an agent is believed to have, and whether they are all.
+   * @returns {Array}
+   */
   owned (number, tick) {
     const row = rowAt(this.list(`owns ${number}`), tick)
     return row === undefined ? [{}, false] : [row[1], row[2]]
   }
 
-  /** @returns {number[]} cells of containers whose contents are told of at any tick */
+  /** Return the cells of containers whose contents are known at any tick. @returns {number[]} */
   cells () {
     const names = Object.keys(this.lists).filter(name => name.startsWith('contents '))
     return names.map(name => Number(name.slice(9))).sort((a, b) => a - b)
@@ -137,18 +140,22 @@ class Track {
     return { items, complete, current, seenAt: current ? tick : seenAt, source, event, speaker }
   }
 
-  /** @returns {object|null} whether a claim was believed and by which condition of the semantics; null: it was not heard, or nobody asks */
+  /**
+   * Return whether a claim was believed, and by which condition of the semantics; null if the simulator's agent did
+   * not hear it or the run has no verdict.
+   * @returns {object|null}
+   */
   verdict (event, claim) {
     const row = this.list('claims').find(each => each[0] === event && each[1] === claim)
     return row === undefined ? null : { believed: row[2], condition: row[3] }
   }
 
-  /** @returns {string[]} what is false: see `wrong.py` */
+  /** Return the keys of the false beliefs at a tick, such as "c12" for a container: see `wrong.py`. @returns {string[]} */
   wrong (tick) {
     return rowAt(this.list('wrong'), tick)?.[1] ?? []
   }
 
-  /** @returns {Map} dropped items by number */
+  /** Return the dropped items by number. @returns {Map} */
   items (tick) {
     const lying = new Map()
     for (const [when, number, item] of this.list('items')) {
@@ -172,7 +179,7 @@ function unrolled (runs) {
   return grid
 }
 
-/** One timeline: facts about it, what happened, where agents stood in its world, tracks. */
+/** Timeline: facts about it, its events, poses of agents in its world, tracks. */
 class Timeline {
   constructor (run, number) {
     this.run = run
@@ -201,7 +208,9 @@ class Timeline {
     return this.facts.base === null ? null : this.run.timelines[this.facts.base.timeline]
   }
 
-  /** Where an agent stood in the world of this timeline, or of its base before it began. */
+  /**
+   * Return the pose of an agent in the world of this timeline, or in the world of its base before this timeline began.
+   */
   stand (agent, tick) {
     if (tick < this.facts.start && this.base) return this.base.stand(agent, tick)
     return this.stands[agent]?.at(tick) ?? null
@@ -217,7 +226,7 @@ class Timeline {
   }
 }
 
-/** One run. */
+/** Run of a scenario, with all its timelines. */
 export class Run {
   constructor () {
     this.head = null
@@ -243,7 +252,7 @@ export class Run {
     return this.head.box.shape
   }
 
-  /** @returns {number[]} the position of a cell */
+  /** Return the position of a cell. @returns {number[]} */
   place (cell) {
     const [, height, depth] = this.shape
     const [x, y, z] = this.head.box.low
@@ -261,7 +270,7 @@ export class Run {
     return this.head.labels.find(([x, y, z]) => x === place[0] && y === place[1] && z === place[2])?.[3] ?? null
   }
 
-  /** @returns {string} what people call a thing */
+  /** Return the name of a thing for people. @returns {string} */
   thingName (thing) {
     const number = Number(thing.slice(1))
     if (thing[0] === 'a') return this.head.agents[number].name
@@ -270,7 +279,7 @@ export class Run {
     return this.label(place) ?? `${thing[0] === 'c' ? 'container' : 'block'} at ${place.join(', ')}`
   }
 
-  /** @returns {string} the name by which explanations and looks of a track are kept */
+  /** Return the key under which explanations and lines of sight of a track are stored. @returns {string} */
   nameOf (track) {
     return `${track.timeline.facts.path} ${track.path} ${track.timeline.facts.branch}`
   }

@@ -1,8 +1,8 @@
-/** Where answers come from: from the page itself, or from the server that it comes from. */
+/** Sources of answers: the page's own data, or the server that sent the page. */
 
 import { rowIndex } from './run.js'
 
-/** Answers that were worked out ahead and packed into the page. */
+/** Answers that were computed when the page was written. */
 export class PackedSource {
   live = false
 
@@ -23,12 +23,12 @@ export class PackedSource {
   }
 
   async deepen () {
-    return 'This file carries the beliefs that were written into it. Write it again with ' +
-      '“beliefnest show RUN --html FILE --depth 3”, or look with “beliefnest serve RUN”, which works out any belief when it is asked for.'
+    return 'This file holds only the beliefs that were written into it. Write it again with' +
+      '“beliefnest show RUN --html FILE --depth 3”, or run “beliefnest serve RUN”, which computes any belief on demand.'
   }
 }
 
-/** Answers of `beliefnest serve`; looks come a moment later, and the page draws again then. */
+/** Answers of `beliefnest serve`. Lines of sight arrive later; the page then draws again. */
 export class ServedSource {
   live = true
 
@@ -37,7 +37,7 @@ export class ServedSource {
     this.known = new Map()
   }
 
-  /** What a server does not know yet of a run that goes on is asked for anew when it has grown. */
+  /** Forget all answers, so that the page asks again; called when a run has grown. */
   forget () {
     this.known.clear()
   }

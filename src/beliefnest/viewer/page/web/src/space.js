@@ -1,4 +1,4 @@
-/** A simulator in three dimensions: plain boxes for blocks, figures for agents, labels as text over it. */
+/** Simulator in three dimensions: boxes for blocks, figures for agents, labels as text on top. */
 
 import {
   BoxGeometry, CapsuleGeometry, Color, ConeGeometry, DirectionalLight, EdgesGeometry, Group, HemisphereLight, InstancedMesh,
@@ -25,7 +25,7 @@ const NOSE = new ConeGeometry(0.12, 0.32, 10)
 const RING = new TorusGeometry(0.5, 0.045, 8, 32)
 const UNSEEN = new Color('#55535c')
 
-/** @returns {boolean} true if the browser can draw in three dimensions */
+/** Return true if the browser can draw in three dimensions. @returns {boolean} */
 export function hasWebGL () {
   try {
     return document.createElement('canvas').getContext('webgl2') !== null
@@ -34,7 +34,7 @@ export function hasWebGL () {
   }
 }
 
-/** One picture in three dimensions; several share a camera. */
+/** Picture in three dimensions; several pictures share a camera. */
 export class Space {
   constructor (camera, target, choose, moved) {
     this.choose = choose
@@ -59,7 +59,7 @@ export class Space {
     this.built = null
     this.marks = []
     this.hurried = false
-    // What is made for one picture serves the next: a new material costs more than to draw with it.
+    // Keep materials for later pictures: creating a material costs more than drawing with it.
     this.materials = new Map()
     this.tags = new Map()
     this.listen()
@@ -80,7 +80,10 @@ export class Space {
     this.renderer.forceContextLoss()
   }
 
-  /** @param {object} scene - as for `Plan.draw` */
+  /**
+   * Draw a scene.
+   * @param {object} scene - as for `Plan.draw`
+   */
   draw (scene) {
     this.canvas.setAttribute('aria-label', `${scene.track.path} in three dimensions; the list beside it says what it holds`)
     this.buildBlocks(scene)
@@ -126,18 +129,18 @@ export class Space {
     this.dropTags()
   }
 
-  /** A material by what it looks like, made once. */
+  /** Return the material of that name; create it on first use. */
   material (name, make) {
     if (!this.materials.has(name)) this.materials.set(name, make())
     return this.materials.get(name)
   }
 
-  /** Let go of the lines of the last picture, whose points are their own. */
+  /** Dispose of the lines of the last picture; their points are not shared. */
   dropLines () {
     for (const each of this.figures.children) if (each.userData.own) each.geometry.dispose()
   }
 
-  /** Take away the labels of what is not in the picture any more. */
+  /** Remove the labels of things that are no longer in the picture. */
   dropTags () {
     const shown = new Set(this.marks.map(({ made }) => made))
     for (const [thing, made] of this.tags) {
@@ -259,7 +262,10 @@ export class Space {
   }
 }
 
-/** @returns {object} boxes of blocks up to a storey's head height: what is hidden all around is left out */
+/**
+ * Return the boxes of blocks up to a storey's head height; blocks that are hidden on all sides are left out.
+ * @returns {object}
+ */
 function boxesOf ({ run, track, tick, storey, seen }) {
   const grid = track.grid(tick)
   const [width, height, depth] = run.shape

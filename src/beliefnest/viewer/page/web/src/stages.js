@@ -1,4 +1,4 @@
-/** The pictures in the middle: the chosen simulator, and another one beside it, with linked cameras. */
+/** Pictures in the middle of the page: the chosen simulator, and another one beside it, with linked cameras. */
 
 import { PerspectiveCamera, Vector3 } from 'three'
 import { believesText } from './detail.js'
@@ -33,7 +33,7 @@ export class Stages {
     this.hurried = false
   }
 
-  /** Pictures that follow one another quickly are coarse; the last of them is drawn again, sharp. */
+  /** Draw coarsely while pictures follow one another quickly; draw the last one again, sharply. */
   hurry () {
     const now = performance.now()
     this.hurried = now - this.drawnAt < HURRY_MS
@@ -87,7 +87,7 @@ export class Stages {
     fillOptions(this.storey, Array.from({ length: run.shape[1] }, (_, n) => [String(low + n), String(low + n)]), String(storey))
   }
 
-  /** Turn the camera to a run once; later its user turns it. */
+  /** Point the camera at a run once; afterwards only the user turns it. */
   aim ({ run, beside, track }) {
     if (this.aimed === run) return
     this.aimed = run

@@ -1,10 +1,10 @@
-/** What there is to show of one simulator at one tick: values of its track, with the marks they carry. */
+/** Things to show of one simulator at one tick: values of its track, with their marks. */
 
 import { ago, itemsText } from './elements.js'
 
 const MOST_SHOWN = 24
 
-/** @returns {object} agents, containers, dropped items, written signs and false blocks of a track at a tick */
+/** Return agents, containers, dropped items, written signs and false blocks of a track at a tick. @returns {object} */
 export function thingsOf (run, track, tick) {
   const wrong = new Set(track.wrong(tick))
   const known = new Set([...track.cells(), ...(run.timelines[0]?.track('/')?.cells() ?? [])])
@@ -18,7 +18,7 @@ export function thingsOf (run, track, tick) {
   }
 }
 
-/** Signs on which something is written, as far as that is known. */
+/** Return the signs that are known to bear a text. */
 function writtenSigns (run, track, tick, wrong) {
   if (!run.states.some(state => state.says !== undefined)) return []
   const found = []
@@ -31,7 +31,7 @@ function writtenSigns (run, track, tick, wrong) {
   return found
 }
 
-/** @returns {string} as much of a sign's text as is shown beside it */
+/** Return the part of a sign's text that is shown beside it. @returns {string} */
 export function shortened (says) {
   return says.length > MOST_SHOWN ? `${says.slice(0, MOST_SHOWN - 1)}…` : says
 }
@@ -58,7 +58,10 @@ function containerThing (run, track, tick, cell, wrong) {
   return { thing, cell, place: run.place(cell), name: run.thingName(thing), contents, marks, age, teller: tellerOf(contents) }
 }
 
-/** @returns {string|null} who said what is held, where nothing but that backs it */
+/**
+ * Return the speaker of a claim that is the only ground for a belief; null if there are other grounds.
+ * @returns {string|null}
+ */
 export function tellerOf (held) {
   return held !== null && !held.current && held.source === 'heard' ? held.speaker ?? 'somebody' : null
 }
@@ -67,12 +70,12 @@ function memoryMark (held) {
   return tellerOf(held) === null ? 'stale' : 'heard'
 }
 
-/** @returns {string} where knowledge of something that is not perceived now comes from, and how old it is */
+/** Return the source and age of a memory in words. @returns {string} */
 export function memoryWords (teller, age) {
   return teller === null ? `seen ${ago(age)}` : `told by ${teller}${age > 0 ? ` ${ago(age)}` : ''}`
 }
 
-/** @returns {string} what a container is believed to hold, shortly */
+/** Return the believed contents of a container in a few words. @returns {string} */
 export function contentsText (contents) {
   if (contents === null) return 'not known to be there'
   const items = itemsText(contents.items)
@@ -80,31 +83,34 @@ export function contentsText (contents) {
   return contents.complete ? 'empty' : 'not known'
 }
 
-/** @returns {string} the same as short as fits over a picture */
+/** Return the same, short enough for a label in a picture. @returns {string} */
 export function contentsLabel (contents) {
   if (contents === null) return '?'
   return itemsText(contents.items) || (contents.complete ? 'empty' : '?')
 }
 
-/** @returns {string} marks as short as fits beside a label; what is not known is told by the label itself */
+/** Return marks, short enough for a place beside a label. The label itself shows what is unknown. @returns {string} */
 export function signsText (run, marks, age) {
   return marks.filter(mark => mark !== 'unknown').map(mark => markSign(run, mark, age)).join(' ')
 }
 
-/** @returns {string} a mark in words, with its age */
+/** Return a mark in words, with its age. @returns {string} */
 export function markWords (run, mark, age, teller = null) {
   if (mark === 'heard') return memoryWords(teller, age)
   if (mark === 'stale' && age !== null) return `remembered, ${memoryWords(null, age)}`
   return run.head.marks[mark].words
 }
 
-/** @returns {string} a mark as short as fits beside a thing */
+/** Return a mark, short enough for a place beside a thing. @returns {string} */
 function markSign (run, mark, age) {
   const { sign } = run.head.marks[mark]
   return ['stale', 'heard'].includes(mark) && age !== null ? `${sign}${age}` : sign
 }
 
-/** @returns {number} the storey where most containers are, or else agents' feet, or else the lowest but one */
+/**
+ * Return the storey with most containers, or else with most agents' feet, or else the lowest but one.
+ * @returns {number}
+ */
 export function mainStorey (run, track, tick) {
   const heights = thingsOf(run, track, tick).containers.map(each => each.place[1])
   if (heights.length === 0) {

@@ -1,4 +1,4 @@
-/** The tree of simulators: on every timeline, those that are recorded, and how to get deeper ones. */
+/** Tree of simulators: the recorded ones of every timeline, and controls to compute deeper ones. */
 
 import { badge, button, element, refill } from './elements.js'
 
@@ -92,7 +92,7 @@ export class Tree {
   }
 }
 
-/** @returns {number} the tick of a timeline that is shown when another one is looked at */
+/** Return the tick of a timeline that is shown while another timeline is chosen. @returns {number} */
 export function shownTick (line, tick) {
   return Math.min(tick, line.facts.head)
 }

@@ -1,6 +1,6 @@
-/** The data that Python packed into the page. */
+/** Reader of the data that Python packed into the page. */
 
-/** @returns {Promise<object>} the content of the page's data element */
+/** Return the content of the page's data element. @returns {Promise<object>} */
 export async function packedData (element) {
   const { served, packed } = JSON.parse(element.textContent)
   const bytes = Uint8Array.from(atob(packed), letter => letter.charCodeAt(0))
