@@ -51,7 +51,7 @@ class Scene:
         for known in self._stages.values():
             if all(cell in known.index for cell in cells):
                 return known
-        ways = ways_from(self.worlds.box, self._walks_with(cells), cells, diagonal=self._diagonal)
+        ways = ways_from(self.worlds.box, self._walks, cells, diagonal=self._diagonal)
         digest = hashlib.blake2b(self._key)
         digest.update(repr(ways.cells).encode())
         digest.update(ways.moves.tobytes())
@@ -84,21 +84,6 @@ class Scene:
             else made[id(world.blocks)]
             for world in self.worlds.worlds
         ]
-
-    def _walks_with(self, cells: Sequence[Position]) -> list[npt.NDArray[np.bool_]]:
-        """`_walks`, with the cells in which the agent was seen above a floor that is unknown."""
-        extra = [
-            self.worlds.box.index(cell)
-            for cell in cells
-            if self.has_unknown_floor(cell) and not self.can_stand(cell)
-        ]
-        if not extra:
-            return self._walks
-        copies = {id(walk): walk.copy() for walk in self._walks}
-        for copied in copies.values():
-            for index in extra:
-                copied[index] = True
-        return [copies[id(walk)] for walk in self._walks]
 
     def _made(self, ways: Ways) -> Stage:
         worlds = self.worlds
