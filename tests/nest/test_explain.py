@@ -427,13 +427,21 @@ def test_a_branch_is_the_world_of_what_follows_it():
     assert nest.at(1)["/observer/sally"].explain(container=CHEST).fact.path == ()
 
 
-def test_what_was_heard_is_said_to_be_heard():
+@pytest.mark.parametrize(
+    ("basis", "words"),
+    [
+        (Basis(7, Source.HEARD, EventKind.CHAT, "anne"), "anne told observer so at tick 7."),
+        (Basis(7, Source.HEARD), "observer read so on a sign at tick 7."),
+    ],
+    ids=["said", "written by nobody known"],
+)
+def test_what_was_heard_is_said_to_be_heard(basis, words):
     _, nest = corner()
     told = nest["/observer"].explain(container=CHEST)
     (level,) = told.levels
-    heard = replace(level, basis=Basis(7, Source.HEARD, EventKind.CHAT), since=7)
+    heard = replace(level, basis=basis, since=7)
     assert lines(replace(told, levels=(heard,)))[1].startswith(
-        "observer does not know what the chest at (5, 0, 9) holds: observer heard so at tick 7."
+        f"observer does not know what the chest at (5, 0, 9) holds: {words}"
     )
 
 
