@@ -41,26 +41,26 @@ Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
 
 UNKNOWN = -1
-"""A block state, a pose id or a cell that is not known, or none."""
+"""Value of a block state, a pose id or a cell that is unknown or absent."""
 
 NOBODY = -1
 """Index of no agent."""
 
 READ = -2
-"""In place of the number of a speaker: it was read, and nobody is known to have written it."""
+"""Number of the speaker of a claim that was read on a sign of unknown writer."""
 
 SOURCE_SEEN = 1
 """Row of `Source.SEEN` in `belief.entries.SOURCES`."""
 
 KIND_CHAT, KIND_THINK, KIND_UPDATE, KIND_ACT = range(4)
-"""How an event is perceived: heard, not at all by others, by its place, by its actor."""
+"""Ways to perceive an event: hear it, be its thinker, see its place, or see its actor."""
 
 HEAR_ALL, HEAR_SEEN, HEAR_NEAR = range(3)
 """Hearing modes: global, sight, radius."""
 
 
 class Senses(NamedTuple):
-    """What agents can perceive.
+    """Limits of what agents can perceive.
 
     Attributes:
         far: Greatest visible distance, blocks, infinite if there is no limit.
@@ -80,18 +80,18 @@ class Senses(NamedTuple):
 
 
 class Space(NamedTuple):
-    """The box and its shapes, as the ray kernels want them.
+    """The box and its shapes, as the ray kernels take them.
 
     Attributes:
         sizes: Cells along x, y, z, with a margin of one on every side.
         starts: int32, rows of each shape (see `perception.rays`).
         boxes: float64 (n, 6), shapes' boxes.
-        reaches: uint8 by code, sides a shape reaches out of.
+        reaches: uint8 by code, bit set of the sides on which a shape reaches out of its cell.
         codes: uint16 by block number, and at the end that of unknown.
-        holds: bool by block number, and at the end that of unknown: is it a container.
+        holds: bool by block number, and at the end that of unknown: whether it is a container.
         origin: float64 (3,), added to scenario coordinates to get the grid's.
-        senses: What agents can perceive.
-        beam, shadows: Room to work in, from `beams.beam_room` and `shadows.no_shadows`.
+        senses: Limits of what agents can perceive.
+        beam, shadows: Work arrays from `beams.beam_room` and `shadows.no_shadows`.
     """
 
     sizes: tuple[int, int, int]
@@ -120,9 +120,9 @@ class Facts(NamedTuple):
         tick: By entry.
         pose_at, pose_agent, pose_id: Agents that moved, and the ids of their new poses.
         block_at, block_cell, block_state: Blocks that changed.
-        event_at, event_kind, event_actor, event_cell, event_to: What happened; kinds as
-            `KIND_...`; the cell of what has a place; `event_to` is whom an utterance is
-            whispered to, `NOBODY` if it is aloud.
+        event_at, event_kind, event_actor, event_cell, event_to: Events. A kind is one of
+            `KIND_...`. The cell is `UNKNOWN` for an event without a place. `event_to` is the
+            addressee of a whisper, `NOBODY` for speech aloud.
     """
 
     tick: Ints
@@ -140,40 +140,40 @@ class Facts(NamedTuple):
 
 
 class Nodes(NamedTuple):
-    """States of N nodes, A agents and C cells.
+    """States of N nodes with A agents, C cells and T tracked cells.
 
     Attributes:
         parent: (N,), index of the shallower node; -1 for node 0.
-        agent: (N,), whose belief it is; -1 for node 0.
+        agent: (N,), the owner, whose belief the node is; -1 for node 0.
         child_at, child: Node n's children are child[child_at[n]:child_at[n + 1]].
         pose: (N, A), id of each agent's believed pose; -1 unknown.
         equipment: (N, A), pose id of each agent's believed equipment; -1 unknown.
-        seen_at: (N, A), last tick at which the pose was current, where it no longer is.
+        seen_at: (N, A), last tick at which the pose was current, for poses that no longer are.
         current: (N, A), whether the pose is backed by a perception in this tick.
         blocks: (N, C), numbers of believed blocks (`BeliefContext.number`); -1 unknown.
-        codes: (N, cells with margin), geometry of the blocks.
-        geometry: (N,), counts changes of the geometry.
-        pending: (N, words), bit set of cells that the parent knows otherwise.
-        fresh: (N,), whether a bit of pending was set since they were last tried.
+        codes: (N, cells with margin), geometry of the blocks, as codes of `perception.codes`.
+        geometry: (N,), number of changes of the geometry so far.
+        pending: (N, words), bit set of cells where the parent knows another block.
+        fresh: (N,), whether a bit of `pending` was set since the owner last looked for those cells.
         eye: (N,), id of the pose the owner last looked from; -1: it was not present.
-        seen_geometry: (N,), the parent's geometry it last looked at.
-        tried: (N, A), pose id of each agent that `sees` is about.
+        seen_geometry: (N,), the parent's `geometry` at the last look.
+        tried: (N, A), pose id of each agent for which `sees` holds.
         sees: (N, A), whether the owner sees the agent in the parent.
         tracked: (T,), cells whose basis is tracked: those that ever hold a container.
         watched: (N, T), whether the owner sees the tracked cell in the parent.
-        basis_at: (N, T), last tick at which the tracked cell was current, where it no longer is;
-            -1 unknown.
+        basis_at: (N, T), last tick at which the tracked cell was current, for cells that no longer
+            are; -1 unknown.
         basis_current: (N, T), whether the block is backed by a perception in this tick.
         basis_source: (N, T), its source, a code of `BeliefContext.basis_code`.
-        counted: (N,), tick to which the next four count. They have no room if nobody weighs
-            claims (semantics, section 8).
-        missed: (N, A), ticks at which the owner did not perceive the agent.
-        met: (N, A), id of the pose that the owner last perceived the agent in; -1: it never
-            did, or has seen since that the agent has gone.
+        counted: (N,), tick up to which the next five arrays count. These have length 0 along A if
+            hearers weigh no claims (semantics, section 8).
+        missed: (N, A), number of ticks at which the owner did not perceive the agent.
+        met: (N, A), id of the pose in which the owner last perceived the agent; -1: it never
+            did, or it has seen since that the agent is gone.
         meets: (N, A), whether the owner sees the agent in the parent.
-        met_missed: (N, A, A), `missed` as it was when the agent was last seen.
-        watch_missed: (N, T, A), `missed` as it was when the tracked cell was last watched; -1:
-            it never was.
+        met_missed: (N, A, A), copy of `missed` from the tick at which the agent was last seen.
+        watch_missed: (N, T, A), copy of `missed` from the tick at which the tracked cell was last
+            watched; -1: it never was.
     """
 
     parent: Ints
@@ -207,12 +207,13 @@ class Nodes(NamedTuple):
 
 
 class Span(NamedTuple):
-    """What a pass of the kernel folds.
+    """Entries that a pass of the kernel folds.
 
     Attributes:
-        start: Number of the first entry, in the stretch.
-        stop: Number after the last one.
-        happens: Whether they happen; if not, nodes perceive what there is between two ticks.
+        start: Number of the first entry, counted from the beginning of the stretch.
+        stop: Number after the last entry.
+        happens: True for ticks. False: nothing happens, and nodes perceive the state that they
+            find between two ticks.
     """
 
     start: int
@@ -221,12 +222,12 @@ class Span(NamedTuple):
 
 
 class Changes(NamedTuple):
-    """What a pass of the kernel leaves for the rules that are not about rays.
+    """Output of a pass of the kernel, for the rules that are not about rays.
 
     Attributes:
-        perceived: bool (events, N), by event of the pass: who perceived it.
+        perceived: bool (events, N), whether the owner of a node perceived an event of the pass.
         rows: (M, 7), changes at cells that held or hold a container: entry, node, cell,
-            old state, new state, and the tick and source the new one rests on.
+            old state, new state, and tick and source of the basis of the new state.
         used: (1,), rows in use.
     """
 

@@ -1,4 +1,4 @@
-"""A stretch of a timeline in columns, as the belief kernel reads it."""
+"""Columns of a stretch of a timeline, as the belief kernel reads them."""
 
 from bisect import bisect_left
 from collections.abc import Iterator
@@ -30,7 +30,7 @@ _KINDS = {
 
 
 def cell_of(box: Box, place: Position) -> int:
-    """Flat cell of a block position of a box."""
+    """Return the flat cell of a block position of a box."""
     _, ny, nz = box.shape
     i, j, k = box.index(place)
     return (i * ny + j) * nz + k
@@ -44,26 +44,26 @@ def place_of(box: Box, cell: int) -> Position:
 
 
 class Columns:
-    """A stretch of one timeline's entries in columns; all numbers are those of the timeline.
+    """Entries of a stretch of one timeline in columns.
+
+    Entries and events have the numbers that they have in the timeline.
 
     Args:
-        context: What all nodes of the nest stand on.
+        context: The part that all nodes of the nest share.
         first: Number of the first entry of the stretch.
-        first_event: How many events lie before it.
-        poses: Where its agents' poses are kept; None: in a table of its own.
+        first_event: Number of events of the timeline before that entry.
+        poses: Table that receives the agents' poses; None: a new one.
 
     Attributes:
         first: Number of the first entry.
-        poses: Poses of its agents.
-        frames: By entry, the frames that carry contents, dropped items or arrivals that
-            the kernel knows nothing of.
-        events: The stretch's events, in order.
-        acts: By entry, the numbers of its events that are deeds.
-        held: Cells where a container came or went or that a claim is about, in order, possibly
-            again.
+        poses: Poses of the agents.
+        frames: By entry, the frames with contents or dropped items, which the kernel does not read.
+        events: The events of the stretch, in order.
+        acts: By entry, the numbers of its events that are acts of agents.
+        held: Cells of new containers and cells that claims are about, in order, with repetitions.
         item_entries: Entries with dropped items, rising.
-        act_entries: Entries with deeds, rising.
-        claim_entries: Entries in which something is claimed, rising.
+        act_entries: Entries with acts, rising.
+        claim_entries: Entries with claims, rising.
     """
 
     def __init__(
@@ -85,14 +85,14 @@ class Columns:
         self.frames: dict[int, Frame] = {}
         self.events: list[Event] = []
         self.acts: dict[int, list[int]] = {}
-        # Named as in `Facts`.
+        # One column for each field of `Facts`, of the same name.
         self._columns = {name: Growing(np.int32) for name in Facts._fields}
         self._tick, self._event_at = self._columns["tick"], self._columns["event_at"]
         self._close_entry()
 
     @property
     def end(self) -> int:
-        """Number of the entry after the last one."""
+        """The number of the entry after the last one."""
         return self.first + len(self._tick)
 
     def add(self, frame: Frame) -> None:
@@ -123,7 +123,7 @@ class Columns:
         self._close_entry()
 
     def add_quiet(self, tick: int) -> None:
-        """Add an entry in which nothing happens by itself."""
+        """Add an entry without a frame."""
         self._tick.append(tick)
         self._close_entry()
 
@@ -132,7 +132,7 @@ class Columns:
         return int(self._tick.view()[entry - self.first])
 
     def events_until(self, entry: int) -> int:
-        """How many of the timeline's events lie before an entry."""
+        """Return the number of events of the timeline before an entry."""
         return self._first_event + int(self._event_at.view()[entry - self.first])
 
     def event(self, number: int) -> Event:
@@ -154,12 +154,15 @@ class Columns:
         return set(self._effects[low:high])
 
     def has_claims(self, entry: int) -> bool:
-        """Return True if something is claimed in an entry."""
+        """Return True if an entry has claims."""
         number = bisect_left(self.claim_entries, entry)
         return self.claim_entries[number : number + 1] == [entry]
 
     def facts(self) -> Facts:
-        """The columns for the kernel, which counts entries and events from the stretch's first."""
+        """Return the columns for the kernel.
+
+        The kernel counts entries and events from the first of the stretch.
+        """
         return Facts(*(column.view() for column in self._columns.values()))
 
     def _add_event(self, entry: int, event: Event) -> None:
@@ -185,7 +188,7 @@ class Columns:
         if self.claim_entries[-1:] != [entry]:
             self.claim_entries.append(entry)
         about = [claim for claim in claims_of(event) if claim.kind is not ClaimKind.POSITION]
-        # Who weighs a claim has to know who watches the place.
+        # To weigh a claim the kernel has to know who watches the place (semantics, section 8).
         self.held.extend(cell_of(self._context.box, claim.cell) for claim in about)
 
     def _close_entry(self) -> None:

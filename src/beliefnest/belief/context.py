@@ -1,4 +1,4 @@
-"""What all nodes of one nest stand on: the box, its agents, and how they perceive."""
+"""The part that all nodes of one nest share: box, agents, blocks, and options of perception."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -23,11 +23,11 @@ from beliefnest.world.values import Block, Box, EventKind, Position, Sign
 __all__ = ["BeliefContext", "SavedWriting"]
 
 _NUMBERS = 2**15 - 1
-"""Numbers of blocks that arrays have room for: states, then signs with texts."""
+"""Limit of block numbers, as arrays are int16: block states first, then signs with texts."""
 
 
 Writing = tuple[Sign, tuple[Claim, ...]]
-"""A sign that is written on, and what is claimed on it."""
+"""A sign with its text, and the claims on it."""
 
 SavedWriting = tuple[Sign, tuple[Mapping[str, Any], ...]]
 """A `Writing` as plain data."""
@@ -35,16 +35,18 @@ SavedWriting = tuple[Sign, tuple[Mapping[str, Any], ...]]
 
 @dataclass(frozen=True, eq=False)
 class BeliefContext:
-    """What does not change in the life of a nest.
+    """Box, agents, blocks and options of a nest, which do not change while it lives.
+
+    Only two lists grow: tracked cells, and the signs with texts that have been met so far.
 
     Attributes:
         box: The part of space covered.
         agents: All agents, sorted; arrays count them in this order.
-        options: What agents can perceive.
+        options: Options of perception.
         registry: Names and shapes of blocks.
         sight: How agents see.
-        first_perceptions: Of that sight, in this nest and others.
-        unique: Items of which everybody knows that there is one (semantics, section 3).
+        first_perceptions: Cache of first perceptions with these shapes, shared with other nests.
+        unique: Items of which everybody knows that there is only one (semantics, section 3).
     """
 
     box: Box
@@ -60,27 +62,30 @@ class BeliefContext:
 
     @property
     def tracked(self) -> Collection[int]:
-        """Cells that ever hold a container in any node, in the order they were found."""
+        """The cells for which nodes keep a basis, in the order in which they were found.
+
+        These are cells that ever hold a container in any node, and those that claims are about.
+        """
         return self._tracked.keys()
 
     def track(self, cells: Iterable[int]) -> None:
-        """Note cells that hold a container."""
+        """Add cells to those that are tracked."""
         self._tracked.update(dict.fromkeys(cells))
 
     @cached_property
     def cells(self) -> int:
-        """Number of cells of the box."""
+        """The number of cells of the box."""
         nx, ny, nz = self.box.shape
         return nx * ny * nz
 
     @cached_property
     def numbers(self) -> dict[str, int]:
-        """Number of each agent."""
+        """The number of each agent by name."""
         return {name: number for number, name in enumerate(self.agents)}
 
     @cached_property
     def holds(self) -> npt.NDArray[np.bool_]:
-        """By block number, and at the end for unknown, whether it is a container."""
+        """Bool by block number, and at the end for unknown: whether it is a container."""
         holds = np.zeros(_NUMBERS + 1, dtype=np.bool_)
         for name in self.registry.containers:
             ids = self.registry.state_ids(name)
@@ -90,7 +95,7 @@ class BeliefContext:
     @cached_property
     def space(self) -> Space:
         """The box and its shapes for the kernel."""
-        # Compiled code takes its time to load; who only lists scenarios need not wait.
+        # Imported here because compiled code loads slowly and listing scenarios does without it.
         from beliefnest.perception import beams, shadows
 
         sight, registry = self.sight, self.registry
@@ -114,7 +119,7 @@ class BeliefContext:
 
     @cached_property
     def _senses(self) -> Senses:
-        """What agents can perceive, for the kernel."""
+        """The options of perception, as the kernel takes them."""
         options = self.options
         cos_half, far = self.sight.limits
         hearing = {"global": HEAR_ALL, "sight": HEAR_SEEN}.get(str(options.hearing), HEAR_NEAR)
@@ -128,44 +133,46 @@ class BeliefContext:
         )
 
     def heard_from(self, tick: int, speaker: int) -> Basis:
-        """The basis of a claim; `NOBODY`: it was read, and nobody is known to have written it."""
+        """Return the basis of a claim of a speaker; `NOBODY`: a sign of unknown writer."""
         if speaker == NOBODY:
             return Basis(tick, Source.HEARD)
         return Basis(tick, Source.HEARD, EventKind.CHAT, self.agents[speaker])
 
     def basis_code(self, basis: Basis) -> int:
-        """Return the source of a basis as arrays hold it: a row of `SOURCES`, or who was heard."""
+        """Return the code of a basis's source: an index of `SOURCES`, or above these a speaker."""
         if basis.speaker is not None:
             return len(SOURCES) + self.numbers[basis.speaker]
         return SOURCES.index(basis.source)
 
     def basis(self, tick: int, code: int) -> Basis:
-        """Return the basis that arrays hold as a tick and a code."""
+        """Return the basis of a tick and a code of `basis_code`."""
         if code < len(SOURCES):
             return Basis(tick, SOURCES[code])
         return Basis(tick, Source.HEARD, EventKind.CHAT, self.agents[code - len(SOURCES)])
 
     @property
     def sign_cells(self) -> Collection[int]:
-        """Cells of signs that were ever written on in any node, in the order they were found."""
+        """The cells of signs that ever carry text in any node, in the order they were found."""
         return self._sign_cells.keys()
 
     def note_signs(self, cells: Iterable[int]) -> None:
-        """Note cells of signs that are written on, which are tracked if claims change beliefs."""
+        """Add cells of signs with text. They are tracked too if claims can change beliefs."""
         found = dict.fromkeys(cells)
         self._sign_cells.update(found)
         if self.options.testimony != "none":
             self.track(found)
 
     def number(self, block: Block, claims: tuple[Claim, ...] = ()) -> int:
-        """The number by which arrays know a block: its state, or one for a sign and its text.
+        """Return the number of a block in arrays: its state, or a higher number for a written sign.
+
+        A sign with a text or claims that were not met before gets a new number.
 
         Args:
             block: The block.
-            claims: What is claimed on it.
+            claims: Claims on the sign.
 
         Raises:
-            InputError: More different texts were written than there are numbers for.
+            InputError: There are more different texts than numbers.
         """
         if isinstance(block, int):
             return block
@@ -174,23 +181,23 @@ class BeliefContext:
             number = self.registry.states + len(self._signs)
             if number == _NUMBERS:
                 raise InputError(
-                    f"there are more than {len(self._signs)} different texts on signs in this run; "
-                    "no more can be told apart: write fewer"
+                    f"this run has more than {len(self._signs)} different texts on signs, which is "
+                    "the limit: write fewer different texts"
                 )
             self._signs[writing] = number
-            # Whoever looks has them already.
+            # The kernel's array exists already: a new sign has the shape of its block state.
             self.space.codes[number] = self.space.codes[block.state]
         return self._signs[writing]
 
     def claims_on(self, number: int) -> tuple[Claim, ...]:
-        """What is claimed on the block of a number."""
+        """Return the claims on the block of a number."""
         if number < self.registry.states:
             return ()
         return list(self._signs)[number - self.registry.states][1]
 
     @property
     def saved_signs(self) -> tuple[SavedWriting, ...]:
-        """The signs with their texts in order of their numbers, as plain data."""
+        """The signs with texts as plain data, in order of their numbers."""
         return tuple((sign, tuple(c.plain() for c in claims)) for sign, claims in self._signs)
 
     def block(self, number: int) -> Block:
@@ -199,18 +206,18 @@ class BeliefContext:
 
     @cached_property
     def sign_states(self) -> npt.NDArray[np.int32]:
-        """All block states of signs."""
+        """The block states of all kinds of signs."""
         registry = self.registry
         names = [name for name in registry.block_names if is_sign(name)]
         return np.array([state for name in names for state in registry.state_ids(name)], np.int32)
 
     @property
     def signs(self) -> Mapping[int, Sign]:
-        """The signs with their texts by number."""
+        """The signs with texts by number."""
         return {number: sign for (sign, _), number in self._signs.items()}
 
     def states(self, numbers: BlockGrid) -> BlockGrid:
-        """Return the block states of numbers, without what is written."""
+        """Return the block states of numbers. A sign's text is dropped."""
         if not self._signs or numbers.max(initial=-1) < self.registry.states:
             return numbers
         plain = np.array([sign.state for sign, _ in self._signs], dtype=np.int32)
@@ -218,7 +225,11 @@ class BeliefContext:
         return np.where(numbers < first, numbers, plain[np.maximum(numbers - first, 0)])
 
     def texts(self, numbers: BlockGrid) -> Mapping[Position, str]:
-        """What is written on the signs among the numbers of all blocks, in order of position."""
+        """Return the texts of signs by position, in order.
+
+        Args:
+            numbers: Block numbers of the whole box, in its shape.
+        """
         if not self._signs:
             return {}
         x, y, z = self.box.low
@@ -229,7 +240,12 @@ class BeliefContext:
     def renumbered(
         self, numbers: npt.NDArray[np.int16], signs: Sequence[SavedWriting]
     ) -> npt.NDArray[np.int16]:
-        """Numbers of another context as those of this one; `signs` are the other's, in order."""
+        """Translate block numbers of another context into numbers of this one.
+
+        Args:
+            numbers: Numbers of the other context.
+            signs: Signs with texts of the other context, in order of their numbers.
+        """
         first = self.registry.states
         here = [self.number(sign, claims_from_plain(claims)) for sign, claims in signs]
         if here == list(range(first, first + len(here))):
@@ -238,7 +254,7 @@ class BeliefContext:
         return np.where(numbers < 0, numbers, table[numbers])
 
     def block_text(self, number: int) -> str | None:
-        """A block of a number as people read it, with what is written on it; None: unknown."""
+        """Return the block of a number in words, with the text of a sign; None: unknown."""
         return block_words(self.registry, self.block(number))
 
     def container_name(self, state: int) -> str | None:

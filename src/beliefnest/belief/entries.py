@@ -1,4 +1,4 @@
-"""What a belief says about one element, and what it rests on (semantics, section 2)."""
+"""Values and grounds of beliefs about single elements (semantics, section 2)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -30,7 +30,7 @@ class Source(StrEnum):
 
 
 SOURCES = tuple(Source)
-"""Source of each code that arrays hold."""
+"""The sources in order of the codes that stand for them in arrays."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Basis:
         observed_at: The last tick at which the value was current: now, while it still is.
         source: Kind of ground.
         event: The kind of the event that was witnessed or heard, if it was one.
-        speaker: Who said it, if it was heard.
+        speaker: Name of the speaker, if the value was heard from somebody known.
     """
 
     observed_at: int
@@ -52,13 +52,13 @@ class Basis:
 
 @dataclass(frozen=True, slots=True)
 class ContainerBelief:
-    """What is believed to be in a container.
+    """Believed content of a container.
 
     Attributes:
         items: Known items, name to count.
-        complete: Whether these are known to be all.
-        basis: What the entry rests on.
-        current: Whether a perception in this tick backs it.
+        complete: Whether the container is known to hold nothing else.
+        basis: Ground of the entry.
+        current: Whether a perception in this tick backs the entry.
     """
 
     items: Items
@@ -69,19 +69,19 @@ class ContainerBelief:
 
 @dataclass(frozen=True, slots=True)
 class AgentBelief:
-    """What is believed of an agent.
+    """Believed pose and possessions of an agent.
 
     Attributes:
         position: Middle of the feet when last perceived, blocks; None: unknown.
         yaw: Radians, Mineflayer's convention; 0 where the position is unknown.
         pitch: Radians, positive upwards; 0 where the position is unknown.
-        on_ground: Whether it stood on something.
+        on_ground: Whether the agent stood on something.
         equipment: Slot to item name as last seen; None: never seen.
         inventory: Known possessions, item name to count.
-        inventory_complete: Whether these are known to be all.
+        inventory_complete: Whether the agent is known to have nothing else.
         health: Half hearts; None: unknown.
         food: Half drumsticks; None: unknown.
-        basis: What the pose rests on; None where it is unknown.
+        basis: Ground of the pose; None where the position is unknown.
         current: Whether a perception in this tick backs the pose.
     """
 
@@ -100,7 +100,7 @@ class AgentBelief:
 
 @dataclass(frozen=True, slots=True)
 class PerceivedEvent:
-    """An event as it was perceived: who did what, and when."""
+    """Event as an observer perceived it: tick, kind, actor and details."""
 
     tick: int
     kind: EventKind
@@ -110,13 +110,13 @@ class PerceivedEvent:
 
 @dataclass(frozen=True, slots=True)
 class InitialBelief:
-    """What a node of the nest holds before anything happens.
+    """Prior beliefs of a node, or of a node and all nodes below it.
 
     Attributes:
-        path: Agent names from the outermost believer inwards; `**` at the end means that node and
-            everything below it, `**` alone what everybody takes for granted, and takes it for
-            granted that everybody does. Where several speak of the same, the longer path counts,
-            and of these the one without `**`.
+        path: Agent names from the outermost believer inwards. `**` at the end means the node and
+            everything below it. `**` alone means what everybody takes for granted, and takes for
+            granted that everybody does. If several initial beliefs speak of the same element, the
+            longest path counts, and among equals the one without `**`.
         containers: Position to (items, complete).
         blocks: Position to block; -1 makes one unknown.
         agents: Agent name to believed feet position.

@@ -1,4 +1,10 @@
-"""First perceptions that were worked out already: scenes that begin alike are seen alike."""
+"""Cache of first perceptions, for scenes that begin alike.
+
+Nodes that are new perceive once with nothing happening. The conditions and repeats of a scenario
+often begin with the same scene, so the result is kept by a digest of everything it depends on. The
+kernel is deterministic and reads nothing else, so the same input gives the same output. Shapes of
+blocks are not part of the digest: each cache belongs to one set of shapes (`perception.sight`).
+"""
 
 import hashlib
 from collections.abc import Sequence
@@ -14,16 +20,16 @@ from beliefnest.belief.arrays import Changes, Facts, Nodes, Poses, Space, Span
 __all__ = ["FirstPerceptions"]
 
 _MOST_BYTES = 16 << 20
-"""That are kept in all."""
+"""Bytes that the cache holds at most; the oldest results are dropped first."""
 _LARGEST = 1 << 20
-"""What is larger is not kept: its digest costs more than it gains."""
+"""Bytes of node arrays above which nothing is cached: the digest would cost more than it saves."""
 
 Array = npt.NDArray[Any]
 
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """What a first perception leaves: the nodes' arrays, and rows of changes."""
+    """Result of a first perception: the nodes' arrays, and rows of changes."""
 
     nodes: Sequence[Array]
     rows: Array
@@ -34,7 +40,7 @@ class _Seen:
 
 
 class FirstPerceptions:
-    """What nodes perceive while nothing happens, in nests with the same shapes of blocks."""
+    """Cached first perceptions of nests with the same shapes of blocks."""
 
     def __init__(self) -> None:
         self._seen: dict[bytes, _Seen] = {}
@@ -50,8 +56,11 @@ class FirstPerceptions:
         changes: Changes,
         below: npt.NDArray[np.bool_],
     ) -> None:
-        """Let nodes that `below` marks perceive, as `kernel.fold` of an entry without events."""
-        from beliefnest.belief import kernel  # who only lists scenarios need not wait for it
+        """Let the nodes that `below` marks perceive, as `kernel.fold` of an entry without events.
+
+        Arrays of `nodes` and rows of `changes` are written in place.
+        """
+        from beliefnest.belief import kernel  # loads compiled code, which listing does not need
 
         if sum(each.nbytes for each in nodes) > _LARGEST:
             kernel.fold(space, poses, facts, nodes, changes, Span(0, 1, False), below)
@@ -79,7 +88,10 @@ class FirstPerceptions:
 
 
 def _digest(space: Space, arrays: Sequence[Array]) -> bytes:
-    """Return a digest of all that a perception depends on; shapes of blocks are the same in all."""
+    """Return a digest of all that a perception depends on but the shapes of blocks.
+
+    Shapes and types of the arrays are part of it, so that equal bytes of unequal arrays differ.
+    """
     hashed = hashlib.blake2b(digest_size=16)
     plain = (space.sizes, tuple(space.senses), [(each.shape, each.dtype.str) for each in arrays])
     hashed.update(repr(plain).encode())

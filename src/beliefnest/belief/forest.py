@@ -1,4 +1,8 @@
-"""All nodes below one timeline, folded together: arrays for the kernel, holdings for the rest."""
+"""Forest of all nodes below one timeline, folded together.
+
+The compiled kernel folds poses, blocks and perceived events in arrays. `HoldingsTable` follows with
+contents, possessions and dropped items, `Testimony` with claims.
+"""
 
 from bisect import bisect_left
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -29,36 +33,36 @@ _BATCH = 4096
 
 
 class EventHistory(Protocol):
-    """What happens on a timeline, for those who list it; folding does without."""
+    """Events of a timeline and of the time before it. Folding does not need them."""
 
     def events(self, count: int) -> Sequence[tuple[int, Event]]:
-        """Return the first events of the timeline, `count` of them or more, each with its tick."""
+        """Return at least the first `count` events of the timeline, each with its tick."""
 
     def before(self, path: BeliefPath) -> Sequence[PerceivedEvent]:
-        """What a node perceived before the timeline began, oldest first."""
+        """Return the events that a node perceived before the timeline began, oldest first."""
 
 
 class StateReader(Protocol):
-    """Somebody who read a state and may read more of it."""
+    """View of a state that reads parts of it when they are asked for."""
 
     def keep(self) -> None:
-        """Read now what the forest will not know any more."""
+        """Read all parts now that the forest will overwrite."""
 
 
 @dataclass(frozen=True, slots=True)
 class ForestState:
-    """What a forest is besides its nodes, as plain data.
+    """Plain data of a forest apart from its nodes.
 
     Attributes:
-        position: Entries folded.
-        events: How many events these have.
-        tick: Tick of the last of them, or of the beginning.
-        root: What is known of node 0 besides its holdings.
+        position: Number of entries folded.
+        events: Number of events in these entries.
+        tick: Tick of the last folded entry, or of the beginning.
+        root: Facts about node 0 that are not in its holdings.
         tracked: int32, cells whose basis is tracked, as native bytes.
-        since: Those of them that have been tracked since the beginning.
+        since: The tracked cells that have been tracked since the beginning.
         poses: The poses that nodes refer to.
-        signs: The signs with texts that blocks of nodes have numbers of, in order of these.
-        sign_cells: Cells of signs that were ever written on.
+        signs: The signs with texts, in order of their block numbers.
+        sign_cells: Cells of signs that ever carried text.
     """
 
     position: int
@@ -85,16 +89,16 @@ class Forest:
     """Nodes below one timeline after its first `position` entries.
 
     Attributes:
-        context: What all nodes share.
-        columns: The stretch of the timeline that it is in.
+        context: The part that all nodes of the nest share.
+        columns: The stretch of the timeline that holds the next entries.
         table: The nodes' arrays.
         holdings: The nodes' contents, possessions and dropped items.
-        hearing: Who perceived which event.
-        position: Entries folded.
-        tick: Tick of the last of them, or of the beginning.
+        hearing: Record of the events that each node perceived.
+        position: Number of entries folded.
+        tick: Tick of the last folded entry, or of the beginning.
         since: Cells that have been tracked since the beginning.
-        verdicts: What nodes made of the claims of the last entry that has any: by number of
-            event in the entry and of claim in the event.
+        verdicts: Verdicts of all nodes on the claims of the last entry with claims. The key is the
+            number of the event in the entry and of the claim in the event.
     """
 
     def __init__(
@@ -116,13 +120,14 @@ class Forest:
         self._readers: WeakSet[StateReader] = WeakSet()
 
     def saved(self) -> tuple[ForestState, Iterator[NodeState]]:
-        """Return the forest as plain data, having left its stretch: what the next entries need.
+        """Return the forest as plain data: all that folding the next entries depends on.
 
-        What it knows besides, to ask less often (who looked from where, what is pending), is
-        worked out anew. `restored` is the inverse.
+        The kernel's caches (`eye`, `sees`, `pending` ...) are left out: the first look after
+        `restored`, which is the inverse, computes them again with the same result. The forest
+        leaves its stretch by this.
         """
         count = self.count_of_events
-        # Of its poses only those are kept that nodes refer to.
+        # Entering a stretch with an empty pose table keeps only the poses that nodes refer to.
         self.enter(Columns(self.context, self.position, count, PoseTable()))
         nodes = (
             NodeState(
@@ -147,7 +152,7 @@ class Forest:
         state: ForestState,
         nodes: Iterable[NodeState],
     ) -> "Forest":
-        """Return the forest that was saved, with some of its nodes, each after its parent."""
+        """Return a saved forest with some or all of its nodes, each after its parent."""
         tracked = np.frombuffer(state.tracked, dtype=np.int32)
         context.track(tracked.tolist())
         context.note_signs(state.sign_cells)
@@ -175,7 +180,7 @@ class Forest:
 
     @property
     def count_of_nodes(self) -> int:
-        """How many nodes there are."""
+        """The number of nodes."""
         return self.table.count
 
     @property
@@ -195,20 +200,23 @@ class Forest:
         return self.table.block(self.node(path), cell)
 
     def bases(self, path: BeliefPath, cells: Sequence[int]) -> dict[int, Basis | None]:
-        """What the blocks of a node at some cells rest on; None where a block is unknown."""
+        """Return the bases of a node's blocks at some tracked cells; None for unknown blocks."""
         return self.table.bases(self.node(path), cells, self.tick)
 
     def current_blocks(self, path: BeliefPath, cells: Iterable[int]) -> set[int]:
-        """Those of some cells whose block in a node is backed by a perception in the last entry."""
+        """Return the cells whose block in a node is current in the last entry."""
         return self.table.current_blocks(self.node(path), cells)
 
     def feet(self, path: BeliefPath, agent: str) -> Point | None:
-        """Where a node holds an agent to stand; None: unknown."""
+        """Return the feet position that a node believes of an agent; None: unknown."""
         pose = self.table.pose(self.node(path), self.context.numbers[agent])
         return None if pose < 0 else self.poses.position(pose)
 
     def seen_at(self, path: BeliefPath, agent: str) -> int | None:
-        """Last tick at which a node's pose of an agent was current; None: it is unknown."""
+        """Return the last tick at which a node's pose of an agent was current.
+
+        None: the pose is unknown.
+        """
         node, number = self.node(path), self.context.numbers[agent]
         if self.table.pose(node, number) < 0:
             return None
@@ -235,18 +243,22 @@ class Forest:
 
     @property
     def count_of_events(self) -> int:
-        """How many events lie before the forest's position."""
+        """The number of events before the forest's position."""
         return self.columns.events_until(self.position)
 
     def enter(self, columns: Columns) -> None:
-        """Go over to the stretch of the timeline that the next entries lie in."""
+        """Move to the stretch of the timeline that holds the next entries."""
         self.table.enter(columns.poses)
         self.columns = columns
 
     def leap(self, position: int, events: int) -> None:
-        """Take what was folded for the first `position` entries, which have `events` events.
+        """Set the position after a shortened stretch was folded; see `History._leap`.
 
-        There is no node but node 0, which perceives all of them.
+        The forest has only node 0, which perceives all events.
+
+        Args:
+            position: Number of entries that the state now stands for.
+            events: Number of events in these entries.
         """
         self._let_read()
         count = self.count_of_events
@@ -266,9 +278,13 @@ class Forest:
             self.position = reached
 
     def heard(self, node: int, count: int, first: int | None = None) -> Iterator[PerceivedEvent]:
-        """What a node perceived of the first `count` events, oldest first.
+        """Yield the events that a node perceived among the first `count` ones, oldest first.
 
-        Those before `first` are left out; None: none is, nor what it perceived before the timeline.
+        Args:
+            node: Number of the node.
+            count: Number of events of the timeline to consider.
+            first: Number of the first event to yield; None: yield also those that the node
+                perceived before the timeline began.
         """
         if first is None:
             yield from self._events.before(self.table.path(node))
@@ -280,11 +296,11 @@ class Forest:
             yield PerceivedEvent(tick, event.kind, event.actor, event.detail)
 
     def read_by(self, reader: StateReader) -> None:
-        """Tell a reader before the forest goes on."""
+        """Call `reader.keep` before the forest changes the next time."""
         self._readers.add(reader)
 
     def adopt(self, other: "Forest", paths: Sequence[BeliefPath]) -> None:
-        """Take over nodes of a forest that is as far on."""
+        """Copy nodes of another forest of this timeline that has folded the same entries."""
         count = self.count_of_events
         self.table.track()
         other.table.track()
@@ -296,11 +312,11 @@ class Forest:
         self.table.link()
 
     def perceive_at_first(self) -> None:
-        """Let all nodes but the first perceive what there is, with nothing happening."""
+        """Let all nodes but node 0 perceive the present state, with nothing happening."""
         self._perceive(self.table.below(0))
 
     def skip(self, tick: int) -> None:
-        """Let an entry pass that is about no node of this forest."""
+        """Count an entry that concerns no node of this forest."""
         self._let_read()
         self.position += 1
         self.tick = tick
@@ -308,13 +324,13 @@ class Forest:
     def edit(
         self, node: int, blocks: dict[int, int], contents: dict[int, Items], tick: int
     ) -> None:
-        """Change a node by hand, in the entry that comes next; those below it perceive it.
+        """Change a node by hand in the next entry, and let the nodes below it perceive the change.
 
         Args:
-            node: Which.
+            node: Number of the node.
             blocks: Numbers of new blocks by cell; -1: unknown.
             contents: New contents by cell, complete.
-            tick: Tick after which it is done.
+            tick: Tick after which the change is made.
         """
         self._let_read()
         self.holdings.edit(node, blocks, contents, tick)
@@ -328,12 +344,17 @@ class Forest:
             reader.keep()
 
     def _batch_end(self, stop: int) -> int:
-        """Where the next pass of the kernel has to end, for effects to keep up with it."""
+        """Return the number of the entry before which the next pass of the kernel must end.
+
+        The rules for contents and items read the arrays as they are after the very entry that they
+        follow. So a pass ends with an entry with acts, and an entry with dropped items or claims is
+        a pass of its own. Between these a pass may be long: nothing reads the arrays.
+        """
         start = self.position
         if self.holdings.needs_looks():
             return start + 1
-        # Effects of deeds and items look at the arrays as they are after the very entry.
         columns = self.columns
+        # Entries that bound a pass, and 1 if the pass may include the entry after others.
         apart = [(columns.item_entries, 0), (columns.act_entries, 1)]
         if self._weighs:
             apart.append((columns.claim_entries, 0))
@@ -354,7 +375,8 @@ class Forest:
         return self._weighs and bool(self.context.sign_cells)
 
     def _changes(self, events: int) -> Changes:
-        # In one entry every node can change every tracked cell once; see `kernel.fold`.
+        # In one entry each node can change each tracked cell once; `kernel.fold` stops early if
+        # less than half of these rows is free.
         room = 4 * (self.table.count * len(self.context.tracked) + 16)
         return Changes(
             np.zeros((events, self.table.count), dtype=np.bool_),
@@ -392,10 +414,14 @@ class Forest:
         return reached
 
     def _fold_by_level(self, entry: int) -> int:
-        """Fold an entry level by level: deeper nodes perceive what the others came to believe.
+        """Fold one entry level by level, all nodes of one depth before the next depth.
 
-        So it is needed where more than the kernel decides what they perceive: what was claimed,
-        aloud or on a sign, and where a unique item is believed to be no more.
+        Percepts of a node are computed inside its parent's state (semantics, section 5.3). Usually
+        the kernel alone decides that state, so it can fold all depths before the holdings follow.
+        Claims (section 8) and unique items (section 3) break this: they change blocks, poses and
+        equipment after the kernel, and children must look at the result. So each level runs kernel,
+        holdings and claims in turn, before the next level begins. Nodes of one level do not read
+        each other, so their order is free.
         """
         columns, tick, space = self.columns, self.columns.tick(entry), self.context.space
         first, at = columns.events_until(entry), entry - columns.first
@@ -423,6 +449,7 @@ class Forest:
         return entry + 1
 
     def _perceive(self, below: npt.NDArray[np.bool_]) -> None:
+        """Let the nodes that `below` marks perceive the present state, with nothing happening."""
         context = self.context
         nothing, at = np.zeros(0, dtype=np.int32), np.zeros(2, dtype=np.int32)
         facts = Facts(
@@ -441,7 +468,8 @@ class Forest:
         for part in parts:
             poses, nodes, changes = self.poses.arrays(), self.table.nodes(), self._changes(0)
             if context.signs or by_level:
-                # What numbers of signs stand for, and what is unique, is this nest's own.
+                # A cached result of another nest does not fit: numbers of signs and unique items
+                # differ between nests.
                 kernel.fold(context.space, poses, facts, nodes, changes, Span(0, 1, False), part)
             else:
                 context.first_perceptions.perceive(
@@ -456,7 +484,10 @@ class Forest:
 def _acts(
     columns: Columns, entry: int, perceived: npt.NDArray[np.bool_], first: int
 ) -> dict[int, list[Event]]:
-    """Acts of an entry by the node that perceived them; events are counted from `first`."""
+    """Return the acts of an entry that each node perceived, by node.
+
+    Rows of `perceived` count events from number `first` of the timeline.
+    """
     acts: dict[int, list[Event]] = {}
     for number in columns.acts.get(entry, ()):
         for node in np.flatnonzero(perceived[number - first]).tolist():
@@ -465,7 +496,10 @@ def _acts(
 
 
 def _by_entry(changes: Changes, first: int) -> dict[int, dict[int, list[Sequence[int]]]]:
-    """Return rows of changes by entry and node, in order, the pass having counted from `first`."""
+    """Return rows of changes by entry and node, in order.
+
+    Rows count entries from number `first` of the timeline.
+    """
     rows: dict[int, dict[int, list[Sequence[int]]]] = {}
     for row in changes.rows[: changes.used[0]].tolist():
         rows.setdefault(first + row[0], {}).setdefault(row[1], []).append(row)

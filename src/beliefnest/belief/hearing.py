@@ -1,4 +1,4 @@
-"""Who perceived which event of a timeline."""
+"""Record of the events of a timeline that each node perceived."""
 
 import numpy as np
 import numpy.typing as npt
@@ -7,20 +7,20 @@ __all__ = ["Hearing"]
 
 
 class Hearing:
-    """A bit for each event of a timeline and each node of a forest; 1: it was perceived."""
+    """Bit table of perceived events: one row for each event, one bit for each node of a forest."""
 
     def __init__(self) -> None:
         self._bits = np.zeros((64, 1), dtype=np.uint8)
 
     def note(self, first: int, perceived: npt.NDArray[np.bool_]) -> None:
-        """Note who perceived events from number `first` on; perceived is (events, nodes)."""
+        """Store `perceived`, bool (events, nodes), for the events from number `first` on."""
         count, nodes = perceived.shape
         self._widen(first + count, nodes)
         packed = np.packbits(perceived, axis=1)
         self._bits[first : first + count, : packed.shape[1]] = packed
 
     def set(self, node: int, first: int, perceived: npt.NDArray[np.bool_]) -> None:
-        """Note for one node what it perceived of events from number `first` on."""
+        """Store for one node which events it perceived, from number `first` on."""
         self._widen(first + len(perceived), node + 1)
         column = self._bits[first : first + len(perceived), node >> 3]
         bit = np.uint8(128 >> (node & 7))
@@ -28,7 +28,7 @@ class Hearing:
         column |= perceived.astype(np.uint8) * bit
 
     def of(self, node: int, count: int) -> npt.NDArray[np.bool_]:
-        """What a node perceived of the first `count` events."""
+        """Return bool (count,): which of the first `count` events a node perceived."""
         if node >> 3 >= self._bits.shape[1]:
             return np.zeros(count, dtype=np.bool_)
         perceived: npt.NDArray[np.bool_] = (

@@ -1,7 +1,7 @@
 """Contents, possessions and dropped items of one node, and how acts change them.
 
-The rules of semantics, section 4, that are not about rays. They follow the kernel, entry
-by entry, shallower nodes first.
+These are the rules of semantics, section 4, that are not about rays. `HoldingsTable` applies them
+after the kernel, entry by entry, shallower nodes first.
 """
 
 from collections.abc import Collection, Iterable, Mapping
@@ -26,11 +26,13 @@ __all__ = [
 ]
 
 MOVES = {EventKind.DEPOSIT_ITEM_INTO_CHEST: 1, EventKind.GET_ITEM_FROM_CHEST: -1}
+"""Acts that move items into a container (1) or out of it (-1)."""
 
 TOUCHES = frozenset({EventKind.OPEN_CONTAINER, *MOVES})
 """Acts by which an actor learns what a container holds."""
 
-# What was smelted comes out of its furnace, and is counted as that.
+# Acts that add items to the actor's possessions (1) or remove them (-1). Smelting is not listed:
+# the result is counted when it is taken out of the furnace.
 _POSSESSION = {
     EventKind.GET_ITEM_FROM_CHEST: 1,
     EventKind.RECEIVE_ITEM_FROM_OTHER: 1,
@@ -42,15 +44,16 @@ _POSSESSION = {
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """What is believed to be in a container.
+    """Content of a container as a node believes it.
 
     Attributes:
         items: Known items.
         complete: Whether these are known to be all.
-        basis: What this rests on; its tick is the last one at which the content was current, where
-            it no longer is.
-        in_sight: Whether it is seen, in a transparent container, from the tick of the basis on.
-        by_act: Whether an act showed it in the tick of the basis, in the last entry.
+        basis: Ground of the content. If the content is no longer current, its tick is the last one
+            at which it was.
+        in_sight: Whether the content is seen, in a transparent container, since the tick of the
+            basis.
+        by_act: Whether an act showed the content in the last entry, at the tick of the basis.
     """
 
     items: Items
@@ -61,16 +64,19 @@ class Content:
 
     @property
     def current(self) -> bool:
-        """True if a perception in the last entry backs it."""
+        """True if a perception in the last entry backs the content."""
         return self.in_sight or self.by_act
 
     def shows_as(self, other: "Content") -> bool:
-        """Return True if two contents in sight are the same to see."""
+        """Return True if two contents in sight look the same."""
         seen = self.items, self.complete, self.in_sight
         return seen == (other.items, other.complete, other.in_sight)
 
     def at(self, tick: int) -> "Content":
-        """The content as it is at a tick: sight lasts, an act is perceived in its tick alone."""
+        """Return the content as it is at a later quiet tick.
+
+        A content in sight stays current. One that an act showed is current in that tick only.
+        """
         if self.in_sight:
             return replace(self, basis=replace(self.basis, observed_at=tick))
         return replace(self, by_act=self.by_act and self.basis.observed_at == tick)
@@ -80,8 +86,8 @@ class Whereabouts(NamedTuple):
     """A place where an item can be.
 
     Attributes:
-        kind: In a container, in the hands or possession of an agent, or on the floor.
-        number: Cell of the container, number of the agent or of the dropped item.
+        kind: `container`, `agent` (in its hands or possession) or `floor`.
+        number: Cell of the container, number of the agent, or number of the dropped item.
     """
 
     kind: Literal["container", "agent", "floor"]
@@ -90,12 +96,12 @@ class Whereabouts(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Sole:
-    """Where a unique item was last perceived.
+    """Last perception of a unique item.
 
     Attributes:
-        tick: Tick at which the owner perceived it.
-        place: Where; None: it was seen to be moved, and not where to.
-        basis: What that rests on.
+        tick: Tick at which the owner perceived the item.
+        place: Place of the item; None: the owner saw it moved, but not to which place.
+        basis: Ground of that belief.
     """
 
     tick: int
@@ -105,12 +111,12 @@ class Sole:
 
 @dataclass(frozen=True, slots=True)
 class SignTold:
-    """What became of the claims on a sign in a node.
+    """Verdicts of a node on the claims of a sign.
 
     Attributes:
-        tick: Tick at which they were perceived.
-        speaker: Who is known to have written them; None: nobody is.
-        verdicts: By claim, a value of `testimony.Verdict`.
+        tick: Tick at which the owner read the sign.
+        speaker: Name of the writer; None: the writer is unknown.
+        verdicts: A value of `testimony.Verdict` for each claim.
     """
 
     tick: int
@@ -120,18 +126,21 @@ class SignTold:
 
 @dataclass
 class Holdings:
-    """What one node holds besides poses and blocks.
+    """Beliefs of one node apart from poses and blocks.
+
+    `found` and `counts` follow perception alone, never hearsay: they give the known place of a
+    claimed item (section 8).
 
     Attributes:
         containers: Known contents by cell.
         inventories: Known possessions by agent number, of agents other than the owner.
         items: Dropped items by number.
-        found: Item to the cell of the container in which the owner last perceived it.
-        counts: By cell and item, how many of it were perceived in it.
-        sole: Unique item to where the owner last perceived it.
-        read: Cell and text of signs that the owner has read, to the tick of the first time.
-        writers: Who was perceived to write a text on a sign.
-        told: What became of the claims on a sign, by cell and text.
+        found: Cell of the container in which the owner last perceived an item, by item.
+        counts: Perceived number of each item in a container, by cell and item.
+        sole: Last perception of each unique item, by item.
+        read: Tick at which the owner first read a text on a sign, by cell and text.
+        writers: Name of the agent that the owner perceived writing a text, by cell and text.
+        told: Verdicts on the claims of a sign, by cell and text.
     """
 
     containers: dict[int, Content] = field(default_factory=dict)
@@ -145,7 +154,7 @@ class Holdings:
     told: dict[tuple[int, str], SignTold] = field(default_factory=dict)
 
     def copy(self) -> "Holdings":
-        """Return the same holdings, to be changed apart."""
+        """Return an independent copy."""
         return Holdings(
             dict(self.containers),
             dict(self.inventories),
@@ -159,19 +168,19 @@ class Holdings:
         )
 
     def drop(self, cell: int) -> None:
-        """Forget a container, and that anything was perceived in it."""
+        """Forget a container and everything that was perceived in it."""
         self.containers.pop(cell, None)
         self._perceive_none(cell)
 
     def look_into(self, cell: int, items: Items) -> None:
-        """All that is to be found in a container was perceived."""
+        """Note that the owner perceived all items in a container."""
         self._perceive_none(cell)
         if items:
             self.counts[cell] = items
             self.found.update(dict.fromkeys(items, cell))
 
     def see_moved(self, cell: int, items: Items, sign: int) -> None:
-        """Items were perceived to go into a container (sign 1), or out of it (sign -1)."""
+        """Note that the owner perceived items go into a container (sign 1) or out of it (-1)."""
         left = self.counts[cell] = changed_items(self.counts.get(cell, {}), items, sign)
         for name in items:
             if name in left:
@@ -180,9 +189,10 @@ class Holdings:
                 self.found.pop(name, None)
 
     def remove(self, item: str, kept: Collection[Whereabouts], basis: Basis) -> None:
-        """Believe an item to be nowhere but in some places; what is worn the node table knows.
+        """Remove an item from all containers, possessions and floors that are not `kept`.
 
-        What is left in a container rests on what it rested on; an empty one on `basis`.
+        Other items in a container keep their basis; a container that becomes empty gets `basis`.
+        Equipment is not touched: the node table holds it.
         """
         for cell, content in list(self.containers.items()):
             if item in content.items and Whereabouts("container", cell) not in kept:
@@ -199,7 +209,7 @@ class Holdings:
                 del self.items[number]
 
     def perceive_only(self, item: str, kept: Collection[Whereabouts]) -> None:
-        """An item was perceived to be nowhere but in some places."""
+        """Remove perceptions of an item in containers that are not among the places `kept`."""
         for cell, counts in list(self.counts.items()):
             if item in counts and Whereabouts("container", cell) not in kept:
                 self.counts[cell] = {name: n for name, n in counts.items() if name != item}
@@ -207,7 +217,7 @@ class Holdings:
             self.found.pop(item, None)
 
     def places_of(self, item: str) -> list[Whereabouts]:
-        """Where an item is believed to be; what is worn the node table knows."""
+        """Return the believed places of an item. Equipment is left out: the node table holds it."""
         return [
             *(
                 Whereabouts("container", cell)
@@ -242,14 +252,17 @@ def changed_items(items: Items, change: Items, sign: int) -> Mapping[str, int]:
 def replaced_block(
     holdings: Holdings, cell: int, old: str | None, new: str | None, basis: Basis
 ) -> None:
-    """A node's block at a cell came to be another.
+    """Update the content at a cell whose block has changed (semantics, section 4).
+
+    The content of another container is dropped. A container that is new to the node begins with
+    nothing known, incomplete.
 
     Args:
-        holdings: The node's.
-        cell: Where.
+        holdings: Holdings of the node.
+        cell: Cell of the block.
         old: Name of the block held before; None: unknown.
-        new: Name of the container block held now; None: it is none.
-        basis: What the new block rests on.
+        new: Name of the container block held now; None: the block is no container.
+        basis: Ground of the new block.
     """
     known = holdings.containers.get(cell)
     if known is not None and (new is None or old not in (None, new)):
@@ -260,7 +273,10 @@ def replaced_block(
 
 
 def witness(holdings: Holdings, cell: int, event: Event, tick: int) -> None:
-    """Follow items that another agent was seen to move; opening shows nothing to others."""
+    """Update a content by another agent's act that the owner perceived (semantics, section 4).
+
+    Moved items are added or subtracted. Opening a container shows nothing to others.
+    """
     if event.kind not in MOVES:
         return
     old = holdings.containers.get(cell)
@@ -277,7 +293,7 @@ def witness(holdings: Holdings, cell: int, event: Event, tick: int) -> None:
 
 
 def follow_acts(inventory: Items, acts: Iterable[Event]) -> Items:
-    """Return believed possessions of an actor after the visible part of what it did."""
+    """Return an actor's believed possessions after the visible part of its acts."""
     for act in acts:
         sign = _POSSESSION.get(act.kind)
         if sign is not None:

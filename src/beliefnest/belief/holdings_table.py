@@ -1,7 +1,8 @@
 """Contents, possessions and dropped items of all nodes of a forest, entry by entry.
 
-The kernel has folded poses and blocks of an entry; what follows from its changes, from frames and
-from perceived acts is done here, shallower nodes first. The rules of one node are in `holdings`.
+When the kernel has folded poses and blocks of an entry, this module applies the consequences of
+changed blocks, of frames and of perceived acts, shallower nodes first. `holdings` has the rules for
+one node.
 """
 
 from collections.abc import Collection, Mapping, Sequence, Set
@@ -37,11 +38,11 @@ Vitals = tuple[float | None, float | None]
 
 @dataclass(slots=True)
 class RootFacts:
-    """What is known of node 0 besides its holdings.
+    """Facts about node 0 that are not in its holdings.
 
     Attributes:
-        seen_at: Tick at which it was last seen to be as it is; None: not since a fork.
-        edited: Cells that were changed by hand since the last frame.
+        seen_at: Tick up to which the state of node 0 is confirmed; None: not yet since a fork.
+        edited: Cells changed by hand since the last frame.
         vitals: Health and food of agents as they were known at a fork.
     """
 
@@ -50,7 +51,7 @@ class RootFacts:
     vitals: dict[int, Vitals] = field(default_factory=dict)
 
     def copy(self) -> "RootFacts":
-        """Return the same facts, to be changed apart."""
+        """Return an independent copy."""
         return RootFacts(self.seen_at, set(self.edited), dict(self.vitals))
 
 
@@ -60,7 +61,7 @@ class SavedHoldings:
 
     Attributes:
         holdings: Contents, possessions and dropped items.
-        doubtful: Cells of contents where no container is known, with their block.
+        doubtful: Blocks by cell, for cells with contents where the node knows no container.
     """
 
     holdings: Holdings
@@ -71,41 +72,45 @@ class HoldingsTable:
     """Contents, possessions and dropped items of all nodes.
 
     Attributes:
-        root: What is known of node 0 besides.
+        root: Facts about node 0 that are not in its holdings.
     """
 
     def __init__(self, table: NodeTable, root: RootFacts) -> None:
         self.root = root
         self._table, self._context = table, table.context
         self._holdings: list[Holdings] = []
-        # By node other than node 0, cells of contents that are seen, and that an act showed.
+        # By node below node 0, cells whose contents are seen, and cells whose contents an act of
+        # the last entry showed.
         self._in_sight: dict[int, set[int]] = {}
         self._shown_by_acts: dict[int, set[int]] = {}
-        # Nodes and cells whose owners looked in in this entry; and items seen to be moved there.
+        # For this entry: pairs of node and cell where the owner looked into a container, and
+        # triples of node, cell and item where it saw the item go in or out.
         self._looked_into: set[tuple[int, int]] = set()
         self._seen_moved: set[tuple[int, int, str]] = set()
-        # By node and unique item, where its owner perceived it in this entry.
+        # For this entry: places where the owner perceived a unique item, by node and item.
         self._found_now: dict[tuple[int, str], Collection[Whereabouts]] = {}
-        # By node, cells of contents where no container is known, with their block.
+        # By node, blocks of the cells with contents where the node knows no container. Such
+        # contents come from priors, claims and edits, and are dropped once the cell is seen to hold
+        # no container.
         self._doubtful: dict[int, dict[int, int]] = {}
 
     def add(self, holdings: Holdings) -> None:
-        """Add the holdings of the node that was added to the node table last."""
+        """Add holdings for the node that was added to the node table last."""
         node = self._append(holdings)
         for cell in holdings.containers:
             self.doubt(node, cell)
 
     def of(self, node: int) -> Holdings:
-        """Return holdings of a node."""
+        """Return the holdings of a node."""
         return self._holdings[node]
 
     def saved(self, node: int) -> SavedHoldings:
-        """Return holdings of a node as plain data."""
+        """Return the holdings of a node as plain data."""
         doubtful = dict(sorted(self._doubtful.get(node, {}).items()))
         return SavedHoldings(self._holdings[node], doubtful)
 
     def restore(self, saved: SavedHoldings, signs: Sequence[SavedWriting]) -> None:
-        """Add holdings that were saved, with what was numbered then."""
+        """Add saved holdings. `signs` were the written signs then, in order of their numbers."""
         node = self._append(saved.holdings)
         if saved.doubtful:
             blocks = np.array([*saved.doubtful.values()], dtype=np.int16)
@@ -113,7 +118,7 @@ class HoldingsTable:
             self._doubtful[node] = dict(zip(saved.doubtful, numbers, strict=True))
 
     def content(self, node: int, cell: int) -> Content:
-        """Return a container's content in a node; in node 0 it is seen to be so all the time."""
+        """Return a container's content in a node; in node 0 it is always in sight."""
         content = self._holdings[node].containers[cell]
         if node > 0:
             return content
@@ -122,7 +127,7 @@ class HoldingsTable:
         return Content(content.items, content.complete, basis, in_sight=True)
 
     def inventory(self, node: int, agent: int) -> tuple[Items, bool]:
-        """Return believed possessions of an agent, and whether these are known to be all."""
+        """Return believed possessions of an agent, and True if they are known to be complete."""
         node = self._knowing(node, agent)
         known = self._holdings[node].inventories.get(agent)
         if node == 0:
@@ -132,7 +137,7 @@ class HoldingsTable:
         return self._holdings[node].inventories.get(agent, {}), False
 
     def vitals(self, node: int, agent: int) -> Vitals:
-        """Health and food of an agent, which only the agent itself perceives."""
+        """Return health and food of an agent, which only the agent itself perceives."""
         node = self._knowing(node, agent)
         details = self._table.details_of(0, agent) if node == 0 else None
         if details is None or not self._table.poses.is_recorded(self._table.pose(0, agent)):
@@ -140,20 +145,26 @@ class HoldingsTable:
         return details.health, details.food
 
     def _knowing(self, node: int, agent: int) -> int:
-        """The node that says what an agent has: of its own, whatever the depth, the parent does."""
+        """Return the node that holds the possessions of an agent.
+
+        An agent knows its own possessions, so its own node defers to the parent at any depth.
+        """
         while node > 0 and self._table.owner(node) == agent:
             node = self._table.parent(node)
         return node
 
     def needs_looks(self) -> bool:
-        """Return True if there is something to be looked at that is no block and no agent."""
+        """Return True if owners have to look at more than blocks and agents in every entry.
+
+        That is so with transparent containers, unique items, doubtful contents or dropped items.
+        """
         transparent = self._context.options.containers == "transparent"
         if self._context.unique:
             return True
         return transparent or bool(self._doubtful) or any(h.items for h in self._holdings)
 
     def perceives(self, node: int, cell: int, item: str) -> bool:
-        """Return True if a node's owner perceives in this entry if an item is in a container."""
+        """Return True if the owner perceives in this entry whether an item is in a container."""
         if (node, cell) in self._looked_into or (node, cell, item) in self._seen_moved:
             return True
         content = self._holdings[node].containers.get(cell)
@@ -162,7 +173,7 @@ class HoldingsTable:
         return content.complete or item in content.items
 
     def perceives_elsewhere(self, node: int, cell: int, item: str) -> bool:
-        """Return True if a node's owner perceives in this entry an item in another container."""
+        """Return True if the owner perceives in this entry that an item is in another place."""
         held, here = self._holdings[node].containers, Whereabouts("container", cell)
         if any(place != here for place in self._found_now.get((node, item), ())):
             return True
@@ -174,10 +185,10 @@ class HoldingsTable:
         )
 
     def end_acts(self, which: npt.NDArray[np.bool_]) -> None:
-        """Let what acts showed in the last entry be current no more.
+        """End the currency of contents that acts showed in the last entry.
 
         Args:
-            which: Nodes that are to follow.
+            which: bool (N,), nodes to update.
         """
         for node in [node for node in self._shown_by_acts if which[node]]:
             held = self._holdings[node].containers
@@ -185,7 +196,7 @@ class HoldingsTable:
                 held[cell] = replace(held[cell], by_act=False)
 
     def _lose_sight(self, node: int, seen: Set[int], last: int) -> None:
-        """Let contents be seen until tick `last` that are not among those `seen` now."""
+        """Date contents that were in sight and are not among those `seen` now to tick `last`."""
         held, in_sight = self._holdings[node].containers, self._in_sight.get(node, set())
         for cell in (in_sight - seen) & held.keys():
             if held[cell].in_sight:
@@ -195,7 +206,7 @@ class HoldingsTable:
             self._in_sight.pop(node, None)
 
     def see_root(self, tick: int) -> None:
-        """Note that node 0 is seen to be as it is."""
+        """Confirm the state of node 0 for a tick, and forget the percepts of the last entry."""
         self.root.seen_at = tick
         self.root.edited.clear()
         self._looked_into.clear()
@@ -203,7 +214,7 @@ class HoldingsTable:
         self._found_now.clear()
 
     def apply_frame(self, frame: Frame | None) -> None:
-        """Take over contents and dropped items of node 0 from a frame."""
+        """Set contents and dropped items of node 0 from a frame."""
         if frame is None:
             return
         holdings, basis = self._holdings[0], Basis(frame.tick, Source.SEEN)
@@ -226,14 +237,18 @@ class HoldingsTable:
         acts: Mapping[int, list[Event]],
         which: npt.NDArray[np.bool_],
     ) -> None:
-        """What an entry does to contents, possessions and items, after `apply_frame`.
+        """Apply the effects of an entry on contents, possessions and items, after `apply_frame`.
+
+        Nodes are updated in rising order, so parents come first: an owner that looks into a
+        container learns the content that its parent holds after this entry.
 
         Args:
             tick: Tick of the entry.
-            last: The last tick before it.
+            last: Last tick at which lost sights were still current: the one before `tick`, or
+                `tick` itself if nothing happens.
             rows: Changes of blocks by node, as in `arrays.Changes`.
-            acts: Acts by the node that perceived them.
-            which: Nodes that are to follow.
+            acts: Perceived acts by node.
+            which: bool (N,), nodes to update.
         """
         for _, _, cell, _, new, _, _ in rows.get(0, ()):
             if self._context.container_name(new) is None:
@@ -267,7 +282,7 @@ class HoldingsTable:
                 self._find(node, item, tick, is_moved=item in moved)
 
     def _looking(self, acts: Mapping[int, list[Event]], which: npt.NDArray[np.bool_]) -> set[int]:
-        """Nodes whose present owners have acts or things to follow."""
+        """Return the nodes whose present owners have acts or things to look at."""
         present = which & self._table.present()
         if self.needs_looks():
             return set(np.flatnonzero(present).tolist())
@@ -298,7 +313,12 @@ class HoldingsTable:
             self.root.edited |= {*blocks, *contents}
 
     def _follow_acts(self, node: int, acts: list[Event], into: set[int], tick: int) -> None:
-        """What perceived acts do to a node that sees into the containers of `into` anyway."""
+        """Apply perceived acts to a node.
+
+        The visible part of other agents' acts changes contents (`witness`). The exceptions are
+        cells of `into`, where the owner sees the result anyway, and containers that the owner used
+        itself: it learns what the parent holds there after all acts of the tick (section 4).
+        """
         holdings, owner = self._holdings[node], self._context.agents[self._table.owner(node)]
         parent = self._table.parent(node)
         box, known = self._context.box, self._holdings[parent].containers
@@ -317,7 +337,8 @@ class HoldingsTable:
                     basis = Basis(tick, Source.WITNESSED, act.kind)
                     is_seen = content.in_sight and cell in into
                     content = replace(content, basis=basis, in_sight=is_seen, by_act=True)
-                # What the parent node holds by hearsay of its own is no perception now.
+                # A content that is not current in the parent keeps its basis: the owner cannot
+                # learn more than the parent holds (section 5.4).
                 self._learn(node, cell, content)
         for name in {act.actor for act in acts if act.actor not in (None, owner)}:
             number = self._context.numbers[str(name)]
@@ -331,9 +352,9 @@ class HoldingsTable:
         return any(item in act.detail.get("items", {}) for act in acts)
 
     def _lose(self, node: int, item: str, acts: Sequence[Event], tick: int) -> None:
-        """Acts with a unique item were perceived: it is nowhere but where they bring it."""
+        """Remove a unique item from everywhere, before perceived acts bring it to its new place."""
         kind = next(act.kind for act in reversed(acts) if self._is_moved(item, (act,)))
-        # What is worn at the end of the tick is seen already.
+        # Equipment is perceived as it is at the end of the tick, so what is worn now stays.
         worn = [Whereabouts("agent", agent) for agent in self._table.sees_worn(node)]
         basis = Basis(tick, Source.WITNESSED, kind)
         self._holdings[node].remove(item, (), basis)
@@ -344,7 +365,7 @@ class HoldingsTable:
         """Let a node whose owner perceives a unique item believe that it is nowhere else.
 
         Args:
-            node: Which; its contents, possessions and items are those after the tick.
+            node: Number of the node; its contents, possessions and items are those after the tick.
             item: Name of the item.
             tick: The tick.
             is_moved: Whether the owner perceives acts with the item.
@@ -362,7 +383,7 @@ class HoldingsTable:
             holdings.sole[item] = Sole(tick, moved_to, Basis(tick, Source.WITNESSED))
 
     def _perceived_places(self, node: int, item: str, tick: int) -> Mapping[Whereabouts, Basis]:
-        """Where the owner of a node perceives an item at the end of a tick."""
+        """Return the places where the owner of a node perceives an item at the end of a tick."""
         holdings, table = self._holdings[node], self._table
         parent, owner = table.parent(node), table.owner(node)
         seen: dict[Whereabouts, Basis] = {}
@@ -383,7 +404,7 @@ class HoldingsTable:
         return seen
 
     def _own(self, node: int) -> Items:
-        """What the owner of a node has, as the parent node holds."""
+        """Return the possessions of the owner of a node, as its parent node holds them."""
         return self.inventory(self._table.parent(node), self._table.owner(node))[0]
 
     def believe_only(self, node: int, item: str, cell: int, basis: Basis) -> None:
@@ -401,19 +422,23 @@ class HoldingsTable:
                 self._table.take_off(node, agent, item)
 
     def doubt(self, node: int, cell: int) -> None:
-        """Note a content at a place where a node knows no container."""
+        """Mark a content as doubtful if the node knows no container at its cell."""
         state = self._table.block(node, cell)
         if node > 0 and cell in self._holdings[node].containers and not self._context.holds[state]:
             self._doubtful.setdefault(node, {})[cell] = state
 
     def doubt_all(self, which: npt.NDArray[np.int64], cell: int) -> None:
-        """`doubt` for several nodes."""
+        """Call `doubt` for several nodes."""
         knowing = self._context.holds[self._table.nodes().blocks[which, cell]]
         for node in which[~knowing].tolist():
             self.doubt(node, cell)
 
     def _forget(self, node: int) -> None:
-        """Forget contents at places that are seen to hold no container."""
+        """Drop doubtful contents at cells that the owner sees to hold no container.
+
+        The node's block tells if it was known when the content came. If it was unknown, seeing a
+        block for the first time decides, even one that is not current in the parent.
+        """
         doubtful = self._doubtful.get(node)
         if doubtful is None:
             return
@@ -447,7 +472,7 @@ class HoldingsTable:
         )
 
     def _see_into(self, node: int, tick: int) -> set[int]:
-        """Look into transparent containers; returns the cells looked into."""
+        """Look into the transparent containers in sight, and return their cells."""
         if self._context.options.containers != "transparent":
             return set()
         parent = self._table.parent(node)
@@ -456,13 +481,13 @@ class HoldingsTable:
             content, old = self.content(parent, cell), self._holdings[node].containers.get(cell)
             basis = Basis(tick, Source.SEEN) if parent == 0 else content.basis
             if old is not None and old.in_sight and old.shows_as(content):
-                # One perception goes on, whatever else happens.
+                # An unchanged content in sight is one perception that lasts: keep its basis.
                 basis = old.basis
             self._learn(node, cell, replace(content, basis=basis))
         return into
 
     def _learn(self, node: int, cell: int, content: Content) -> None:
-        """Let a node's owner look into a container and find what its parent node holds."""
+        """Set the content of a container to one that the owner finds when it looks in."""
         holdings = self._holdings[node]
         holdings.containers[cell] = content
         holdings.look_into(cell, content.items)
@@ -470,7 +495,7 @@ class HoldingsTable:
         self._note(node, cell)
 
     def _note(self, node: int, cell: int) -> None:
-        """Note a content that a node has just perceived."""
+        """Update the indexes of current and doubtful contents for one just perceived."""
         self._note_current(node, cell)
         self.doubt(node, cell)
 
@@ -489,7 +514,7 @@ class HoldingsTable:
         return node
 
     def _see_items(self, node: int) -> None:
-        """Take over seen items; drop one whose believed place is seen empty."""
+        """Take over dropped items in sight. Forget items whose believed place is seen empty."""
         lying, known = self._holdings[self._table.parent(node)].items, self._holdings[node].items
         if not known and not lying:
             return

@@ -1,4 +1,4 @@
-"""Where forests begin: in the real world with its priors, or forked from another forest."""
+"""Initial forests: of the real world with its priors, or forked from another forest."""
 
 from collections.abc import Iterable, Sequence
 
@@ -32,15 +32,15 @@ def initial_forest(
     paths: Sequence[BeliefPath],
     extra: Sequence[int] = (),
 ) -> Forest:
-    """Return a forest of the real world, some nodes and those between, after the first perception.
+    """Return a forest of the real world with some nodes, after their first perception.
 
     Args:
-        context: What all nodes share.
-        events: What happens on the real world's timeline.
+        context: The part that all nodes share.
+        events: Events of the real world's timeline.
         snapshot: The real world at its first tick.
         static_blocks: Names and positions of blocks that everybody knows from the start.
         initial: Further priors, at any depth.
-        paths: The nodes that are wanted.
+        paths: The nodes that are wanted; those between them and the real world are added.
         extra: Further cells whose basis is to be tracked.
     """
     world = _numbers(context, snapshot)
@@ -80,7 +80,7 @@ def _states_of(context: BeliefContext, names: Iterable[str]) -> npt.NDArray[np.b
 
 
 def _numbers(context: BeliefContext, snapshot: Snapshot) -> BlockGrid:
-    """Return numbers of all blocks of the world."""
+    """Return the numbers of all blocks of the world, and note its signs and what they claim."""
     if not snapshot.signs:
         return snapshot.blocks
     numbers = snapshot.blocks.copy()
@@ -95,7 +95,7 @@ def _numbers(context: BeliefContext, snapshot: Snapshot) -> BlockGrid:
 
 
 def _add_world(table: NodeTable, snapshot: Snapshot, blocks: BlockGrid) -> Holdings:
-    """Add the real world's node; returns its holdings."""
+    """Add the node of the real world, and return its holdings."""
     context = table.context
     node = table.add((), UNKNOWN)
     table.set_blocks(node, blocks)
@@ -117,7 +117,7 @@ def _add_world(table: NodeTable, snapshot: Snapshot, blocks: BlockGrid) -> Holdi
 def _add_prior(
     table: NodeTable, path: BeliefPath, prior: npt.NDArray[np.int32], mine: InitialBelief, tick: int
 ) -> Holdings:
-    """Add a node with its priors; returns its holdings."""
+    """Add a node with its priors, and return its holdings."""
     context = table.context
     basis = Basis(tick, Source.PRIOR)
     node = table.add(path, table.index[path[:-1]])
@@ -147,16 +147,16 @@ def forked_forest(
     extra: Sequence[int] = (),
     further: Sequence[BeliefPath] = (),
 ) -> Forest:
-    """A forest that begins with what nodes of another hold: `root`, `path` and those between.
+    """Return a forest that begins with nodes of another: `root`, `path` and those between.
 
-    In node 0 all that is known is current from now on; what the others believed stays as
-    it was (semantics, section 6).
+    `root` becomes node 0: everything that it knows is current from the fork on. The beliefs of the
+    other nodes stay as they were (semantics, section 6).
 
     Args:
         source: The other forest, at the fork.
-        events: What happens on the new timeline.
-        root: The simulator that gets a timeline of its own.
-        path: The deepest node.
+        events: Events of the new timeline.
+        root: Path of the simulator that gets a timeline of its own.
+        path: Path of the deepest node.
         tick: Tick of the fork.
         extra: Further cells whose basis is to be tracked; the source tracks them too.
         further: More nodes below `root`, each after its parent.
@@ -179,7 +179,11 @@ def forked_forest(
 def _forked_holdings(
     source: HoldingsTable, node: int, agents: Iterable[int], *, is_root: bool
 ) -> Holdings:
-    """Return holdings at a fork; what was current is so until something new is perceived."""
+    """Return the holdings of a node at a fork.
+
+    Contents that were current stay so until something new is perceived. Node 0 gets the possessions
+    of all agents as the node believes them.
+    """
     copied = source.of(node).copy()
     for cell in copied.containers:
         content = source.content(node, cell)

@@ -1,10 +1,23 @@
 """Perception and belief update of all nodes below one timeline, compiled.
 
-The rules of semantics, sections 3 to 5, as far as they are about poses, blocks and who
-perceives which event. Contents, possessions and dropped items follow in `belief.holdings`,
-from what this leaves in `Changes`. Cost grows with what changed: who looks from the same
-place at the same blocks as before is not asked again, and a block is looked for only
-where the believer's belief differs from what there is.
+The kernel applies semantics, sections 3 to 5, to poses, blocks and the perception of events.
+`belief.holdings_table` then updates contents, possessions and dropped items from the rows that
+the kernel leaves in `Changes`.
+
+**One pass for all depths.** A node depends on nothing but the state of its parent and on its own
+past (section 5). Every node has a higher number than its parent. `fold` therefore takes an entry,
+applies it to node 0 and then updates all other nodes in rising order: each owner looks at a parent
+that already is as it is after this entry.
+
+**Cost grows with what changed.** Three caches in `Nodes` spare lines of sight:
+
+* `pending` has a bit for each cell where the parent knows another block than the node. Perception
+  replaces a value by the parent's value (section 4), so it can change no other cell.
+* `sees` and `watched` hold what the owner saw last. They stay true while the owner looks from the
+  same pose (`eye`) at the same shapes (`seen_geometry`). `tried` says for which pose of the other
+  agent `sees` holds.
+* `fresh` says that a bit of `pending` was set since the last look. Without it, and without a
+  change of the eye or of the shapes, every pending cell was out of sight before and still is.
 """
 
 import math
@@ -40,7 +53,10 @@ _WORD = 64
 
 @inner
 def _mark(nodes: Nodes, node: int, cell: int) -> None:
-    """Set or clear the pending bit of a cell in a node below node 0."""
+    """Set the pending bit of a cell in a node below node 0 if the parent knows another block.
+
+    Clear the bit otherwise.
+    """
     held = nodes.blocks[nodes.parent[node], cell]
     word, bit = cell // _WORD, np.uint64(1) << np.uint64(cell % _WORD)
     if held != UNKNOWN and held != nodes.blocks[node, cell]:
@@ -52,7 +68,7 @@ def _mark(nodes: Nodes, node: int, cell: int) -> None:
 
 @compiled
 def put(space: Space, nodes: Nodes, node: int, cell: int, state: int) -> None:
-    """Let a node hold a block state at a cell, with all that hangs on it."""
+    """Set the block of a cell in a node, its geometry, and the pending bits that depend on it."""
     old = nodes.blocks[node, cell]
     if old == state:
         return
@@ -69,13 +85,20 @@ def put(space: Space, nodes: Nodes, node: int, cell: int, state: int) -> None:
 
 @inlined
 def _handed_source(nodes: Nodes, parent: int, spot: int) -> int:
-    """Source of a tracked cell for whoever sees it in a node: all of node 0 is seen."""
+    """Return the source that an owner takes over for a tracked cell that it sees in its parent.
+
+    In the real world everything is current (section 2), so a child of node 0 holds it as seen.
+    """
     return SOURCE_SEEN if parent == 0 else nodes.basis_source[parent, spot]
 
 
 @inner
 def _settle(nodes: Nodes, node: int, last: int) -> None:
-    """Date what is current to `last`, the last tick at which it is sure to be so (section 2)."""
+    """Set `observed_at` of everything that was current so far to tick `last` (section 2).
+
+    While an element is current no tick is written. This function runs before the flags are computed
+    anew: an element that is no longer current then keeps `last` as its `observed_at`.
+    """
     for who in range(nodes.pose.shape[1]):
         if nodes.current[node, who]:
             nodes.seen_at[node, who] = last
@@ -95,7 +118,10 @@ def _put_noted(
     cell: int,
     state: int,
 ) -> None:
-    """`put`, and note it where a container is or was."""
+    """Call `put`. Add a row to `changes` if the old or the new block is a container.
+
+    The row carries the basis of the new block: that of the parent, from which the owner took it.
+    """
     old = nodes.blocks[node, cell]
     if old == state:
         return
@@ -124,14 +150,14 @@ def put_all(
     cell: int,
     states: npt.NDArray[np.int64],
 ) -> None:
-    """`put` for several nodes, each with a state of its own."""
+    """Call `put` for several nodes: `states[k]` is for node `which[k]`."""
     for number in range(len(which)):
         put(space, nodes, whole(which[number]), whole(cell), whole(states[number]))
 
 
 @compiled
 def refresh_pending(nodes: Nodes, node: int) -> None:
-    """Compute a node's pending bits anew."""
+    """Compute all pending bits of a node from its blocks and those of its parent."""
     nodes.pending[node, :] = 0
     for cell in range(nodes.blocks.shape[1]):
         _mark(nodes, node, cell)
@@ -139,7 +165,7 @@ def refresh_pending(nodes: Nodes, node: int) -> None:
 
 @merged
 def _apply_entry(space: Space, facts: Facts, nodes: Nodes, changes: Changes, entry: int) -> None:
-    """An entry in node 0, where everything known is current."""
+    """Apply an entry to node 0. Everything that node 0 knows is current (section 2)."""
     for row in range(facts.pose_at[entry], facts.pose_at[entry + 1]):
         who, pose = facts.pose_agent[row], facts.pose_id[row]
         nodes.pose[0, who] = pose
@@ -162,7 +188,11 @@ def _apply_entry(space: Space, facts: Facts, nodes: Nodes, changes: Changes, ent
 
 @merged
 def _propagate_bases(space: Space, nodes: Nodes, node: int, eye: Eye, moved: bool) -> None:
-    """Hand on what tracked cells rest on, where the owner of a node sees them."""
+    """Take over the basis of each tracked cell that the owner of a node sees in its parent.
+
+    A cell is current for the owner only if it is current in the parent. A stale one keeps its old
+    tick (section 5.4).
+    """
     parent = whole(nodes.parent[node])
     for spot in range(len(nodes.tracked)):
         if moved:
@@ -179,7 +209,12 @@ def _propagate_bases(space: Space, nodes: Nodes, node: int, eye: Eye, moved: boo
 def _observe_agents(
     space: Space, poses: Poses, nodes: Nodes, node: int, eye: Eye, moved: bool
 ) -> None:
-    """What the owner of a node learns of the agents in its parent node."""
+    """Take over poses and equipment of the agents that the owner sees in its parent.
+
+    The owner always perceives itself. A pose is current for it only if it is current in the parent
+    (section 5.4). With `negative_evidence` a believed pose becomes unknown if the owner sees that
+    place without the agent (section 4).
+    """
     parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
     for who in range(nodes.pose.shape[1]):
         pose = whole(nodes.pose[parent, who])
@@ -216,7 +251,10 @@ def _observe_blocks(
     node: int,
     eye: Eye,
 ) -> None:
-    """Take over what the owner of a node sees of the blocks it knew otherwise."""
+    """Take over the pending blocks that the owner of a node sees.
+
+    Words of 64 bits without a set bit are skipped. `put` clears the bit of each block taken over.
+    """
     parent = whole(nodes.parent[node])
     for word in range(nodes.pending.shape[1]):
         bits = nodes.pending[node, word]
@@ -233,7 +271,10 @@ def _observe_blocks(
 
 @inlined
 def _is_common_ground(senses: Senses, facts: Facts, event: int, me: int) -> bool:
-    """Whether who perceives an utterance credits an agent with hearing it, present or not (5.5)."""
+    """Return True if everybody who perceives an utterance credits agent `me` with hearing it.
+
+    Presence does not matter then (section 5.5).
+    """
     to = facts.event_to[event]
     if to != NOBODY:
         return bool(me in (to, facts.event_actor[event]))
@@ -242,7 +283,10 @@ def _is_common_ground(senses: Senses, facts: Facts, event: int, me: int) -> bool
 
 @inlined
 def _hears(senses: Senses, poses: Poses, nodes: Nodes, node: int, speaker: int) -> bool:
-    """Return True if the present owner of a node hears somebody else who speaks aloud."""
+    """Return True if the present owner of a node hears another agent that speaks aloud.
+
+    The test runs on the speaker's pose in the parent, under `sight` or `radius` (section 5.5).
+    """
     if senses.hearing == HEAR_SEEN:
         known = nodes.pose[nodes.parent[node], speaker] != UNKNOWN
         return bool(nodes.sees[node, speaker] and known)
@@ -268,7 +312,11 @@ def _perceive_events(
     entry: int,
     node: int,
 ) -> None:
-    """Which events of an entry the present owner of a node perceives."""
+    """Set in `changes.perceived` which events of an entry the present owner of a node perceives.
+
+    An event that was not perceived in the parent is skipped: a deeper belief never contains more
+    than the shallower one.
+    """
     parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
     first_event = whole(facts.event_at[span.start])
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
@@ -301,7 +349,11 @@ def _update_absent(
     entry: int,
     node: int,
 ) -> None:
-    """An owner that is not present is credited with common ground alone (5.2, 5.5)."""
+    """Update a node whose owner is not present in the parent.
+
+    Nothing stays current, and the owner is credited with nothing but utterances that are common
+    ground (sections 5.2 and 5.5).
+    """
     nodes.current[node, :] = False
     nodes.basis_current[node, :] = False
     nodes.eye[node] = UNKNOWN
@@ -318,14 +370,19 @@ def _update_absent(
 
 @inlined
 def _copy(row: npt.NDArray[np.int32], to: npt.NDArray[np.int32]) -> None:
-    """Copy a row; an assignment would be compiled with all that it could say of wrong shapes."""
+    """Copy a row. A slice assignment would also compile Numba's checks and messages of shapes."""
     for place in range(len(row)):
         to[place] = row[place]
 
 
 @inner
 def _count_to(nodes: Nodes, node: int, tick: int) -> None:
-    """Count ticks whom the owner of a node misses, all being as it was last (section 8)."""
+    """Count the ticks up to `tick` for condition 1b of section 8.1, with the present flags.
+
+    `missed` grows for every agent that the owner did not perceive. The copies of `missed` for
+    places and agents that the owner watches follow it. The difference between `missed` and such a
+    copy is therefore the number of ticks without the agent since the owner last watched.
+    """
     if nodes.counted[node] < 0:
         nodes.counted[node] = tick
     passed = tick - nodes.counted[node]
@@ -343,7 +400,11 @@ def _count_to(nodes: Nodes, node: int, tick: int) -> None:
 
 @inner
 def _observe_meetings(space: Space, poses: Poses, nodes: Nodes, node: int, moved: bool) -> None:
-    """Where the present owner of a node perceives others, and where it sees that they are gone."""
+    """Note the pose in which the present owner of a node perceives each agent.
+
+    Set `met` to unknown where the owner sees the last such place without the agent. The test is
+    repeated only if the owner looks anew (`moved`) or has just lost the agent from sight.
+    """
     parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
     eye = eye_of(space, poses, whole(nodes.eye[node]))
     for who in range(nodes.missed.shape[1]):
@@ -371,7 +432,10 @@ def _note_watched_places(
     entry: int,
     node: int,
 ) -> None:
-    """Note the places at which the present owner of a node perceives somebody act."""
+    """Count tracked cells as watched where the present owner of a node perceives an act.
+
+    See section 8: an agent watches a place also when it acts there or perceives somebody act there.
+    """
     first_event = whole(facts.event_at[span.start])
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
         cell = facts.event_cell[event]
@@ -394,8 +458,13 @@ def _update_node(
     entry: int,
     node: int,
 ) -> None:
-    """Fold an entry into one node, after its parent."""
+    """Fold an entry into one node whose parent was updated before.
+
+    The order matters. First the ticks before this one are accounted for, with the flags that held
+    during them. Then the flags are computed anew. The tick of the entry counts with the new ones.
+    """
     tick = whole(facts.tick[entry])
+    # An edit lies between two ticks: what was current before it was so at this tick too.
     last = tick - 1 if span.happens else tick
     _settle(nodes, node, last)
     if space.senses.weighs:
@@ -432,14 +501,27 @@ def fold(
     span: Span,
     which: npt.NDArray[np.bool_],
 ) -> int:
-    """Fold the entries of a pass into the nodes that `which` marks.
+    """Fold the entries of a pass into the nodes that `which` marks; see the module's docstring.
 
-    Returns the entry it got to: it stops early when `changes.rows` might not hold what the next
-    entry adds.
+    Args:
+        space: Box, shapes and senses.
+        poses: Poses that the facts and the nodes refer to.
+        facts: Entries of the stretch.
+        nodes: States of all nodes, changed in place.
+        changes: Receives who perceived which event, and changes at containers.
+        span: Entries to fold.
+        which: bool (N,), nodes to update. The parent of a marked node is marked too or is up to
+            date.
+
+    Returns:
+        Number of the first entry that was not folded. The kernel stops early if the rows that the
+        next entry adds might not fit into `changes.rows`.
     """
     first_event = whole(facts.event_at[span.start])
     room = changes.rows.shape[0]
     for entry in range(span.start, span.stop):
+        # An entry adds at most one row for each node and tracked cell, a quarter of the room (see
+        # `Forest._changes`). So no entry that begins with half of the room free can overflow it.
         if changes.used[0] > 0 and changes.used[0] > room // 2:
             return entry
         if which[0]:

@@ -1,4 +1,4 @@
-"""The kernel's arrays of the nodes of one forest, growing with the nodes that are asked for."""
+"""Arrays of the nodes of one forest for the kernel, which grow as nodes are added."""
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -22,17 +22,17 @@ __all__ = ["NodeTable", "SavedNode"]
 Row = npt.NDArray[Any]
 
 _POSE_IDS = ("pose", "equipment", "eye", "tried", "met")
-"""Rows that hold pose ids."""
+"""Names of the arrays that hold pose ids."""
 
 _BY_SPOT = ("watched", "basis_at", "basis_source", "basis_current", "watch_missed")
-"""Rows with a column for each tracked cell."""
+"""Names of the arrays with a column for each tracked cell."""
 
 
 @dataclass(frozen=True, slots=True)
 class SavedNode:
-    """A node's rows, as native bytes, by their names in `arrays.Nodes`.
+    """Rows of one node as native bytes, by their names in `arrays.Nodes`.
 
-    `weighing` are those that are there if hearers weigh claims.
+    `weighing` has the rows that exist only if hearers weigh claims.
     """
 
     path: BeliefPath
@@ -61,10 +61,10 @@ class NodeTable:
     Attributes:
         index: Number of each node by path; a node's number is above its parent's.
         count: How many nodes there are.
-        context: What all nodes share.
-        poses: The pose table that the nodes' pose ids are rows of.
-        edited_cells: Nodes and cells of blocks that were changed by hand since the node last
-            perceived them.
+        context: The part that all nodes of the nest share.
+        poses: The pose table to which the nodes' pose ids refer.
+        edited_cells: Pairs of node and cell of blocks that were changed by hand since the node
+            last perceived them.
     """
 
     def __init__(self, context: BeliefContext, poses: PoseTable, extra: Sequence[int] = ()) -> None:
@@ -78,9 +78,9 @@ class NodeTable:
         others = [cell for cell in extra if cell not in known]
         tracked = self._tracked = np.array([*context.tracked, *others], dtype=np.int32)
         agents, cells, spots = len(context.agents), context.cells, len(tracked)
-        # Those who weigh no claims need no room for it.
+        # Arrays for weighing claims have no columns where hearers weigh none.
         weighed = agents if context.space.senses.weighs else 0
-        # A row is filled when its node is added; see `_filler`.
+        # Not initialized: `_grow` fills the row of each node that is added.
         self._rows: dict[str, Row] = {
             "parent": np.empty(2, np.int32),
             "agent": np.empty(2, np.int32),
@@ -123,7 +123,10 @@ class NodeTable:
         return self._nodes
 
     def add(self, path: BeliefPath, parent: int) -> int:
-        """Return a new node that knows nothing; `link` has to follow once its blocks are set."""
+        """Add a node that knows nothing and return its number.
+
+        Call `link` once its blocks are set.
+        """
         node = self._grow()
         self.index[path] = node
         self._rows["parent"][node] = parent
@@ -132,25 +135,28 @@ class NodeTable:
         return node
 
     def enter(self, poses: PoseTable) -> None:
-        """Go over to another pose table."""
+        """Move to another pose table, and copy the poses in use to it."""
         numbers = [self._rows[name][: self.count].ravel() for name in _POSE_IDS]
         used = np.unique(np.concatenate(numbers))
         used = used[used >= 0]
         table = np.full(len(self.poses) + 1, UNKNOWN, dtype=np.int32)
         table[used] = poses.take(self.poses, used)
         for name in _POSE_IDS:
-            # The last place of the table is that of -1, which is no pose.
+            # -1, which is no pose, indexes the last place of the table, where -1 stands.
             self._rows[name][: self.count] = table[self._rows[name][: self.count]]
         self.poses = poses
 
     def copy_node(self, other: "NodeTable", source: int, *, is_root: bool, recorded: bool) -> int:
-        """Return a node of other table as node of these; as node 0 all that it knows is current.
+        """Add a copy of a node of another table and return its number.
+
+        As node 0 it holds everything that it knows as current (semantics, section 6).
 
         Args:
             other: The other table.
-            source: Number of the node in them.
-            is_root: Whether it becomes node 0.
-            recorded: Whether what the other's timeline recorded counts as recorded by this one's.
+            source: Number of the node in the other table.
+            is_root: Whether the copy becomes node 0.
+            recorded: Whether poses that the other's timeline recorded count as recorded by this
+                one's.
         """
         path = other.path(source)
         node = self._grow()
@@ -181,11 +187,11 @@ class NodeTable:
         return node
 
     def path(self, node: int) -> BeliefPath:
-        """Path of a node."""
+        """Return the path of a node."""
         return next(path for path, number in self.index.items() if number == node)
 
     def link(self) -> None:
-        """Connect the nodes and compare those that were added with their parents."""
+        """Index the children of all nodes, and compute the pending bits of the nodes just added."""
         parent = self._rows["parent"][: self.count]
         order = np.argsort(parent, kind="stable").astype(np.int32)
         self._child = order[np.searchsorted(parent[order], 0) :]
@@ -199,11 +205,11 @@ class NodeTable:
         self._linked = max(self.count, 1)
 
     def set_blocks(self, node: int, blocks: npt.NDArray[np.signedinteger[Any]]) -> None:
-        """Set all blocks of a node, and its geometry; the array does not change any more."""
+        """Set all blocks of a node, and its geometry. Do not change the array afterwards."""
         self._rows["blocks"][node] = blocks.ravel()
         if self._coded is None or self._coded[0] is not blocks:
             space = self.context.space
-            # Most nodes know the same at first.
+            # Most nodes start with the same array, so the last geometry is kept for the next call.
             self._coded = (blocks, code_grid(blocks, space.codes, space.reaches).ravel())
         self._rows["codes"][node] = self._coded[1]
 
@@ -224,13 +230,13 @@ class NodeTable:
         return () if details is None else details.equipment.values()
 
     def take_off(self, node: int, agent: int, item: str) -> None:
-        """Let a node believe that an agent does not wear or hold an item."""
+        """Remove an item from the equipment that a node believes of an agent."""
         if item in self.worn(node, agent):
             pose = self.poses.without(self.equipment(node, agent), item)
             self.set_equipment(node, agent, pose)
 
     def sees_worn(self, node: int) -> list[int]:
-        """Agents of whom the present owner of a node sees what they wear, itself included."""
+        """Return the agents whose equipment the present owner of a node sees, itself included."""
         parent, owner = self.parent(node), self.owner(node)
         seen = self._rows["sees"][node] & (self._rows["pose"][parent] >= 0)
         seen[owner] = True
@@ -239,7 +245,7 @@ class NodeTable:
         ]
 
     def set_basis(self, node: int, cell: int, basis: Basis | None) -> None:
-        """Set what a cell rests on, if it is tracked."""
+        """Set the basis of a cell, if it is tracked."""
         for spot in np.flatnonzero(self._tracked == cell):
             self._rows["basis_at"][node, spot] = UNKNOWN if basis is None else basis.observed_at
             self._rows["basis_current"][node, spot] = node == 0 and basis is not None
@@ -247,14 +253,14 @@ class NodeTable:
                 self._rows["basis_source"][node, spot] = self.context.basis_code(basis)
 
     def set_known_bases(self, node: int, basis: Basis) -> None:
-        """Set what all tracked cells that a node knows rest on."""
+        """Set one basis for all tracked cells whose block a node knows."""
         known = self._rows["blocks"][node][self._tracked] >= 0
         self._rows["basis_at"][node][known] = basis.observed_at
         self._rows["basis_source"][node][known] = self.context.basis_code(basis)
         self._rows["basis_current"][node][known] = node == 0
 
     def bases(self, node: int, cells: Sequence[int], tick: int) -> dict[int, Basis | None]:
-        """What tracked cells rest on in a node at a tick; None where a block is unknown."""
+        """Return the bases of tracked cells in a node at a tick; None where a block is unknown."""
         spots = {cell: spot for spot, cell in enumerate(self._tracked.tolist())}
         current = self._rows["basis_current"][node]
         ticks = np.where(current, tick, self._rows["basis_at"][node]).tolist()
@@ -267,7 +273,7 @@ class NodeTable:
         }
 
     def put(self, node: int, cell: int, state: int, basis: Basis) -> None:
-        """Let a node hold a block state by hand."""
+        """Set a block of a node by hand, with its basis."""
         self.edited_cells.add((node, cell))
         kernel.put(self.context.space, self.nodes(), node, cell, state)
         self.set_basis(node, cell, basis if state >= 0 else None)
@@ -275,14 +281,14 @@ class NodeTable:
     def tell(
         self, which: npt.NDArray[np.int64], cell: int, states: Sequence[int], basis: Basis
     ) -> None:
-        """Let nodes hold block states that were claimed."""
+        """Set a claimed block in several nodes: `states[k]` in node `which[k]`."""
         wanted = np.array(states, dtype=np.int64)
         kernel.put_all(self.context.space, self.nodes(), which, cell, wanted)
         for node in which.tolist():
             self.set_basis(node, cell, basis)
 
     def levels(self) -> Iterator[npt.NDArray[np.bool_]]:
-        """Which nodes lie how deep, node 0 first."""
+        """Yield for each depth a mask of the nodes at that depth, node 0 first."""
         parent = self._rows["parent"][: self.count]
         level = parent == UNKNOWN
         while level.any():
@@ -290,7 +296,7 @@ class NodeTable:
             level = (parent >= 0) & level[parent]
 
     def track(self) -> None:
-        """Track the cells that the context tracks by now."""
+        """Add columns for the cells that the context has begun to track since the last call."""
         known = set(self._tracked.tolist())
         new = [cell for cell in self.context.tracked if cell not in known]
         if not new:
@@ -302,11 +308,11 @@ class NodeTable:
             wide = np.full((size, len(new), *row.shape[2:]), _filler(row), dtype=row.dtype)
             self._rows[name] = np.concatenate([row, wide], axis=1)
         self._nodes = None
-        # The next look covers the new cells too.
+        # An unknown eye makes every owner look anew, and so cover the new cells.
         self._rows["eye"][: self.count] = UNKNOWN
 
     def saved(self, node: int) -> SavedNode:
-        """What a node holds, as plain data; what it was asked last is not part of that."""
+        """Return the state of a node as plain data, without the kernel's caches."""
         row = {name: self._rows[name][node].tobytes() for name in _SAVED}
         edited = sorted(cell for other, cell in self.edited_cells if other == node)
         names = _WEIGHING if self.context.space.senses.weighs else ()
@@ -316,7 +322,13 @@ class NodeTable:
     def restore(
         self, saved: SavedNode, tracked: npt.NDArray[np.int32], signs: Sequence[SavedWriting]
     ) -> None:
-        """Add a node that was saved, with what was tracked, numbered then; `link` has to follow."""
+        """Add a saved node; call `link` afterwards.
+
+        Args:
+            saved: The node.
+            tracked: Cells that were tracked when it was saved; all of them are tracked now.
+            signs: Signs with texts at that time, in order of their block numbers.
+        """
         node = self.add(saved.path, self.index.get(saved.path[:-1], UNKNOWN))
         self.edited_cells |= {(node, cell) for cell in saved.edited_cells}
         spots = {cell: spot for spot, cell in enumerate(self._tracked.tolist())}
@@ -336,11 +348,11 @@ class NodeTable:
 
     @property
     def tracked(self) -> npt.NDArray[np.int32]:
-        """Cells whose basis is tracked."""
+        """The cells whose basis is tracked."""
         return self._tracked
 
     def spot(self, cell: int) -> int:
-        """Return the number of a tracked cell; -1: it is not tracked."""
+        """Return the index of a cell among the tracked ones; -1: it is not tracked."""
         found = np.flatnonzero(self._tracked == cell)
         return int(found[0]) if len(found) else UNKNOWN
 
@@ -370,12 +382,15 @@ class NodeTable:
         return int(self._rows["equipment"][node, agent])
 
     def details_of(self, node: int, agent: int) -> PoseDetails | None:
-        """What goes with an agent's believed pose; None if it is unknown or nobody was seen."""
+        """Return the details of an agent's believed pose.
+
+        None: the pose is unknown, or it was claimed or given and nobody was seen in it.
+        """
         pose = self.pose(node, agent)
         return None if pose < 0 else self.poses.details(pose)
 
     def seen_at(self, node: int, agent: int) -> int:
-        """Last tick at which an agent's believed pose was current, where it no longer is."""
+        """Return the last tick at which an agent's pose was current, for one that no longer is."""
         return int(self._rows["seen_at"][node, agent])
 
     def is_current(self, node: int, agent: int) -> bool:
@@ -383,14 +398,14 @@ class NodeTable:
         return bool(self._rows["current"][node, agent])
 
     def present(self) -> npt.NDArray[np.bool_]:
-        """By node, whether its owner is present in its parent node (semantics, section 5.1)."""
+        """Return by node if its owner is present in its parent node (semantics, section 5.1)."""
         parent, agent = self._rows["parent"][: self.count], self._rows["agent"][: self.count]
         present: npt.NDArray[np.bool_] = self._rows["current"][parent, agent]
         present[0] = True
         return present
 
     def is_present(self, node: int) -> bool:
-        """Whether the owner of a node is present in its parent node (semantics, section 5.1)."""
+        """Return True if the owner of a node is present in its parent (semantics, section 5.1)."""
         return node == 0 or self.is_current(self.parent(node), self.owner(node))
 
     def sees_cells(self, node: int, cells: Iterable[int]) -> set[int]:
@@ -404,7 +419,7 @@ class NodeTable:
         return set(wanted[seen].tolist())
 
     def sees_point(self, node: int, point: Point) -> bool:
-        """Whether the present owner of a node sees a point (scenario coordinates) in its parent."""
+        """Return True if the present owner of a node sees a point (scenario coordinates)."""
         parent = self.parent(node)
         eye = self.pose(parent, self.owner(node))
         return seeing.sees_point(
@@ -412,11 +427,17 @@ class NodeTable:
         )
 
     def block_is_current(self, node: int, cell: int) -> bool:
-        """Whether the last entry's perception backs a node's block (semantics, section 5.4)."""
+        """Return True if a node's block is current (semantics, section 5.4)."""
         return cell in self.current_blocks(node, (cell,))
 
     def current_blocks(self, node: int, cells: Iterable[int]) -> set[int]:
-        """Return those of some cells whose block that perception backs (semantics, section 5.4)."""
+        """Return the cells whose block is current in a node (semantics, section 5.4).
+
+        A block is current if the owner sees it in its parent and it is current there. The loop
+        therefore climbs from the node to node 0 and keeps the cells that are seen at every step.
+        Nothing is left at an owner that is not present, or where a block was edited by hand since
+        it was perceived. In node 0 every known block is current.
+        """
         left = set(cells)
         while left and node > 0:
             if not self.is_present(node):
@@ -428,7 +449,7 @@ class NodeTable:
         return {cell for cell in left if self.block(0, cell) >= 0}
 
     def below(self, node: int) -> npt.NDArray[np.bool_]:
-        """Which nodes lie below a node."""
+        """Return a mask of the nodes below a node."""
         below = np.zeros(self.count, dtype=np.bool_)
         for other in range(node + 1, self.count):
             parent = self.parent(other)
@@ -439,7 +460,7 @@ class NodeTable:
         node = self.count
         size = len(self._rows["parent"])
         if node == size:
-            # Room that is not written to yet takes no memory, so plenty may be reserved.
+            # The system gives memory to pages when they are written, so spare rows cost nothing.
             for name, row in self._rows.items():
                 self._rows[name] = np.empty((8 * size, *row.shape[1:]), dtype=row.dtype)
                 self._rows[name][:size] = row
@@ -452,5 +473,5 @@ class NodeTable:
 
 
 def _filler(row: Row) -> int:
-    """What stands in a row where nothing is known."""
+    """Return the value that stands for "nothing known" in an array."""
     return UNKNOWN if row.dtype.kind == "i" else 0

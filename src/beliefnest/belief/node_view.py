@@ -1,4 +1,4 @@
-"""What one node holds at one entry of a timeline, read from its forest when asked for."""
+"""View of one node at one entry of a timeline, read from its forest on demand."""
 
 from collections import Counter
 from collections.abc import Mapping
@@ -19,16 +19,21 @@ from beliefnest.world.values import EYE_HEIGHT, AgentState, DroppedItem, Positio
 __all__ = ["NodeView"]
 
 FULL = 20.0
-"""Health and food of an agent of whom no more is known."""
+"""Health and food assumed for an agent if they are unknown."""
 
 
 class NodeView:
-    """A node's state; stays as it is when the forest goes on.
+    """State of a node. It stays as it is when the forest folds further entries.
+
+    Args:
+        forest: The forest, which is at the wanted entry.
+        path: Path of the node.
+        tick: Tick of the view, at or after that of the last entry; None: the tick of that entry.
 
     Attributes:
-        path: The node.
-        tick: The tick it is; None: that of the last entry it rests on.
-        count_of_events: How many events of the timeline lie before it.
+        path: Path of the node.
+        tick: Tick of the view.
+        count_of_events: Number of events of the timeline before it.
     """
 
     def __init__(self, forest: Forest, path: BeliefPath, tick: int | None = None) -> None:
@@ -40,22 +45,25 @@ class NodeView:
         forest.read_by(self)
 
     def keep(self) -> None:
-        """Read what the forest will not know any more once it goes on."""
+        """Read all parts that the forest will overwrite; called before it folds further."""
         self.numbers, self.agents, self.containers, self.items  # noqa: B018 - cached when read
 
     @cached_property
     def blocks(self) -> BlockGrid:
-        """Believed block states, shape of the box, -1 unknown."""
+        """The believed block states, shape of the box, -1 unknown."""
         return self._forest.context.states(self.numbers)
 
     @cached_property
     def numbers(self) -> BlockGrid:
-        """Numbers of the believed blocks: one for each text of a sign too (`BeliefContext`)."""
+        """The numbers of the believed blocks, which also tell texts of signs apart.
+
+        See `BeliefContext.number`.
+        """
         return self._forest.table.blocks(self._node)
 
     @cached_property
     def signs(self) -> Mapping[Position, str]:
-        """Believed texts of signs that are written on, in order of position."""
+        """The believed texts of signs that carry text, in order of position."""
         return self._forest.context.texts(self.numbers)
 
     @cached_property
@@ -66,7 +74,7 @@ class NodeView:
 
     @cached_property
     def containers(self) -> Mapping[Position, ContainerBelief]:
-        """Known contents, in order of position."""
+        """The known contents, in order of position."""
         forest = self._forest
         found = {}
         for cell in sorted(forest.holdings.of(self._node).containers):
@@ -78,13 +86,13 @@ class NodeView:
 
     @cached_property
     def agents(self) -> Mapping[str, AgentBelief]:
-        """What is believed of every agent."""
+        """The beliefs about every agent, by name."""
         names = self._forest.context.agents
         return {name: self._agent(number) for number, name in enumerate(names)}
 
     @cached_property
     def items(self) -> Mapping[int, DroppedItem]:
-        """Dropped items last seen."""
+        """The dropped items last seen, by number."""
         return dict(self._forest.holdings.of(self._node).items)
 
     def events(self) -> tuple[PerceivedEvent, ...]:
@@ -92,15 +100,18 @@ class NodeView:
         return tuple(self._forest.heard(self._node, self.count_of_events))
 
     def events_since(self, count: int) -> tuple[PerceivedEvent, ...]:
-        """Return perceived events but for the timeline's first `count` ones, oldest first."""
+        """Return perceived events except those among the timeline's first `count`, oldest first."""
         return tuple(self._forest.heard(self._node, self.count_of_events, count))
 
     def perceived_since(self, count: int) -> npt.NDArray[np.bool_]:
-        """Which of the timeline's events but for the first `count` ones were perceived."""
+        """Return a mask of the timeline's events after the first `count`: those perceived."""
         return self._forest.hearing.of(self._node, self.count_of_events)[count:]
 
     def visible_from(self, agent: str) -> npt.NDArray[np.bool_]:
-        """Which blocks an agent sees from its believed pose; none if that is unknown."""
+        """Return a mask of the blocks that an agent sees from its believed pose.
+
+        The mask is all False if the pose is unknown.
+        """
         viewer = self.agents[agent]
         if viewer.position is None:
             return np.zeros(self.blocks.shape, dtype=np.bool_)
@@ -108,10 +119,10 @@ class NodeView:
         return self.geometry.visible_blocks((x, y + EYE_HEIGHT, z), viewer.yaw, viewer.pitch)
 
     def snapshot(self) -> Snapshot:
-        """What a body of the state is filled with.
+        """Return the snapshot with which a body of this state is filled.
 
-        Unknown blocks are air, agents of unknown pose are absent, and who was seen to wear
-        or hold something has it.
+        Unknown blocks become air and agents of unknown pose are left out. An agent that was seen to
+        wear or hold an item has it in its inventory.
         """
         agents = {
             name: AgentState(
@@ -169,7 +180,7 @@ class NodeView:
         )
 
     def _basis(self, pose: int, tick: int) -> Basis:
-        """What a believed pose rests on."""
+        """Return the basis of a believed pose."""
         poses = self._forest.poses
         speaker = poses.speaker(pose)
         if speaker != NOBODY:

@@ -30,7 +30,7 @@ def state_json(state: State) -> dict[str, object]:
 
 
 def belief_json(state: State) -> dict[str, object]:
-    """Return all of a state but its blocks: what `state_json` has, and what it rests on."""
+    """Return a state without its blocks: the object of `state_json` with the bases of beliefs."""
     return {
         **state_json(state),
         "containers": {
@@ -60,7 +60,7 @@ def belief_json(state: State) -> dict[str, object]:
 
 
 def _signs(state: State) -> dict[str, object]:
-    """What is known to be written on signs; nothing where there are none."""
+    """Return the known texts of signs under one key; an empty object if there are none."""
     signs = {place_key(place): text for place, text in state.signs.items()}
     return {"signs": signs} if signs else {}
 

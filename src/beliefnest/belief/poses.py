@@ -1,4 +1,4 @@
-"""Poses of agents, and what goes with each, in a table that the belief kernel reads."""
+"""Table of agents' poses with their details, which the belief kernel reads."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -14,7 +14,7 @@ __all__ = ["Growing", "PoseDetails", "PoseTable", "SavedPoses"]
 
 
 class Growing:
-    """An array that grows by rows; new rows wait in a list until the array is read."""
+    """Array that grows by rows. New rows wait in a list until the array is read."""
 
     def __init__(self, dtype: npt.DTypeLike, width: int = 0) -> None:
         shape = (64, width) if width else (64,)
@@ -31,11 +31,11 @@ class Growing:
         self._waiting.extend(rows)
 
     def extend_by(self, body: bytes) -> None:
-        """Add rows that are given as native bytes."""
+        """Add rows from native bytes."""
         self.extend(np.frombuffer(body, self._rows.dtype).reshape(-1, *self._rows.shape[1:]))
 
     def view(self) -> npt.NDArray[Any]:
-        """Return the rows so far."""
+        """Return all rows added so far."""
         if self._waiting:
             count = len(self)
             if count > len(self._rows):
@@ -51,9 +51,9 @@ class Growing:
 
 @dataclass(frozen=True, slots=True)
 class PoseDetails:
-    """What goes with a pose: footing, equipment, and what only the agent itself perceives.
+    """Footing and equipment of an agent in a pose, with facts that only the agent perceives.
 
-    Attributes as those of `AgentState`.
+    The attributes have the meaning of those of `AgentState`.
     """
 
     on_ground: bool
@@ -64,7 +64,7 @@ class PoseDetails:
 
 
 class PoseTable:
-    """Poses and what goes with each, for one stretch of a timeline; a pose's id is its row."""
+    """Poses and their details, for one stretch of a timeline. The id of a pose is its row."""
 
     def __init__(self) -> None:
         self._feet = Growing(np.float64, 3)
@@ -72,7 +72,7 @@ class PoseTable:
         self._details = Growing(np.int32)
         self._recorded = Growing(np.bool_)
         self._heard = Growing(np.int32)
-        # In the order of `SavedPoses`.
+        # Same order as the fields of `SavedPoses`.
         self._columns = (self._feet, self._angles, self._details, self._recorded, self._heard)
         self._table: list[PoseDetails | None] = [None]
         self._last: dict[str, int] = {}
@@ -81,7 +81,7 @@ class PoseTable:
         return len(self._feet)
 
     def add(self, name: str, agent: AgentState) -> int:
-        """Return the id of a new pose of an agent, which the timeline itself recorded."""
+        """Add a pose of an agent that the timeline itself recorded, and return its id."""
         details = PoseDetails(
             agent.on_ground, agent.equipment, agent.inventory, agent.health, agent.food
         )
@@ -92,11 +92,18 @@ class PoseTable:
         return self._append(agent.position, agent.yaw, agent.pitch, last, recorded=True)
 
     def add_pose(self, position: Point, yaw: float, pitch: float, speaker: int = NOBODY) -> int:
-        """Id of a pose in which nobody was seen; an agent `speaker` may have claimed it."""
+        """Add a pose in which nobody was seen, and return its id.
+
+        Args:
+            position: Feet, scenario coordinates.
+            yaw: Radians.
+            pitch: Radians.
+            speaker: Number of the agent that claimed the pose; `NOBODY`: it is no hearsay.
+        """
         return self._append(position, yaw, pitch, 0, speaker, recorded=False)
 
     def without(self, pose: int, item: str) -> int:
-        """Id of a new pose that is like another, whose agent does not wear or hold an item."""
+        """Add a copy of a pose without an item in its equipment, and return its id."""
         details = self.details(pose)
         if details is None:
             raise AssertionError("nobody was seen in this pose")
@@ -107,12 +114,13 @@ class PoseTable:
         return self._append(self.position(pose), yaw, pitch, last, recorded=recorded)
 
     def take(self, other: "PoseTable", numbers: Ints, *, recorded: bool = True) -> Ints:
-        """Copy poses of another table; returns their ids in this one.
+        """Copy poses of another table, and return their ids in this one.
 
         Args:
             other: The other table.
-            numbers: Their ids in the other table.
-            recorded: Whether what the other's timeline recorded counts as recorded by this one's.
+            numbers: Ids of the poses in the other table.
+            recorded: Whether poses that the other's timeline recorded count as recorded by this
+                one's.
         """
         table = {0: 0}
         first = len(self)
@@ -130,7 +138,7 @@ class PoseTable:
         return np.arange(first, len(self), dtype=np.int32)
 
     def position(self, pose: int) -> Point:
-        """Return feet of a pose."""
+        """Return the feet position of a pose."""
         x, y, z = self._feet.view()[pose].tolist()
         return (x, y, z)
 
@@ -140,15 +148,15 @@ class PoseTable:
         return yaw, pitch
 
     def details(self, pose: int) -> PoseDetails | None:
-        """What goes with a pose; None for a pose that nobody was seen in."""
+        """Return the details of a pose; None for a pose in which nobody was seen."""
         return self._table[int(self._details.view()[pose])]
 
     def is_recorded(self, pose: int) -> bool:
-        """Whether the timeline recorded a pose, so that it is not only believed since a fork."""
+        """Return True if the timeline recorded a pose. False: it was only believed at a fork."""
         return bool(self._recorded.view()[pose])
 
     def speaker(self, pose: int) -> int:
-        """Return the number of the agent who claimed a pose; `NOBODY`: it is no hearsay."""
+        """Return the number of the agent that claimed a pose; `NOBODY`: it is no hearsay."""
         return int(self._heard.view()[pose])
 
     def arrays(self) -> Poses:
@@ -164,7 +172,7 @@ class PoseTable:
 
     @classmethod
     def restored(cls, saved: "SavedPoses") -> "PoseTable":
-        """Return the table that was saved."""
+        """Return a saved table."""
         restored = cls()
         bodies = (saved.feet, saved.angles, saved.details, saved.recorded, saved.heard)
         for column, body in zip(restored._columns, bodies, strict=True):
@@ -192,7 +200,7 @@ class PoseTable:
 
 @dataclass(frozen=True, slots=True)
 class SavedPoses:
-    """A pose table as plain data: its columns as native bytes, and the details."""
+    """Pose table as plain data: its columns as native bytes, and the details."""
 
     feet: bytes
     angles: bytes

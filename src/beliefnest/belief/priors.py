@@ -1,4 +1,4 @@
-"""Initial beliefs of one node, merged from all that speak of it."""
+"""Merge of all initial beliefs that apply to one node."""
 
 from collections.abc import Sequence
 
@@ -9,7 +9,10 @@ __all__ = ["merged_belief"]
 
 
 def merged_belief(initial: Sequence[InitialBelief], node: BeliefPath) -> InitialBelief:
-    """Merge all that initial beliefs say of a node; the more precise path counts."""
+    """Return the initial beliefs of a node, merged from all that apply to it.
+
+    Where two speak of the same element, the more precise path counts; see `InitialBelief.path`.
+    """
     known = [belief for belief in initial if _is_about(belief.path, node)]
     merged = InitialBelief(node)
     for belief in sorted(known, key=_precision):

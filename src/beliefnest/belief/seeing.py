@@ -1,4 +1,4 @@
-"""What eyes see in nodes of a timeline, compiled."""
+"""Lines of sight inside the state of a node, compiled."""
 
 from typing import Any
 
@@ -33,7 +33,7 @@ def whole(number: _Number) -> int:
 
 @inlined
 def grid_cell(space: Space, cell: int) -> Cell:
-    """Grid coordinates (with margin) of a flat cell."""
+    """Return the grid coordinates (with margin) of a flat cell."""
     ny, nz = space.sizes[1] - 2, space.sizes[2] - 2
     return cell // (ny * nz) + 1, cell // nz % ny + 1, cell % nz + 1
 
@@ -53,7 +53,7 @@ def eye_of(space: Space, poses: Poses, pose: int) -> Eye:
 
 @inlined
 def scene_of(space: Space, nodes: Nodes, node: int) -> Scene:
-    """What an eye in a node looks through."""
+    """Return the blocks of a node as the ray kernels take them."""
     return Scene(nodes.codes[node], space.sizes, space.starts, space.boxes)
 
 
@@ -80,7 +80,10 @@ def sees_place(
     which: npt.NDArray[np.int64],
     pose: int,
 ) -> npt.NDArray[np.bool_]:
-    """Which present owners of some nodes would see an agent that stood at a pose."""
+    """Return, by node of `which`, if its owner would see an agent at a pose.
+
+    The owner looks through the blocks of the parent. It is False if the owner is not present.
+    """
     seen = np.zeros(len(which), dtype=np.bool_)
     for number in range(len(which)):
         node = which[number]
@@ -100,7 +103,7 @@ def sees_cells(
     pose: int,
     cells: npt.NDArray[np.int64],
 ) -> npt.NDArray[np.bool_]:
-    """Which of some cells an eye at a pose sees in a node."""
+    """Return, by cell of `cells`, if an eye at a pose sees it in a node."""
     eye = eye_of(space, poses, pose)
     seen = np.zeros(len(cells), dtype=np.bool_)
     for number in range(len(cells)):

@@ -1,7 +1,10 @@
-"""What claims do to nodes (semantics, section 8), after the kernel has folded their level.
+"""Effect of claims on nodes (semantics, section 8).
 
-An entry with claims is folded level by level: who is deeper perceives what the shallower one
-has just come to believe. Who watches which place is counted by the kernel, in `Nodes`.
+`Forest` folds an entry with claims level by level: the kernel, the holdings and then the claims,
+for all nodes of one depth. A node of the next depth perceives inside its parent's state (section
+5.3), so it must see what its parent has just come to believe. Rule 8.6 follows: "does j think that
+i took the claim up?" is answered by the same code one level deeper, which reads the verdict of the
+parent node. The ticks of conditions 1a and 1b are counted by the kernel, in `Nodes`.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -30,7 +33,7 @@ Numbers = npt.NDArray[np.int64]
 
 
 class Verdict(StrEnum):
-    """What became of a claim in a node, and by which condition (semantics, section 8)."""
+    """Verdict of a node on a claim: taken up or not, and by which rule of semantics, section 8."""
 
     NOT_HEARD = "not heard"
     OFF = "off"
@@ -47,12 +50,12 @@ class Verdict(StrEnum):
 
     @property
     def believed(self) -> bool:
-        """True if the node came to hold what was claimed."""
+        """True if the node believes the claim from now on."""
         return self in (Verdict.TAKEN_UP, Verdict.WORD)
 
     @property
     def condition(self) -> str | None:
-        """The condition that decided, as it is numbered there; None: none of them did."""
+        """The number of the rule in section 8 that decided; None: no such rule did."""
         return _CONDITIONS.get(self)
 
 
@@ -71,12 +74,13 @@ _CODES = {verdict: code for code, verdict in enumerate(_VERDICTS)}
 
 
 class _Told(NamedTuple):
-    """A claim of the entry.
+    """A claim that nodes perceive in the entry.
 
     Attributes:
-        key: Number of the event in the entry and of the claim in it; None: a sign said so before.
-        perceived: By node, whether it was perceived.
-        speaker: Number of the speaker; `NOBODY`: nobody is known to have written it.
+        key: Number of the event in the entry and of the claim in it; None: the claim was written
+            on a sign in an earlier entry.
+        perceived: By node, whether its owner perceived the claim.
+        speaker: Number of the speaker; `NOBODY`: the writer of the sign is unknown.
         claim: The claim.
     """
 
@@ -87,17 +91,18 @@ class _Told(NamedTuple):
 
 
 class Testimony:
-    """The claims of one entry, being weighed by the nodes of a forest, level by level.
+    """Claims of one entry, which the nodes of a forest weigh level by level.
 
-    What is claimed on a sign is perceived when the owner of a node first perceives that text on
-    that sign (semantics, section 8.5).
+    The owner of a node perceives claims on a sign when it first perceives that text on that sign
+    (semantics, section 8.5).
 
     Args:
-        table: The nodes, of which the shallower levels are folded already.
-        holdings: Their contents.
+        table: The nodes.
+        holdings: Contents, possessions and dropped items of the nodes.
         tick: Tick of the entry.
-        events: Its events.
-        perceived: By event and node, who perceived it; filled by the kernel.
+        events: Events of the entry.
+        perceived: bool (events, nodes), whether a node perceived an event; the kernel fills the
+            columns of a level before `hear` is called for it.
     """
 
     def __init__(
@@ -124,11 +129,15 @@ class Testimony:
         ]
         self._utterances = len(self._told)
         self._codes = [self._nothing_heard() for _ in self._told]
-        # By cell, number and writer of a sign that was read, the numbers of its claims.
+        # Numbers of the claims in `_told`, by cell, block number and writer of a sign read now.
         self._read: dict[tuple[int, int, int], range] = {}
 
     def hear(self, level: Flags) -> None:
-        """Let the nodes of a level, node 0 excepted, take up what they take up, claim by claim."""
+        """Let the nodes of a level weigh the claims one after the other, and believe some.
+
+        All shallower levels must have heard before. Node 0 reads signs but believes nothing by
+        hearsay. Utterances come first, in the order of events, then signs by cell.
+        """
         which = np.flatnonzero(level)
         if len(which) == 0:
             return
@@ -144,7 +153,10 @@ class Testimony:
             self._keep_verdicts(which, (cell, text_of(self._context.block(sign))), writer, numbers)
 
     def verdicts(self) -> Mapping[tuple[int, int], Sequence[Verdict]]:
-        """By number of event in the entry and of claim in the event, each node's verdict."""
+        """Return the verdicts of all nodes on each claim that was uttered in the entry.
+
+        The key is the number of the event in the entry and of the claim in the event.
+        """
         return {
             told.key: [_VERDICTS[code] for code in self._codes[number].tolist()]
             for number, told in enumerate(self._told)
@@ -155,7 +167,7 @@ class Testimony:
         return np.full(self._table.count, _CODES[Verdict.NOT_HEARD], dtype=np.int8)
 
     def _read_signs(self, which: Numbers) -> None:
-        """Let owners of nodes read the signs that they see, and see who writes."""
+        """Let owners of nodes note writers that they perceive, and read the signs that they see."""
         for row, cell, event in self._writings:
             for node in which[self._perceived[row, which]].tolist() if event.actor else ():
                 writers = self._holdings.of(node).writers
@@ -201,7 +213,11 @@ class Testimony:
                 self._holdings.of(node).told[sign] = SignTold(self._tick, speaker, verdicts)
 
     def _weighed(self, number: int, which: Numbers, told: _Told) -> npt.NDArray[np.int8]:
-        """Codes of what some nodes make of a claim (semantics, sections 8.0, 8.1 and 8.3)."""
+        """Return the codes of some nodes' verdicts on a claim (semantics, 8.0, 8.1 and 8.3).
+
+        Conditions are listed in order of precedence; the first that holds decides. Under
+        `informed`, 1a is asked before 0: both keep the belief, and 1a is the more precise reason.
+        """
         options, nodes = self._context.options, self._table.nodes()
         claim, speaker = told.claim, told.speaker
         subject = self._context.numbers.get(claim.agent or "", UNKNOWN)
@@ -225,7 +241,7 @@ class Testimony:
             (is_speaker & (parent == 0) & is_reality, Verdict.SPEAKER),
         ]
         codes = np.zeros(len(which), dtype=np.int8)
-        # The first that holds decides.
+        # Written from the last to the first, so that the first that holds remains.
         for condition, verdict in reversed([*first, *conditions]):
             codes[condition] = _CODES[verdict]
         return codes
@@ -233,11 +249,11 @@ class Testimony:
     def _informed(
         self, number: int, which: Numbers, speaker: int, claim: Claim, nodes: Nodes
     ) -> list[tuple[Flags, Verdict]]:
-        """Return conditions in the order in which they decide, under `informed`."""
+        """Return the conditions under `informed` in the order in which they decide."""
         options = self._context.options
         is_speaker = nodes.agent[which] == speaker
         known, sees_known, missed = self._known(which, speaker, claim, nodes)
-        # Nobody is known to have been in sight who is not known.
+        # Condition 1b holds at once if the writer of a sign is unknown (8.5).
         is_short = known & (missed <= options.grace) & (speaker != NOBODY)
         up = self._codes[number][nodes.parent[which]] == _CODES[Verdict.TAKEN_UP]
         others = ~is_speaker
@@ -253,7 +269,12 @@ class Testimony:
     def _known(
         self, which: Numbers, speaker: int, claim: Claim, nodes: Nodes
     ) -> tuple[Flags, Flags, npt.NDArray[np.int64]]:
-        """By node: is a place known, is the matter perceived there, ticks without the speaker."""
+        """Return what condition 1 needs of the known place of a claim's matter, by node.
+
+        Returns:
+            Three arrays by node: a place is known; the owner perceives the matter there; number of
+            ticks without the speaker since the owner last watched that place.
+        """
         now = nodes.missed[which, speaker].astype(np.int64)
         if claim.agent is not None:
             subject = self._context.numbers[claim.agent]
@@ -270,7 +291,7 @@ class Testimony:
         return known, known & seen, now - watched
 
     def _known_spots(self, which: Numbers, claim: Claim) -> Numbers:
-        """By node, the tracked cell of the known place; -1: none."""
+        """Return by node the tracked cell (its index) of the known place; -1: none."""
         if claim.kind is ClaimKind.BLOCK:
             here = self._table.spot(cell_of(self._context.box, claim.cell))
             return np.full(len(which), here, dtype=np.int64)
@@ -279,12 +300,12 @@ class Testimony:
         return np.array([spots.get(cell, UNKNOWN) for cell in found], dtype=np.int64)
 
     def _found(self, which: Numbers, claim: Claim) -> list[int]:
-        """By node, the cell of the container in which a claimed item was last perceived; or -1."""
+        """Return by node the cell of the container where the item was last perceived; -1: none."""
         item = str(claim.item)
         return [self._holdings.of(node).found.get(item, UNKNOWN) for node in which.tolist()]
 
     def _perceives(self, which: Numbers, cells: Iterable[int], claim: Claim) -> Flags:
-        """By node, whether its owner perceives now if a claimed item is in a container."""
+        """Return by node if its owner perceives now whether the item is in a container."""
         item, nodes = str(claim.item), which.tolist()
         seen = [
             self._holdings.perceives(node, cell, item)
@@ -293,10 +314,11 @@ class Testimony:
         return np.array(seen, dtype=np.bool_)
 
     def _sees(self, which: Numbers, claim: Claim, nodes: Nodes) -> tuple[Flags, Flags]:
-        """By node, what its owner perceives in this tick that a claim is about (section 8.0).
+        """Return by node what its owner perceives of a claim's matter in this tick (section 8.0).
 
         Returns:
-            Whether it perceives the matter elsewhere, and whether at the claimed place.
+            Two flags by node: the owner perceives the matter elsewhere; the owner perceives the
+            claimed place.
         """
         nowhere = np.zeros(len(which), dtype=np.bool_)
         cell = cell_of(self._context.box, claim.cell)
@@ -327,7 +349,7 @@ class Testimony:
                 return np.array(elsewhere, dtype=np.bool_), at_place
 
     def _believe(self, which: Numbers, told: _Told) -> None:
-        """Let nodes hold what is claimed (semantics, section 8.2)."""
+        """Let nodes believe a claim (semantics, section 8.2)."""
         if len(which) == 0:
             return
         claim = told.claim
@@ -370,7 +392,7 @@ _IS_BELIEVED = np.array([verdict.believed for verdict in _VERDICTS])
 
 
 def stated(context: BeliefContext, text: str, believed: int) -> int:
-    """Return the number of a claimed block; what is not stated of it stays as it is believed.
+    """Return the number of a claimed block. Properties without a claim stay as they are believed.
 
     Args:
         context: Names and numbers of the blocks.
@@ -392,9 +414,11 @@ def stated(context: BeliefContext, text: str, believed: int) -> int:
 
 
 def believe_located(holdings: Holdings, cell: int, item: str, basis: Basis) -> None:
-    """Put one such item into a container, out of the one in which it was believed last.
+    """Put one such item into a container and take one out of where it was believed (section 8.2).
 
-    What is left in it rests on what it rested on: nobody spoke of it.
+    If several containers are believed to hold the item, the one last observed gives it up, and of
+    these the one with the lowest cell. Items left there keep their basis: the claim was not about
+    them. Nothing moves if the claimed container is believed to hold the item already.
     """
     content = holdings.containers.get(cell)
     items = {} if content is None else content.items

@@ -13,7 +13,7 @@ __all__ = ["BlockView", "FixedState", "State"]
 
 
 class BlockView(Protocol):
-    """Believed blocks of a box: a mapping from position to block state text or None."""
+    """Believed blocks of a box, as a mapping from position to block state text or None."""
 
     def __getitem__(self, position: Position) -> str | None:
         """Return the canonical block state text, `air`, or None where unknown.
@@ -30,7 +30,7 @@ class BlockView(Protocol):
 
     @property
     def grid(self) -> BlockGrid:
-        """Block state ids, shape of the box, -1 where unknown; not to be written to."""
+        """The block state ids, shape of the box, -1 where unknown. Do not write to it."""
 
     def named(self, names: frozenset[str]) -> dict[Position, str]:
         """Return known blocks whose name is one of `names`, in order of position."""
@@ -39,62 +39,62 @@ class BlockView(Protocol):
         """Return True if the block is backed by a perception in this tick."""
 
     def basis(self, position: Position) -> Basis | None:
-        """What the block rests on; None where it is unknown."""
+        """Return the ground of the block; None where it is unknown."""
 
 
 class State(Protocol):
-    """One simulator at one tick."""
+    """State of one simulator at one tick."""
 
     @property
     def path(self) -> tuple[str, ...]:
-        """Normalised belief path, agent names from the outermost believer inwards.
+        """The normalised belief path: agent names from the outermost believer inwards.
 
         Empty for the real world.
         """
 
     @property
     def tick(self) -> int:
-        """The tick it is the state of."""
+        """The tick of the state."""
 
     @property
     def box(self) -> Box:
-        """The part of space it covers."""
+        """The part of space that the simulator covers."""
 
     @property
     def blocks(self) -> BlockView:
-        """Believed blocks."""
+        """The believed blocks."""
 
     @property
     def signs(self) -> Mapping[Position, str]:
-        """Text of each known sign, in order of position; empty where nothing is written."""
+        """The texts of known signs, in order of position. Signs without text are left out."""
 
     @property
     def containers(self) -> Mapping[Position, ContainerBelief]:
-        """Known containers by position."""
+        """The known containers by position."""
 
     @property
     def agents(self) -> Mapping[str, AgentBelief]:
-        """Every agent of the scenario by name, unknown pose included."""
+        """All agents of the scenario by name, also those of unknown pose."""
 
     @property
     def items(self) -> Mapping[int, DroppedItem]:
-        """Dropped items last seen."""
+        """The dropped items last seen, by number."""
 
     @property
     def events(self) -> tuple[PerceivedEvent, ...]:
-        """Perceived events other than speech and thought, in order."""
+        """The perceived events other than speech and thought, in order."""
 
     @property
     def chat(self) -> Sequence[tuple[int, str, str]]:
-        """What was heard: (tick, speaker, text)."""
+        """The utterances heard: (tick, speaker, text)."""
 
     @property
     def thoughts(self) -> Sequence[tuple[int, str, str]]:
-        """What the owner thought: (tick, thinker, text)."""
+        """The owner's thoughts: (tick, thinker, text)."""
 
     @property
     def addressees(self) -> Sequence[str | None]:
-        """By line of `chat`, to whom it was whispered; None: it was said aloud."""
+        """The addressee of each line of `chat` that was whispered; None: it was said aloud."""
 
     @property
     def owner(self) -> str | None:
@@ -103,7 +103,7 @@ class State(Protocol):
 
 @dataclass(frozen=True)
 class FixedState:
-    """A state whose parts are all at hand; attributes as those of `State`."""
+    """State whose parts are given. The attributes are those of `State`."""
 
     path: BeliefPath
     tick: int
