@@ -364,6 +364,8 @@ class Reference:
         return found
 
     def policy(self, wants: int, row: int, mind: Mind) -> dict[tuple[Any, ...], float]:
+        if mind[0] not in self.cells():
+            return {}  # seen where the node knows no floor: no hypothesis explains that
         scores = self.scores(wants, row, mind)
         top = max(scores.values())
         raised = {
