@@ -306,7 +306,7 @@ def test_what_the_system_refuses_is_told_with_what_to_do(
     assert run_command_line(["list"]) == 2
     assert capsys.readouterr().err == (
         "beliefnest: there/file: No space left on device; free some space or give another folder, "
-        "and run the same command again: what was kept before stays\n"
+        "and run the same command again: it continues with what is already there\n"
     )
 
 

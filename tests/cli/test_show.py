@@ -205,7 +205,7 @@ def test_a_table_says_how_things_are_known(talk: Path, capsys: pytest.CaptureFix
         (["show", "RUN", "--path", "/observer", "--branch", "nothing"], "probe 1"),
         (["show", "nowhere"], "no run at"),
         (["show", "RUN", "--png", "nowhere/then.png"], "nowhere/then.png cannot be written"),
-        (["show", "RUN", "--png", "then.jpeg"], "does not end in .png"),
+        (["show", "RUN", "--png", "then.jpeg"], "must end in .png"),
         (["show", "RUN", "--gif", "then.png"], ".gif, .webp"),
         (["show", "RUN", "--png", "then.png", "--height", "900"], "outside the box"),
         (["prompt", "RUN", "--path", "/sally"], "task"),
@@ -248,7 +248,7 @@ def test_a_page_is_refused_where_it_would_not_show_what_is_asked_for(
 ) -> None:
     page = tmp_path / "page.html"
     for options, told in (
-        (["--html", str(tmp_path / "page.pdf")], "does not end in .html"),
+        (["--html", str(tmp_path / "page.pdf")], "must end in .html"),
         (["--html", str(page), "--tick", "99999"], "is in the future"),
         (["--html", str(page), "--branch", "probe 1"], "leave --branch out"),
     ):

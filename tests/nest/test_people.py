@@ -296,7 +296,7 @@ def test_the_example_of_the_page_runs(tmp_path, monkeypatch, capsys):
         "{'diamond': 1}",
     ]
     assert run_command_line(["replay", str(tmp_path / "run.bn")]) == 2
-    assert "played in real time, which is not repeated" in capsys.readouterr().err
+    assert "played in real time, which cannot be repeated" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("is_on", [True, False])

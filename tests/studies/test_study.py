@@ -245,7 +245,7 @@ def test_a_wrong_study_is_told_in_one_line(text, told, tmp_path, capsys):
         (["--jobs", "0"], "'--jobs'"),
         (["--backend", "threads"], "there is no backend 'threads'; there are loky, dask, ray"),
         (["--shard", "3/2"], "there is no shard 3 of 2"),
-        (["--shard", "half"], "write it as 1/4"),
+        (["--shard", "half"], "give it as I/N, such as 1/4"),
         (["--merge", "nowhere"], "there is no study at nowhere"),
     ],
 )

@@ -1,4 +1,4 @@
-"""What became of each probe, in words: what happened, how it counts, and on what grounds."""
+"""Accounts of probes in words: what happened, how it is judged, and what the belief rests on."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -34,18 +34,18 @@ _GROUNDS = {
     Believes: "what is believed once the program has ended",
     Judge: "a function of the scenario",
 }
-"""Grounds of judgements that no sentence of their own tells."""
+"""Grounds of judgements, by kind of expectation; `_judged` words the other kinds itself."""
 
 _MOST = 40
-"""Events that are told of; of more the last ones."""
+"""Greatest number of events listed for a probe; earlier ones are left out."""
 
 
 def accounts(nest: Nest, outcome: Outcome) -> list[dict[str, list[str]]]:
-    """For each probe: `happened`, `judged` and `why`, each in lines.
+    """Return `happened`, `judged` and `why` for each probe, each as a list of lines.
 
     Args:
-        nest: Still open, after the probes.
-        outcome: What came of it.
+        nest: The nest after the probes, still open.
+        outcome: Outcome of the condition.
     """
     return [
         {
@@ -77,7 +77,7 @@ def _happened(probe: ProbeOutcome, labels: Mapping[Position, str]) -> list[str]:
 
 
 def _judged(outcome: ProbeOutcome, judged: Judgement, scenario: Scenario) -> str:
-    """Why the outcome counts as it does."""
+    """Return a sentence that says on what grounds an expectation holds or does not."""
     agent, expect = titled(outcome.probe.agent), judged.expected
     verdict = "as expected" if judged.ok else "not as expected"
     if isinstance(expect, Opens):
@@ -104,7 +104,7 @@ def _judged(outcome: ProbeOutcome, judged: Judgement, scenario: Scenario) -> str
 
 
 def _why(nest: Nest, outcome: ProbeOutcome, run: Outcome) -> list[str]:
-    """What the belief that was asked rests on, as far as anything is expected of it."""
+    """Explain the facts in the probed belief that the scenario states expectations about."""
     belief = nest.at(run.reality.tick)[outcome.probe.path]
     lines: list[str] = []
     about: list[Any] = [

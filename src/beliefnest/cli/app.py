@@ -1,4 +1,4 @@
-"""The commands, their options, and what the process ends with."""
+"""The command line: commands, their options, and exit statuses."""
 
 import errno
 import sys
@@ -18,8 +18,8 @@ __all__ = ["app", "run_command_line"]
 _INTERRUPTED = 130
 _BAD_USAGE = 2
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-# Click's ClickException. Typer may have its own copy of click and exports only what derives
-# from it: BadParameter, then UsageError, then this.
+# Click's ClickException. Typer may use its own copy of click and exports only subclasses of it.
+# The bases of BadParameter are UsageError and then ClickException.
 _UsageFault: Any = typer.BadParameter.__mro__[2]
 
 app = typer.Typer(
@@ -37,7 +37,7 @@ Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 
 
 def run_command_line(arguments: Sequence[str]) -> int:
-    """Run a command; every fault becomes one line on stderr and an exit status."""
+    """Run a command and return its exit status; print every error as one line on stderr."""
     try:
         status = _run_command(arguments)
     except _UsageFault as error:
@@ -47,7 +47,7 @@ def run_command_line(arguments: Sequence[str]) -> int:
     except BeliefNestError as error:
         return _fail(str(error), error.exit_status)
     except BrokenPipeError:
-        # Whoever read our output has left; there is nobody to tell.
+        # The reader of our output has closed the pipe: nobody reads a message.
         sys.stderr.close()
         return 0
     except OSError as error:
@@ -55,7 +55,7 @@ def run_command_line(arguments: Sequence[str]) -> int:
     except (KeyboardInterrupt, typer.Abort):
         status = _INTERRUPTED
     if status == _INTERRUPTED:
-        # Newer versions of typer turn the interrupt into this status themselves, silently.
+        # Newer versions of typer turn the interrupt into this status without a message.
         return _fail("interrupted", _INTERRUPTED)
     return status if isinstance(status, int) else 0
 
@@ -63,20 +63,22 @@ def run_command_line(arguments: Sequence[str]) -> int:
 def _run_command(arguments: Sequence[str]) -> Any:
     for argument in arguments:
         if "\0" in argument or not is_well_formed(argument):
-            raise InputError(f"the argument {argument!a} is no text; give whole characters")
+            raise InputError(
+                f"the argument {argument!a} is no text; leave out NUL and half characters"
+            )
     return typer.main.get_command(app).main(
         list(arguments) or ["--help"], prog_name="beliefnest", standalone_mode=False
     )
 
 
 def _system_fault(error: OSError) -> str:
-    """What the operating system refused, where, and what to do."""
+    """Return a message for an error of the operating system, with what to do."""
     where = "" if error.filename is None else f"{error.filename}: "
     what = error.strerror or str(error) or type(error).__name__
     if error.errno in _FULL:
         return (
             f"{where}{what}; free some space or give another folder, and run the same command "
-            "again: what was kept before stays"
+            "again: it continues with what is already there"
         )
     return f"{where}{what}; check the path and its permissions"
 
@@ -102,72 +104,81 @@ def common(
         ),
     ] = False,
 ) -> None:
-    """What every command shares."""
+    """Read the options that belong to no command."""
 
 
 @app.command()
 def run(
     scenario: Annotated[str, typer.Argument(help="A built-in name, or a scenario file.")],
     condition: Annotated[
-        list[int] | None, typer.Option(help="Run only this one; can be repeated.")
+        list[int] | None, typer.Option(help="Run only this condition; can be repeated.")
     ] = None,
     world: Annotated[
-        str, typer.Option(help="Where it plays: embedded, scripted, minecraft://HOST:PORT.")
+        str, typer.Option(help="World: embedded, scripted, or minecraft://HOST:PORT.")
     ] = "embedded",
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace what stands in a server's box meanwhile.")
+        bool,
+        typer.Option(
+            "--overwrite", help="Replace what stands in the box on the server for the run."
+        ),
     ] = False,
     realtime: Annotated[
         bool, typer.Option("--realtime", help="Play in real time, so that people can join.")
     ] = False,
     listen: Annotated[
         str | None,
-        typer.Option(help="Where they do: a port, or HOST:PORT; 25565 of this machine if none."),
+        typer.Option(help="Where people join: PORT of this machine, or HOST:PORT; default 25565."),
     ] = None,
     embody: Annotated[
         list[str] | None,
-        typer.Option(help="Let people visit this belief, till you press Enter; can be repeated."),
+        typer.Option(help="Let people visit this belief until you press Enter; can be repeated."),
     ] = None,
     model: Annotated[
-        str, typer.Option(help="Who answers: offline, PROVIDER:MODEL, replay: or scripted:FILE.")
+        str, typer.Option(help="Model: offline, PROVIDER:MODEL, replay:FILE or scripted:FILE.")
     ] = "offline",
     models: Annotated[
-        str | None, typer.Option(help="Several models, with commas, in place of --model.")
+        str | None, typer.Option(help="Several models, separated by commas, instead of --model.")
     ] = None,
     repeat: Annotated[int, typer.Option(help="Runs of each condition with each model.")] = 1,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for what is recorded; an interrupted run goes on in it."),
+        typer.Option(help="Run folder to write; an interrupted run continues in it."),
     ] = None,
-    seed: Annotated[int, typer.Option(help="Drives every random number; repeats count up.")] = 0,
+    seed: Annotated[
+        int, typer.Option(help="Seed of all random numbers; each further repeat adds 1.")
+    ] = 0,
     cache: Annotated[
-        Cache, typer.Option(help="Use kept answers of providers' models, only keep, or neither.")
+        Cache, typer.Option(help="Cached answers: use and store them, only store them, or neither.")
     ] = "read",
     answers: Annotated[
-        Path | None, typer.Option(help="Folder of kept answers; OUT/answers if none.")
+        Path | None, typer.Option(help="Folder of cached answers; default OUT/answers.")
     ] = None,
     max_tokens: Annotated[
         int,
         typer.Option(
-            help="Tokens the run may use in all; by default those of free models are left out.",
+            help="Token limit of the whole run; the default does not count free models.",
             min=1,
         ),
     ] = 1_000_000,
     max_cost: Annotated[
-        float, typer.Option(help="US dollars the run may cost in all.", min=0)
+        float, typer.Option(help="Cost limit of the whole run in US dollars.", min=0)
     ] = 5.0,
-    temperature: Annotated[float, typer.Option(help="0 for the likeliest answer.")] = 0.0,
+    temperature: Annotated[
+        float, typer.Option(help="Sampling temperature; 0: the likeliest answer.")
+    ] = 0.0,
     attempts: Annotated[
         int,
-        typer.Option(help="Answers asked for at most; one without a working program is sent back."),
+        typer.Option(
+            help="Most answers for one probe; a failed program is sent back to the model."
+        ),
     ] = 3,
     claims_from: Annotated[
         str | None,
-        typer.Option(help="A model that reads what is said for claims; nobody if none."),
+        typer.Option(help="Model that extracts claims from utterances; default: none."),
     ] = None,
     json: Json = False,
 ) -> int:
-    """Play a scenario, follow the beliefs, ask the model, and say whether all is as expected."""
+    """Play a scenario, track the beliefs, ask the model, and judge the results."""
     from beliefnest.bodies.address import overwriting
     from beliefnest.bodies.worlds import world_name
     from beliefnest.cli.run import ModelOptions, RunOptions, run_scenarios
@@ -194,32 +205,34 @@ def run(
 
 @app.command()
 def show(
-    run: Annotated[Path, typer.Argument(help="A run folder, or one condition's in it.")],
+    run: Annotated[Path, typer.Argument(help="Run folder, or the folder of one condition in it.")],
     path: Annotated[str, typer.Option(help="Belief path; / is the real world.")] = "/",
-    tick: Annotated[int | None, typer.Option(help="Tick; the latest if not given.")] = None,
+    tick: Annotated[int | None, typer.Option(help="Tick; default: the latest.")] = None,
     branch: Annotated[str | None, typer.Option(help="Branch of the simulator.")] = None,
-    png: Annotated[Path | None, typer.Option(help="Draw it, as a PNG file.")] = None,
-    svg: Annotated[Path | None, typer.Option(help="Draw it, as an SVG file.")] = None,
-    pdf: Annotated[Path | None, typer.Option(help="Draw it, as a PDF file.")] = None,
+    png: Annotated[Path | None, typer.Option(help="Draw the state to a PNG file.")] = None,
+    svg: Annotated[Path | None, typer.Option(help="Draw the state to an SVG file.")] = None,
+    pdf: Annotated[Path | None, typer.Option(help="Draw the state to a PDF file.")] = None,
     gif: Annotated[
-        Path | None, typer.Option(help="Draw it up to that tick, as a moving GIF or WebP file.")
+        Path | None, typer.Option(help="Draw all states up to the tick to a GIF or WebP animation.")
     ] = None,
-    against: Annotated[str, typer.Option(help="Drawn as false is what differs from this.")] = "/",
+    against: Annotated[
+        str, typer.Option(help="Belief path to compare with; differences are drawn as false.")
+    ] = "/",
     height: Annotated[
-        int | None, typer.Option(help="The storey to draw, y of what stands on its floor.")
+        int | None, typer.Option(help="Storey to draw: height y of things on its floor.")
     ] = None,
     html: Annotated[
-        Path | None, typer.Option(help="Write all of the run as one page that needs no network.")
+        Path | None, typer.Option(help="Write the whole run as one page that needs no network.")
     ] = None,
     claims: Annotated[
-        bool, typer.Option("--claims", help="Show what was claimed, and who took it up, alone.")
+        bool, typer.Option("--claims", help="Show only claims, and the beliefs that took them up.")
     ] = False,
     depth: Annotated[
-        int, typer.Option(help="How deep all beliefs in that page, or of claims, go.")
+        int, typer.Option(help="Depth of the beliefs on the page of --html or in --claims.")
     ] = 2,
     json: Json = False,
 ) -> None:
-    """Show what a simulator of a recorded run held."""
+    """Show the state of a simulator in a recorded run."""
     from beliefnest.cli.page import PageOptions, write_page
     from beliefnest.cli.show import ShowOptions, show_run
 
@@ -237,19 +250,20 @@ def show(
 def serve(
     what: Annotated[
         str,
-        typer.Argument(help="A run folder, or a scenario, which is run.", metavar="RUN|SCENARIO"),
+        typer.Argument(help="Run folder, or a scenario to run.", metavar="RUN|SCENARIO"),
     ],
-    port: Annotated[int | None, typer.Option(help="Port; 8642 if it is free.")] = None,
+    port: Annotated[int | None, typer.Option(help="Port; default: 8642, or a free one.")] = None,
     address: Annotated[
-        str, typer.Option(help="Where to listen; on any but this machine a token is asked for.")
+        str, typer.Option(help="Address to listen on; other machines need the token in the URL.")
     ] = "127.0.0.1",
     condition: Annotated[
-        list[int] | None, typer.Option(help="Of a scenario, only this one; can be repeated.")
+        list[int] | None,
+        typer.Option(help="Run only this condition of the scenario; can be repeated."),
     ] = None,
-    out: Annotated[Path | None, typer.Option(help="Of a scenario, its run folder.")] = None,
-    depth: Annotated[int, typer.Option(help="How deep beliefs are shown from the start.")] = 2,
+    out: Annotated[Path | None, typer.Option(help="Run folder for the scenario.")] = None,
+    depth: Annotated[int, typer.Option(help="Depth of the beliefs that are shown first.")] = 2,
 ) -> None:
-    """Show a run in the browser, live while it goes on."""
+    """Show a run in the browser, live while it is being recorded."""
     from beliefnest.cli.serve import ServeOptions, serve
 
     serve(ServeOptions(what, port, address, tuple(condition or ()), out, depth))
@@ -257,9 +271,9 @@ def serve(
 
 @app.command()
 def branches(
-    run: Annotated[Path, typer.Argument(help="A run folder, or a run file.")], json: Json = False
+    run: Annotated[Path, typer.Argument(help="Run folder or run file.")], json: Json = False
 ) -> None:
-    """Show the branches of a recorded run, each below the one it was forked from."""
+    """Show the branches of a recorded run, each below the branch it was forked from."""
     from beliefnest.cli.branches import show_branches
 
     show_branches(run, as_json=json)
@@ -267,13 +281,17 @@ def branches(
 
 @app.command()
 def prompt(
-    run: Annotated[Path, typer.Argument(help="A run folder, or one condition's in it.")],
-    path: Annotated[str, typer.Option(help="The belief to render.")],
+    run: Annotated[Path, typer.Argument(help="Run folder, or the folder of one condition in it.")],
+    path: Annotated[str, typer.Option(help="Belief path to render.")],
     template: Annotated[
         Path | None,
-        typer.Option(help="A file, one the run keeps, default, or paper (the one without this)."),
+        typer.Option(
+            help="File, or name of a template of the run or a built-in one; default: paper."
+        ),
     ] = None,
-    var: Annotated[list[str] | None, typer.Option(help="A variable, as task=TEXT.")] = None,
+    var: Annotated[
+        list[str] | None, typer.Option(help="Variable as NAME=TEXT, such as task=TEXT; repeatable.")
+    ] = None,
 ) -> None:
     """Render a prompt template from a belief of a recorded run."""
     from beliefnest.cli.show import print_prompt
@@ -283,7 +301,7 @@ def prompt(
 
 @app.command()
 def new(
-    name: Annotated[str, typer.Argument(help="Name of the scenario, and of its file.")],
+    name: Annotated[str, typer.Argument(help="Name of the scenario and of its file.")],
 ) -> None:
     """Write a commented scenario to start from."""
     from beliefnest.cli.new import write_starter
@@ -293,21 +311,23 @@ def new(
 
 @app.command()
 def capture(
-    where: Annotated[str, typer.Argument(help="minecraft://HOST:PORT, or a .schem or .nbt file.")],
+    where: Annotated[
+        str, typer.Argument(help="Server minecraft://HOST:PORT, or a .schem or .nbt file.")
+    ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Scenario file to write.")],
     box: Annotated[
         tuple[int, int, int, int, int, int] | None,
-        typer.Option(help="Of a server: two corners of the place, X1 Y1 Z1 X2 Y2 Z2."),
+        typer.Option(help="For a server: two corners of the place, X1 Y1 Z1 X2 Y2 Z2."),
     ] = None,
     at: Annotated[
         tuple[int, int, int] | None,
-        typer.Option(help="Of a file: where its lowest corner comes to lie; 0 0 0 if not given."),
+        typer.Option(help="For a file: position of its lowest corner, X Y Z; default 0 0 0."),
     ] = None,
     name: Annotated[
-        str | None, typer.Option(help="Name of the scenario; the file's if none.")
+        str | None, typer.Option(help="Name of the scenario; default: the name of its file.")
     ] = None,
 ) -> None:
-    """Write a place of a server, or of a file, as a scenario."""
+    """Write a place on a server, or in a file, as a scenario."""
     from beliefnest.cli.capture import CaptureOptions, write_capture
 
     write_capture(CaptureOptions(where, out, box, at, name))
@@ -315,10 +335,10 @@ def capture(
 
 @app.command()
 def replay(
-    run: Annotated[Path, typer.Argument(help="The folder of a run or of a study, or a run file.")],
+    run: Annotated[Path, typer.Argument(help="Folder of a run or a study, or a run file.")],
     json: Json = False,
 ) -> int:
-    """Run the recorded programs again; say which tick and field differ, if any."""
+    """Run the recorded programs again; print the first tick and field that differ, if any."""
     from beliefnest.cli.replay import replay_runs
 
     return replay_runs(run, as_json=json)
@@ -326,14 +346,15 @@ def replay(
 
 @app.command()
 def export(
-    run: Annotated[Path, typer.Argument(help="A run folder, or a run file.")],
+    run: Annotated[Path, typer.Argument(help="Run folder or run file.")],
     out: Annotated[Path, typer.Option(help="Folder to write; it must not exist.")],
-    format: Annotated[str, typer.Option(help="jsonl, or parquet.")] = "jsonl",
+    format: Annotated[str, typer.Option(help="Format of the tables: jsonl or parquet.")] = "jsonl",
     path: Annotated[
-        list[str] | None, typer.Option(help="A belief to write over time; can be repeated.")
+        list[str] | None,
+        typer.Option(help="Belief path whose states are written over time; can be repeated."),
     ] = None,
 ) -> None:
-    """Write a run as tables that other programs read."""
+    """Write a run as tables that other programs can read."""
     from beliefnest.cli.exchange import ExportOptions, export_run
 
     export_run(ExportOptions(run, format, tuple(path or ()), out))
@@ -341,10 +362,10 @@ def export(
 
 @app.command("import")
 def import_(
-    trace: Annotated[Path, typer.Argument(help="A JSONL trace of another program.")],
-    out: Annotated[Path, typer.Option(help="Run file to make; it must not exist.")],
+    trace: Annotated[Path, typer.Argument(help="JSONL trace of another program.")],
+    out: Annotated[Path, typer.Option(help="Run file to write; it must not exist.")],
 ) -> None:
-    """Make a run of a trace, so that beliefs can be read from it."""
+    """Make a run file from a trace, so that you can read beliefs from it."""
     from beliefnest.cli.exchange import import_run
 
     import_run(trace, out)
@@ -362,16 +383,16 @@ def list_installed(json: Json = False) -> None:
 def suite(
     name: Annotated[str, typer.Argument(help="Name of the suite: hi-tom, stories.")],
     data: Annotated[Path, typer.Option(help="File of stories, questions and answers.")],
-    world: Annotated[str, typer.Option(help="Where they play.")] = "scripted",
+    world: Annotated[str, typer.Option(help="World in which the stories play.")] = "scripted",
     rows: Annotated[str | None, typer.Option(help="Rows to answer, as in 1-20,35.")] = None,
-    limit: Annotated[int | None, typer.Option(help="Play no more stories than this.")] = None,
-    seed: Annotated[int, typer.Option(help="Drives every random number.")] = 0,
+    limit: Annotated[int | None, typer.Option(help="Most stories to play.")] = None,
+    seed: Annotated[int, typer.Option(help="Seed of all random numbers.")] = 0,
     claims_from: Annotated[
-        str | None, typer.Option(help="Model that reads claims out of what is told.")
+        str | None, typer.Option(help="Model that extracts claims from utterances.")
     ] = None,
     json: Json = False,
 ) -> int:
-    """Answer a file of questions about stories from nests; say how many answers are right."""
+    """Answer a file of questions about stories from nests; print how many answers are right."""
     from beliefnest.cli.suite import SuiteOptions, run_suite
 
     return run_suite(SuiteOptions(name, data, world, rows, limit, seed, json, claims_from))
@@ -379,28 +400,29 @@ def suite(
 
 @app.command()
 def study(
-    study: Annotated[Path, typer.Argument(help="YAML file that says what is combined.")],
+    study: Annotated[Path, typer.Argument(help="YAML file of the study.")],
     out: Annotated[
-        Path | None, typer.Option(help="Its folder; an interrupted or larger study goes on in it.")
+        Path | None,
+        typer.Option(help="Study folder; an interrupted or enlarged study continues in it."),
     ] = None,
-    jobs: Annotated[int, typer.Option(help="Cells that are played at the same time.", min=1)] = 2,
+    jobs: Annotated[int, typer.Option(help="Cells to play in parallel.", min=1)] = 2,
     backend: Annotated[
-        str, typer.Option(help="loky: processes here; dask or ray: a cluster.")
+        str, typer.Option(help="loky: processes on this machine; dask or ray: a cluster.")
     ] = "loky",
     shard: Annotated[
-        str | None, typer.Option(help="Only this part of it, as 1/4; others run elsewhere.")
+        str | None, typer.Option(help="Play only this part of the study, as I/N, such as 1/4.")
     ] = None,
     merge: Annotated[
         list[Path] | None,
-        typer.Option(help="Folder of a shard to take over first; can be repeated."),
+        typer.Option(help="Folder of a shard whose cells are copied first; can be repeated."),
     ] = None,
-    record: Annotated[bool, typer.Option(help="Record the runs, into OUT/runs.")] = False,
+    record: Annotated[bool, typer.Option(help="Record the runs in OUT/runs.")] = False,
     claims_from: Annotated[
-        str | None, typer.Option(help="Model that reads claims out of what is said.")
+        str | None, typer.Option(help="Model that extracts claims from utterances.")
     ] = None,
     by: Annotated[
         list[str] | None,
-        typer.Option(metavar="COLUMN", help="Sum rows up by this column; can be repeated."),
+        typer.Option(metavar="COLUMN", help="Group rows by this column; can be repeated."),
     ] = None,
     json: Json = False,
 ) -> int:
@@ -418,47 +440,49 @@ def study(
 @app.command()
 def play(
     task: Annotated[
-        str | None, typer.Argument(help="A built-in task or scenario, or a file of either.")
+        str | None, typer.Argument(help="Built-in task or scenario, or a file of either.")
     ] = None,
     agent: Annotated[
         list[str] | None,
-        typer.Option(help="Who plays an agent, as anne=search:1; can be repeated."),
+        typer.Option(help="Policy of an agent, such as anne=search:1; can be repeated."),
     ] = None,
     set: Annotated[
         list[str] | None,
-        typer.Option(help="Size of a task, as agents=3, or a scenario's parameter; repeatable."),
+        typer.Option(help="Size of a task, or parameter of a scenario, as agents=3; repeatable."),
     ] = None,
-    condition: Annotated[int | None, typer.Option(help="A scenario's condition.")] = None,
-    rounds: Annotated[int | None, typer.Option(help="Most rounds.", min=0)] = None,
-    seed: Annotated[int, typer.Option(help="Which instance; drives every random number.")] = 0,
-    world: Annotated[str, typer.Option(help="Where it plays.")] = "scripted",
+    condition: Annotated[int | None, typer.Option(help="Condition of the scenario.")] = None,
+    rounds: Annotated[int | None, typer.Option(help="Limit of rounds.", min=0)] = None,
+    seed: Annotated[
+        int, typer.Option(help="Instance of the task, and seed of all random numbers.")
+    ] = 0,
+    world: Annotated[str, typer.Option(help="World in which the episode plays.")] = "scripted",
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for what is recorded; an interrupted episode goes on in it."),
+        typer.Option(help="Folder for the run; an interrupted episode continues in it."),
     ] = None,
-    max_ticks: Annotated[int | None, typer.Option(help="Most ticks.", min=1)] = None,
-    max_tokens: Annotated[int | None, typer.Option(help="Most tokens of models.", min=1)] = None,
-    max_cost: Annotated[float | None, typer.Option(help="Most US dollars.", min=0)] = None,
+    max_ticks: Annotated[int | None, typer.Option(help="Limit of ticks.", min=1)] = None,
+    max_tokens: Annotated[int | None, typer.Option(help="Limit of model tokens.", min=1)] = None,
+    max_cost: Annotated[float | None, typer.Option(help="Limit of US dollars.", min=0)] = None,
     patience: Annotated[
-        float | None, typer.Option(help="Seconds after which a policy has lost its round.")
+        float | None, typer.Option(help="Seconds after which a policy loses its round.")
     ] = None,
     measure_help: Annotated[
-        bool, typer.Option("--measure-help", help="Tell what help was needed, given, superfluous.")
+        bool, typer.Option("--measure-help", help="Print the help needed, given and superfluous.")
     ] = False,
     listen: Annotated[
         str | None, typer.Option(help="Where people join: PORT of this machine, or HOST:PORT.")
     ] = None,
     baselines: Annotated[
-        bool, typer.Option("--baselines", help="Play the task, or all, by all baselines instead.")
+        bool, typer.Option("--baselines", help="Play the task, or all tasks, with all baselines.")
     ] = False,
     seeds: Annotated[int, typer.Option(help="Instances of each task, for --baselines.")] = 50,
-    jobs: Annotated[int, typer.Option(help="Episodes at once, for --baselines.", min=1)] = 1,
+    jobs: Annotated[int, typer.Option(help="Episodes in parallel, for --baselines.", min=1)] = 1,
     page: Annotated[
         Path | None, typer.Option(help="Markdown file to write, for --baselines.")
     ] = None,
     json: Json = False,
 ) -> int:
-    """Let agents act round after round, each by what it believes; say whether they succeed."""
+    """Let agents act round after round on their own beliefs; print if they reach the goal."""
     if baselines:
         from beliefnest.cli.baselines import BaselineOptions, run_baselines
 
@@ -485,7 +509,7 @@ def play(
 
 
 def _listening(listen: str | None) -> str | None:
-    """Where people join; a port alone is one of this machine."""
+    """Return the address at which people join; a port alone is on this machine."""
     return f"127.0.0.1:{listen}" if listen is not None and listen.isdecimal() else listen
 
 
@@ -494,13 +518,13 @@ def reproduce(
     copies: Annotated[
         int, typer.Option(help="Mirrored, turned and renamed copies of each experiment.", min=0)
     ] = 4,
-    jobs: Annotated[int, typer.Option(help="Played at the same time.", min=1)] = 1,
+    jobs: Annotated[int, typer.Option(help="Cells to play in parallel.", min=1)] = 1,
     page: Annotated[
         Path | None, typer.Option(help="Write the table to this Markdown file.")
     ] = None,
     json: Json = False,
 ) -> int:
-    """Play the paper's experiments, as written and varied; print the results beside its claims."""
+    """Play the paper's experiments and variations; print the results beside the paper's claims."""
     from beliefnest.cli.reproduce import run_reproduction
 
     return run_reproduction(copies, jobs, page, as_json=json)
@@ -509,14 +533,14 @@ def reproduce(
 @app.command()
 def doctor(
     server: Annotated[
-        str | None, typer.Argument(help="A server to check, too: minecraft://HOST:PORT.")
+        str | None, typer.Argument(help="Server to check as well, as minecraft://HOST:PORT.")
     ] = None,
     warm: Annotated[
-        bool, typer.Option("--warm", help="Compile now what the first belief would wait for.")
+        bool, typer.Option("--warm", help="Compile all kernels now, so that the first run is fast.")
     ] = False,
     json: Json = False,
 ) -> int:
-    """Check Node, the bundle, a world and a model; say what to do about what fails."""
+    """Check Node, the bundle, a world and a model; say what to do if a check fails."""
     from beliefnest.cli.doctor import examine
 
     return examine(server, as_json=json, warm=warm)
@@ -525,11 +549,11 @@ def doctor(
 @app.command()
 def bench(
     names: Annotated[
-        list[str] | None, typer.Argument(help="Benches; none: all but minecraft.")
+        list[str] | None, typer.Argument(help="Names of benches; default: all except minecraft.")
     ] = None,
     json: Json = False,
 ) -> int:
-    """Measure, and print medians and ratios beside the figures to reach."""
+    """Run benchmarks; print medians and ratios beside their targets."""
     from beliefnest.cli.bench.command import run_benches
 
     return run_benches(tuple(names or ()), as_json=json)

@@ -1,4 +1,4 @@
-"""`beliefnest play --baselines`: the table of tasks and policies, and its page."""
+"""`beliefnest play --baselines`: a table of tasks by policies, and its Markdown page."""
 
 import json
 import sys
@@ -24,16 +24,16 @@ from beliefnest.studies.study import Study
 __all__ = ["BaselineOptions", "page_of", "run_baselines"]
 
 _POLICIES, _ORDERS = ("random", "search", "omniscient:search"), (0, 1, 2)
-"""Who plays the players; the others are played as each task says."""
+"""Policies and orders of the players; all other agents follow the task's script."""
 _BY = ("task", "needs", "policy")
 
 _REPORTS = 20
-"""Lines of progress where there is no terminal."""
+"""Number of progress lines if stderr is not a terminal."""
 
 _COLUMNS = ("task", "order", "policy", "success", "95 %", "ticks", "messages", "false beliefs")
 
 _INCHES = 12.0, 3.2
-"""Of the figure: as wide as a page shows without making its text too small."""
+"""Size of the figure: as wide as a page can show it with readable text."""
 
 Group = Mapping[str, Any]
 """A row of a study's summary."""
@@ -41,15 +41,15 @@ Group = Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class BaselineOptions:
-    """What was asked for on the command line.
+    """Options of `beliefnest play --baselines`.
 
     Attributes:
         task: The only task; None: all.
-        seeds: How many instances of each.
-        jobs: Episodes at the same time.
-        out: Folder of the study, which goes on there; None: a temporary one.
+        seeds: Number of instances of each task.
+        jobs: Number of episodes played in parallel.
+        out: Folder of the study; an interrupted study continues there. None: a temporary folder.
         page: Markdown file to write, with pictures in `img` beside it; None: none.
-        as_json: Whether to print one JSON object instead of a table.
+        as_json: Print one JSON object instead of a table.
     """
 
     task: str | None
@@ -61,9 +61,11 @@ class BaselineOptions:
 
 
 def run_baselines(options: BaselineOptions) -> int:
-    """Play, print, and write the page; the status is 1 if a task is not what it claims to be.
+    """Play the baselines, print the table, and write the page.
 
-    It is, if `search` of its order reaches the goal in all episodes and of one less in none.
+    Returns:
+        Exit status: 0 if every task needs exactly the order that it states, else 1. A task needs
+        order n if `search:n` reaches the goal in all episodes and `search:n-1` in none.
 
     Raises:
         BeliefNestError: The input is wrong, or episodes have no result.
@@ -84,7 +86,7 @@ def run_baselines(options: BaselineOptions) -> int:
 
 
 def _played(names: Sequence[str], options: BaselineOptions) -> list[dict[str, Any]]:
-    """Return the summary of a study of all baselines."""
+    """Play a study of all baselines and return its summary rows."""
     study = Study(tasks=names, policies=_POLICIES, orders=_ORDERS, seeds=options.seeds)
     with ExitStack() as stack:
         folder = options.out or stack.enter_context(tempfile.TemporaryDirectory())
@@ -103,7 +105,7 @@ def _played(names: Sequence[str], options: BaselineOptions) -> list[dict[str, An
 
 
 def page_of(names: Sequence[str], found: Sequence[Group], seeds: int) -> str:
-    """Return the page of tasks, as Markdown."""
+    """Return the page about the tasks, as Markdown."""
     lines = [
         "# Tasks",
         "",
@@ -113,10 +115,10 @@ def page_of(names: Sequence[str], found: Sequence[Group], seeds: int) -> str:
         f"`beliefnest play --baselines --seeds {seeds} --page docs/tasks.md`;",
         "`make baselines` takes 50 seeds.",
         "",
-        f"Players by policy, over {seeds} seeds, in the scripted world; who is no player acts",
-        "as the task says. Success with its 95 % interval of Wilson; mean ticks of the successes;",
-        "mean utterances of players, and mean false beliefs of all agents over the rounds, of all",
-        "episodes. The intervals of means are 95 % ones, by the bootstrap.",
+        f"Players by policy, over {seeds} seeds, in the scripted world. Agents without a policy",
+        "follow the task's script. Success has its 95 % Wilson interval. Ticks are the mean over",
+        "successful episodes. Utterances of players and false beliefs of all agents over the",
+        "rounds are means over all episodes. Intervals of means are 95 % bootstrap intervals.",
         "",
         "![Success by task and policy, with intervals](img/baselines.png)",
         "",

@@ -1,4 +1,4 @@
-"""`beliefnest branches`: the tree of timelines of recorded runs."""
+"""`beliefnest branches`: the tree of branches of recorded runs."""
 
 import json
 import sys
@@ -19,7 +19,7 @@ __all__ = ["show_branches"]
 
 
 def show_branches(run: Path, *, as_json: bool) -> None:
-    """Print every timeline of a run below the one it was forked from.
+    """Print every branch of a run below the branch it was forked from.
 
     Raises:
         BeliefNestError: There is no such run.

@@ -1,4 +1,4 @@
-"""`beliefnest capture`: a place of a server, or of a file, as a scenario."""
+"""`beliefnest capture`: write a place on a server, or in a file, as a scenario."""
 
 import re
 import sys
@@ -23,14 +23,14 @@ _LONGEST_NAME = 64
 
 @dataclass(frozen=True)
 class CaptureOptions:
-    """What was asked for on the command line.
+    """Options of `beliefnest capture`.
 
     Attributes:
-        where: The address of a server, or the path of a file.
-        out: The scenario file to write; it must not exist.
-        box: Of a server, two corners.
-        at: Of a file, where its lowest corner comes to lie.
-        name: Name of the scenario; None: that of the file to write.
+        where: Address of a server, or path of a file.
+        out: Scenario file to write; it must not exist.
+        box: Two corners of the place; for servers only.
+        at: Position of the place's lowest corner in the scenario; for files only.
+        name: Name of the scenario; None: the name of the file `out`.
     """
 
     where: str
@@ -41,15 +41,15 @@ class CaptureOptions:
 
 
 def write_capture(options: CaptureOptions) -> None:
-    """Write the scenario; what it cannot say is named on stderr.
+    """Write the scenario; list on stderr what a scenario cannot express.
 
     Raises:
         InputError: The options do not fit together, or the file cannot be written.
-        BodyError: The server cannot be looked at.
+        BodyError: The place on the server cannot be read.
     """
     out = options.out
     if out.suffix not in (_SUFFIX, ".yml"):
-        raise InputError(f"{out} is to be a scenario; give it a name that ends in {_SUFFIX}")
+        raise InputError(f"{out} is no name of a scenario file; give a name that ends in {_SUFFIX}")
     if out.exists():
         raise InputError(f"{out} exists already; choose another name")
     captured = _captured(options)
@@ -65,14 +65,14 @@ def write_capture(options: CaptureOptions) -> None:
 
 
 def _name(out: Path) -> str:
-    """Return the file's, of what a scenario's name can have in it."""
+    """Return the stem of the file, with `-` for characters that names of scenarios cannot have."""
     return _NO_NAME.sub("-", out.stem)[:_LONGEST_NAME]
 
 
 def _captured(options: CaptureOptions) -> Captured:
     if is_server(options.where):
         if options.box is None or options.at is not None:
-            raise InputError("of a server, give --box X1 Y1 Z1 X2 Y2 Z2, and no --at")
+            raise InputError("a server needs a box: give --box X1 Y1 Z1 X2 Y2 Z2, and no --at")
         x1, y1, z1, x2, y2, z2 = options.box
         low = (min(x1, x2), min(y1, y2), min(z1, z2))
         high = (max(x1, x2), max(y1, y2), max(z1, z2))

@@ -23,8 +23,8 @@ def claims_json(claims: Sequence[MadeClaim], paths: Collection[str]) -> list[dic
     """Return claims as plain data.
 
     Args:
-        claims: What was claimed.
-        paths: Beliefs of which it is told whether they took it up, and why.
+        claims: The claims.
+        paths: Beliefs; the result says for each if and why it took up each claim.
     """
     return [
         {
@@ -46,10 +46,16 @@ def claims_json(claims: Sequence[MadeClaim], paths: Collection[str]) -> list[dic
 
 
 def claims_table(claims: Sequence[MadeClaim], path: str, scenario: Scenario) -> Table:
-    """Return every claim, who heard it, and what a simulator made of it; not empty."""
+    """Return a table of claims, their hearers, and the verdict of one belief.
+
+    Args:
+        claims: The claims; not empty.
+        path: Path of the simulator that is shown.
+        scenario: Scenario with the names of containers and places.
+    """
     table = _begun()
     table.add_column("heard by")
-    # What is claimed in a simulator in control mode is told there, and not believed by it.
+    # The world in which a claim is made is no belief, and has no verdict on it.
     is_belief = claims[0].made_in != path
     if is_belief:
         table.add_column(f"in {path}")
@@ -63,10 +69,10 @@ def claims_table(claims: Sequence[MadeClaim], path: str, scenario: Scenario) -> 
 def print_claims(
     console: Console, claims: Sequence[MadeClaim], paths: Sequence[str], scenario: Scenario
 ) -> None:
-    """Print every claim, and for each of some beliefs whether it took it up, and why.
+    """Print every claim, and if and why each of the given beliefs took it up.
 
-    A table has a column for each belief. Where the console is too narrow for their paths, each
-    claim has a line, and below it a line for each verdict with the beliefs that came to it.
+    The table has a column for each belief. If the console is too narrow for it, each claim is
+    printed on a line, followed by a line for each verdict with the beliefs that reached it.
     """
     table = _begun()
     for path in paths:
@@ -75,7 +81,7 @@ def print_claims(
         table.add_row(
             *map(Text, (*_cells(told, scenario), *(_verdict(told, path) for path in paths)))
         )
-    # Rich's measure is no wider than the room it is told of.
+    # Rich limits the measured width to `max_width`.
     least = Measurement.get(console, console.options.update(max_width=10_000), table).minimum
     if least <= console.width:
         console.print(table)
@@ -88,7 +94,7 @@ def print_claims(
 
 
 def _by_verdict(told: MadeClaim, paths: Sequence[str]) -> Table:
-    """Return a row for each verdict on a claim, with the beliefs that came to it."""
+    """Return a table with a row for each verdict on a claim and the beliefs that reached it."""
     found: dict[str, list[str]] = {}
     for path in paths:
         taken = _verdict(told, path).replace("yes", "taken up").replace("no (", "not taken up (")
@@ -100,12 +106,15 @@ def _by_verdict(told: MadeClaim, paths: Sequence[str]) -> Table:
 
 
 def paths_of_beliefs(claims: Sequence[MadeClaim], agents: Sequence[str], depth: int) -> list[str]:
-    """Return every belief of the world in which claims were made, shallow ones first.
+    """Return the paths of all beliefs below the world in which claims were made.
 
     Args:
         claims: The claims; not empty.
-        agents: Whose beliefs there are.
-        depth: How many names its path has below that world, at most.
+        agents: Names of all agents.
+        depth: Greatest number of names in a path below that world.
+
+    Returns:
+        The paths, shallow ones first.
     """
     world = parse_path(claims[0].made_in, agents)
     return [path_text(path) for path in paths_below(world, depth, agents)[1:]]
@@ -123,7 +132,7 @@ def _cells(told: MadeClaim, scenario: Scenario) -> list[str]:
 
 
 def _words(claim: Claim, scenario: Scenario) -> str:
-    """Return a claim with the names that containers and places have."""
+    """Return a claim in words, with the scenario's names of containers and places."""
     if claim.kind is ClaimKind.POSITION:
         x, y, z = claim.place
         return claim.about(place_text((x, y, z), scenario).removeprefix("at "))

@@ -1,4 +1,4 @@
-"""Where results and progress go: results to stdout, progress to stderr."""
+"""Consoles of the commands: results go to stdout, progress goes to stderr."""
 
 import os
 import sys
@@ -17,31 +17,31 @@ __all__ = ["folded", "print_table", "progress_on", "stdout"]
 _PLAIN_WIDTH = 140
 _NARROWEST = 20
 _WORD = 12
-"""Letters of a word that a column has to have room for."""
+"""Letters of a word that every column must have room for."""
 
 
 def stdout() -> Console:
-    """Return the console for results: coloured on a terminal alone.
+    """Return the console for results, with colours only on a terminal.
 
-    It is as wide as the terminal, or as COLUMNS says, or else wide enough for a table.
+    Its width is COLUMNS if set, else the width of the terminal, else enough for a table.
     """
     terminal = sys.stdout.isatty()
-    # Files get no codes, whatever the environment says of colours.
+    # Files get no colour codes, even if environment variables ask for colours.
     return Console(width=_width(terminal=terminal), force_terminal=terminal)
 
 
 def folded(table: Table) -> Table:
-    """Return the same table, whose cells are folded and never cut, however little room there is."""
+    """Make all columns of a table fold their text instead of cutting it, and return the table."""
     for column in table.columns:
         column.overflow, column.no_wrap = "fold", False
     return table
 
 
 def print_table(console: Console, table: Table) -> None:
-    """Print a table; where its columns have no room for words, print each row as a list.
+    """Print a table, or each row as a list if the columns are too narrow for words.
 
     Args:
-        console: Where it is printed.
+        console: Console to print to.
         table: The table; its cells are folded and never cut.
     """
     if sum(map(_least, table.columns)) + 3 * len(table.columns) <= console.width:
@@ -58,14 +58,14 @@ def print_table(console: Console, table: Table) -> None:
 
 
 def _least(column: Column) -> int:
-    """Return the columns of a terminal in which words of usual length are not broken."""
+    """Return the least width in characters at which usual words of a column are not broken."""
     texts = [str(each) for each in (column.header, *column.cells)]
     longest = max((len(word) for text in texts for word in text.split()), default=0)
     return min(longest, _WORD)
 
 
 def _width(*, terminal: bool) -> int | None:
-    """Columns; None: as many as the terminal has."""
+    """Return the width of a console in characters; None: the width of the terminal."""
     wanted = os.environ.get("COLUMNS", "")
     if wanted.isdecimal() and int(wanted) >= _NARROWEST:
         return int(wanted)
@@ -74,8 +74,8 @@ def _width(*, terminal: bool) -> int | None:
 
 @contextmanager
 def progress_on(title: str) -> Iterator[OnProgress]:
-    """Show what is being done on stderr: a bar on a terminal, a line each elsewhere."""
-    # A notebook shows what a command writes, and is no terminal, whatever it says of itself.
+    """Show progress on stderr: a bar on a terminal, else a line for each report."""
+    # The output of a command in a notebook is no terminal, even if it claims to be one.
     notebook = "JPY_PARENT_PID" in os.environ
     plain = notebook or not sys.stderr.isatty()
     console = Console(stderr=True, markup=False, force_terminal=not plain)
@@ -84,7 +84,7 @@ def progress_on(title: str) -> Iterator[OnProgress]:
         console.width = _width(terminal=False) or _PLAIN_WIDTH
 
         def say(what: str, done: int, total: int) -> None:
-            # Of what is one step alone, or is not counted yet, there is nothing to count.
+            # A total of 0 means that steps are not counted.
             count = f" ({done}/{total})" if total else ""
             console.print(f"{title}: {printable(what)}{count}", highlight=False)
 

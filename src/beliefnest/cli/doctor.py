@@ -1,4 +1,4 @@
-"""`beliefnest doctor`: is everything there that a run needs, and what to do if not."""
+"""`beliefnest doctor`: check all that a run needs, and say what to do about failures."""
 
 import json
 import platform
@@ -17,17 +17,17 @@ __all__ = ["Finding", "examine"]
 _FAILED = 3
 _SECONDS = 30
 _HIGH = 200
-"""Height of what is built on a server, where there is hardly anything."""
+"""Height y of the blocks that are built on a server, in the empty air."""
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What came of one check.
+    """Result of one check.
 
     Attributes:
-        name: What was checked.
-        ok: Whether it is as it should be.
-        detail: What was found; if it is not as it should be, what to do.
+        name: Name of the check.
+        ok: True if the check passed.
+        detail: What was found; if the check failed, what to do.
     """
 
     name: str
@@ -36,15 +36,15 @@ class Finding:
 
 
 def examine(server: str | None = None, *, as_json: bool, warm: bool = False) -> int:
-    """Print one line for each check; the exit status says whether all is well.
+    """Run all checks, print one line for each, and return the exit status.
 
     Args:
-        server: Address of a Minecraft server that is checked, too.
+        server: Address of a Minecraft server to check as well.
         as_json: Print one JSON array instead.
-        warm: Compile what is not compiled yet, so that no run waits for it.
+        warm: Compile all kernels now, so that the first run does not wait for the compiler.
     """
     if server is not None and not is_server(server):
-        raise InputError(f"{server!r} is no address of a server; write minecraft://HOST:PORT")
+        raise InputError(f"{server!r} is no address of a server; give minecraft://HOST:PORT")
     if warm:
         _one_belief()
     found = []
@@ -165,7 +165,7 @@ def _model() -> str:
 
 
 def _server_checks(server: str) -> tuple[tuple[str, Callable[[], str]], ...]:
-    """Return the checks of a server: first what needs no place on it, then a small place."""
+    """Return the checks of a server: first joining it, then building a small place on it."""
     address = ServerAddress.parse(server)
 
     def joined() -> str:

@@ -26,13 +26,13 @@ __all__ = ["ExportOptions", "export_run", "import_run"]
 
 @dataclass(frozen=True, slots=True)
 class ExportOptions:
-    """What was asked for.
+    """Options of `beliefnest export`.
 
     Attributes:
-        run: Run folder, or its store.
+        run: Run folder or run file.
         format: Name of the format.
-        paths: Belief paths whose states are written for every tick with a change, on every branch.
-        out: The folder to write.
+        paths: Belief paths; their states are written at each tick with a change, on all branches.
+        out: Folder to write; it must not exist.
     """
 
     run: Path
@@ -42,7 +42,7 @@ class ExportOptions:
 
 
 def export_run(options: ExportOptions) -> None:
-    """Write a run as tables, and say how many rows each has.
+    """Write a run as tables, and print the number of rows of each.
 
     Raises:
         BeliefNestError: There is no such run, path or format, or the folder cannot be written.
@@ -52,7 +52,7 @@ def export_run(options: ExportOptions) -> None:
             f"there is no format {options.format!r}; there are {', '.join(get_args(Format))}"
         )
     store = store_in(options.run)
-    # The run may go on meanwhile: all tables are of one moment.
+    # The run may still be recorded: read all tables from one moment.
     with SqliteJournal.read(store) as journal, journal.unchanging():
         nest = RecordedNest(journal)
         for path in options.paths:
@@ -77,7 +77,7 @@ def _notes(records: Records) -> Iterator[Row]:
 
 
 def _rounds(nest: RecordedNest) -> Iterator[Row]:
-    """Of an episode, what was decided in its rounds, and when its goal was reached."""
+    """Yield the decisions of an episode's rounds, and the tick at which its goal was reached."""
     told = told_episode(nest)
     if told is not None:
         yield from (("rounds", row) for row in round_rows(told))
@@ -93,7 +93,7 @@ def _beliefs(nest: RecordedNest, paths: Sequence[str]) -> Iterator[BeliefRow]:
 
 
 def import_run(trace: Path, out: Path) -> None:
-    """Make a run file of a history that another program wrote.
+    """Make a run file from a trace that another program wrote.
 
     Raises:
         BeliefNestError: The trace has bad lines, or the file exists or cannot be written.

@@ -1,4 +1,4 @@
-"""The folder of a run: what is in it, and how it is written so that it is always readable."""
+"""The folder of a run; each file in it is replaced as a whole, so that it is always readable."""
 
 import json
 import shutil
@@ -46,7 +46,7 @@ _OTHER = "name another folder"
 
 
 class _ResultForm(msgspec.Struct):
-    """What came of a condition, as `outcome_json` writes it."""
+    """Form of the result of a condition, as `outcome_json` writes it."""
 
     condition: int | None
     model: str
@@ -65,27 +65,27 @@ class _ResultForm(msgspec.Struct):
 
 @dataclass(frozen=True, slots=True)
 class ConditionFolder:
-    """The part of a run folder that belongs to one condition."""
+    """Folder of one condition in a run folder."""
 
     path: Path
 
     @property
     def store(self) -> Path:
-        """The timelines."""
+        """Run file with the timelines."""
         return self.path / STORE
 
     @property
     def picture(self) -> Path:
-        """The picture of the decisive moment."""
+        """PNG picture of the moment when the script has ended."""
         return self.path / PICTURE
 
     @property
     def picture_svg(self) -> Path:
-        """The same picture, for the report."""
+        """SVG file of the same picture, for the report."""
         return self.path / "picture.svg"
 
     def result(self) -> dict[str, Any] | None:
-        """What came of the condition in an earlier part of the run; None: it has not ended."""
+        """Return the result from an earlier part of the run; None: the condition has not ended."""
         file = self.path / _RESULT
         if not file.is_file():
             return None
@@ -94,17 +94,17 @@ class ConditionFolder:
         return content
 
     def begin(self) -> None:
-        """Make the folder, without what an interrupted run left in it."""
+        """Make an empty folder; delete what an interrupted run left in it."""
         if self.path.exists():
             shutil.rmtree(self.path)
         self.path.mkdir(parents=True)
 
     def write_result(self, result: Mapping[str, object]) -> None:
-        """Write what came of the condition."""
+        """Write the result of the condition."""
         _write(self.path / _RESULT, _json(result))
 
     def write_probe(self, number: int, outcome: ProbeOutcome) -> None:
-        """Write what a model was asked, what it answered, and the program in it."""
+        """Write the prompts and answers of a probe, and the program in the answer."""
         folder = self.path / f"probe-{number}"
         folder.mkdir(exist_ok=True)
         if outcome.probe.asks_for_program:
@@ -118,7 +118,7 @@ class ConditionFolder:
 
 @dataclass(frozen=True, slots=True)
 class RunFolder:
-    """A run folder."""
+    """Folder of a run."""
 
     path: Path
 
@@ -126,17 +126,17 @@ class RunFolder:
     def open(
         wanted: Path | None, now: datetime, settings: Mapping[str, object], scenario: Scenario
     ) -> "RunFolder":
-        """Make the folder of a run, or go on in that of a run that has not ended.
+        """Make the folder of a run, or open that of an interrupted run to continue it.
 
         Args:
-            wanted: The folder; None: `runs/NAME-DATE-TIME` in the current one.
-            now: The time, for the name.
-            settings: What was asked for; a run goes on only with the same.
-            scenario: Its file, and the templates that this names, are kept and must be the same
-                as well.
+            wanted: The folder; None: `runs/NAME-DATE-TIME` in the current folder.
+            now: Time for the name.
+            settings: Settings of the run; an interrupted run continues only with the same ones.
+            scenario: Scenario of the run. Its file and the templates it names are copied into the
+                folder; an interrupted run continues only if they have not changed.
 
         Raises:
-            InputError: It cannot be made, or holds something else already.
+            InputError: The folder cannot be made, or holds something else.
         """
         name = scenario.name
         path = (
@@ -144,7 +144,7 @@ class RunFolder:
         )
         try:
             path.mkdir(parents=True, exist_ok=True)
-            # Kept answers alone are where a run begins that is to repeat another one.
+            # A run that repeats another one may begin with a folder of cached answers alone.
             if any(each.name != _ANSWERS for each in path.iterdir()):
                 _check_same(path, settings, scenario)
             else:
@@ -158,30 +158,30 @@ class RunFolder:
         return RunFolder(path)
 
     def cell(self, folder: Path) -> ConditionFolder:
-        """Return the part of one condition; `folder` is relative to this one."""
+        """Return the folder of one condition; `folder` is relative to the run folder."""
         return ConditionFolder(self.path / folder)
 
     @property
     def answers(self) -> Path:
-        """Where the answers of models are kept."""
+        """Folder of the cached answers of models."""
         return self.path / _ANSWERS
 
     @property
     def exchanges(self) -> Path:
-        """The file of all that models were asked and answered."""
+        """File with all prompts and answers of models."""
         return self.path / "model.jsonl"
 
     @property
     def picture(self) -> Path:
-        """The picture of all conditions."""
+        """PNG picture of all conditions."""
         return self.path / PICTURE
 
     def write_report(self, report: Mapping[str, object]) -> None:
-        """Write the whole report anew."""
+        """Replace the report."""
         _write(self.path / _REPORT, _json(report))
 
     def write_page(self, text: str) -> None:
-        """Write all that came of the run as one page."""
+        """Write the HTML page of the run."""
         _write(self.path / PAGE, text)
 
     def write_summary(self, text: str) -> None:
@@ -190,10 +190,13 @@ class RunFolder:
 
 
 def store_in(run: Path) -> Path:
-    """Return the store of a run: itself, in its folder, or in the only condition's folder.
+    """Return the run file of a run.
+
+    Args:
+        run: The run file itself, its folder, or a run folder with only one condition.
 
     Raises:
-        InputError: There is none, or there are several.
+        InputError: There is no run file, or there are several.
     """
     run = run.absolute()
     if run.is_file():
@@ -212,10 +215,13 @@ def store_in(run: Path) -> Path:
 
 
 def stores_in(run: Path) -> tuple[Path, ...]:
-    """Return all stores of a run or of a study: itself, or those in its folder.
+    """Return all run files of a run or of a study.
+
+    Args:
+        run: A run file, or a folder with run files in it.
 
     Raises:
-        InputError: There is none.
+        InputError: There is no run file.
     """
     found = (run,) if run.is_file() else _below(run)
     if not found:
@@ -224,7 +230,7 @@ def stores_in(run: Path) -> tuple[Path, ...]:
 
 
 def _below(folder: Path) -> tuple[Path, ...]:
-    """Return the stores in a folder, those of a study's cells included."""
+    """Return the run files in a folder, including those of a study's cells."""
     return tuple(sorted({*folder.rglob(STORE), *StudyFolder(folder).stores()}))
 
 
@@ -238,14 +244,14 @@ def _no_store(run: Path) -> InputError:
 
 
 def kept_scenario_file(out: Path | None, wanted: str) -> Path | None:
-    """The scenario kept in a run folder, for a run that goes on without the file it began with.
+    """Return the scenario file that a run folder keeps, to continue without the original file.
 
     Args:
         out: The run folder; None: there is none.
-        wanted: The scenario that was asked for.
+        wanted: The scenario named on the command line.
 
     Returns:
-        None if the folder keeps none, or not the one that was asked for.
+        The kept file; None if the folder keeps none, or another scenario.
     """
     if out is None or not (out / _SCENARIO).is_file() or not wanted.endswith((".yaml", ".yml")):
         return None
@@ -264,7 +270,7 @@ def _unused(parent: Path, name: str) -> Path:
 
 
 def _check_same(path: Path, settings: Mapping[str, object], scenario: Scenario) -> None:
-    """Refuse a folder that is not that of the same run, or of one that has ended."""
+    """Raise InputError if a folder holds another run, or a run that has ended."""
     file = path / _REPORT
     found = read_json(file, _OTHER) if file.is_file() else {}
     if not isinstance(found.get("settings"), dict):
@@ -272,7 +278,7 @@ def _check_same(path: Path, settings: Mapping[str, object], scenario: Scenario) 
     if found.get("status") == "done":
         raise InputError(f"{path} holds a run that has ended; name another folder with --out")
     kept, templates = path / _SCENARIO, templates_file(path / _SCENARIO)
-    # As JSON knows them: a tuple is a list there.
+    # Compare settings as JSON has them, in which a tuple is a list.
     asked = json.loads(json.dumps(settings))
     differing = [key for key in asked if found["settings"].get(key) != asked[key]]
     if not kept.is_file() or kept.read_text(encoding="utf-8") != scenario.text:
@@ -291,7 +297,7 @@ def _json(value: Mapping[str, object]) -> str:
 
 
 def _write(path: Path, text: str) -> None:
-    """Replace a file as a whole, so that whoever reads it never finds half of it."""
+    """Replace a file as a whole, so that readers never find half of it."""
     draft = path.with_name(path.name + ".part")
     draft.write_text(text, encoding="utf-8")
     draft.replace(path)

@@ -1,4 +1,4 @@
-"""`beliefnest list`: what is installed."""
+"""`beliefnest list`: names of installed scenarios, tasks, suites, templates and the like."""
 
 import json
 import sys
@@ -20,7 +20,7 @@ __all__ = ["print_installed"]
 
 
 def print_installed(*, as_json: bool) -> None:
-    """Print the names of all that commands take by name."""
+    """Print all names that commands accept, by kind."""
     scenarios = [Scenario.load(name) for name in builtin_names()]
     if as_json:
         content = {

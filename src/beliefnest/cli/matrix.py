@@ -1,4 +1,4 @@
-"""The table of a run with several models or repeats: condition by model."""
+"""The table of a run with several models or repeats: scores by condition and model."""
 
 import statistics
 from collections.abc import Mapping, Sequence
@@ -16,17 +16,17 @@ __all__ = ["ConditionScore", "score_runs", "score_table", "scores_json"]
 
 @dataclass(frozen=True, slots=True)
 class ConditionScore:
-    """What came of all repeats of one condition with one model.
+    """Score of all repeats of one condition with one model.
 
     Attributes:
-        condition: Number of the condition; None: the scenario has none.
+        condition: Number of the condition; None: the scenario has no conditions.
         model: Name of the model.
-        passed: Repeats in which all was as expected.
-        total: Repeats with a result.
-        failed: Repeats without, because the model failed.
-        tokens: Sent and received, in all.
-        cost: US dollars in all; None: not known.
-        seconds: Mean wall time of a repeat.
+        passed: Number of repeats in which all expectations held.
+        total: Number of repeats with a result.
+        failed: Number of repeats without a result, because the model failed.
+        tokens: Tokens sent and received in all repeats.
+        cost: US dollars of all repeats; None: not known.
+        seconds: Mean wall time of a repeat, in seconds.
     """
 
     condition: int | None
@@ -40,14 +40,14 @@ class ConditionScore:
 
     @property
     def interval(self) -> tuple[float, float] | None:
-        """The 95 % interval of the pass rate; None without a result."""
+        """Return the 95 % interval of the pass rate; None if no repeat has a result."""
         return wilson_interval(self.passed, self.total) if self.total else None
 
 
 def score_runs(
     runs: Sequence[Mapping[str, Any]], failures: Sequence[Mapping[str, Any]]
 ) -> list[ConditionScore]:
-    """Return the scores of runs as they are reported, in order of condition, then as they come."""
+    """Return the scores of reported runs, ordered by condition, then by first appearance."""
     keys = list(dict.fromkeys((each["condition"], each["model"]) for each in (*runs, *failures)))
     keys.sort(key=lambda key: -1 if key[0] is None else key[0])
     return [
@@ -79,7 +79,7 @@ def _score(
 
 
 def scores_json(scores: Sequence[ConditionScore]) -> list[dict[str, object]]:
-    """Scores for the report."""
+    """Return scores as plain data for the report."""
     return [
         {
             "condition": score.condition,
@@ -98,7 +98,7 @@ def scores_json(scores: Sequence[ConditionScore]) -> list[dict[str, object]]:
 
 
 def score_table(name: str, scores: Sequence[ConditionScore]) -> Table:
-    """Return one row for each condition and model."""
+    """Return a table with one row for each condition and model."""
     table = Table(title=name, title_justify="left", box=box.SIMPLE_HEAVY)
     table.add_column("condition", justify="right")
     table.add_column("model")

@@ -1,4 +1,4 @@
-"""`beliefnest new`: a scenario to start from."""
+"""`beliefnest new`: write a scenario to start from."""
 
 import re
 import sys
@@ -17,10 +17,10 @@ def write_starter(name: str) -> None:
     """Write `NAME.yaml`, a commented scenario that runs, into the current folder.
 
     Raises:
-        InputError: The name is that of no file or taken, or the file cannot be written.
+        InputError: The name is not valid or is taken, or the file cannot be written.
     """
     if not _NAME.fullmatch(name):
-        raise InputError(f"{name!r} names no scenario; use up to 64 letters, digits, - and _")
+        raise InputError(f"{name!r} is no scenario name; use up to 64 letters, digits, - and _")
     if name in builtin_names():
         raise InputError(f"{name!r} is the name of a built-in scenario; choose another")
     text = (files("beliefnest.scenarios") / "starter" / "starter.yaml").read_text(encoding="utf-8")

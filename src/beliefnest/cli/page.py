@@ -1,4 +1,4 @@
-"""`beliefnest show --html` and `beliefnest serve`: the page."""
+"""The HTML page of a run, for `beliefnest show --html` and `beliefnest serve`."""
 
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -23,15 +23,15 @@ _ENDINGS = (".html", ".htm")
 
 @dataclass(frozen=True, slots=True)
 class PageOptions:
-    """What was asked for.
+    """Options of `beliefnest show --html`.
 
     Attributes:
-        run: Run folder, or a store.
-        file: What to write.
-        path: Belief to be in it whatever its depth.
-        tick: What the page is to show at first; None: the latest.
-        branch: Always None: the page holds every branch.
-        depth: How deep all beliefs go.
+        run: Run folder or run file.
+        file: HTML file to write.
+        path: Belief that the page includes even if it is deeper than `depth`.
+        tick: Tick that the page shows first; None: the latest.
+        branch: Must be None: the page holds every branch.
+        depth: Depth down to which the page includes all beliefs.
     """
 
     run: Path
@@ -46,15 +46,15 @@ def write_page(options: PageOptions) -> None:
     """Write the page of a run, with all its conditions.
 
     Raises:
-        BeliefNestError: There is no such run, a path, tick or ending is wrong, a branch was named,
-            or the file cannot be written.
+        BeliefNestError: There is no such run, a path, tick or file ending is wrong, a branch was
+            named, or the file cannot be written.
     """
     if options.file.suffix.lower() not in _ENDINGS:
-        raise InputError(
-            f"--html writes HTML, and {options.file} does not end in {' or '.join(_ENDINGS)}"
-        )
+        raise InputError(f"--html writes HTML: {options.file} must end in {' or '.join(_ENDINGS)}")
     if options.branch is not None:
-        raise InputError("the page holds every branch; leave --branch out, and choose it there")
+        raise InputError(
+            "the page holds every branch; leave --branch out, and choose the branch on the page"
+        )
     with ExitStack() as stack:
         runs = []
         for store in stores_in(options.run):
@@ -71,7 +71,7 @@ def write_page(options: PageOptions) -> None:
 
 
 def _check_tick(options: PageOptions, nest: RecordedNest, store: Path) -> None:
-    """That a run has the tick that is to be shown at first."""
+    """Raise TickError if a run does not have the tick that the page shows first."""
     if options.tick is None:
         return
     try:
@@ -81,7 +81,7 @@ def _check_tick(options: PageOptions, nest: RecordedNest, store: Path) -> None:
 
 
 def about_run(journal: SqliteJournal, nest: RecordedNest, paths: Sequence[str] = ()) -> About:
-    """What a run is called, and what its scenario asks about."""
+    """Return the name of a run and the beliefs that its scenario asks about."""
     run = journal.records.run()
     scenario = Scenario(nest.setting)
     if run.text:

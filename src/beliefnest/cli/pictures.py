@@ -1,4 +1,4 @@
-"""From an outcome to the values of a picture."""
+"""Pictures of conditions: the values to draw, read from an outcome."""
 
 import math
 from collections.abc import Sequence
@@ -23,16 +23,16 @@ from beliefnest.world.values import Point, Position
 __all__ = ["container_name", "place_text", "point_text", "read_condition", "read_trails", "titled"]
 
 _NEAR = 3.0
-"""Blocks from a place with a name within which somebody is said to be there."""
+"""Distance in blocks from a named place within which an agent is said to be there."""
 
 
 def read_condition(nest: Nest, journal: Journal, outcome: Outcome) -> ConditionPicture:
-    """Return the picture of a condition when its script has ended, from a nest that is still open.
+    """Return the picture of a condition at the end of its script.
 
     Args:
-        nest: After the script.
-        journal: The timelines it has recorded.
-        outcome: What came of it.
+        nest: The nest after the script, still open.
+        journal: Recorded timelines of the nest.
+        outcome: Outcome of the condition.
     """
     scenario = outcome.scenario
     title = scenario.name
@@ -56,12 +56,12 @@ def read_condition(nest: Nest, journal: Journal, outcome: Outcome) -> ConditionP
 def read_trails(
     journal: Journal, start: Snapshot, tick: int
 ) -> dict[str, tuple[tuple[float, float], ...]]:
-    """Where the agents of the real world stood up to a tick: x and z, oldest first.
+    """Return the trails of the agents in the real world: positions (x, z), oldest first.
 
     Args:
-        journal: The run's timelines.
-        start: The first tick.
-        tick: The last tick to read.
+        journal: Recorded timelines of the run.
+        start: Snapshot of the first tick.
+        tick: Last tick to read.
     """
     trails = {name: [agent.position] for name, agent in start.agents.items()}
     key = next(info.key for info in journal.timelines() if not info.key.path)
@@ -74,22 +74,22 @@ def read_trails(
 
 
 def container_name(place: Position, scenario: Scenario) -> str:
-    """What people call a container."""
+    """Return the label of a container, or its position if it has none."""
     return on_one_line(scenario.labels.get(place, f"({', '.join(map(str, place))})"))
 
 
 def point_text(point: tuple[float, float, float]) -> str:
-    """Return a place for people."""
+    """Return a point as text with one decimal, for people."""
     return f"({', '.join(f'{value:.1f}' for value in point)})"
 
 
 def titled(name: str) -> str:
-    """Return an agent's name at the start of a sentence."""
+    """Return an agent's name with a capital letter, for the start of a sentence."""
     return name[:1].upper() + name[1:]
 
 
 def _viewers(scenario: Scenario) -> tuple[str, ...]:
-    """The agents of the first probe's belief, or else of the deepest belief that is named."""
+    """Return the path of the first probe, or of the deepest expectation if there is no probe."""
     agents = scenario.setting.snapshot.agents
     asked = [probe.path for probe in scenario.probes[:1]]
     expected = [each.path for each in scenario.expectations]
@@ -102,7 +102,7 @@ def _wrong_in(state: State, outcome: Outcome) -> list[Wrong]:
 
 
 def _with_ghosts(scene: Scene, outcome: Outcome, viewers: Sequence[str]) -> Scene:
-    """With the places at which the first viewer believes the others to be, if they are not."""
+    """Return a scene with ghosts: wrong positions at which the first viewer believes the others."""
     state = outcome.beliefs.get(f"/{viewers[0]}") if viewers else None
     if state is None:
         return scene
@@ -118,7 +118,7 @@ def _with_ghosts(scene: Scene, outcome: Outcome, viewers: Sequence[str]) -> Scen
 
 
 def _state_card(state: State, outcome: Outcome) -> Card:
-    """What a simulator holds of containers, and of what anything is expected of anybody."""
+    """Return a card with what a simulator believes about containers and expected facts."""
     wrong = _wrong_in(state, outcome)
     by_place = {each.where: each for each in wrong if not each.is_owned}
     stores = read_stores(state, best_height([state]), outcome.scenario.labels, by_place)
@@ -138,13 +138,13 @@ def _state_card(state: State, outcome: Outcome) -> Card:
 
 
 def _agents_told(outcome: Outcome) -> tuple[str, ...]:
-    """Of whom anything is expected anywhere."""
+    """Return the agents about whose positions the scenario states expectations."""
     contents = [each.expectation.content for each in outcome.expectations]
     return tuple(dict.fromkeys(each.agent for each in contents if isinstance(each, Stands)))
 
 
 def _heard(state: State, outcome: Outcome) -> list[Note]:
-    """What was said, as far as anything is expected of it anywhere."""
+    """Return a note for each utterance that the scenario states expectations about."""
     contents = [each.expectation.content for each in outcome.expectations]
     notes = []
     for text in dict.fromkeys(each.text for each in contents if isinstance(each, Hears)):
@@ -164,7 +164,7 @@ def _place_words(name: str, state: State, scenario: Scenario) -> str:
 
 
 def place_text(point: Point, scenario: Scenario) -> str:
-    """Return a place for people: by its name, if it is near one that has a name."""
+    """Return a point as text for people: the name of a named place near it, or its coordinates."""
     near = {
         name: math.dist(point, (x + 0.5, y, z + 0.5))
         for name, (x, y, z) in scenario.setting.places.items()
@@ -175,7 +175,7 @@ def place_text(point: Point, scenario: Scenario) -> str:
 
 
 def _held(state: State, outcome: Outcome) -> bool | None:
-    """Return True if a simulator holds all that is expected of it; None: nothing is."""
+    """Return True if a simulator meets all expectations about it; None: there are none."""
     verdicts = [
         each.ok for each in outcome.expectations if outcome.state(each.expectation.path) is state
     ]
@@ -183,7 +183,7 @@ def _held(state: State, outcome: Outcome) -> bool | None:
 
 
 def _prediction_card(outcome: ProbeOutcome, scenario: Scenario) -> Card:
-    """What a probe foretold: which probe, of which belief, what came, whether as expected."""
+    """Return a card with the prediction of a probe, and if it is as expected."""
     probe = outcome.probe
     agent = titled(probe.agent or "reality")
     if outcome.trial is None:

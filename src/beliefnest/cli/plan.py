@@ -1,4 +1,4 @@
-"""What a run consists of: one cell for each model, repeat and condition."""
+"""Cells of a run: one for each model, repeat and condition."""
 
 import re
 from collections.abc import Sequence
@@ -15,10 +15,10 @@ class RunCell:
     """One scenario under one condition with one model, once.
 
     Attributes:
-        scenario: Under its condition.
+        scenario: Scenario with its condition applied.
         model: Name of the model.
-        seed: Drives every random number; repeats have different ones.
-        folder: In the run folder.
+        seed: Seed of every random number; each repeat has another one.
+        folder: Folder of the cell, relative to the run folder.
     """
 
     scenario: Scenario
@@ -28,7 +28,7 @@ class RunCell:
 
     @property
     def title(self) -> str:
-        """What it is, for progress and messages."""
+        """Title of the cell in progress lines and messages."""
         parts = [self.scenario.name]
         if self.scenario.condition is not None:
             parts.append(f"condition {self.scenario.condition}")
@@ -40,7 +40,10 @@ class RunCell:
 def plan_run_cells(
     scenarios: Sequence[Scenario], models: Sequence[str], repeat: int, seed: int
 ) -> list[RunCell]:
-    """All cells in the order in which they are run; a single round lies flat in its folder."""
+    """Return all cells in the order of play.
+
+    With one model and one repeat, the folders of conditions are directly in the run folder.
+    """
     flat = len(models) == 1 and repeat == 1
     return [
         RunCell(
@@ -59,6 +62,9 @@ def plan_run_cells(
 
 
 def _folder(number: int, model: str, models: Sequence[str]) -> Path:
-    """Return the number in front keeps models apart whose names differ only in special signs."""
+    """Return the folder name of a model.
+
+    The number in front separates models whose names differ only in special characters.
+    """
     name = re.sub(r"[^A-Za-z0-9.]+", "-", model)
     return Path(f"model-{models.index(model) + 1}-{name}", f"repeat-{number + 1}")

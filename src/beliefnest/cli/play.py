@@ -1,4 +1,4 @@
-"""`beliefnest play`: a task played round after round by policies."""
+"""`beliefnest play`: play a task with policies, round after round."""
 
 import json
 import sys
@@ -27,22 +27,22 @@ _RUN = "run.bn"
 
 @dataclass(frozen=True, slots=True)
 class PlayOptions:
-    """What was asked for on the command line.
+    """Options of `beliefnest play`.
 
     Attributes:
-        task: Name of a built-in task or scenario, or a file of either; None: nothing was named.
-        condition: Number of a scenario's condition; None: as written.
-        agents: `NAME=POLICY`, each.
-        parameters: `NAME=VALUE`, each: the size of a task, or a parameter of a scenario.
-        rounds: Most rounds; None: as many as the task has.
-        seed: Which instance, and what drives every random number.
-        world: Where it is played.
-        out: Folder for what is recorded; an interrupted episode goes on in it.
-        budget: What it may take.
-        patience_s: Seconds after which a policy has lost its round.
-        measures_help: Whether help is measured, for which branches are played.
-        listen: Where people join who play agents, HOST:PORT.
-        as_json: Whether to print one JSON object instead of a table.
+        task: Name of a built-in task or scenario, or a file of either; None: no task was named.
+        condition: Number of a scenario's condition; None: the scenario as written.
+        agents: Policies of agents, each as `NAME=POLICY`.
+        parameters: Sizes of a task or parameters of a scenario, each as `NAME=VALUE`.
+        rounds: Greatest number of rounds; None: as many as the task has.
+        seed: Number of the task's instance, and seed of every random number.
+        world: Name of the world.
+        out: Folder for the recorded run; an interrupted episode continues in it.
+        budget: Limits of the episode.
+        patience_s: Seconds after which a policy loses its round.
+        measures_help: Measure help, which plays further branches.
+        listen: Address HOST:PORT at which people join to play agents.
+        as_json: Print one JSON object instead of a table.
     """
 
     task: str | None
@@ -61,7 +61,10 @@ class PlayOptions:
 
 
 def play_task(options: PlayOptions) -> int:
-    """Play, record, and print; the exit status says whether the goal was reached.
+    """Play, record and print an episode.
+
+    Returns:
+        Exit status: 0 if the goal was reached, else 1.
 
     Raises:
         BeliefNestError: The input is wrong, or a world failed.
@@ -91,7 +94,7 @@ def play_task(options: PlayOptions) -> int:
 
 
 def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> Episode:
-    """What is asked for; if some of it is in the folder already, what goes on with that."""
+    """Return the episode; if the folder holds its beginning, continue from there."""
     asked = Episode(
         task,
         policies,
@@ -111,7 +114,7 @@ def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> E
             patience_s=options.patience_s,
         )
     except NotBegunError:
-        # Stopped while it began: there is nothing in it yet.
+        # The episode was stopped before its first entry: the file holds nothing yet.
         for left in options.out.glob(f"{_RUN}*"):
             left.unlink()
         return asked
@@ -154,7 +157,7 @@ def _pairs(given: Sequence[str], option: str, form: str) -> dict[str, str]:
 
 
 def _value(text: str) -> Any:
-    """Return the value of a parameter: a number, a list and the like as in JSON, else the text."""
+    """Return the value of a parameter: JSON if the text is JSON, else the text."""
     try:
         return json.loads(text)
     except (ValueError, RecursionError):
@@ -234,7 +237,7 @@ def _print(report: Mapping[str, Any]) -> None:
         lines += _help_lines(report["help"], report["measures"])
     measures = report["measures"]
     verdict = "reached" if report["success"] else "not reached"
-    # Ticks of conditions are those of the world; the goal's are counted from the first round on.
+    # Conditions have ticks of the world; the ticks of the goal count from the first round.
     start = f" of play, which began at tick {report['start']}" if report["start"] else ""
     lines.append(
         f"goal {verdict} after {counted(measures['ticks'], 'tick')}{start}, "
@@ -251,7 +254,7 @@ def _goal_line(condition: Mapping[str, Any]) -> str:
 
 
 def _help_lines(found: Mapping[str, Any], measures: Mapping[str, Any]) -> list[str]:
-    """Return who needed help, and whom each thing that was said or given helped, a line each."""
+    """Return a line for each agent that needed help, and for each help that was given."""
     needed, given = (", ".join(found[key]) or "nobody" for key in ("needed", "given"))
     lines = [
         f"help: needed by {needed}; given to {given}; "

@@ -1,4 +1,4 @@
-"""`beliefnest replay`: the programs of recorded runs, run again and compared."""
+"""`beliefnest replay`: run the programs of recorded runs again and compare the results."""
 
 import json
 import sys
@@ -21,7 +21,7 @@ __all__ = ["replay_runs"]
 
 
 def replay_runs(run: Path, *, as_json: bool) -> int:
-    """Run everything in the folder of a run or a study again, in a fresh world with the same seeds.
+    """Run all programs of a run or a study again, in a fresh world with the same seeds.
 
     Returns:
         0 if every frame is as recorded, else 1.
@@ -31,7 +31,7 @@ def replay_runs(run: Path, *, as_json: bool) -> int:
     """
     same = True
     told = []
-    # One for all seeds: each nest has its own, and a study one for each of many runs.
+    # One pool of worlds serves all seeds: a study has a seed for each of its many runs.
     with Worlds(0) as worlds:
         for store in stores_in(run):
             for replayed in _replayed(store, worlds):
@@ -52,14 +52,14 @@ def _replayed(store: Path, worlds: Worlds) -> Iterator[ReplayedTimeline]:
         programs = journal.records.programs()
         if name == "scripted" and not programs:
             raise InputError(
-                f"{store} holds no programs that could be run again: what happens in a scripted "
-                "world, a suite's story or an imported trace is told by its user, so that nothing "
-                "could differ; replay a run in which programs ran"
+                f"{store} holds no programs to run again: events of a scripted world, a suite's "
+                "story or an imported trace come from the user and cannot differ; replay a run in "
+                "which programs ran"
             )
         if is_server(name) or is_hosted(name):
             raise InputError(
-                f"{store} was played in real time, which is not repeated; "
-                "only runs in the embedded and the scripted world can be replayed"
+                f"{store} was played in real time, which cannot be repeated; "
+                "replay a run in the embedded or the scripted world"
             )
         world = worlds.lend(name)
         try:

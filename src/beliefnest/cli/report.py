@@ -1,4 +1,4 @@
-"""What a run reports: the object that `--json` prints, and the table."""
+"""Report of a run: the object that `--json` prints, and the table."""
 
 import math
 from collections import Counter
@@ -56,13 +56,13 @@ _WIDEST = 6
 def outcome_json(
     outcome: Outcome, model: str, run_dir: Path, accounts: Sequence[Mapping[str, object]] = ()
 ) -> dict[str, object]:
-    """What came of one condition.
+    """Return the result of one condition as plain data.
 
     Args:
-        outcome: What came of it.
-        model: Who answered.
-        run_dir: Its folder.
-        accounts: Further facts of each probe.
+        outcome: Outcome of the condition.
+        model: Name of the model that answered.
+        run_dir: Folder of the condition.
+        accounts: Further facts to add to each probe; empty: none.
     """
     probes = [probe_json(each, run_dir) for each in outcome.probes]
     for probe, account in zip(probes, accounts, strict=False):
@@ -95,11 +95,11 @@ def report_json(
     """Return the whole report.
 
     Args:
-        scenario: Its name.
-        settings: What was asked for, `world` and `models` among it.
+        scenario: Name of the scenario.
+        settings: Settings of the run, including `world` and `models`.
         status: `running`, `done`, `failed` or `interrupted`.
-        runs: What came of each condition, as `outcome_json`.
-        failures: What has no result because a model failed, and why.
+        runs: Result of each condition, as `outcome_json` returns it.
+        failures: Conditions without a result because a model failed, and the reasons.
     """
     models = settings["models"]
     assert isinstance(models, Sequence)
@@ -118,7 +118,7 @@ def report_json(
 def _counted(
     runs: Sequence[Mapping[str, Any]], failures: Sequence[Mapping[str, Any]]
 ) -> dict[str, int]:
-    """How many probes came to what; a run without a result counts once."""
+    """Return the number of probes by outcome; a run without a result counts as one."""
     found = Counter(probe.get("outcome") for run in runs for probe in run["probes"])
     found.update(failure.get("outcome") for failure in failures)
     return {outcome: found[outcome] for outcome in OUTCOMES}
@@ -126,16 +126,16 @@ def _counted(
 
 @dataclass(frozen=True, slots=True)
 class OutcomeRow:
-    """What came of one condition, as `outcome_json` keeps it, beside the scenario that was run.
+    """Row of the table for one condition, read from its result as `outcome_json` wrote it.
 
     Attributes:
-        scenario: In that condition.
-        cells: Heading to text, for everything that is expected or asked.
-        notes: What was not as expected, and which programs failed, a line each.
-        failures: What was not as expected.
-        usage: What models took.
-        ticks: How long it lasted.
-        seconds: How long it took.
+        scenario: Scenario with the condition applied.
+        cells: Text of each expectation and probe, by heading.
+        notes: A line for each unmet expectation and each failed program.
+        failures: Unmet expectations.
+        usage: Tokens and cost of models.
+        ticks: Length of the run in ticks.
+        seconds: Wall time in seconds.
     """
 
     scenario: Scenario
@@ -148,7 +148,7 @@ class OutcomeRow:
 
     @classmethod
     def of(cls, scenario: Scenario, result: Mapping[str, Any]) -> "OutcomeRow | None":
-        """Return the row of a result; None: an earlier version wrote it, without the texts."""
+        """Return the row of a result; None if an earlier version wrote it without these texts."""
         if "table" not in result:
             return None
         return cls(
@@ -163,13 +163,13 @@ class OutcomeRow:
 
 
 def outcome_table(rows: Sequence[OutcomeRow], console: Console) -> Table:
-    """Tabulate what is where, what was predicted, and whether it is as expected.
+    """Return a table of beliefs and predictions, which says if they are as expected.
 
-    The table has one row for each condition, or one column where there is too much to tell for
-    a row of the console.
+    The table has one row for each condition. If rows are too wide for the console, it has one
+    column for each condition.
     """
     wide = _wide_table(rows)
-    # Rich's measure is no wider than the room it is told of.
+    # Rich limits the measured width to `max_width`.
     least = Measurement.get(console, console.options.update(max_width=10_000), wide).minimum
     if len(_headings(rows)) > _WIDEST or least > console.width:
         return _tall_table(rows)
@@ -217,12 +217,12 @@ def _tall_table(rows: Sequence[OutcomeRow]) -> Table:
 
 
 def cost_text(cost: float | None) -> str:
-    """US dollars for people."""
+    """Return a cost in US dollars as text."""
     return "not known" if cost is None else f"${cost:.4f}"
 
 
 def placed_lines(placed: Placements) -> list[str]:
-    """Say what a body had to place otherwise than believed, for people, a line each."""
+    """Return a line for each thing that a body had to place otherwise than believed."""
     return [_placed_line(key, start, end) for key, (start, end) in placed.items()]
 
 
@@ -238,7 +238,7 @@ def _verb(scenario: Scenario) -> str:
 
 
 def _verdict(row: OutcomeRow) -> str:
-    """Return True if all was as expected, and if not, what was not; `notes` say why."""
+    """Return `yes`, or `NO` with the names of the unmet expectations; the notes say why."""
     if not row.failures:
         return "[green]yes[/green]"
     names = (printable(failure.partition(": ")[0]) for failure in row.failures)
@@ -246,7 +246,7 @@ def _verdict(row: OutcomeRow) -> str:
 
 
 def _notes(outcome: Outcome) -> list[str]:
-    """Return what was not as expected, and why programs failed of which nothing was expected."""
+    """Return a line for each unmet expectation and each failed program without expectations."""
     number = outcome.scenario.condition
     where = "" if number is None else f"condition {number}: "
     failed = [
@@ -263,7 +263,7 @@ def _headings(rows: Iterable[OutcomeRow]) -> list[str]:
 
 
 def _cells(outcome: Outcome) -> dict[str, str]:
-    """Return the heading to text, for everything that is expected or asked."""
+    """Return the text of each expectation and each probe, by heading."""
     cells: dict[str, list[str]] = {}
     for each in outcome.expectations:
         state = outcome.state(each.expectation.path)
@@ -322,7 +322,7 @@ def _acted(outcome: ProbeOutcome, scenario: Scenario) -> tuple[str, str]:
 
 
 def _deeds(outcome: ProbeOutcome, scenario: Scenario) -> list[str]:
-    """What a probe came to, for each kind of thing that was expected of it."""
+    """Return what the agent did in a probe, in words, for each kind of expectation."""
     kinds = {type(each) for each in outcome.probe.expect} or {Opens}
     told = []
     if Opens in kinds:

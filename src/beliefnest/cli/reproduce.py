@@ -1,4 +1,4 @@
-"""`beliefnest reproduce`: the paper's experiments, as written and varied, beside its claims."""
+"""`beliefnest reproduce`: play the paper's experiments and compare them with its claims."""
 
 import json
 import os
@@ -23,16 +23,16 @@ __all__ = ["run_reproduction"]
 
 @dataclass(frozen=True, slots=True)
 class _Claim:
-    """What is to come out for a probe.
+    """Claim of the paper about one probe.
 
     Attributes:
-        scenario: The built-in scenario.
-        condition: Its condition.
+        scenario: Name of the built-in scenario.
+        condition: Number of its condition.
         probe: Label of the probe.
-        section: Of the paper.
-        text: What the paper says; of a control variant, what is changed.
-        differs: Where our expectation is another than the paper's, and why; empty: it is not.
-        is_control: Whether it is a control variant of ours, of which the paper reports nothing.
+        section: Section of the paper.
+        text: The paper's statement; for a control variant, what it changes.
+        differs: How and why our expectation differs from the paper's; empty: it does not.
+        is_control: True for our control variants, about which the paper reports nothing.
     """
 
     scenario: str
@@ -72,13 +72,16 @@ _CLAIMS = (
 
 
 def run_reproduction(copies: int, jobs: int, page: Path | None, *, as_json: bool) -> int:
-    """Play all, print the table; the status is 0 if all is as expected, 1 if something is not.
+    """Play all experiments and print the table.
 
     Args:
-        copies: Mirrored, turned and renamed copies of each experiment.
-        jobs: Cells at the same time.
-        page: File to write the table to, as Markdown; None: none.
-        as_json: Whether to print JSON.
+        copies: Number of mirrored, turned and renamed copies of each experiment.
+        jobs: Number of cells played in parallel.
+        page: Markdown file to write the table to; None: none.
+        as_json: Print JSON instead of a table.
+
+    Returns:
+        Exit status: 0 if all results are as expected, else 1.
 
     Raises:
         BeliefNestError: A number is wrong, or a world failed.
@@ -86,10 +89,10 @@ def run_reproduction(copies: int, jobs: int, page: Path | None, *, as_json: bool
     names = tuple(dict.fromkeys(claim.scenario for claim in _CLAIMS))
     studies = Study(names), Study(names, variations=copies) if copies else None
     for study in filter(None, studies):
-        # What is missing is said before anything is played.
+        # Refuse a wrong path before anything is played.
         study.plan()
     if page is not None and not os.access(page if page.exists() else page.parent, os.W_OK):
-        raise InputError(f"{page} cannot be written: name a file in a folder that can")
+        raise InputError(f"{page} cannot be written; name a file in a folder that you can write to")
     written = _played(studies[0], jobs, "as written")
     varied = _played(studies[1], jobs, "copies") if studies[1] is not None else ([], 0.0)
     lines = [_line(claim, written[0], varied[0]) for claim in _CLAIMS]
@@ -143,12 +146,12 @@ def _line(
 
 
 def _is_right(row: Mapping[str, Any]) -> bool:
-    """Return True if a probe and all beliefs of its cell came out as expected."""
+    """Return True if a probe and all beliefs of its cell are as expected."""
     return row["ok"] is True and row["beliefs_ok"] is not False
 
 
 def _in_words(expected: Mapping[str, Any]) -> str:
-    """What is expected of a probe, for a table: each part with its value, places in blocks."""
+    """Return the expectations of a probe as text for a table, with places in blocks."""
     return ", ".join(
         f"{part} {','.join(f'{n:g}' for n in value) if isinstance(value, list) else f'{value:g}'}"
         for part, value in expected.items()
@@ -156,7 +159,7 @@ def _in_words(expected: Mapping[str, Any]) -> str:
 
 
 def _rounded(place: str) -> str:
-    """Return a place that somebody stands at, to half a block."""
+    """Return the position of an agent as text, rounded to half a block."""
     return ",".join(f"{round(2 * float(part)) / 2:g}" for part in place.split(",") if part)
 
 

@@ -1,4 +1,4 @@
-"""`beliefnest run`: every condition by itself, recorded, judged and pictured."""
+"""`beliefnest run`: play each condition of a scenario, record it, judge it and draw it."""
 
 import json
 import math
@@ -50,23 +50,23 @@ from beliefnest.world.nameable import ClaimsFrom
 __all__ = ["ModelOptions", "RunOptions", "run_scenarios"]
 
 _MOST_TIMES = 10_000
-"""Of repeats, and of answers to one probe."""
+"""Greatest number of repeats, and of attempts for one probe."""
 _HOTTEST = 10.0
-"""More than any provider takes."""
+"""Greatest temperature; more than any provider accepts."""
 
 Status = Literal["running", "done", "failed", "interrupted"]
 
 
 @dataclass(frozen=True, slots=True)
 class ModelOptions:
-    """How models are asked.
+    """Options of requests to models.
 
     Attributes:
-        cache: How kept answers are used.
-        answers: Folder of kept answers; None: the run folder's own.
-        limits: What the whole run may spend.
-        attempts: How often a model is asked for one probe.
-        temperature: How answers are drawn; None leaves it to the provider.
+        cache: Use of cached answers.
+        answers: Folder of cached answers; None: the folder `answers` in the run folder.
+        limits: Limits of tokens and cost of the whole run.
+        attempts: Greatest number of requests for one probe.
+        temperature: Sampling temperature; None: the provider's default.
     """
 
     cache: CacheMode = "read"
@@ -78,20 +78,20 @@ class ModelOptions:
 
 @dataclass(frozen=True, slots=True)
 class RunOptions:
-    """What was asked for on the command line.
+    """Options of `beliefnest run`.
 
     Attributes:
-        scenario: Name or path.
+        scenario: Name or path of the scenario.
         conditions: Numbers of the conditions to run; empty: all.
         world: Name of the world.
         models: Names of the models.
-        repeat: How often each condition is run with each model.
+        repeat: Number of runs of each condition with each model.
         out: Run folder; None: a new one in `runs`.
-        seed: Drives every random number; the second repeat has the next one.
-        as_json: Whether to print the report as JSON instead of a table.
-        asking: How models are asked.
-        claims_from: Name of the model that reads claims out of what is said; None: nobody.
-        embody: Belief paths of simulators that people can visit.
+        seed: Seed of every random number; each further repeat adds 1.
+        as_json: Print the report as JSON instead of a table.
+        asking: Options of requests to models.
+        claims_from: Name of the model that extracts claims from utterances; None: no extraction.
+        embody: Belief paths of the simulators that people can visit.
     """
 
     scenario: str
@@ -108,7 +108,7 @@ class RunOptions:
 
     @property
     def settings(self) -> dict[str, object]:
-        """What decides about the results, for the record."""
+        """Return the settings that affect results, for the record."""
         return {
             "conditions": list(dict.fromkeys(self.conditions)),
             "world": self.world,
@@ -122,17 +122,20 @@ class RunOptions:
 
     @property
     def named_models(self) -> tuple[str, ...]:
-        """The names of all models that may be asked, each once."""
+        """Return the names of all models that the run may ask, each once."""
         more = () if self.claims_from is None else (self.claims_from,)
         return tuple(dict.fromkeys((*self.models, *more)))
 
 
 def run_scenarios(options: RunOptions) -> int:
-    """Run, record, and print; the exit status says whether all was as expected.
+    """Run, record and print all conditions of a scenario.
+
+    Returns:
+        Exit status: 0 if all expectations hold, else 1.
 
     Raises:
-        BeliefNestError: The input is wrong, or a world or model failed. A model that failed
-            ends only the condition it was asked in; the error is raised when all have been run.
+        BeliefNestError: The input is wrong, or a world or model failed. A failing model ends only
+            the condition that asked it; the error is raised after all conditions have run.
     """
     scenarios = _scenarios(options)
     check_world(options.world)
@@ -142,7 +145,7 @@ def run_scenarios(options: RunOptions) -> int:
         check_model(name, os.environ, _connection(options, RunSpending(), options.out))
     first = scenarios[0]
     settings = options.settings
-    # A condition may have a template of its own.
+    # Each condition may name its own template.
     whole = replace(
         first, templates={n: t for each in scenarios for n, t in each.templates.items()}
     )
@@ -174,14 +177,14 @@ def run_scenarios(options: RunOptions) -> int:
 
 
 def _connection(options: RunOptions, budget: RunSpending, folder: Path | None) -> Connection:
-    """What is put around models; answers are kept in the run's folder, unless in another one."""
+    """Return the connection to models; the cache is in the run folder unless another is named."""
     kept = None if folder is None else RunFolder(folder).answers
     asking = options.asking
     return Connection(budget=budget, cache=asking.answers or kept, cache_mode=asking.cache)
 
 
 class _Run:
-    """A run under way: its folder, its models, and what has come of it so far."""
+    """A run in progress: its folder, its models, and its results so far."""
 
     def __init__(self, options: RunOptions, folder: RunFolder) -> None:
         self._options = options
@@ -199,7 +202,7 @@ class _Run:
         self.failures: list[dict[str, object]] = []
 
     def do(self, cell: RunCell, worlds: Worlds) -> None:
-        """Run a cell, unless an earlier part of the run has; keep what came of it."""
+        """Run a cell and keep its result, unless an earlier part of the run did so."""
         place = self.folder.cell(cell.folder)
         known = place.result()
         if known is not None:
@@ -236,7 +239,7 @@ class _Run:
             self.rows.append(row)
 
     def _hook(self, seed: int) -> ClaimsFrom | None:
-        """What reads claims out of what is said, if anything does."""
+        """Return the function that extracts claims from utterances; None: no extraction."""
         name = self._options.claims_from
         if name is None:
             return None
@@ -248,7 +251,7 @@ def _scenarios(options: RunOptions) -> tuple[Scenario, ...]:
     try:
         return _loaded(options.scenario, options.conditions)
     except ScenarioError:
-        # A run goes on with what its folder keeps, whatever became of the files it began with.
+        # An interrupted run continues with the scenario file that its folder keeps.
         kept = kept_scenario_file(options.out, options.scenario)
         if kept is None:
             raise
@@ -270,7 +273,7 @@ def _check_numbers(options: RunOptions) -> None:
         ("--max-cost", asking.limits.cost, 0, math.inf),
         ("--temperature", asking.temperature, 0, _HOTTEST),
     ):
-        # Not a number lies between no bounds.
+        # Written so that NaN is refused, too.
         if number is not None and not low <= number <= high:
             above = f"at least {low}" if high == math.inf else f"from {low} to {high}"
             raise InputError(f"{name} is {number}; it must be {above}")
@@ -314,7 +317,7 @@ def _run(
 
 
 def _readings(nest: Nest) -> dict[str, object]:
-    """How many utterances a model was to read for claims, and how many it could not read."""
+    """Return the number of utterances given to the model for claims, and of those that failed."""
     asked = [each for each in nest.prompts() if "claims_from" in each.detail]
     failed = [each.error for each in asked if each.answer is None]
     return {"asked": len(asked), "failed": len(failed), "first": next(iter(failed), None)}
@@ -330,9 +333,9 @@ def _page(report: Mapping[str, Any], options: RunOptions, scenario: Scenario) ->
 
 
 def _versions(cells: Sequence[RunCell], folder: RunFolder) -> Mapping[str, str]:
-    """Program to version, as the first store of the run keeps them; without any, of this process.
+    """Return versions of programs by name, from the first run file of the run.
 
-    A store is not begun where its world could not be opened.
+    If no world could be opened, there is no run file: return the versions of this process.
     """
     for cell in cells:
         store = folder.cell(cell.folder).store
@@ -372,7 +375,7 @@ def _print(
 
 
 def _unread(results: Sequence[Mapping[str, Any]]) -> list[str]:
-    """What is to be said of utterances that could not be read for claims."""
+    """Return a line about the utterances that the model could not read for claims, if any."""
     readings = [result["readings"] for result in results if "readings" in result]
     failed = [each for each in readings if each["failed"]]
     if not failed:
@@ -385,7 +388,7 @@ def _unread(results: Sequence[Mapping[str, Any]]) -> list[str]:
 
 
 def _table(run: _Run, cells: Sequence[RunCell], console: Console) -> Table:
-    """Of one round what was found in each condition, of several how often it was as expected."""
+    """Return the findings of each condition, or scores if there are several models or repeats."""
     if _is_one_round(run, cells):
         return outcome_table(run.rows, console)
     return score_table(cells[0].scenario.name, score_runs(run.results, run.failures))

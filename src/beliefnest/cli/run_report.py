@@ -1,4 +1,4 @@
-"""`report.html`: all that came of a run, on one page that needs nothing else."""
+"""`report.html`: the results of a run on one self-contained page."""
 
 import json
 import shlex
@@ -26,12 +26,12 @@ def report_html(
 
     Args:
         report: The run's report, as in `run.json`.
-        about: `description` of the scenario, and its `name` as it was given on the command line.
-        conditions: Number to description.
-        versions: Program to version.
+        about: `description` of the scenario, and its `name` as given on the command line.
+        conditions: Descriptions of conditions, by number.
+        versions: Versions of programs, by name.
     """
     runs = [_run(each, conditions) for each in report["runs"]]
-    # Everything that comes from a scenario or a model is escaped; pictures are made here.
+    # The template escapes all text from scenarios and models. Only our own pictures are markup.
     environment = Environment(autoescape=True, undefined=StrictUndefined)
     environment.filters["compact"] = _compact
     template = environment.from_string(
@@ -52,7 +52,7 @@ def report_html(
 
 
 def command_of(name: str, settings: Mapping[str, Any]) -> str:
-    """Return the command that makes the same run again."""
+    """Return the command line that repeats the run."""
     words = ["beliefnest", "run", name]
     for condition in settings["conditions"]:
         words += ["--condition", str(condition)]
@@ -64,7 +64,7 @@ def command_of(name: str, settings: Mapping[str, Any]) -> str:
 
 
 def _run(run: Mapping[str, Any], conditions: Mapping[int, str]) -> dict[str, Any]:
-    """Return one condition, with the files that belong to it."""
+    """Return the result of one condition for the template, with the content of its files."""
     folder, number = Path(run["run_dir"]), run["condition"]
     picture = folder / "picture.svg"
     probes = []
@@ -87,7 +87,7 @@ def _run(run: Mapping[str, Any], conditions: Mapping[int, str]) -> dict[str, Any
         "about": conditions.get(number, "") if number is not None else "",
         "held": sum(bool(each["ok"]) for each in run["expectations"]),
         "probes": probes,
-        # Written by ourselves, with all text in it escaped.
+        # Our own SVG writer escapes all text in it.
         "picture": Markup(_text(picture)) if picture.is_file() else None,
     }
 
@@ -103,7 +103,7 @@ def _verdict(ok: bool | None) -> Markup:
 
 
 def _compact(value: object) -> str:
-    """Return a value of the report in one line."""
+    """Return a value of the report on one line."""
     if isinstance(value, Mapping):
         if not value:
             return "none"

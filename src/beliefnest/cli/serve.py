@@ -1,4 +1,4 @@
-"""`beliefnest serve`: the page of a run, live, or of a scenario that is run for it."""
+"""`beliefnest serve`: serve the live page of a run, or run a scenario and serve its page."""
 
 import secrets
 import socket
@@ -22,7 +22,7 @@ from beliefnest.timeline.store import SqliteJournal
 from beliefnest.viewer.page.static import check_depth
 from beliefnest.viewer.serving.host import Host, OpenRun
 
-if TYPE_CHECKING:  # An extra, imported when something is served.
+if TYPE_CHECKING:  # Starlette is an optional dependency: `serve` imports it when it runs.
     from starlette.applications import Starlette
 
 __all__ = ["ServeOptions", "listening", "serve"]
@@ -32,15 +32,15 @@ _PORT = 8642
 
 @dataclass(frozen=True, slots=True)
 class ServeOptions:
-    """What was asked for.
+    """Options of `beliefnest serve`.
 
     Attributes:
-        what: A run folder, a store, or a scenario, which is then run.
-        port: Port; None: 8642, or any other if that is taken.
-        address: Where to listen.
-        conditions: Of a scenario, numbers of the conditions to run; empty: all.
-        out: Of a scenario, the run folder; None: a new one in `runs`.
-        depth: How deep beliefs are shown from the start.
+        what: Run folder, run file, or a scenario to run.
+        port: Port; None: 8642, or a free one if 8642 is taken.
+        address: Address to listen on.
+        conditions: Numbers of the scenario's conditions to run; empty: all.
+        out: Run folder for the scenario; None: a new one in `runs`.
+        depth: Depth down to which the page shows beliefs at first.
     """
 
     what: str
@@ -52,7 +52,7 @@ class ServeOptions:
 
 
 def serve(options: ServeOptions) -> None:
-    """Serve the page until it is interrupted.
+    """Serve the page until the user interrupts it.
 
     Raises:
         InputError: The extra is not installed, there is no such run, scenario or condition, the
@@ -93,14 +93,14 @@ def serve(options: ServeOptions) -> None:
                 timeout_graceful_shutdown=1,
             )
         )
-        # Ctrl-C is how it is meant to end; when it has ended uvicorn raises it once more.
+        # Users end the server with Ctrl-C; uvicorn raises KeyboardInterrupt again after its end.
         with suppress(KeyboardInterrupt):
             server.run(sockets=[listener])
 
 
 @contextmanager
 def listening(options: ServeOptions) -> Iterator[socket.socket]:
-    """A socket that takes connections at the address and port that were asked for.
+    """Open a socket that accepts connections at the wanted address and port.
 
     Raises:
         InputError: The address cannot be listened on.
@@ -125,14 +125,14 @@ def listening(options: ServeOptions) -> Iterator[socket.socket]:
                         f"{options.address} port {port} cannot be listened on ({error}); "
                         "give an address of this machine, or another port with --port"
                     ) from None
-        # Whoever reads where the page is may ask for it at once.
+        # Users may open the page as soon as its address is printed.
         listener.listen()
         yield listener
 
 
 @contextmanager
 def _running(options: ServeOptions) -> Iterator[Path]:
-    """The folder of the run; a scenario is run in a process of its own for as long."""
+    """Yield the folder of the run; a scenario runs in a child process meanwhile."""
     path = Path(options.what)
     if path.is_dir() or path.suffix == Path(STORE).suffix:
         stores_in(path)
@@ -140,13 +140,13 @@ def _running(options: ServeOptions) -> Iterator[Path]:
         return
     name = Scenario.load_all(options.what)[0].name
     for number in options.conditions:
-        # One that there is not would end the run, and leave a page of nothing.
+        # Refuse an unknown condition here: in the child it would leave an empty page.
         Scenario.load(options.what, number)
     folder = options.out or Path("runs") / f"{name}-{datetime.now():%Y%m%d-%H%M%S}"
     command = [sys.executable, "-m", "beliefnest", "run", options.what, "--out", str(folder)]
     for number in options.conditions:
         command += ["--condition", str(number)]
-    # Its table would stand between the lines that say where the page is.
+    # Drop the table of the child, which would be mixed with our own lines.
     child = subprocess.Popen(command, stdout=subprocess.DEVNULL)
     try:
         yield folder
@@ -177,10 +177,10 @@ def _is_loopback(address: str) -> bool:
 
 
 def _names(address: str, port: int) -> set[str]:
-    """What the `Host` of a request may be."""
+    """Return the allowed values of the header `Host` of requests."""
     names = {_host(address), "localhost", "127.0.0.1", "[::1]"}
     if not _is_loopback(address):
-        # On another address the token keeps strangers out; these are the machine's own names.
+        # The token protects a page on other addresses. Allow all names of this machine.
         names |= {socket.gethostname(), socket.getfqdn(), *_own_addresses()}
     return {f"{name}:{port}" for name in names}
 

@@ -1,4 +1,4 @@
-"""`beliefnest show` and `beliefnest prompt`: reading a recorded run."""
+"""`beliefnest show` and `beliefnest prompt`: read a recorded run."""
 
 import itertools
 import json
@@ -44,25 +44,25 @@ from beliefnest.timeline.tables import prompt_row
 __all__ = ["ShowOptions", "print_prompt", "show_run"]
 
 _FRAMES = 120
-"""Most pictures of an animation."""
+"""Greatest number of pictures in an animation."""
 
 
 @dataclass(frozen=True, slots=True)
 class ShowOptions:
-    """What was asked for.
+    """Options of `beliefnest show`.
 
     Attributes:
-        run: Run folder, or its store.
+        run: Run folder or run file.
         path: Belief path.
         tick: Tick; None: the latest.
-        branch: Branch of the simulator; None: the one it ended on, or `follow`.
-        as_json: Whether to print JSON.
-        figures: Files for figures, by their form: `png`, `svg`, `pdf`.
+        branch: Branch of the simulator; None: the branch that it ended on, or `follow`.
+        as_json: Print JSON.
+        figures: Files for figures, by format: `png`, `svg`, `pdf`.
         animation: File for an animation; None: none.
-        against: Path that the simulator is compared with in figures.
-        height: The storey of figures; None: that of most things.
-        claims: Show claims alone, and what became of them in all beliefs of so many names; None:
-            show the state.
+        against: Path of the simulator that figures compare with.
+        height: Height y of the storey that figures show; None: the one with most things.
+        claims: Show only claims, and their verdicts in all beliefs down to this depth; None: show
+            the state.
     """
 
     run: Path
@@ -78,7 +78,7 @@ class ShowOptions:
 
 
 def show_run(options: ShowOptions) -> None:
-    """Print what a simulator of a run held, or draw it; of several conditions each.
+    """Print or draw the state of a simulator, for each condition of a run.
 
     Raises:
         BeliefNestError: There is no such run, simulator, branch or tick, or a file cannot be
@@ -86,7 +86,7 @@ def show_run(options: ShowOptions) -> None:
     """
     for form, file in options.figures.items():
         if file.suffix.lower() != f".{form}":
-            raise InputError(f"--{form} writes {form.upper()}, and {file} does not end in .{form}")
+            raise InputError(f"--{form} writes {form.upper()}: {file} must end in .{form}")
     if options.as_json or options.animation is not None:
         stores: tuple[Path, ...] = (store_in(options.run),)
     else:
@@ -107,7 +107,7 @@ def show_run(options: ShowOptions) -> None:
 
 
 def _check(options: ShowOptions, stores: Sequence[Path]) -> None:
-    """That each of several runs has what is asked for, before anything is printed or drawn."""
+    """Raise an error if a run lacks the wanted path, branch or tick, before anything is printed."""
     for store in stores:
         with _opened(store) as (_, nest, _):
             try:
@@ -151,7 +151,7 @@ def _show(options: ShowOptions, store: Path) -> None:
 
 
 def _show_claims(options: ShowOptions, store: Path) -> None:
-    """Every claim made in the world of a simulator, and what became of it in all beliefs."""
+    """Print every claim made in the world of a simulator, with the verdicts of all beliefs."""
     assert options.claims is not None
     with _opened(store) as (scenario, nest, _):
         simulator = _simulator(options, nest)
@@ -172,7 +172,7 @@ def _simulator(options: ShowOptions, nest: RecordedNest) -> PastSimulator:
 
 
 def _scenes(options: ShowOptions, store: Path, stores: Sequence[Path]) -> tuple[Scene, ...]:
-    """Return the simulator in one run, with the run's name if there are several."""
+    """Return the scenes of a simulator in one run, titled with the run's name if several."""
     with _opened(store) as (_, nest, _):
         tick = _simulator(options, nest).tick
         (scene,) = nest.scenes(options.path, tick, options.against, height=options.height)
@@ -183,7 +183,7 @@ def _scenes(options: ShowOptions, store: Path, stores: Sequence[Path]) -> tuple[
 
 
 def _animate(options: ShowOptions, store: Path) -> None:
-    """The simulator at each tick with a change; at most so many, evenly chosen."""
+    """Write an animation of the simulator over its ticks with a change."""
     file = options.animation
     assert file is not None
     check_animated(file)
@@ -200,14 +200,14 @@ def _animate(options: ShowOptions, store: Path) -> None:
 
 
 def chosen_ticks(changes: Sequence[int], end: int, most: int) -> list[int]:
-    """At most so many of the ticks with a change up to the end, evenly chosen, and the end."""
+    """Return at most `most` ticks, evenly chosen from `changes` up to the end, and the end."""
     found = sorted({tick for tick in changes if tick < end})
     step = max(1, -(-len(found) // max(1, most - 1)))
     return [*found[::step], end]
 
 
 def _name_in(store: Path, run: Path) -> str:
-    """Return a condition by its folder."""
+    """Return the name of a condition's folder in a run."""
     return str(store.parent.relative_to(run)).replace("-", " ")
 
 
@@ -215,11 +215,11 @@ def print_prompt(run: Path, path: str, template: Path | None, variables: list[st
     """Print a prompt rendered from a belief at the end of a run.
 
     Args:
-        run: Run folder, or its store.
+        run: Run folder or run file.
         path: Belief path.
-        template: Template file, or the name of one that the run keeps or of a built-in one; None:
-            the paper's.
-        variables: `key=value`, each a variable of the template.
+        template: Template file, or the name of a template of the run or a built-in one; None: the
+            paper's template.
+        variables: Variables of the template, each as `key=value`.
 
     Raises:
         BeliefNestError: There is no such run or simulator, or the template is wrong.
@@ -228,7 +228,7 @@ def print_prompt(run: Path, path: str, template: Path | None, variables: list[st
     for text in variables:
         key, sign, value = text.partition("=")
         if not sign or not key.isidentifier():
-            raise InputError(f"{text!r} is no variable; write --var key=value")
+            raise InputError(f"{text!r} is no variable; give --var key=value")
         values[key] = value
     with _opened(store_in(run)) as (_, nest, journal):
         source = _template(template, journal.records.run().templates)
@@ -254,7 +254,7 @@ def _opened(store: Path) -> Iterator[tuple[Scenario, RecordedNest, SqliteJournal
 
 
 def _scenario(journal: SqliteJournal, nest: RecordedNest) -> Scenario:
-    """Return the scenario of a run; one that was told in code has its setting and no names."""
+    """Return the scenario of a run; for a run made in code, a scenario with its setting only."""
     run = journal.records.run()
     if not run.text:
         return Scenario(nest.setting)
@@ -290,7 +290,7 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
 
 
 def _how_known(state: State, basis: Basis | None, *, current: bool) -> list[str]:
-    """Return the cell on where a belief comes from and how old it is; none in the real world."""
+    """Return a table cell with the basis and age of a belief; nothing in the real world."""
     if state.owner is None:
         return []
     return ["" if basis is None else memory(state, basis, current=current)]
@@ -340,5 +340,5 @@ def _print_prompts(prompts: Sequence[PromptRecord]) -> None:
 
 
 def _foreign(text: str) -> Text:
-    """Return a text that others wrote, as it is: square brackets in it are no markup."""
+    """Return a text from outside without markup: square brackets in it stay as they are."""
     return Text(printable(text))

@@ -1,4 +1,4 @@
-"""`beliefnest study`: all cells of a study, its tables, its figure and its page."""
+"""`beliefnest study`: play all cells of a study, write its tables, figure and page."""
 
 import json
 import re
@@ -29,19 +29,19 @@ _MOST_TOLD = 10
 
 @dataclass(frozen=True, slots=True)
 class StudyOptions:
-    """What was asked for on the command line.
+    """Options of `beliefnest study`.
 
     Attributes:
-        file: What describes the study.
-        out: Its folder; None: a new one in `studies`.
-        jobs: Cells at the same time.
-        backend: Where they run.
-        shard: `I/N`; None: all of it.
-        merge: Folders of shards whose cells are taken over first.
-        record: Whether runs are recorded.
-        as_json: Whether to print the report as JSON instead of a table.
-        claims_from: Model that reads claims out of what is said; None: what the file says.
-        by: Columns by which rows are summed up; empty: those of the kind of study.
+        file: YAML file of the study.
+        out: Folder of the study; None: a new one in `studies`.
+        jobs: Number of cells played in parallel.
+        backend: Joblib backend that runs the cells.
+        shard: Part of the study to play, as `I/N`; None: all of it.
+        merge: Folders of shards whose cells are copied here first.
+        record: Record the runs.
+        as_json: Print the report as JSON instead of a table.
+        claims_from: Model that extracts claims from utterances; None: as the file says.
+        by: Columns by which rows are grouped; empty: the default columns of this kind of study.
     """
 
     file: Path
@@ -57,7 +57,10 @@ class StudyOptions:
 
 
 def run_study(options: StudyOptions) -> int:
-    """Run, keep, and print; the status is 0 if all rows are as expected, 1 if one is not.
+    """Play a study, write its files, and print its table.
+
+    Returns:
+        Exit status: 0 if all rows are as expected, else 1.
 
     Raises:
         BeliefNestError: The input is wrong, or cells have no result.
@@ -102,7 +105,7 @@ def _shard(text: str | None) -> tuple[int, int] | None:
         return None
     found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
     if found is None:
-        raise InputError(f"--shard is {text!r}; write it as 1/4")
+        raise InputError(f"--shard is {text!r}; give it as I/N, such as 1/4")
     return checked_shard((int(found[1]), int(found[2])))
 
 
@@ -116,7 +119,7 @@ def _progress_text(progress: StudyProgress) -> str:
 
 
 def _write_files(result: StudyResult, by: Sequence[str]) -> None:
-    """Write the tables and the page into the study's folder; without pandas only the page."""
+    """Write the tables and the page into the study's folder; without pandas, only the page."""
     try:
         result.write_tables()
     except UnknownNameError as error:
@@ -184,7 +187,7 @@ def _status(result: StudyResult) -> int:
     failed = {row["cell"]: row["why_not"] for row in result.rows if row["outcome"] == "error"}
     if failed:
         raise ModelError(
-            f"{len(failed)} of {len(result.plan['cells'])} cells have no result, run the same "
+            f"{len(failed)} of {len(result.plan['cells'])} cells have no result; run the same "
             f"command to try them again; the first: {next(iter(failed.values()))}"
         )
     return 0 if all(row["ok"] is not False for row in result.rows) else 1

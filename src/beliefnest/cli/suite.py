@@ -1,4 +1,4 @@
-"""`beliefnest suite`: all questions of a file answered from nests, and how many are right."""
+"""`beliefnest suite`: answer all questions of a file from nests, and print the scores."""
 
 import json
 import os
@@ -26,7 +26,7 @@ from beliefnest.scenarios.stories.suite import (
     scores_by_order,
 )
 
-if TYPE_CHECKING:  # Models take long to import, and few suites ask one.
+if TYPE_CHECKING:  # Importing models takes long, and few suites use one.
     from beliefnest.llm.hearsay import ClaimsFromModel
 
 __all__ = ["SUITES", "SuiteOptions", "run_suite"]
@@ -37,23 +37,23 @@ SUITES = ("hi-tom", "stories")
 _ROWS = re.compile(r"(?P<first>[0-9]{1,7})(?:\s*-\s*(?P<last>[0-9]{1,7}))?")
 
 _REPORTS = 20
-"""Lines of progress where there is no terminal."""
+"""Number of progress lines if stderr is not a terminal."""
 
 
 @dataclass(frozen=True, slots=True)
 class SuiteOptions:
-    """What was asked for on the command line.
+    """Options of `beliefnest suite`.
 
     Attributes:
         name: Name of the suite.
         data: File of stories, questions and answers.
         world: Name of the world.
         rows: Numbers of the rows to answer, as in `1-20,35`; None: all.
-        limit: Play no more stories than this; None: all.
-        seed: Drives every random number.
-        as_json: Whether to print one JSON object instead of a table.
-        claims_from: Name of a model that reads claims out of what is told; None: they stand
-            beside the words.
+        limit: Greatest number of stories to play; None: all.
+        seed: Seed of every random number.
+        as_json: Print one JSON object instead of a table.
+        claims_from: Name of a model that extracts claims from utterances; None: use the claims
+            that the stories state beside the words.
     """
 
     name: str
@@ -67,7 +67,10 @@ class SuiteOptions:
 
 
 def run_suite(options: SuiteOptions) -> int:
-    """Play, answer, and print; the exit status says whether every answer is right.
+    """Play the stories, answer the questions, and print the scores.
+
+    Returns:
+        Exit status: 0 if every answer is right, else 1.
 
     Raises:
         BeliefNestError: The input is wrong, or a world failed.
@@ -93,16 +96,16 @@ def run_suite(options: SuiteOptions) -> int:
 
 
 def parse_rows(text: str) -> frozenset[int]:
-    """Return numbers of rows, from text such as `1-20,35`.
+    """Return row numbers from a text such as `1-20,35`.
 
     Raises:
-        InputError: It is no such text.
+        InputError: The text does not have this form.
     """
     rows: set[int] = set()
     for part in text.split(","):
         match = _ROWS.fullmatch(part.strip())
         if match is None or int(match["first"]) > int(match["last"] or match["first"]):
-            raise InputError(f"--rows has {part!r}; write numbers and ranges, such as 1-20,35")
+            raise InputError(f"--rows has {part!r}; give numbers and ranges, such as 1-20,35")
         rows.update(range(int(match["first"]), int(match["last"] or match["first"]) + 1))
     return frozenset(rows)
 
@@ -122,7 +125,7 @@ def _answer(stories: Sequence[StoryItems], options: SuiteOptions) -> list[Judged
 
 
 def _reader(options: SuiteOptions) -> "ClaimsFromModel | None":
-    """Who reads claims out of what is told, if anybody does."""
+    """Return the model that extracts claims from utterances; None: there is none."""
     if options.claims_from is None:
         return None
     from beliefnest.llm.hearsay import claims_from_model
@@ -139,7 +142,7 @@ def _needs_first(judged: Sequence[JudgedAnswer]) -> dict[int, Score]:
 
 
 def _telling(judged: Sequence[JudgedAnswer], *, tells: bool) -> list[JudgedAnswer]:
-    """Return those whose stories have claims in them, or those whose stories have none."""
+    """Return the answers about stories with claims (`tells`), or about those without."""
     return [each for each in judged if each.tells is tells]
 
 

@@ -1,4 +1,4 @@
-"""`beliefnest run --embody`: beliefs that people visit, until whoever runs it has seen enough."""
+"""`beliefnest run --embody`: let people visit beliefs until the user presses Enter."""
 
 import sys
 import threading
@@ -17,26 +17,26 @@ _DAY_S = 24 * 60 * 60.0
 
 
 def check_visits(paths: Sequence[str], world: str) -> None:
-    """Refuse what nobody could visit, before anything is started.
+    """Raise an error if people cannot visit beliefs in a world, before anything is started.
 
     Raises:
-        InputError: People cannot come into that world.
+        InputError: People cannot join this world.
     """
     if paths and not (is_hosted(world) or is_server(world)):
         raise InputError(
-            f"--embody {paths[0]}: nobody can visit a belief in the world {world}, whose time does "
-            "not go on by itself; add --realtime --listen 25565, or --world minecraft://HOST:PORT"
+            f"--embody {paths[0]}: nobody can visit a belief in the world {world}, which does not "
+            "run in real time; add --realtime --listen 25565, or --world minecraft://HOST:PORT"
         )
 
 
 @contextmanager
 def visited(nest: Nest, paths: Sequence[str]) -> Iterator[None]:
-    """Embody beliefs; at the end, go on until a line, or the end, comes on standard input.
+    """Embody beliefs, and keep them until a line or the end of standard input.
 
-    Where they stand is told on stderr.
+    The addresses of the embodied beliefs are printed on stderr.
 
     Raises:
-        BeliefNestError: One cannot be embodied.
+        BeliefNestError: A belief cannot be embodied.
     """
     if not paths:
         yield

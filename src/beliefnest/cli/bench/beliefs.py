@@ -1,4 +1,4 @@
-"""Beliefs: visible sets, ticks of many nodes, nodes asked for late, memory."""
+"""Benchmarks of beliefs: visible sets, ticks of many nodes, late queries, memory."""
 
 import math
 import random
@@ -37,7 +37,7 @@ _LATE = 100_000
 
 
 def measure() -> Sequence[Metric]:
-    """Return all figures of the beliefs, one after the other."""
+    """Return all figures of beliefs, measured one after the other."""
     return [*_visible_sets(), *_crowd(8, 3), *_crowd(16, 2), _claims(), *_late(), _memory()]
 
 
@@ -52,7 +52,7 @@ def _visible_sets() -> list[Metric]:
 
 
 def _random_geometry(shape: tuple[int, int, int], percent: int) -> Geometry:
-    """Random blocks, a fifth of them slabs and fences."""
+    """Return a geometry of random blocks, a fifth of them slabs and fences."""
     registry = Registry.load()
     chance = np.random.default_rng(percent)
     kinds = [registry.state_id(name) for name in ("stone", "oak_slab", "oak_fence")]
@@ -64,7 +64,7 @@ def _random_geometry(shape: tuple[int, int, int], percent: int) -> Geometry:
 
 
 def _look(geometry: Geometry, eye: Point) -> float:
-    """Return milliseconds of a complete visible set, the median of many."""
+    """Return the median time of a complete visible set, in milliseconds."""
     geometry.visible_blocks(eye, 0.0, 0.0)
     return _median(lambda: geometry.visible_blocks(eye, 0.0, 0.0), 31)
 
@@ -81,7 +81,7 @@ def _median(action: Callable[[], object], times: int) -> float:
 class _Crowd:
     """Agents that walk about in a hall with pillars, while a door opens and shuts.
 
-    Everybody knows stone and air from the start, as the paper has it for floor and walls.
+    All agents know stone and air from the start, as the paper assumes for floor and walls.
     """
 
     def __init__(self, agents: int, perception: Perception | None = None) -> None:
@@ -110,7 +110,7 @@ class _Crowd:
         return paths
 
     def tick(self, walkers: int) -> None:
-        """Some agents walk on and the door moves, in one tick."""
+        """Move some agents and the door in one tick."""
         with self.world.tick():
             for name in self._chance.sample(sorted(self._yaws), walkers):
                 self._walk(name)
@@ -118,7 +118,7 @@ class _Crowd:
             self.world.set_block(_DOOR, "air" if self._open else "oak_planks")
 
     def walk_one(self) -> None:
-        """One agent walks on, in one tick."""
+        """Move one agent in one tick."""
         with self.world.tick():
             self._walk(self._chance.choice(sorted(self._yaws)))
 
@@ -159,7 +159,7 @@ def _crowd(agents: int, depth: int) -> list[Metric]:
 
 
 def _claims() -> Metric:
-    """Return a tick in which somebody claims something that everybody hears and weighs."""
+    """Return the time of a tick in which all agents hear and judge a claim."""
     crowd = _Crowd(8, Perception(testimony="informed", grace=0))
     paths = crowd.nodes(3)
     spent = []
@@ -182,7 +182,7 @@ def _late() -> list[Metric]:
     for _ in range(_LATE):
         crowd.walk_one()
     path = "/agent0/agent1/agent2"
-    # Compiled code is loaded once a process, whatever the length of a run.
+    # Loading compiled code happens once in a process, so it must not count here.
     _Crowd(8).nest[path].state.agents["agent3"]
     started = time.perf_counter()
     crowd.nest[path].state.agents["agent3"]
@@ -195,7 +195,7 @@ def _late() -> list[Metric]:
 
 
 def _memory() -> Metric:
-    """Peak memory of a process of its own that does `keep_up`."""
+    """Return the peak memory of a child process that runs `keep_up`."""
     code = f"from {__name__} import keep_up; print(keep_up())"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     if done.returncode != 0:
@@ -204,7 +204,7 @@ def _memory() -> Metric:
 
 
 def keep_up() -> float:
-    """Keep all nodes to depth 3 up to date over a long walk; returns the peak memory in MB."""
+    """Keep all nodes down to depth 3 up to date over a long walk; return the peak MB."""
     crowd = _Crowd(8)
     paths = crowd.nodes(3)
     for path in paths:

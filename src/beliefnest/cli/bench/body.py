@@ -1,4 +1,4 @@
-"""Making a body for a belief."""
+"""Benchmark of making a body for a belief."""
 
 from collections.abc import Sequence
 
@@ -12,7 +12,7 @@ _RUNS = 20
 
 
 def measure() -> Sequence[Metric]:
-    """Fork of `/observer` with three agents: control mode, region, blocks, chests, bots."""
+    """Return the time of a fork of `/observer` with three agents, blocks, chests and bots."""
     scenario = Scenario.load("sally-anne")
     numbers = iter(range(_RUNS + 1))
     with Nest.open(scenario) as nest:

@@ -1,4 +1,4 @@
-"""A real browser, driven for measurements and for tests."""
+"""Real browser, driven by measurements and tests."""
 
 import json
 import shutil
@@ -33,12 +33,12 @@ _FLAGS = (
     "--window-size=1600,1000",
 )
 _PATIENCE_S = 60.0
-# What software drawing tells of itself is no fault of the page.
+# Chromium warns about software rendering; these warnings are no faults of the page.
 _DRIVER_TALK = "GL Driver Message"
 
 
 class Browser:
-    """One window; what it asked for and complained about is kept."""
+    """One browser window, with logs of its requests and console messages."""
 
     def __init__(self, driver: webdriver.Chrome) -> None:
         self.driver = driver
@@ -56,38 +56,40 @@ class Browser:
         return self.driver.execute_script(text, *arguments)
 
     def ask(self, text: str, *arguments: Any) -> Any:
-        """Run a script that ends when it calls its last argument; what it called it with."""
+        """Run an asynchronous script; return the value that it passes to its last argument."""
         return self.driver.execute_async_script(text, *arguments)
 
     def until_script(self, text: str, *arguments: Any) -> Any:
-        """Run a script until it gives something."""
+        """Run a script again and again until it returns something true; return that."""
         return self.until(lambda: self.script(text, *arguments))
 
     def until(self, holds: Callable[[], Any]) -> Any:
-        """Wait for a condition; what it gave."""
+        """Wait until a condition returns something true, and return that."""
         end = time.monotonic() + _PATIENCE_S
         while True:
             found = holds()
             if found:
                 return found
             if time.monotonic() > end:
-                raise BodyError(f"the page did not come to it; the console: {self.complaints()}")
+                raise BodyError(
+                    f"the page did not get there in time; its console says: {self.complaints()}"
+                )
             time.sleep(0.02)
 
     def one(self, selector: str) -> WebElement:
-        """Return the element of a selector, once it is there."""
+        """Wait for the element of a selector, and return it."""
         found: list[WebElement] = self.until(
             lambda: self.driver.find_elements(By.CSS_SELECTOR, selector)
         )
         return found[0]
 
     def click(self, selector: str) -> None:
-        """Click what a selector names, wherever it has been scrolled to."""
+        """Click the element of a selector, even if it is scrolled out of view."""
         self.one(selector)
         self.script("document.querySelector(arguments[0]).click()", selector)
 
     def complaints(self) -> list[str]:
-        """What the console said since it was last asked."""
+        """Return console messages since the last call."""
         told = self._log("browser")
         return [each["message"] for each in told if _DRIVER_TALK not in each["message"]]
 
@@ -96,7 +98,7 @@ class Browser:
         return found
 
     def requests(self) -> list[str]:
-        """Addresses that were asked for since this was last asked."""
+        """Return the addresses that the page has requested since the last call."""
         found = []
         for entry in self._log("performance"):
             message = json.loads(entry["message"])["message"]
@@ -107,7 +109,7 @@ class Browser:
 
 @contextmanager
 def opened_browser(profile: Path) -> Iterator[Browser]:
-    """A browser with an empty profile."""
+    """Open a browser with an empty profile."""
     options = webdriver.ChromeOptions()
     options.binary_location = CHROMIUM or ""
     for flag in (*_FLAGS, f"--user-data-dir={profile}"):

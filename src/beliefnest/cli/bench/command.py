@@ -1,4 +1,4 @@
-"""Running benches and printing their figures."""
+"""`beliefnest bench`: run benchmarks and print their figures."""
 
 import json
 import sys
@@ -15,14 +15,17 @@ __all__ = ["run_benches"]
 
 
 def run_benches(names: Sequence[str], *, as_json: bool) -> int:
-    """Run benches; the status is 1 if a target was missed.
+    """Run benchmarks and print their figures.
 
     Args:
-        names: Which; none: all that need nothing more.
-        as_json: Whether to print JSON.
+        names: Names of benchmarks; empty: all that need no further installation.
+        as_json: Print JSON.
+
+    Returns:
+        Exit status: 1 if a target is missed, else 0.
 
     Raises:
-        UnknownNameError: There is no bench of a name.
+        UnknownNameError: A benchmark does not exist.
     """
     figures: dict[str, Sequence[Metric]] = {}
     chosen = checked(names)

@@ -1,4 +1,4 @@
-"""Episodes: rounds against real time, branches a planner tries, tasks solved."""
+"""Benchmarks of episodes: rounds against real time, branches of planners, solved tasks."""
 
 import time
 
@@ -28,7 +28,7 @@ await waitTicks(bot, 200)
 
 
 def measure() -> list[Metric]:
-    """Return a round of four agents, branches of an order-1 search, each task at its order."""
+    """Return figures of a round of four agents, of an order-1 search, and of each task."""
     return [
         _round(),
         _branches(),
@@ -38,7 +38,7 @@ def measure() -> list[Metric]:
 
 
 def _round() -> Metric:
-    """Programs of 100 ticks of four agents that read percepts, and everybody's belief after it."""
+    """Time a round: four agents run programs of 100 ticks on percepts; then read all beliefs."""
     hall = {
         "name": "round",
         "box": [[0, 0, 0], [15, 3, 15]],
@@ -76,9 +76,9 @@ def _branches() -> Metric:
 
 
 def _branches_in_minecraft() -> Metric:
-    """What a planner of order 1 would try next, each on a branch of its agent's belief, in bodies.
+    """Time the candidates of an order-1 planner, each on an embodied branch of its belief.
 
-    The agent's own programs alone run there; the planner itself imagines a scripted world.
+    Only programs of the agent itself run there. The planner itself uses scripted worlds.
     """
     task = Task.load("tell-what-is-needed", agents=3)
     with Episode(task, world="embedded") as episode:

@@ -1,4 +1,4 @@
-"""What a bench returns."""
+"""Figures that a benchmark returns."""
 
 import statistics
 import time
@@ -13,11 +13,11 @@ class Metric:
     """One measured figure.
 
     Attributes:
-        name: What was measured.
-        value: The median, or a ratio.
-        unit: Its unit.
-        target: The figure to reach; None: none was set.
-        at_least: Whether the target is the least and not the greatest good value.
+        name: Name of the quantity.
+        value: Median of the measurements, or a ratio.
+        unit: Unit of the value.
+        target: Value to reach; None: no target.
+        at_least: True if good values are at or above the target, False if at or below.
     """
 
     name: str
@@ -28,14 +28,14 @@ class Metric:
 
     @property
     def ok(self) -> bool | None:
-        """True if the target was reached; None: there is none."""
+        """Return True if the target is reached; None: there is no target."""
         if self.target is None:
             return None
         return self.value >= self.target if self.at_least else self.value <= self.target
 
 
 def median_seconds(act: Callable[[], object], times: int) -> float:
-    """Median wall time of an act."""
+    """Return the median wall time of a call, in seconds."""
     spans = []
     for _ in range(times):
         started = time.perf_counter()

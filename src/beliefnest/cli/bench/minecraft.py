@@ -1,4 +1,4 @@
-"""The real world in real time: beliefs that keep up with it, and what a server elsewhere takes."""
+"""Benchmarks of real time: beliefs that keep up, and the load of a Minecraft server."""
 
 import itertools
 import os
@@ -33,13 +33,13 @@ while (true) {{
 
 
 def measure() -> Sequence[Metric]:
-    """Beliefs during a run in real time; on a server, if one is named, a body and many bots."""
+    """Return figures of beliefs in real time, and, if a server is named, of bodies and bots."""
     named = os.environ.get(_SERVER)
     return [*_beliefs(), *([] if named is None else _server(named))]
 
 
 def _beliefs() -> Sequence[Metric]:
-    """Three agents walk, all beliefs down to depth 3 are followed, and three are embodied."""
+    """Measure a run of three walking agents, all beliefs to depth 3, and three bodies."""
     scenario = Scenario.load("sally-anne", 1)
     agents = sorted(scenario.setting.snapshot.agents)
     nodes = [
@@ -51,7 +51,7 @@ def _beliefs() -> Sequence[Metric]:
     paths = ["/" + "/".join(names) for names in nodes]
     walks = {name: _WALK.format(z=2 * number + 3) for number, name in enumerate(agents)}
     with Nest.open(scenario, realtime=True, listen=0) as nest:
-        # Who has been asked for once is followed from then on; what is begun first takes longer.
+        # From its first query on, the nest keeps a belief up to date; first queries take longer.
         nest.states(paths)
         nest["/"].run_all(walks, 2 * TICKS_PER_SECOND)
         nest.states(paths)
@@ -81,7 +81,7 @@ def _late(seconds: float, ticks: int) -> float:
 
 
 def _server(named: str) -> Sequence[Metric]:
-    """Return a verified body of Sally-Anne's box, and the processor time of many bots."""
+    """Return figures of a verified body of Sally-Anne's box, and of many bots."""
     world = MinecraftWorld.start(ServerAddress.parse(named), 0)
     snapshot = Scenario.load("sally-anne", 1).setting.snapshot
     try:
@@ -101,7 +101,7 @@ def _body(world: MinecraftWorld, snapshot: Snapshot) -> None:
 
 
 def _crowd(world: MinecraftWorld, snapshot: Snapshot) -> tuple[float, int]:
-    """Processor seconds of Node per second, and how many bots lost their connection meanwhile."""
+    """Return Node's processor seconds per second, and the number of bots that lost connection."""
     one = next(iter(snapshot.agents.values()))
     x, y, z = snapshot.box.low
     places = [(x + 1.5 + 2 * (i % 8), y + 1.0, z + 1.5 + 2 * (i // 8)) for i in range(_BOTS)]
@@ -112,7 +112,7 @@ def _crowd(world: MinecraftWorld, snapshot: Snapshot) -> tuple[float, int]:
     body = world.open_body("/", "bench", replace(snapshot, agents=crowd), lambda frame: None)
     before, started = _processor_seconds(world.pid), time.perf_counter()
     ticks = _WATCHED_S * TICKS_PER_SECOND
-    # A program ends with the connection of its bot.
+    # The program of a bot ends when the bot loses its connection.
     waiting = f"await waitTicks(bot, {ticks})"
     results = body.run(dict.fromkeys(crowd, waiting), ticks + 10 * TICKS_PER_SECOND)
     passed = time.perf_counter() - started

@@ -1,4 +1,4 @@
-"""Joint steps of three agents in the scripted world, with beliefs of depth 1 as arrays."""
+"""Benchmark of joint steps of three agents, with beliefs of depth 1 as arrays."""
 
 import random
 import time
@@ -14,11 +14,11 @@ _STEPS = 600
 _FIRST = 20
 
 Act = Callable[[Any, str, bool], Any]
-"""Given the environment, an agent and whether it is busy, what it does."""
+"""Function of the environment, an agent, and True if it is busy; returns the agent's action."""
 
 
 def measure() -> Sequence[Metric]:
-    """Agents that walk to one place after the other, and agents that do anything each tick."""
+    """Return rates for agents that walk between places, and for random actions at each tick."""
     chance = random.Random(0)
 
     def walk(env: Any, agent: str, busy: bool) -> Any:
@@ -37,7 +37,7 @@ def measure() -> Sequence[Metric]:
 
 
 def _rate(act: Act) -> float:
-    """Joint steps of one tick a second, once all code is compiled."""
+    """Return joint steps of one tick per second, after all code is compiled."""
     env = parallel_env("sally-anne", step_ticks=1, max_steps=_FIRST + _STEPS)
     _, infos = env.reset(seed=0)
     for number, agent in enumerate(env.agents):

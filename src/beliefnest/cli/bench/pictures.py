@@ -1,4 +1,4 @@
-"""How long figures take, and what a notebook shows of a nest."""
+"""Benchmarks of figures, and of the view of a nest in a notebook."""
 
 import tempfile
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ _TIMES = 9
 
 
 def measure() -> Sequence[Metric]:
-    """Figures of the first condition of Sally-Anne, made and written."""
+    """Return the time to make and write figures of Sally-Anne's first condition."""
     with (
         tempfile.TemporaryDirectory() as folder,
         Nest.open(Scenario.load("sally-anne", condition=1)) as nest,

@@ -1,4 +1,4 @@
-"""Agent programs: one that does nothing, the price of the sandbox, many walkers, a dead Node."""
+"""Benchmarks of agent programs: an empty one, the cost of the sandbox, many walkers."""
 
 import json
 import statistics
@@ -23,7 +23,7 @@ _RUNS = 50
 _WALKS = 5
 _PAIRS = 61
 _WARM = 20
-"""Pairs of walks before which Node has not yet compiled what it runs most."""
+"""Pairs of walks that are not counted, during which Node compiles its hot code."""
 
 _SIZE = 21
 _FLOOR = -52
@@ -32,13 +32,13 @@ _CORNERS = ((15, 15), (-15, 10), (-10, -17), (17, -12))
 
 
 def measure() -> Sequence[Metric]:
-    """All figures of programs, as users run them: `Nest.open`, `Simulator.run` and `run_all`."""
+    """Return all figures of programs, run with `Nest.open`, `Simulator.run` and `run_all`."""
     walks = [_walk(4, 100.0), _walk(16, 20.0), _walk(4, None, "percepts")]
     return [_empty(), *_containment(), *walks, *restore.measure()]
 
 
 def _empty() -> Metric:
-    """From the call to the result, recorded in a run file."""
+    """Return the time from the call to the result of an empty program in a recorded run."""
     with (
         tempfile.TemporaryDirectory() as folder,
         Nest.open(_hall(1), store=Path(folder) / "run.bn") as nest,
@@ -48,10 +48,11 @@ def _empty() -> Metric:
 
 
 def _containment() -> Sequence[Metric]:
-    """What the sandbox adds to a walk of four legs, beside the same calls of skills without one.
+    """Return the time that the sandbox adds to a walk of four legs.
 
-    Inside Node, walks by turns, the median over pairs; then as a part of what a user waits for,
-    who gets the walk recorded in a run file.
+    The first figure compares the walk with the same calls of skills outside the sandbox, both in
+    Node: the median over alternating pairs. The second figure is the share of the sandbox in the
+    time that a user waits for the recorded walk.
     """
     command = [*node_command(), "containment", str(_WARM + _PAIRS)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -69,7 +70,7 @@ def _containment() -> Sequence[Metric]:
 
 
 def _call() -> float:
-    """Return seconds from the call to the result of the walk."""
+    """Return the time from the call to the result of the walk, in seconds."""
     with (
         tempfile.TemporaryDirectory() as folder,
         Nest.open(_hall(1), store=Path(folder) / "run.bn") as nest,
@@ -81,13 +82,13 @@ def _call() -> float:
 
 
 def _walk(agents: int, target: float | None, senses: Senses = "world") -> Metric:
-    """Everybody walks around the hall, recorded in a run file; the median of some rounds."""
+    """Return the speed of agents that walk around the hall in a recorded run: a median."""
     programs = {f"agent{number}": _round(number) for number in range(agents)}
     with (
         tempfile.TemporaryDirectory() as folder,
         Nest.open(_hall(agents), store=Path(folder) / "run.bn") as nest,
     ):
-        # Node compiles what it runs most.
+        # The first walk does not count: Node compiles its hot code.
         ratios = [_speed(nest, programs, senses) for _ in range(1 + _WALKS)][1:]
     what = "" if senses == "world" else f" by their {senses}"
     name = f"{agents} agents walking{what}, Minecraft seconds per second"
@@ -95,7 +96,7 @@ def _walk(agents: int, target: float | None, senses: Senses = "world") -> Metric
 
 
 def _speed(nest: Nest, programs: dict[str, str], senses: Senses = "world") -> float:
-    """Minecraft seconds per second."""
+    """Return Minecraft seconds per second."""
     before = nest.tick
     started = time.perf_counter()
     results = nest["/"].run_all(programs, senses=senses)
@@ -106,7 +107,7 @@ def _speed(nest: Nest, programs: dict[str, str], senses: Senses = "world") -> fl
 
 
 def _round(number: int) -> str:
-    """Return a walk of four legs; neighbours begin at different corners and keep apart."""
+    """Return a program of four legs; neighbours begin at different corners and keep apart."""
     places = (_CORNERS[(number + leg) % len(_CORNERS)] for leg in range(len(_CORNERS)))
     row = number // len(_CORNERS)
     return "\n".join(

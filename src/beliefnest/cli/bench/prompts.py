@@ -1,4 +1,4 @@
-"""Rendering the paper's template late in a long run, and the ice cream van as a user runs it."""
+"""Benchmarks of prompts: the paper's template late in a long run, and the ice cream van."""
 
 import math
 import subprocess
@@ -26,7 +26,7 @@ _AGENTS = ("anne", "bob", "sally", "tom")
 
 
 def measure() -> Sequence[Metric]:
-    """Renders after a long run of everybody walking, and one whole experiment."""
+    """Return the time to render a prompt after a long run, and of one whole experiment."""
     nest = _walked(_TICKS)
     template = built_in_template("paper")
     asked = nest["/anne/sally"]
@@ -46,7 +46,7 @@ def measure() -> Sequence[Metric]:
 
 
 def _walked(ticks: int) -> Nest:
-    """Return a nest in which four agents have walked around a wall, and now and then spoken."""
+    """Return a nest in which four agents have walked around a wall and spoken at times."""
     wall: dict[Position, str] = {(10, y, z): "stone" for y in range(3) for z in range(4, 16)}
     chests: dict[Position, dict[str, int]] = {(3, 0, 10): {"diamond": 1}, (17, 0, 10): {}}
     world = ScriptedWorld(
@@ -66,7 +66,7 @@ def _walked(ticks: int) -> Nest:
 
 
 def _place(number: int, tick: int) -> tuple[float, float, float]:
-    """Where an agent walks: a circle around the wall, each at its own place on it."""
+    """Return an agent's position on a circle around the wall; agents keep apart."""
     angle = tick / 100 + number * math.tau / len(_AGENTS)
     middle = _SIZE / 2
     return (middle + 0.5 + 8 * math.sin(angle), 0.0, middle + 0.5 + 8 * math.cos(angle))

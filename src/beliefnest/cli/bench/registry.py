@@ -1,4 +1,4 @@
-"""The benches there are."""
+"""Registry of benchmarks."""
 
 import importlib
 from collections.abc import Mapping, Sequence
@@ -25,18 +25,18 @@ BENCHES: Mapping[str, str] = {
     "minecraft": "beliefnest.cli.bench.minecraft",
     "pettingzoo": "beliefnest.cli.bench.pettingzoo",
 }
-"""Name to the module whose `measure()` it is; loaded when it is run."""
+"""Modules of benchmarks by name; a module is imported when its `measure()` is needed."""
 
 
 NEEDING_MORE = frozenset({"minecraft"})
-"""Benches that need what is not installed, as a server; they run where they are named."""
+"""Benchmarks that need something not installed, such as a server; they run only if named."""
 
 
 def checked(names: Sequence[str]) -> Sequence[str]:
-    """Return names of benches, as they are; none: all that need nothing more.
+    """Return the names of benchmarks to run; if none is given, all that need nothing more.
 
     Raises:
-        UnknownNameError: There is none of a name.
+        UnknownNameError: A benchmark does not exist.
     """
     for name in names:
         if name not in BENCHES:
@@ -45,6 +45,6 @@ def checked(names: Sequence[str]) -> Sequence[str]:
 
 
 def measure(name: str) -> Sequence[Metric]:
-    """Run a bench that there is."""
+    """Run a benchmark of the registry."""
     figures: Sequence[Metric] = importlib.import_module(BENCHES[name]).measure()
     return figures

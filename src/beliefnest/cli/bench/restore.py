@@ -1,4 +1,4 @@
-"""What it costs when Node is killed."""
+"""Benchmark of recovery after Node is killed."""
 
 import os
 import signal
@@ -19,7 +19,7 @@ _AGENTS = ("ann", "bob", "cleo")
 
 
 def measure() -> Sequence[Metric]:
-    """From the kill until all bodies have gone on by a tick."""
+    """Return the time from the kill until all bodies have advanced by a tick."""
     world = EmbeddedWorld.start(0)
     engine = begun(_room(), world, "embedded", 0)
     try:
@@ -37,7 +37,7 @@ def measure() -> Sequence[Metric]:
 
 
 def _go_apart(engine: Engine) -> None:
-    """Put three simulators into control mode and let everybody walk in each."""
+    """Put three simulators into control mode and let all agents walk in each."""
     for path in _PATHS[1:]:
         engine.fork(path, "own", None)
     for path in _PATHS:

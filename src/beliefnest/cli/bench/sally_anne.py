@@ -1,4 +1,4 @@
-"""The Sally-Anne experiment, whole and while its script runs."""
+"""Benchmarks of the Sally-Anne experiment: the whole command, and its script alone."""
 
 import statistics
 import subprocess
@@ -21,7 +21,7 @@ _RUNS = 5
 
 
 def measure() -> Sequence[Metric]:
-    """Return all conditions as a user runs them, and Minecraft time against wall time."""
+    """Return the time of the command with all conditions, and the speed of the script."""
     _whole()
     return [
         Metric("all conditions, process start included", median_seconds(_whole, _RUNS), "s", 8.0),
@@ -40,7 +40,7 @@ def _whole() -> None:
 
 
 def _speed() -> float:
-    """Return the median of the three conditions, which share one world, as in a run."""
+    """Return the median speed of the three conditions, which share one world as in a run."""
     ratios = []
     with Worlds(0) as worlds:
         for scenario in Scenario.load_all("sally-anne"):

@@ -1,4 +1,4 @@
-"""What the package itself weighs."""
+"""Benchmark of the package's size."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,7 +12,7 @@ _NOT_INSTALLED = frozenset({"node_modules", "__pycache__"})
 
 
 def measure() -> Sequence[Metric]:
-    """Size of the installed package without its dependencies."""
+    """Return the size of the installed package without its dependencies."""
     folder = Path(beliefnest.__file__).parent
     files = (path for path in folder.rglob("*") if path.is_file())
     size = sum(path.stat().st_size for path in files if not _NOT_INSTALLED & {*path.parts})

@@ -1,4 +1,4 @@
-"""From `import beliefnest` to a started embedded world, and what the world's process takes."""
+"""Benchmarks of start-up: Python, the embedded world, and the memory of its process."""
 
 import subprocess
 import sys
@@ -22,7 +22,7 @@ with beliefnest.Nest.open(scenario):
 
 
 def measure() -> Sequence[Metric]:
-    """Start-up of Python alone and with the world, and the memory of Node."""
+    """Return start-up times of Python alone and with the world, and the memory of Node."""
     _python("import beliefnest")
     return [
         Metric("python -c 'import beliefnest'", _median("import beliefnest"), "s"),
@@ -44,7 +44,7 @@ def _python(code: str) -> None:
 
 
 def _memory() -> float:
-    """Resident memory of the Node process that has played the script, in MB."""
+    """Return the resident memory of Node after the script has played, in MB."""
     setting = Scenario.load("sally-anne").setting
     world = EmbeddedWorld.start(0)
     try:
@@ -60,4 +60,4 @@ def _memory() -> float:
 
 
 def _ignore(frame: Frame) -> None:
-    """No frame is recorded here."""
+    """Ignore a frame: nothing is recorded here."""

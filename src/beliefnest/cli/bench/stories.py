@@ -1,4 +1,4 @@
-"""Text stories in the scripted world, with questions of order 0 to 4."""
+"""Benchmark of text stories in the scripted world, with questions of order 0 to 4."""
 
 import random
 import time
@@ -15,7 +15,7 @@ _BOXES = ("tin", "jar", "trunk", "shelf")
 
 
 def measure() -> Sequence[Metric]:
-    """Stories of one to three chapters, read, played and answered."""
+    """Return the time to parse, play and answer stories of one to three chapters."""
     chance = random.Random(0)
     texts = [_story(chance, 1 + number % 3) for number in range(_STORIES)]
     _answer(texts[0], chance)
@@ -31,7 +31,7 @@ def _story(chance: random.Random, chapters: int) -> str:
 
 
 def _chapter(chance: random.Random, number: int) -> Iterator[str]:
-    """Yield all come in, and leave one by one after moving the thing or not."""
+    """Yield the lines of a chapter: all agents enter, some move the thing, all leave in turn."""
     cast = chance.sample(_CAST, len(_CAST) if number == 0 else chance.choice([3, 4]))
     room, thing, boxes = f"room{number}", f"thing{number}", [f"{b}{number}" for b in _BOXES]
     everyone = f"{', '.join(cast[:-1])} and {cast[-1]}"

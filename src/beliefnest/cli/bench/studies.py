@@ -1,4 +1,4 @@
-"""Cells of studies: in one process, in two, on a local Dask cluster, in the scripted world."""
+"""Benchmarks of studies: in one process, in two, and on a local Dask cluster."""
 
 import os
 import tempfile
@@ -17,16 +17,16 @@ __all__ = ["measure"]
 
 _VARIATIONS = 200
 _FIRST = 20
-"""Cells after which all processes have started, and Node has compiled what it runs often."""
+"""Cells after which all processes have started, and Node has compiled its hot code."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Run:
-    """How long a study took.
+    """Times of a study.
 
     Attributes:
-        whole: Seconds, from the call to the last process's end.
-        rate: Cells a second once it had started: after the first `_FIRST` and until the last.
+        whole: Seconds from the call to the end of the last process.
+        rate: Cells per second, from cell number `_FIRST` to the last cell.
     """
 
     whole: float
@@ -34,16 +34,16 @@ class _Run:
 
 
 def measure() -> Sequence[Metric]:
-    """Return two hundred variations of Sally-Anne with the offline model.
+    """Return figures of two hundred variations of Sally-Anne with the offline model.
 
-    What is `once started` begins when all processes play: each takes some seconds of a core to
-    start Python, its kernels and Node, however many cells it plays then. One job has Python on
-    one core and Node's collector and compiler on another; so it is measured on one core as well,
-    which two jobs have twice of.
+    Figures `once started` begin when all processes play: each process first needs some seconds
+    of a core to start Python, its kernels and Node. One job uses more than one core, because
+    Node's garbage collector and compiler run beside Python. One job is therefore also measured
+    on one core, to compare it with two jobs on two cores.
     """
     study = Study("sally-anne", variations=_VARIATIONS, conditions=[1])
     study.plan()
-    # What is compiled is kept for the processes that come.
+    # Compile the kernels before the measurement; later processes load them from the cache.
     _run(Study("sally-anne", variations=1, conditions=[1]), 1)
     one, two, dask = (_run(study, *how) for how in ((1, "loky"), (2, "loky"), (2, "dask")))
     with _one_core():
@@ -66,7 +66,7 @@ def measure() -> Sequence[Metric]:
 
 @contextmanager
 def _one_core() -> Iterator[None]:
-    """What is started inside has one core; on systems that cannot say so, as many as there are."""
+    """Restrict child processes to one core, on systems that support it."""
     if not hasattr(os, "sched_setaffinity"):
         yield
         return

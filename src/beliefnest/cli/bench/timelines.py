@@ -1,4 +1,4 @@
-"""Timelines in a run file: recording, forking, reading the past, opening again."""
+"""Benchmarks of timelines in a run file: recording, forking, reading the past, reopening."""
 
 import itertools
 import math
@@ -35,7 +35,7 @@ _STEP = 0.2158
 """Blocks a player walks in one tick."""
 
 _WALK = 20_000
-"""Ticks of the walk that is recorded over and over; longer than any piece that is packed."""
+"""Ticks of the walk that is recorded repeatedly; longer than the pieces that are compressed."""
 
 _TRIES = 101
 _LOOKS = 31
@@ -44,7 +44,7 @@ _STROLL = {
     "stone": "await goToPosition(bot, new Vec3(0, -51, 5))",
     "glass": "await goToPosition(bot, new Vec3(4, -51, -8))",
 }
-"""Blocks that branches are built of and named after, and what everybody does there."""
+"""Programs by block; each branch is named after a block and built of it."""
 
 _FIELD = ((-100, 0, -100), (100, 2, 100))
 _MAIN = TimelineKey((), "main")
@@ -53,11 +53,11 @@ _SINGLES = TimelineKey((), "single")
 
 
 def measure() -> Sequence[Metric]:
-    """Return a million ticks of eight agents that walk, recorded and then used.
+    """Return figures of recording and reading a million ticks of eight walking agents.
 
-    They walk in an open field that everybody knows. What is recorded goes to the journal a
-    thousand ticks at a time, and is noted by the nest's history, as in a long call of a nest; two
-    beliefs were asked for at the beginning.
+    The agents walk in an open field that all of them know. The journal receives a thousand
+    ticks at a time, and the nest's history follows, as in a long call of a nest. Two beliefs are
+    queried at the beginning.
     """
     walk = list(_walk())
     with tempfile.TemporaryDirectory() as folder:
@@ -122,7 +122,7 @@ def _later(walk: Sequence[Frame], tick: int) -> Frame:
 
 @dataclass(frozen=True, slots=True)
 class _Recorded:
-    """Ticks a second, of the journal alone and with the history that follows; megabytes."""
+    """Ticks recorded per second, by the journal alone and with the history; size in megabytes."""
 
     alone: float
     followed: float
@@ -162,7 +162,7 @@ def _drop_checkpoints(path: Path) -> None:
 
 
 def _one_by_one(journal: SqliteJournal, walk: Sequence[Frame]) -> float:
-    """Return ticks a second."""
+    """Return ticks recorded per second, one at a time."""
     journal.create(_SINGLES, None, 0)
     started = time.perf_counter()
     for frame in walk[:_SINGLE]:
@@ -197,7 +197,7 @@ def _open(path: Path) -> float:
 
 
 def _switch(store: Path) -> float:
-    """Return seconds to go from one branch of the real world to another, in Minecraft."""
+    """Return the seconds to switch between branches of the real world, in Minecraft."""
     with Nest.open(Scenario.load("sally-anne", 3), store=store) as nest:
         world = nest["/"]
         for name, program in _STROLL.items():
@@ -209,7 +209,7 @@ def _switch(store: Path) -> float:
 
 
 def _resume(store: Path, path: str) -> float:
-    """Return seconds from the file of a long run to the state of a simulator."""
+    """Return the seconds from opening the file of a long run to the state of a simulator."""
     started = time.perf_counter()
     with Nest.resume(store) as nest:
         _check(nest[path].state)
@@ -217,7 +217,7 @@ def _resume(store: Path, path: str) -> float:
 
 
 def _look_back(store: Path, path: str) -> float:
-    """Return seconds to the state of a simulator at a past tick of a long run."""
+    """Return the seconds to get the state of a simulator at a past tick of a long run."""
     chance = random.Random(2)
     with Nest.read(store) as nest:
         return median_seconds(

@@ -1,4 +1,4 @@
-"""The page: how large it is, how soon it is there, how fast it scrubs, how late the live one is."""
+"""Benchmarks of the page: size, loading time, scrubbing rate, and delay of the live page."""
 
 import math
 import random
@@ -20,7 +20,7 @@ from beliefnest.perception.options import Perception
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.scripted import ScriptedWorld
 
-if TYPE_CHECKING:  # A browser is driven by what only `dev` has.
+if TYPE_CHECKING:  # Selenium is only in the extra `dev`.
     from beliefnest.cli.bench.browser import Browser
 
 __all__ = ["measure"]
@@ -67,7 +67,9 @@ def measure() -> Sequence[Metric]:
     try:
         from beliefnest.cli.bench.browser import CHROMIUM, DRIVER, opened_browser
     except ImportError:
-        raise InputError("bench viewer drives a browser: run `pip install selenium`") from None
+        raise InputError(
+            "bench viewer needs selenium to drive a browser: run `pip install selenium`"
+        ) from None
     if CHROMIUM is None or DRIVER is None:
         raise InputError("bench viewer needs chromium and chromedriver: install them first")
     with tempfile.TemporaryDirectory() as folder:
@@ -101,7 +103,7 @@ def _story(place: Path) -> Path:
 
 
 def _long(place: Path) -> Path:
-    """Return the page of a long walk of many agents in a hall with walls."""
+    """Write the page of a long walk of many agents in a hall with walls, and return its path."""
     store, page = place / "long.bn", place / "long.html"
     walk = _Walk()
     with Nest(walk.world, Perception(), static_blocks=["stone", "air"], store=store):
@@ -125,7 +127,7 @@ class _Walk:
         self.world = ScriptedWorld(_BOX, blocks, self._feet)
 
     def tick(self) -> None:
-        """Everybody walks on, or turns where there is a wall."""
+        """Move all agents by one step; agents turn at walls."""
         with self.world.tick():
             for name, (x, y, z) in self._feet.items():
                 yaw = self._yaws[name]
@@ -139,7 +141,7 @@ class _Walk:
 
 
 def _late(place: Path, browser: "Browser") -> float:
-    """Milliseconds from the return of a call that changes the world to the page that shows it."""
+    """Return milliseconds from the end of a call that changes the world until the page shows it."""
     store = place / "live.bn"
     delays: list[float] = []
     walk = _Walk()
