@@ -70,4 +70,4 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
         assert it.stdout.readline().startswith("The page is at")
         it.send_signal(signal.SIGINT)
         _, complaints = it.communicate(timeout=120)
-    assert f"{tmp_path / 'run.bn'} is no run" in complaints
+    assert f"{tmp_path / 'run.bn'} is not a run file" in complaints

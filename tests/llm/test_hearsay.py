@@ -75,7 +75,7 @@ def test_a_claim_is_found_and_the_request_noted_with_what_it_took(fake, clock):
         ('{"claims": [], "more": 1}', "unknown field `more`"),
         (answer({**IN_CHEST, "item": "dimond"}), "dimond"),
         (answer(IN_CHEST, {**IN_CHEST, "place": [99, 0, 0]}), "outside the box"),
-        (answer({"kind": "position", "agent": "otto", "place": CHEST}), "names no agent"),
+        (answer({"kind": "position", "agent": "otto", "place": CHEST}), "names an unknown agent"),
         (answer({**IN_CHEST, "place": [3.5, 0, 3]}), "three whole numbers"),
         (answer(*[{**IN_CHEST, "place": [n, 0, 0]} for n in range(9)]), "more than 8"),
         ('{"claims": [{"a": ' + "[" * 100_000, "nested too deep"),

@@ -108,7 +108,7 @@ def test_the_one_who_is_asked_last_knows_what_has_happened_before() -> None:
     ("found", "message"),
     [
         ([bn.Claim.located("diamond", (99, 0, 0))], "outside the box"),
-        ([bn.Claim.position("otto", (1, 0, 1))], "names no agent of this world"),
+        ([bn.Claim.position("otto", (1, 0, 1))], "names an unknown agent"),
         (["the diamond is right"], "is no claim"),
         (None, "claims_from .*gave None for 'right'; it has to give a list of claims"),
         ("left", "claims_from .*gave 'left'"),

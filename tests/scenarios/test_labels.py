@@ -49,7 +49,7 @@ def test_prompts_say_no_labels_otherwise(tmp_path: Path) -> None:
     ("old", "new", "message"),
     [
         ("[2, 1, 2]]", "[2, 1, 99]]", "outside the box"),
-        ('"/**"', '"/ann/**/bob"', "stands at the end of one alone"),
+        ('"/**"', '"/ann/**/bob"', "may only stand at its end, once"),
         ('"/**"', '"/zed/**"', "agents are ann, bob"),
     ],
 )

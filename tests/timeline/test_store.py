@@ -274,7 +274,7 @@ def test_the_nearest_checkpoint_lies_at_or_before(run_file):
 
 def test_records_are_there_after_opening_again(run_file):
     with SqliteJournal.open(run_file) as journal:
-        with pytest.raises(StoreError, match="does not say what was run"):
+        with pytest.raises(StoreError, match="has no record of what was run"):
             journal.records.run()
         records = journal.records
         records.set_run(RUN)

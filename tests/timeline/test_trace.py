@@ -89,7 +89,7 @@ def test_items_and_new_containers(registry):
 
 
 BAD = [
-    ({"tick": 0}, "tick 0 does not come after tick 0"),
+    ({"tick": 0}, "tick 0 is not later than tick 0"),
     ({"tick": "1"}, "Expected `int`"),
     ({}, "tick"),
     ({"tick": 1, "block": []}, "block"),
@@ -97,14 +97,14 @@ BAD = [
     ({"tick": 1, "blocks": [[1, 9, 1, "stone"]]}, r"\(1, 9, 1\) lies outside the box"),
     ({"tick": 1, "blocks": [[1, 1, "stone"]]}, "blocks"),
     ({"tick": 1, "containers": [[1, 1, 1, {"egg": 1}]]}, "air, which holds no items"),
-    ({"tick": 1, "containers": [[3, 1, 3, {"egg": 0}]]}, "counts are positive"),
+    ({"tick": 1, "containers": [[3, 1, 3, {"egg": 0}]]}, "counts must be positive"),
     ({"tick": 1, "containers": [[3, 1, 3, {"eggg": 1}]]}, "eggg"),
-    ({"tick": 1, "agents": {"bob": {"position": [1, 1, 1]}}}, "'bob' is not among"),
-    ({"tick": 1, "agents": {"anne": {"yaw": 1}}}, "'anne' comes without a position"),
+    ({"tick": 1, "agents": {"bob": {"position": [1, 1, 1]}}}, "unknown agent 'bob'"),
+    ({"tick": 1, "agents": {"anne": {"yaw": 1}}}, "'anne' appears without a position"),
     ({"tick": 1, "agents": {"sally": {"position": [50, 1, 1]}}}, "outside the box"),
-    ({"tick": 1, "agents": {"sally": {"equipment": {"hat": "egg"}}}}, "no slot 'hat'"),
+    ({"tick": 1, "agents": {"sally": {"equipment": {"hat": "egg"}}}}, "unknown slot 'hat'"),
     ({"tick": 1, "agents": {"sally": {"equipment": {"head": "eggg"}}}}, "eggg"),
-    ({"tick": 1, "agents": {"sally": {"inventory": {"egg": -1}}}}, "counts are positive"),
+    ({"tick": 1, "agents": {"sally": {"inventory": {"egg": -1}}}}, "counts must be positive"),
     ({"tick": 1, "items": {"1": {"name": "eggg", "count": 1, "position": [1, 1, 1]}}}, "eggg"),
     ({"tick": 1, "events": [{"kind": "dance", "actor": "sally"}]}, "no event 'dance'"),
     ({"tick": 1, "events": [{"kind": "chat"}]}, "no actor"),

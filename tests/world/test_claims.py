@@ -97,7 +97,7 @@ def test_what_is_no_claim_is_refused(make: Callable[[], object], message: str) -
     ("claim", "message"),
     [
         (bn.Claim.located("diamond", (30, 0, 3)), "outside the box"),
-        (bn.Claim.position("carol", (3, 0, 3)), "no agent of this world; there are"),
+        (bn.Claim.position("carol", (3, 0, 3)), "names an unknown agent; agents are"),
         ("the diamond is there", "is no claim"),
     ],
 )

@@ -1,1 +1,1 @@
-"""Append-only logs of facts, and the file they are kept in."""
+"""Append-only logs of facts, and the run files that store them."""

@@ -1,9 +1,9 @@
-"""Entries of timelines in a run file, in chunks.
+"""Entries of timelines in a run file, stored in chunks.
 
-One uncompressed chunk for each call that adds, joined into compressed chunks of
-`CHUNK_ENTRIES` as soon as there are enough: every call is durable when it returns, and a past
-entry is reached by unpacking one chunk. Each chunk says what its entries hold, so that those
-that are looked for are found without reading the others.
+Each call that adds entries writes one uncompressed chunk, so that it is durable when it returns. As
+soon as there are enough entries, they are joined into compressed chunks of `CHUNK_ENTRIES`. Reading
+a past entry therefore unpacks one chunk. Each chunk has counts of its events and changes, so that a
+search skips chunks without a match.
 """
 
 from bisect import bisect_right
@@ -23,14 +23,16 @@ from beliefnest.world.values import AgentState
 __all__ = ["CHUNK_ENTRIES", "Chunks"]
 
 CHUNK_ENTRIES = 128
-"""Entries of one compressed chunk: larger ones hardly pack better and are slower to read from."""
+"""Entries of one compressed chunk; larger chunks hardly compress better and read more slowly."""
 
 _COMPRESSION = 1
-"""Level of zstandard; higher ones save nothing on poses, which are noise in their last digits."""
+"""Compression level of zstandard. Higher levels gain nothing on poses, whose last digits are noise.
+"""
 
 
 _LARGEST = 2**28
-"""Bytes of a chunk, keyframe or body state when it is unpacked; a foreign file may name any."""
+"""Greatest unpacked size of a chunk, keyframe or body state in bytes. Damaged or hostile files may
+declare any size."""
 
 
 class _Chunk(NamedTuple):
@@ -52,7 +54,7 @@ _COLUMNS = ", ".join(_Chunk._fields)
 
 
 class Chunks:
-    """The chunks of all timelines of a file, which are named by their rows' ids."""
+    """Chunks of all timelines of a file; timelines are named by their row ids."""
 
     def __init__(self, database: Database) -> None:
         self._database = database
@@ -60,11 +62,11 @@ class Chunks:
         self._unpacker = zstandard.ZstdDecompressor()
 
     def compressed(self, body: bytes) -> bytes:
-        """Return the bytes, compressed."""
+        """Compress bytes."""
         return self._packer.compress(body)
 
     def decompressed(self, body: bytes) -> bytes:
-        """What was compressed; StoreError if it is damaged."""
+        """Decompress bytes; StoreError if they are damaged or would be too large."""
         path = self._database.path
         try:
             if zstandard.frame_content_size(body) <= _LARGEST:
@@ -84,9 +86,17 @@ class Chunks:
         encoded: Sequence[bytes],
         entries: Sequence[Entry],
     ) -> int:
-        """Write entries behind the `count` ones of a timeline, `packed` of which are compressed.
+        """Append entries to a timeline; the caller opens the transaction.
 
-        Returns how many are compressed then; the caller opens the transaction.
+        Args:
+            timeline: Row id of the timeline.
+            count: Number of its entries so far.
+            packed: Number of its entries in compressed chunks; these are its first ones.
+            encoded: New entries, encoded.
+            entries: The same new entries.
+
+        Returns:
+            Number of entries in compressed chunks afterwards.
         """
         if count - packed + len(encoded) < CHUNK_ENTRIES:
             self._write(timeline, count, encoded, entries, None)
@@ -116,8 +126,18 @@ class Chunks:
         stop: int,
         gone: Callable[[], BranchError] | None = None,
     ) -> Iterator[msgspec.Raw]:
-        """Encoded entries start to stop - 1; `gone` makes the error for a deleted timeline."""
-        # One query for each chunk: a writer may join chunks while a reader is between two.
+        """Yield the encoded entries with indexes start to stop - 1.
+
+        Args:
+            timeline: Row id of the timeline.
+            start: Index of the first entry.
+            stop: Index after the last entry; the timeline must have that many.
+            gone: Makes the error to raise if the timeline was deleted meanwhile.
+
+        Raises:
+            StoreError: An entry is missing or damaged.
+        """
+        # Query anew for each chunk: a writer may join chunks between two reads.
         while start < stop:
             found = self._chunk(timeline, "first <= ? ORDER BY first DESC", start)
             if found is None and gone is not None and not self._has(timeline):
@@ -128,13 +148,13 @@ class Chunks:
             if not part:
                 raise StoreError(
                     f"{self._database.path} is damaged; restore it from a copy "
-                    f"(entry {start} of timeline {timeline} is not there)"
+                    f"(entry {start} of timeline {timeline} is missing)"
                 )
             yield from part
             start += len(part)
 
     def entries_until(self, timeline: int, tick: int) -> int | None:
-        """How many entries lie at a tick or before; None: all."""
+        """Return the number of entries at a tick or earlier; None if all are."""
         found = self._chunk(timeline, "last_tick > ? ORDER BY last_tick, first", tick)
         if found is None:
             return None
@@ -143,9 +163,10 @@ class Chunks:
     def filtered(
         self, timeline: int, start: int, stop: int, what: EntryFilter
     ) -> Iterator[tuple[int, Entry]]:
-        """Yield those of entries start to stop - 1 that are looked for, with their numbers."""
+        """Yield the entries from start to stop - 1 that match a filter, with their indexes."""
         while start < stop:
-            # No chunk has more entries than that, so that the index leads to the first one.
+            # No chunk has more than CHUNK_ENTRIES entries. The lower bound on `first` therefore
+            # loses nothing, and lets SQLite's index lead straight to the first match.
             found = self._chunk(
                 timeline,
                 f"first > ? AND first + count > ? AND first < ? AND {what} > 0 ORDER BY first",
@@ -164,7 +185,10 @@ class Chunks:
             start = last
 
     def events_until(self, timeline: int, entries: int) -> int:
-        """How many events the first `entries` entries have; the caller sees one state."""
+        """Return the number of events in the first `entries` entries.
+
+        The caller makes sure that all queries see one state of the file.
+        """
         whole = self._database.row(
             "SELECT coalesce(sum(events), 0) FROM piece "
             "WHERE timeline = ? AND first < ? AND first + count <= ? AND events > 0",
@@ -178,7 +202,10 @@ class Chunks:
         return count
 
     def agents_after(self, timeline: int, entries: int) -> Mapping[str, AgentState | None]:
-        """Return the last state of each agent that some entries name; the caller sees one state."""
+        """Return the last state of each agent that the first `entries` entries name.
+
+        The caller makes sure that all queries see one state of the file.
+        """
         last = self._chunk(timeline, "first <= ? AND compressed ORDER BY first DESC", entries - 1)
         first = 0
         agents: dict[str, AgentState | None] = {}
@@ -190,7 +217,7 @@ class Chunks:
         return agents | codec.decode_last_agents(self.raw(timeline, first, entries))
 
     def _agents_before(self, timeline: int, first: int) -> dict[str, AgentState | None]:
-        """What the compressed chunk before an entry, if there is one, knows of agents."""
+        """Return the agents stored with the compressed chunk before an entry, or none."""
         found = self._chunk(timeline, "first < ? ORDER BY first DESC", first)
         return {} if found is None else codec.decode_agents(self.decompressed(found.agents))
 
@@ -210,7 +237,11 @@ class Chunks:
         entries: Sequence[Entry],
         agents: Mapping[str, AgentState | None] | None,
     ) -> None:
-        """Write a chunk; compressed, with what is known of agents after it, unless that is None."""
+        """Write a chunk.
+
+        `agents` holds the last state of each agent up to the end of a chunk that is to be
+        compressed; with None the chunk stays uncompressed.
+        """
         body, known = codec.join(encoded), b""
         if agents is not None:
             body, known = self.compressed(body), self.compressed(codec.encode(agents))
@@ -234,7 +265,7 @@ class Chunks:
         encoded = codec.split(body)
         if len(encoded) != chunk.count:
             raise StoreError(
-                f"{self._database.path} is damaged; "
-                f"only {len(encoded)} of {chunk.count} entries are in it"
+                f"{self._database.path} is damaged; restore it from a copy "
+                f"(a chunk has {len(encoded)} of {chunk.count} entries)"
             )
         return encoded

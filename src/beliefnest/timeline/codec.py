@@ -1,8 +1,8 @@
-"""The one place where world values become bytes and come back.
+"""Codec that converts world values to bytes and back; no other module does this.
 
-Bytes are msgpack. Floats keep every bit, block positions are map keys, sequences inside an
-event's detail come back as tuples. Decoding is strict: a value of another type, a missing or
-a misspelt kind raises StoreError and names where in the value it lies.
+The bytes are msgpack. Floats keep every bit, block positions are map keys, and sequences inside the
+details of events are decoded as tuples. Decoding is strict: a value of another type, or a missing
+or misspelt kind, raises a StoreError that names the place inside the value.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -80,7 +80,7 @@ _ENCODED = msgspec.msgpack.Decoder(list[msgspec.Raw])
 
 
 def encode(value: object) -> bytes:
-    """Bytes of values of a world, or of plain data; StoreError if something in it is neither."""
+    """Encode values of a world or plain data; StoreError if there is any other value."""
     try:
         return _ENCODER.encode(value)
     except (TypeError, OverflowError, ValueError, msgspec.MsgspecError) as fault:
@@ -88,27 +88,31 @@ def encode(value: object) -> bytes:
 
 
 def decode(data: bytes, kind: type[T]) -> T:
-    """A value of type `kind` from the bytes `encode` made of it; StoreError if they hold none."""
+    """Decode a value of type `kind`; StoreError if the bytes hold none."""
     return cast(T, _with_tuples(_decoded(msgspec.msgpack.Decoder(kind), data, kind.__name__)))
 
 
 def encode_entry(entry: Entry) -> bytes:
-    """Bytes of a frame or an edit, which say which of the two they are; StoreError as above."""
+    """Encode a frame or an edit, with a tag that tells them apart; StoreError as above."""
     return encode(_FrameEntry(entry) if isinstance(entry, Frame) else _EditEntry(entry))
 
 
 def decode_entry(data: bytes | msgspec.Raw) -> Entry:
-    """Return a frame or an edit from the bytes of `encode_entry`; StoreError if they are none."""
+    """Decode a frame or an edit; StoreError if the bytes hold neither."""
     return cast(Entry, _with_tuples(_decoded(_ENTRY, data, "entry of a timeline").value))
 
 
 def decode_agents(data: bytes) -> dict[str, AgentState | None]:
-    """Return agents by name from the bytes `encode` made of them; StoreError if they are none."""
+    """Decode a mapping from names to agents; StoreError if the bytes hold none."""
     return _decoded(_AGENTS, data, "agents")
 
 
 def decode_last_agents(entries: Iterable[msgspec.Raw]) -> dict[str, AgentState | None]:
-    """What encoded entries say last of each agent; StoreError if one is no entry."""
+    """Return the last state of each agent that encoded entries name.
+
+    Raises:
+        StoreError: Some bytes are not an entry.
+    """
     last: dict[str, msgspec.Raw] = {}
     for entry in entries:
         last.update(_decoded(_ENTRY_AGENTS, entry, "entry of a timeline")[1].agents)
@@ -116,26 +120,26 @@ def decode_last_agents(entries: Iterable[msgspec.Raw]) -> dict[str, AgentState |
 
 
 def join(entries: Iterable[bytes | msgspec.Raw]) -> bytes:
-    """Return the encoded entries put together; `split` is its inverse."""
+    """Concatenate encoded entries; `split` is the inverse."""
     return _ENCODER.encode([msgspec.Raw(entry) for entry in entries])
 
 
 def split(data: bytes) -> list[msgspec.Raw]:
-    """Return the encoded entries that were joined; StoreError if the bytes are none."""
+    """Split joined entries again; StoreError if the bytes are not joined entries."""
     return _decoded(_ENCODED, data, "entries of a timeline")
 
 
 def decode_ticks(encoded: Sequence[msgspec.Raw]) -> list[int]:
-    """Return ticks of encoded entries, without decoding the rest; StoreError if one is none."""
+    """Return the ticks of encoded entries without decoding the rest; StoreError as above."""
     return [_decoded(_ENTRY_TICK, entry, "entry of a timeline")[1].tick for entry in encoded]
 
 
 def encode_snapshot(snapshot: Snapshot) -> bytes:
-    """Return bytes of a snapshot; the grid as 32-bit little-endian integers, x slowest.
+    """Encode a snapshot; its grid becomes 32-bit little-endian integers, x slowest.
 
     Raises:
-        StoreError: The grid does not have the shape of the box, or something in the
-            snapshot is no value of a world.
+        StoreError: The shapes of grid and box differ, or the snapshot holds a value that is not a
+            world's.
     """
     if snapshot.blocks.shape != snapshot.box.shape:
         raise StoreError(
@@ -159,7 +163,7 @@ def encode_snapshot(snapshot: Snapshot) -> bytes:
 
 
 def decode_snapshot(data: bytes) -> Snapshot:
-    """A snapshot from the bytes of `encode_snapshot`, its grid read-only; StoreError if none."""
+    """Decode a snapshot with a read-only grid; StoreError if the bytes hold none."""
     body = decode(data, _SnapshotBody)
     box = Box(body.low, body.high)
     grid = np.frombuffer(body.blocks, dtype="<i4") if len(body.blocks) % 4 == 0 else None

@@ -1,4 +1,4 @@
-"""Where two histories part: what a replay did otherwise than the record."""
+"""Comparison of two histories: the first entry where a replay differs from the record."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
@@ -14,13 +14,13 @@ _ABSENT = object()
 
 @dataclass(frozen=True, slots=True)
 class EntryDifference:
-    """The first thing two histories do not agree on.
+    """First difference between two histories.
 
     Attributes:
         tick: Tick of the earlier of the two entries.
-        entry: Number of the entries, from 0.
-        field: Where in the entry, as `agents.sally.position.0`; empty if one history has no
-            such entry or has another sort of entry.
+        entry: Index of the entries, from 0.
+        field: Place inside the entry, such as `agents.sally.position.0`. Empty if one history has
+            no such entry or has another kind of entry.
         recorded: Value in the first history; None if it has none.
         found: Value in the second history; None if it has none.
     """
@@ -38,7 +38,7 @@ def first_difference(recorded: Iterable[Entry], found: Iterable[Entry]) -> Entry
         if old == new:
             continue
         tick = min(entry.tick for entry in (old, new) if entry is not None)
-        # An entry that only one history has at that tick is missing from the other.
+        # If the entries differ in tick or kind, one history lacks an entry at this tick.
         if old is None or new is None or type(old) is not type(new) or old.tick != new.tick:
             then = [None if e is None or e.tick > tick else e for e in (old, new)]
             return EntryDifference(tick, number, "", *then)
@@ -48,7 +48,7 @@ def first_difference(recorded: Iterable[Entry], found: Iterable[Entry]) -> Entry
 
 
 def _differences(place: str, old: Any, new: Any) -> Iterator[tuple[str, Any, Any]]:
-    """Yield every innermost place where two values differ, with both."""
+    """Yield each innermost place where two values differ, with both values there."""
     if old == new:
         return
     parts_old, parts_new = _parts(old), _parts(new)
@@ -61,7 +61,7 @@ def _differences(place: str, old: Any, new: Any) -> Iterator[tuple[str, Any, Any
 
 
 def _parts(value: Any) -> Mapping[Any, Any] | None:
-    """What a value consists of, by name; None if it is of one piece."""
+    """Return the parts of a value by name; None if the value has no parts."""
     if is_dataclass(value) and not isinstance(value, type):
         return {field.name: getattr(value, field.name) for field in fields(value)}
     if isinstance(value, Mapping):

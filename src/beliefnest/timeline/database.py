@@ -1,8 +1,8 @@
-"""One run file as an SQLite database: opening, recognising, transactions, faults.
+"""Run file as an SQLite database: opening, validation, transactions and errors.
 
-Whatever SQLite reports becomes a StoreError that names the file. The write-ahead log keeps
-what a transaction did once it is committed, whatever becomes of the process, and lets
-others read meanwhile.
+Every SQLite error becomes a StoreError that names the file. SQLite's write-ahead log keeps
+committed transactions even if the process is killed, and lets other processes read at the same
+time.
 """
 
 import ctypes
@@ -58,17 +58,22 @@ _FAULTS = {
     sqlite3.SQLITE_ERROR: _DAMAGED,
 }
 _REFUSALS = (sqlite3.Error, OverflowError, UnicodeDecodeError)
-"""What a statement can raise: damage can lie in texts, which SQLite itself does not look into."""
+"""Exceptions that a statement can raise. SQLite does not look into texts, so that damaged ones
+raise UnicodeDecodeError."""
 
 _COMPANIONS = ("-wal", "-shm", "-journal", "-lock")
-"""Ends of the names of files that may lie beside a run file and are read with it."""
+"""Suffixes of the files that may exist beside a run file and belong to it."""
 
 _PRIMARY_CODE = 0xFF
-"""The part of an SQLite error code that names the kind of fault."""
+"""Mask of the part of an SQLite error code that names the kind of error."""
 
 
 def checksum(*values: object) -> int:
-    """Checksum of a row's values; StoreError if a number is too large. The last may be long."""
+    """Return the checksum of a row's values; only the last value may be long bytes.
+
+    Raises:
+        StoreError: A number is too large.
+    """
     *head, last = values
     try:
         body = last if isinstance(last, bytes) else msgspec.msgpack.encode(last)
@@ -78,21 +83,25 @@ def checksum(*values: object) -> int:
 
 
 def checked(row: Row, path: Path, what: str) -> Row:
-    """The row without its checksum, which is its last value; StoreError if they do not agree."""
+    """Check a row against its last value, the checksum, and return the other values.
+
+    Raises:
+        StoreError: The checksum is wrong.
+    """
     *values, found = row
     if checksum(*values) != found:
-        raise StoreError(f"{path} {_DAMAGED} (checksum of {what} does not agree)")
+        raise StoreError(f"{path} {_DAMAGED} (wrong checksum of {what})")
     return tuple(values)
 
 
 @dataclass(frozen=True, slots=True)
 class OlderFormat:
-    """A format of run files that is converted when a file is opened.
+    """An older format of run files, which is converted when a file is opened.
 
     Attributes:
-        version: Its number.
-        statements: What a file of it consists of.
-        convert: Makes it a file of this format.
+        version: Format number.
+        statements: SQL statements that define its tables.
+        convert: Converts a database of this format to the current one.
     """
 
     version: int
@@ -101,13 +110,13 @@ class OlderFormat:
 
 
 class Database(Owned):
-    """An open run file; made by `create`, `in_memory`, `open` or `read`.
+    """An open run file, created by `create`, `in_memory`, `open` or `read`.
 
-    Any use in a forked child raises ForkedError, but `close`, which does nothing there.
+    In a forked child every call raises ForkedError, except `close`, which does nothing there.
 
     Attributes:
-        path: The file.
-        writable: Whether it was opened to be written.
+        path: Path of the file.
+        writable: True if it was opened for writing.
     """
 
     def __init__(self, connection: sqlite3.Connection, path: Path, lock: WriterLock | None) -> None:
@@ -120,14 +129,18 @@ class Database(Owned):
 
     @classmethod
     def create(cls, path: Path) -> "Database":
-        """Make a new run file; StoreError as of `SqliteJournal.create_file`."""
+        """Create a new run file; StoreError as of `SqliteJournal.create_file`."""
         _check_regular(path)
         database = cls._locked(path, "rwc")
         with database.closed_on_fault():
             if path.stat().st_size > 0:
-                raise StoreError(f"{path} exists; resume it, remove it, or choose another name")
+                raise StoreError(
+                    f"{path} exists already; resume it, remove it, or choose another name"
+                )
             if database.row("PRAGMA journal_mode = WAL") != ("wal",):
-                raise StoreError(f"{path} lies where files cannot be shared; use a local disk")
+                raise StoreError(
+                    f"{path} is on a file system without shared access; use a local disk"
+                )
             database.execute("PRAGMA synchronous = NORMAL")
             with database.transaction():
                 for statement in STATEMENTS:
@@ -138,7 +151,7 @@ class Database(Owned):
 
     @classmethod
     def in_memory(cls, statements: Iterable[str]) -> "Database":
-        """A new database that ends with the process, and consists of what statements define."""
+        """Create a database in memory with the tables that `statements` define."""
         memory = ":memory:"
         connection = sqlite3.connect(memory, isolation_level=None, check_same_thread=False)
         database = cls(connection, Path(memory), None)
@@ -149,7 +162,7 @@ class Database(Owned):
 
     @classmethod
     def open(cls, path: Path, older: Sequence[OlderFormat] = ()) -> "Database":
-        """Open a run file to go on with it; one of an older format is converted for good.
+        """Open a run file for writing; a file of an older format is converted for good.
 
         StoreError as of `SqliteJournal.open`.
         """
@@ -167,9 +180,9 @@ class Database(Owned):
 
     @classmethod
     def read(cls, path: Path, older: Sequence[OlderFormat] = ()) -> "Database":
-        """Open a run file to look at it; StoreError as of `SqliteJournal.read`.
+        """Open a run file for reading; StoreError as of `SqliteJournal.read`.
 
-        Of one of an older format a copy in memory is converted, as it is now.
+        The file itself stays as it is: if its format is older, a converted copy in memory is read.
         """
         _recognise_start(path)
         database = cls(_connected(path, "ro"), path, None)
@@ -178,7 +191,7 @@ class Database(Owned):
         except StoreError as fault:
             if not _is_unshareable(fault) or _wal(path).exists():
                 raise
-            # Where SQLite cannot share the file with a writer, there can be none either.
+            # SQLite could not share this file with a writer, so nobody can be writing it now.
             database = cls(_connected(path, "ro&immutable=1"), path, None)
             database._look(older)
         return database
@@ -193,7 +206,7 @@ class Database(Owned):
             raise
 
     def execute(self, sql: str, values: Iterable[object] = ()) -> sqlite3.Cursor:
-        """Run a statement that returns nothing."""
+        """Execute a statement that returns no rows."""
         self.check_own(str(self.path))
         try:
             return self._connection.execute(sql, tuple(values))
@@ -201,7 +214,7 @@ class Database(Owned):
             raise self._fault(fault) from fault
 
     def rows(self, sql: str, values: Iterable[object] = ()) -> list[Row]:
-        """Return all rows a query returns."""
+        """Return all rows of a query."""
         self.check_own(str(self.path))
         try:
             return self._connection.execute(sql, tuple(values)).fetchall()
@@ -209,24 +222,31 @@ class Database(Owned):
             raise self._fault(fault) from fault
 
     def row(self, sql: str, values: Iterable[object] = ()) -> Row | None:
-        """Return the first row a query returns, or None."""
+        """Return the first row of a query, or None."""
         rows = self.rows(sql, values)
         return rows[0] if rows else None
 
     def sound_rows(
         self, columns: str, rest: str, values: Iterable[object], what: str
     ) -> Iterator[Row]:
-        """Yield columns of the rows that the rest of a query chooses; StoreError if one is damaged.
+        """Yield the rows of a query after a check of their checksums.
 
-        `what` names them in its message.
+        Args:
+            columns: Names of the columns.
+            rest: Query after the word FROM.
+            values: Values of its placeholders.
+            what: Name of the rows for the error message.
+
+        Raises:
+            StoreError: A row is damaged.
         """
         for row in self.rows(f"SELECT {columns}, seal FROM {rest}", values):
             yield checked(row, self.path, what)
 
     def write(self, into: str, **row: object) -> None:
-        """Write a row with its checksum; `into` is an `INSERT INTO` with a table, or the like.
+        """Write a row with its checksum; only the last value may be long bytes.
 
-        The last value may be long bytes.
+        `into` is the beginning of the statement, such as `INSERT INTO meta`.
         """
         marks = ", ".join("?" * (len(row) + 1))
         values = tuple(row.values())
@@ -236,9 +256,11 @@ class Database(Owned):
 
     @contextmanager
     def transaction(self) -> Iterator[None]:
-        """Do all that follows or, if anything raises, none of it. May be nested."""
+        """Make the statements inside the block atomic; blocks may be nested."""
         if not self.writable:
-            raise StoreError(f"{self.path} is open for reading; open it for writing to change it")
+            raise StoreError(
+                f"{self.path} is open for reading only; open it for writing to change it"
+            )
         nested = self._connection.in_transaction
         self.execute("SAVEPOINT inner" if nested else "BEGIN IMMEDIATE")
         try:
@@ -250,7 +272,7 @@ class Database(Owned):
 
     @contextmanager
     def unchanging(self) -> Iterator[None]:
-        """See the file in one state throughout, whatever a writer does meanwhile."""
+        """Read one state of the file throughout the block, whatever a writer does meanwhile."""
         nested = self._connection.in_transaction
         if not nested:
             self.execute("BEGIN")
@@ -261,7 +283,7 @@ class Database(Owned):
                 self._roll_back(nested=False)
 
     def _roll_back(self, nested: bool) -> None:
-        # A full disk makes SQLite roll back of its own accord.
+        # If the disk is full, SQLite has rolled back already.
         if not self._open or not self.is_own or not self._connection.in_transaction:
             return
         if nested:
@@ -271,9 +293,9 @@ class Database(Owned):
             self.execute("ROLLBACK")
 
     def close(self) -> None:
-        """Close the file and give up the lock; closing twice is allowed.
+        """Close the file and release the lock; closing twice is allowed.
 
-        What SQLite keeps beside an open file is gone when nobody has it open any more.
+        SQLite removes its companion files when the last connection is closed.
         """
         if not self._open or not self.is_own:
             return
@@ -289,15 +311,16 @@ class Database(Owned):
             _remove_empty_log(self.path)
 
     def disown(self) -> None:
-        """Keep the connection open for good in a forked child: SQLite may not even close it there.
+        """Leave the connection open in a forked child; it must not even be closed there.
 
-        Closing it would let SQLite write its parent's log into the file, and give up its locks.
+        If the child closed it, SQLite would write the parent's log into the file and release the
+        parent's locks.
         """
         ctypes.pythonapi.Py_IncRef(ctypes.py_object(self._connection))
 
     @contextmanager
     def closed_on_fault(self) -> Iterator[None]:
-        """Close the file if what follows raises."""
+        """Close the file if the block raises."""
         try:
             yield
         except BaseException:
@@ -313,7 +336,7 @@ class Database(Owned):
                 )
 
     def _look(self, older: Sequence[OlderFormat]) -> None:
-        """Check a file that is only read, and go over to a converted copy if it is an older one."""
+        """Validate a file opened for reading; read a converted copy if its format is older."""
         with self.closed_on_fault():
             found = self._recognise(older)
             if found is not None:
@@ -330,7 +353,7 @@ class Database(Owned):
             self.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
 
     def _recognise(self, older: Sequence[OlderFormat]) -> OlderFormat | None:
-        """Check that a file is a run; returns the older format that it has."""
+        """Check that the file is a run; return its format if that is older than the current one."""
         application = self.row("PRAGMA application_id")
         version = self.row("PRAGMA user_version")
         if application != (APPLICATION_ID,):
@@ -338,23 +361,23 @@ class Database(Owned):
             what = f"an SQLite file of another program (with {', '.join(tables)})"
             if not tables:
                 raise NotBegunError(
-                    f"{self.path} is no run: it is an SQLite file without content, perhaps of a "
-                    "run stopped while it began; give the file of a run"
+                    f"{self.path} is not a run file: it is an empty SQLite database, perhaps of a "
+                    "run that was stopped while it began; give a run file"
                 )
-            raise StoreError(f"{self.path} is no run: it is {what}; give the file of a run")
+            raise StoreError(f"{self.path} is not a run file: it is {what}; give a run file")
         number = version[0] if version else None
         found = next((each for each in older if each.version == number), None)
         if number != SCHEMA_VERSION and found is None:
             is_older = isinstance(number, int) and number < SCHEMA_VERSION
             raise StoreError(
-                f"{self.path} has the format {number} and this program reads {SCHEMA_VERSION}; "
+                f"{self.path} has format {number}, but this program reads {SCHEMA_VERSION}; "
                 f"use {'an older' if is_older else 'a newer'} version of beliefnest"
             )
         self._check_schema(STATEMENTS if found is None else found.statements)
         return found
 
     def _check_schema(self, statements: Iterable[str]) -> None:
-        """Refuse a file that defines anything else: a view has no end, a trigger acts."""
+        """Refuse a file with other definitions: a view can be endless, a trigger acts by itself."""
         expected = expected_schema(statements)
         found = self.rows(
             "SELECT type, name, tbl_name, sql FROM sqlite_master LIMIT ?", [len(expected) + 1]
@@ -363,7 +386,7 @@ class Database(Owned):
             other = sorted({(str(kind), str(name)) for kind, name, *_ in expected ^ set(found)})
             names = ", ".join(f"{kind} {name!r}" for kind, name in other[:5])
             raise StoreError(
-                f"{self.path} is not as this program writes runs ({names} differ); "
+                f"{self.path} has other tables than this program writes ({names}); "
                 "restore it from a copy"
             )
 
@@ -385,15 +408,16 @@ def _wal(path: Path) -> Path:
 
 
 def _remove_empty_log(path: Path) -> None:
-    """Let SQLite remove a write-ahead log without content, unless somebody uses it.
+    """Let SQLite remove an empty write-ahead log, unless another process uses it.
 
-    A connection that only reads makes a log where there is none, and cannot remove it.
+    A read-only connection creates a log if there is none, but cannot remove it.
     """
     log = _wal(path)
-    # One with content is a writer's, or left by one that was killed: looking changes no run.
+    # A log with content belongs to a writer or to a writer that was killed. It stays: reading
+    # must not change a run.
     if not log.exists() or log.stat().st_size > 0 or not os.access(path, os.W_OK):
         return
-    # Somebody else may be at it at this very moment; then it is theirs to remove.
+    # If another process has the file open just now, that process will remove the log.
     with suppress(*_REFUSALS, StoreError), closing(_connected(path, "rw")) as connection:
         connection.execute("SELECT 1 FROM sqlite_master LIMIT 1").fetchall()
 
@@ -405,14 +429,15 @@ def _is_unshareable(fault: StoreError) -> bool:
 
 def _connected(path: Path, mode: str) -> sqlite3.Connection:
     try:
-        # Readers hand a connection from thread to thread; SQLite itself is built serialised.
+        # Several threads use one connection in turn. SQLite is built in serialised mode, so the
+        # check of Python's sqlite3 module is not needed.
         connection = sqlite3.connect(
             f"{path.resolve().as_uri()}?mode={mode}",
             uri=True,
             isolation_level=None,
             check_same_thread=False,
         )
-        # What a file defines gets none of the functions that could act on something else.
+        # Definitions in a foreign file may not call functions with side effects.
         connection.execute("PRAGMA trusted_schema = OFF")
     except sqlite3.Error as fault:
         raise StoreError(
@@ -422,7 +447,7 @@ def _connected(path: Path, mode: str) -> sqlite3.Connection:
 
 
 def _recognise_start(path: Path) -> None:
-    """Check by its first bytes that a file is SQLite's and whole."""
+    """Check the first bytes and the size of a file: it must be a complete SQLite file."""
     _check_regular(path)
     settled = not _wal(path).exists()
     try:
@@ -438,19 +463,19 @@ def _recognise_start(path: Path) -> None:
         begin = header[: len(_MAGIC)]
         what = kinds[0] if kinds else f"a file that begins with {begin!r}"
         if not header:
-            raise NotBegunError(f"{path} is no run: it is an empty file; give the file of a run")
-        raise StoreError(f"{path} is no run: it is {what}; give the file of a run")
-    # With a write-ahead log beside it, the rest of the file may still lie in that.
+            raise NotBegunError(f"{path} is not a run file: it is an empty file; give a run file")
+        raise StoreError(f"{path} is not a run file: it is {what}; give a run file")
+    # If there is a write-ahead log, the rest of the file may still be in the log.
     if settled and size < _page_size(header) * int.from_bytes(header[28:32], "big"):
         raise StoreError(f"{path} {_DAMAGED} (its end is missing)")
 
 
 def _check_regular(path: Path) -> None:
-    """Refuse a file, or one beside it, that SQLite would open and wait for."""
+    """Refuse irregular files, also beside the run file: SQLite would open them and wait."""
     real = path.resolve()
     for each in (real, *(real.with_name(real.name + end) for end in _COMPANIONS)):
         if each.exists() and not each.is_file():
-            what = "give the file of a run" if each == real else "remove it"
+            what = "give a run file" if each == real else "remove it"
             raise StoreError(f"{each} cannot be read: it is not a regular file; {what}")
 
 

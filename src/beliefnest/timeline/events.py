@@ -33,7 +33,7 @@ REQUIRED: Mapping[EventKind, tuple[str, ...]] = MappingProxyType(
         EventKind.BLOCK_UPDATE: ("position",),
     }
 )
-"""Details without which an event of that kind means nothing."""
+"""Details that an event of each kind must have."""
 
 
 class _Detail(msgspec.Struct, forbid_unknown_fields=True):
@@ -54,17 +54,17 @@ class _Detail(msgspec.Struct, forbid_unknown_fields=True):
 def event_from(
     kind: str, actor: str | None, detail: Mapping[str, Any], agents: Collection[str]
 ) -> Event:
-    """Return an event from plain data.
+    """Validate plain data and return the event.
 
     Args:
         kind: A value of `EventKind`.
-        actor: Who did it; only a block update may have none.
-        detail: As in `Event.detail`, sequences as lists.
-        agents: Names there are.
+        actor: Name of the agent that acted; only a block update may have none.
+        detail: Details as in `Event.detail`, with lists as sequences.
+        agents: Names of all agents.
 
     Raises:
-        InputError: The kind or an agent is unknown, a detail is missing, unknown or of
-            another type.
+        InputError: The kind or an agent is unknown, or a detail is missing, unknown or of another
+            type.
     """
     if kind not in set(EventKind):
         raise InputError(f"there is no event {kind!r}; there are {', '.join(EventKind)}")

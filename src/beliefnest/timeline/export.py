@@ -1,6 +1,6 @@
-"""A journal as tables for other programs: a folder of JSON lines or Parquet files.
+"""Export of a journal as tables: a folder of JSON lines or Parquet files.
 
-Each file is one table of `tables.TABLES`, with the same columns in both formats.
+Each file is one table of `tables.TABLES`. Both formats have the same columns.
 """
 
 import importlib
@@ -36,17 +36,17 @@ Format = Literal["jsonl", "parquet"]
 FORMATS: tuple[Format, ...] = ("jsonl", "parquet")
 
 _ROW_GROUP = 50_000
-"""Rows Parquet files are written in at a time."""
+"""Number of rows that are written to a Parquet file at a time."""
 
 
 class _Table(Protocol):
-    """A table being written."""
+    """File of one table, open for writing."""
 
     def write(self, values: Mapping[str, Any]) -> None:
         """Append a row."""
 
     def close(self) -> None:
-        """Write what is left."""
+        """Write the remaining rows and close the file."""
 
 
 def export(
@@ -60,29 +60,29 @@ def export(
     beliefs: Iterable[BeliefRow] = (),
     notes: Iterable[Row] = (),
 ) -> Mapping[str, int]:
-    """Write a journal into a new folder, whole or not at all.
+    """Write a journal into a new folder, completely or not at all.
 
     Args:
-        journal: What to write.
+        journal: Journal to write.
         format: "jsonl", or "parquet", which needs the extra `beliefnest[parquet]`.
-        out: The folder; it must not exist, or be empty.
+        out: Output folder; it must not exist or must be empty.
         registry: Names of the blocks.
         first: State before the first entry of the timelines that have no base.
-        timelines: Which timelines to write; None: all.
-        beliefs: States of nodes, in the order they are to be written in.
-        notes: Rows of what is kept beside timelines: the run, programs, prompts.
+        timelines: Keys of the timelines to write; None for all.
+        beliefs: States of nodes, in output order.
+        notes: Rows of the other tables: the run, programs, prompts.
 
     Returns:
         Number of rows by table.
 
     Raises:
         InputError: The format is unknown, its library is missing, or the folder is not empty.
-        BranchError: There is no such timeline.
+        BranchError: A key names no timeline.
         StoreError: The journal cannot be read or the folder cannot be written.
     """
     opener = _opener(format)
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
-        raise InputError(f"{out} is there already; remove it or choose another folder")
+        raise InputError(f"{out} exists already; remove it or choose another folder")
     rows = chain(
         notes, _timeline_rows(journal, registry, first, timelines), map(belief_row, beliefs)
     )
@@ -134,7 +134,7 @@ def _written(
 
 @contextmanager
 def _folder_in_place_of(out: Path) -> Iterator[Path]:
-    """A folder that becomes `out` if all goes well, and vanishes otherwise."""
+    """Yield a temporary folder that replaces `out` on success and is removed on error."""
     out.parent.mkdir(parents=True, exist_ok=True)
     folder = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.parent))
     try:
@@ -158,11 +158,11 @@ def _opener(format: str) -> Callable[[Path, str], _Table]:
                 "Parquet needs pyarrow: pip install 'beliefnest[parquet]', or export as jsonl"
             ) from fault
         return lambda folder, name: _Parquet(arrow, parquet, folder, name)
-    raise InputError(f"there is no format {format!r}; there are {', '.join(FORMATS)}")
+    raise InputError(f"unknown format {format!r}; choose {' or '.join(FORMATS)}")
 
 
 class _JsonLines:
-    """One JSON object for each row."""
+    """JSON lines file with one object for each row."""
 
     def __init__(self, folder: Path, name: str) -> None:
         self._file = (folder / f"{name}.jsonl").open("wb")
@@ -173,12 +173,12 @@ class _JsonLines:
         self._file.write(_json({column: values[column] for column in self._columns}) + b"\n")
 
     def close(self) -> None:
-        """Write what is left."""
+        """Close the file."""
         self._file.close()
 
 
 class _Parquet:
-    """A Parquet file; objects are JSON text in it."""
+    """Parquet file; columns of objects hold JSON text."""
 
     def __init__(self, arrow: Any, parquet: Any, folder: Path, name: str) -> None:
         self._columns = TABLES[name]
@@ -208,7 +208,7 @@ class _Parquet:
             self._flush()
 
     def close(self) -> None:
-        """Write what is left."""
+        """Write the remaining rows and close the file."""
         self._flush()
         self._file.close()
 
@@ -222,4 +222,4 @@ def _json(value: object) -> bytes:
     try:
         return msgspec.json.encode(value)
     except (TypeError, msgspec.MsgspecError) as fault:
-        raise InputError(f"a row holds what is no plain data: {fault}") from fault
+        raise InputError(f"a row holds a value that JSON cannot represent: {fault}") from fault

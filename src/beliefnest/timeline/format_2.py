@@ -1,7 +1,7 @@
-"""Run files of format 2: what they define, and how they become files of format 3.
+"""Conversion of run files from format 2 to format 3.
 
-They kept the internal state of bodies among checkpoints, under names like `hidden 12`, and some
-facts of programs as texts.
+Format 2 kept the internal state of bodies among the checkpoints, under names such as `hidden 12`,
+and some fields of programs as texts.
 """
 
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ from beliefnest.timeline.schema import BODY_STATE, STATEMENTS
 __all__ = ["FORMAT_2", "convert_2"]
 
 FORMAT_2 = tuple(statement for statement in STATEMENTS if statement != BODY_STATE)
-"""What a file of format 2 consists of."""
+"""SQL statements that define the tables of format 2."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ class _Detail:
 
 
 def convert_2(database: Database) -> None:
-    """Make a file of format 2 one of format 3; StoreError if a row is damaged.
+    """Convert a file of format 2 to format 3; StoreError if a row is damaged.
 
     The caller opens the transaction.
     """

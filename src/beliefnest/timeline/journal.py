@@ -1,8 +1,8 @@
-"""Timelines: the append-only logs of facts of control-mode simulators (semantics, section 6).
+"""Timelines: append-only logs of facts of control-mode simulators (semantics, section 6).
 
-A timeline is one branch of one simulator. Its entries are frames and edits; it begins
-where its base lies on another timeline, or at the world's first snapshot. Only this is
-stored: every follow-mode belief is computed from it.
+A timeline is one branch of one simulator. Its entries are frames and edits. It begins at its base,
+which is a point on another timeline, or at the world's first snapshot. Journals store nothing but
+timelines and caches of them: every follow-mode belief is computed from them.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -37,18 +37,18 @@ __all__ = [
 ]
 
 FOLLOW = "follow"
-"""Reserved name of the timeline a follow-mode simulator is on."""
+"""Reserved branch name: the timeline of a simulator in follow mode."""
 
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """A change made by hand to one simulator's state, between two ticks.
+    """A manual change of one simulator's state, between two ticks.
 
     Attributes:
         tick: The tick after which it was made.
-        path: Belief path of the edited simulator, normalised.
-        blocks: New blocks; -1 makes one unknown.
-        containers: New contents, complete.
+        path: Normalised belief path of the edited simulator.
+        blocks: New blocks; -1 makes a block unknown.
+        containers: New contents, which are complete.
     """
 
     tick: int
@@ -61,18 +61,18 @@ Entry = Frame | Edit
 
 
 class EntryFilter(StrEnum):
-    """What makes an entry one of those that are looked for."""
+    """Criterion for a search over the entries of a timeline."""
 
     EVENTS = "events"
-    """It is a frame with events."""
+    """Frames with events."""
 
     CHANGES = "changes"
-    """It changes blocks, contents or dropped items, or is an edit."""
+    """Frames that change blocks, contents or dropped items, and all edits."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class TimelineKey:
-    """One branch of one simulator; path is normalised, the real world's is empty."""
+    """Normalised path of a simulator and name of a branch; the real world's path is empty."""
 
     path: BeliefPath
     branch: str
@@ -80,7 +80,7 @@ class TimelineKey:
 
 @dataclass(frozen=True, slots=True)
 class ForkPoint:
-    """Where a timeline begins: after the first `entries` entries of another one, at `tick`."""
+    """Point at which another timeline begins: at `tick`, after the first `entries` entries."""
 
     timeline: TimelineKey
     entries: int
@@ -89,15 +89,15 @@ class ForkPoint:
 
 @dataclass(frozen=True, slots=True)
 class TimelineInfo:
-    """What is known of a timeline besides its entries.
+    """Metadata of a timeline.
 
     Attributes:
         key: Simulator and branch.
-        base: Where it begins; None: at the world's first snapshot.
-        start: Its first tick.
-        head: Its latest tick; quiet ticks have no entry.
-        entries: Number of its entries.
-        description: A user's words about it.
+        base: Point at which it begins; None for the world's first snapshot.
+        start: First tick.
+        head: Latest tick. Quiet ticks have no entry, so it can be later than the last entry.
+        entries: Number of entries.
+        description: Description written by a user.
     """
 
     key: TimelineKey
@@ -109,7 +109,7 @@ class TimelineInfo:
 
 
 def is_found(entry: Entry, what: EntryFilter) -> bool:
-    """Return True if an entry is one of those that are looked for."""
+    """Return True if an entry matches a filter."""
     if isinstance(entry, Edit):
         return what is EntryFilter.CHANGES
     if what is EntryFilter.EVENTS:
@@ -118,12 +118,12 @@ def is_found(entry: Entry, what: EntryFilter) -> bool:
 
 
 def count_of_events(entry: Entry) -> int:
-    """How many events an entry has."""
+    """Return the number of events of an entry."""
     return 0 if isinstance(entry, Edit) else len(entry.events)
 
 
 def branch_missing(key: TimelineKey, names: Iterable[str]) -> BranchError:
-    """Return the error for a branch that does not exist, `names` being those that do."""
+    """Return the error for an unknown branch; `names` are the existing branches."""
     known = ", ".join(repr(name) for name in sorted(names))
     return BranchError(
         f"{path_text(key.path)} has no branch {key.branch!r}; it has {known or 'none'}"
@@ -131,14 +131,14 @@ def branch_missing(key: TimelineKey, names: Iterable[str]) -> BranchError:
 
 
 def branch_taken(key: TimelineKey) -> BranchError:
-    """Return the error for a name that is in use."""
+    """Return the error for a branch name that is in use."""
     return BranchError(
         f"{path_text(key.path)} already has a branch {key.branch!r}; choose another name"
     )
 
 
 def branch_carries(key: TimelineKey, others: Iterable[TimelineKey]) -> BranchError:
-    """Return the error for removing what `others` are based on."""
+    """Return the error for the removal of a branch that `others` are based on."""
     names = ", ".join(f"{path_text(k.path)} {k.branch!r}" for k in others)
     return BranchError(
         f"branch {key.branch!r} of {path_text(key.path)} carries others ({names}); "
@@ -147,7 +147,7 @@ def branch_carries(key: TimelineKey, others: Iterable[TimelineKey]) -> BranchErr
 
 
 def check_base(key: TimelineKey, base: ForkPoint, length: int) -> None:
-    """Check that a timeline of `length` entries can carry a new one; BranchError if too short."""
+    """Check that a timeline of `length` entries reaches the base; BranchError if it does not."""
     if not 0 <= base.entries <= length:
         raise BranchError(
             f"branch {key.branch!r} of {path_text(key.path)} cannot begin after entry "
@@ -156,11 +156,11 @@ def check_base(key: TimelineKey, base: ForkPoint, length: int) -> None:
 
 
 def check_append(info: TimelineInfo, entries: Sequence[Entry], head: int) -> None:
-    """Check that time does not run backwards.
+    """Check that the ticks of new entries do not decrease.
 
     Raises:
-        TickError: An entry lies before the one before it or before the timeline's head, or
-            after the new head.
+        TickError: An entry is earlier than the entry before it or than the timeline's head, or it
+            is later than the new head.
     """
     latest = info.head
     for entry in entries:
@@ -179,7 +179,7 @@ def check_append(info: TimelineInfo, entries: Sequence[Entry], head: int) -> Non
 
 
 def check_place(info: TimelineInfo, entries: int) -> None:
-    """Check that a timeline has so many entries; InputError if it has fewer."""
+    """Check that a timeline has at least `entries` entries; InputError if it has fewer."""
     if not 0 <= entries <= info.entries:
         raise InputError(
             f"branch {info.key.branch!r} of {path_text(info.key.path)} has {info.entries} "
@@ -188,22 +188,26 @@ def check_place(info: TimelineInfo, entries: int) -> None:
 
 
 class Journal(Protocol):
-    """Where timelines are kept. One writer; what a call did is kept once it returns."""
+    """Store of timelines with one writer; writes are durable when a call returns."""
 
     @property
     def writable(self) -> bool:
-        """True if it takes anything; who only looks at it leaves no checkpoints either."""
+        """True if the journal accepts changes.
+
+        Readers leave no checkpoints in a journal that does not.
+        """
 
     def timelines(self) -> Sequence[TimelineInfo]:
-        """Return all timelines, in order of creation."""
+        """Return the metadata of all timelines, in order of creation."""
 
     def info(self, key: TimelineKey) -> TimelineInfo:
-        """Return one timeline; BranchError if there is none of that key."""
+        """Return the metadata of a timeline; BranchError if there is none of that key."""
 
     def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
-        """Begin an empty timeline; costs the same however long its base is.
+        """Begin an empty timeline; the cost does not depend on the length of its base.
 
-        BranchError if there is one of that key already, or the base is not there.
+        Raises:
+            BranchError: The key is in use, or the base does not exist.
         """
 
     def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:
@@ -215,37 +219,37 @@ class Journal(Protocol):
         """
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
-        """Yield entries number start (included, not negative) to stop (excluded), oldest first.
+        """Yield the entries with indexes start to stop - 1, oldest first.
 
-        Fewer where the timeline ends before. Entries appended later are not returned. BranchError
-        as above.
+        Fewer come if the timeline ends earlier. Entries that are appended during the iteration are
+        left out. `start` must not be negative. BranchError as above.
         """
 
     def entries_until(self, key: TimelineKey, tick: int) -> int:
-        """How many entries lie at `tick` or before; BranchError as above."""
+        """Return the number of entries at `tick` or earlier; BranchError as above."""
 
     def filtered(
         self, key: TimelineKey, start: int, stop: int, what: EntryFilter
     ) -> Iterator[tuple[int, Entry]]:
-        """Yield those of entries start to stop - 1 that are looked for, with their numbers.
+        """Yield the entries from start to stop - 1 that match a filter, with their indexes.
 
-        Takes time in proportion to what is found, hardly to what is passed over. BranchError
-        as above.
+        The time depends on the number of matches, hardly on the number of entries skipped.
+        BranchError as above.
         """
 
     def events_until(self, key: TimelineKey, entries: int) -> int:
-        """How many events the first `entries` entries have; BranchError as above."""
+        """Return the number of events in the first `entries` entries; BranchError as above."""
 
     def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
         """Return the last state of each agent that the first `entries` entries name.
 
-        Takes the same time however many entries these are. BranchError as above.
+        The time does not depend on the number of entries. BranchError as above.
         """
 
     def rename(self, key: TimelineKey, name: str) -> None:
-        """Give a timeline's branch another name; timelines based on it follow.
+        """Rename a timeline's branch; timelines based on it refer to the new name.
 
-        BranchError as above, or if there is one of that name.
+        BranchError as above, or if the new name is in use.
         """
 
     def delete(self, key: TimelineKey) -> None:
@@ -255,48 +259,50 @@ class Journal(Protocol):
         """Set a timeline's description; BranchError if there is none of that key."""
 
     def put_checkpoint(self, key: TimelineKey, name: str, entries: int, body: bytes) -> None:
-        """Keep bytes that stand for the first `entries` entries of a timeline.
+        """Store bytes from which a reader continues after the first `entries` entries.
 
-        They spare a reader those entries, replace those of the same place and name, and go with the
-        timeline. BranchError as above, InputError if it does not have that many entries.
+        A checkpoint spares the reader these entries. It replaces an older one of the same place and
+        name, and is deleted with its timeline. BranchError as above; InputError if the timeline has
+        fewer entries.
         """
 
     def nearest_checkpoint(
         self, key: TimelineKey, name: str, entries: int
     ) -> tuple[int, bytes] | None:
-        """Return the last checkpoint of that name at or before entry `entries`, with its place.
+        """Return the last checkpoint of that name at or before entry `entries`, and its place.
 
-        None if the timeline itself has none there; its base may. BranchError as above.
+        None if the timeline has none there; its base may have one. BranchError as above.
         """
 
     def put_body_state(self, key: TimelineKey, entries: int, tick: int, state: bytes) -> None:
-        """Keep what goes on in a timeline's body and cannot be perceived; it is in no entry.
+        """Store the internal state of a timeline's body, which no entry contains.
 
         Args:
-            key: The timeline.
-            entries: How many of its entries lie before.
-            tick: The body's tick; several calls may end after the same entry.
-            state: Bytes that only the world reads.
+            key: Key of the timeline.
+            entries: Number of entries before this moment.
+            tick: Tick of the body; several calls may end after the same entry.
+            state: Bytes that only the world can read.
 
         Raises:
-            BranchError, InputError: As of `put_checkpoint`.
+            BranchError: There is no timeline of that key.
+            InputError: The timeline has fewer entries.
         """
 
     def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
-        """Return the internal state that was kept for just that moment; None if none was.
+        """Return the internal state stored for exactly this moment; None if there is none.
 
         BranchError as above.
         """
 
     def together(self) -> AbstractContextManager[None]:
-        """Do all that is done inside or, if it raises, none of it. May be nested."""
+        """Make the calls inside the block atomic; blocks may be nested."""
 
     def close(self) -> None:
-        """Give up what the journal holds open."""
+        """Release the resources of the journal."""
 
 
 def lineage(journal: Journal, key: TimelineKey) -> Iterator[tuple[TimelineKey, int]]:
-    """A timeline and those it goes on from, each with its last tick that lies in the past of it.
+    """Yield a timeline and its ancestors, each with its last tick in the timeline's past.
 
     BranchError as of `Journal.info`.
     """

@@ -1,7 +1,7 @@
-"""The lock that lets one process at a time write a run file.
+"""Lock that lets one process at a time write a run file.
 
-It is an advisory lock on a file beside the run file, so that the operating system gives it
-up when the process ends, however it ends, and so that it does not meet SQLite's own locks.
+It is an advisory lock on a separate file beside the run file. The operating system releases it when
+the process ends, even after a crash. The separate file keeps it apart from SQLite's own locks.
 """
 
 import os
@@ -17,7 +17,7 @@ __all__ = ["WriterLock"]
 
 
 class WriterLock(Owned):
-    """The right to write one run file, held until `release` or the end of the process."""
+    """Right to write one run file, held until `release` or the end of the process."""
 
     def __init__(self, descriptor: int, path: Path) -> None:
         super().__init__()
@@ -29,7 +29,7 @@ class WriterLock(Owned):
         """Take the lock of a run file.
 
         Raises:
-            StoreError: Another writer holds it, or no lock file can be made beside the run file.
+            StoreError: Another writer holds the lock, or the lock file cannot be created.
         """
         real = file.resolve()
         path = real.with_name(real.name + "-lock")
@@ -51,20 +51,21 @@ class WriterLock(Owned):
                     f"{file} is being written by {holder}; a run has one writer: "
                     "wait until it ends, or open the file for reading"
                 )
-            # The holder removed the file between our opening and our locking it.
+            # The holder removed the file after this process opened it and before it locked it.
+            # The lock is then on a deleted file: try again with a new one.
 
     def release(self) -> None:
-        """Give the lock up and remove its file; a second call does nothing."""
+        """Release the lock and remove its file; a second call does nothing."""
         if self._descriptor is None:
             return
-        # Windows does not remove a file that is open; one that is left behind refuses nobody.
+        # Windows does not remove an open file. A leftover file does no harm: it is not locked.
         with suppress(PermissionError):
             self._path.unlink(missing_ok=True)
         os.close(self._descriptor)
         self._descriptor = None
 
     def disown(self) -> None:
-        """Close the file in a forked child, so that the lock ends with its parent."""
+        """Close the lock file in a forked child, so that only the parent holds the lock."""
         if self._descriptor is not None:
             os.close(self._descriptor)
             self._descriptor = None
@@ -74,10 +75,12 @@ def _opened(path: Path, file: Path) -> int:
     try:
         return os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
     except FileNotFoundError as fault:
-        raise StoreError(f"{file} cannot be made: there is no folder {path.parent}") from fault
+        raise StoreError(
+            f"{file} cannot be created: there is no folder {path.parent}; create it"
+        ) from fault
     except OSError as fault:
         raise StoreError(
-            f"{file} cannot be written: no lock file can be made beside it ({fault.strerror}); "
+            f"{file} cannot be written: its lock file cannot be created ({fault.strerror}); "
             "make the folder writable, or open the file for reading"
         ) from fault
 
@@ -90,7 +93,7 @@ def _is_at(descriptor: int, path: Path) -> bool:
 
 
 def _holder(descriptor: int) -> str:
-    # Windows lets nobody else read the first byte, which is the one that is locked.
+    # On Windows no other process can read the locked byte, which is the first.
     os.lseek(descriptor, 1, os.SEEK_SET)
     text = os.read(descriptor, 20)
     return f"process {int(text)}" if text.isdigit() else "another process"

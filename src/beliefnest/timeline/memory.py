@@ -1,4 +1,4 @@
-"""Timelines in memory, for nests that are not kept."""
+"""Journal in memory, for nests without a run file."""
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Mapping, Sequence
@@ -33,16 +33,16 @@ __all__ = ["MemoryJournal"]
 
 @dataclass
 class _Timeline:
-    """A timeline with its entries, and which of them are looked for.
+    """A timeline with its entries and indexes over them.
 
     Attributes:
-        info: What is known of it besides.
-        entries: All of them; only `extend` and `cut` change them.
-        found: Numbers of entries, rising, by what is looked for.
-        events: How many events there are up to each entry with events.
-        agents: Numbers of the entries in which an agent changes, rising, by name.
-        checkpoints: By name and number of entries.
-        body_states: By number of entries and tick.
+        info: Key, base, head and other metadata.
+        entries: All entries; only `extend` and `cut` change the list.
+        found: Indexes of the entries that match each filter, in rising order.
+        events: Running total of events, for each entry with events.
+        agents: Indexes of the entries in which an agent changes, in rising order, by name.
+        checkpoints: Checkpoints by name and number of entries.
+        body_states: Internal states of bodies by number of entries and tick.
     """
 
     info: TimelineInfo
@@ -56,7 +56,7 @@ class _Timeline:
     body_states: dict[tuple[int, int], bytes] = field(default_factory=dict)
 
     def extend(self, entries: Sequence[Entry], head: int) -> None:
-        """Add entries, and move the head."""
+        """Add entries and move the head."""
         for number, entry in enumerate(entries, start=len(self.entries)):
             for what, numbers in self.found.items():
                 if is_found(entry, what):
@@ -71,12 +71,12 @@ class _Timeline:
         self.info = replace(self.info, head=head, entries=len(self.entries))
 
     def copy(self) -> "_Timeline":
-        """Return the timeline as it is; once entries were added, `cut` has to follow."""
+        """Return a copy that shares the entries; call `cut` on it if entries were added since."""
         checkpoints, body_states = self.checkpoints.copy(), self.body_states.copy()
         return replace(self, checkpoints=checkpoints, body_states=body_states)
 
     def cut(self) -> None:
-        """Forget entries that were added since it was copied."""
+        """Drop the entries that were added since this copy was made."""
         length = self.info.entries
         del self.entries[length:]
         for numbers in (*self.found.values(), *self.agents.values()):
@@ -85,18 +85,18 @@ class _Timeline:
 
 
 class MemoryJournal:
-    """A journal that ends with the process."""
+    """A journal that is lost when the process ends."""
 
     def __init__(self) -> None:
         self._timelines: dict[TimelineKey, _Timeline] = {}
         self._database = Database.in_memory(RECORDS)
-        # It need not be closed, and can be read when it was.
+        # Users need not close this journal, and can read it after `close`.
         finalize(self, self._database.close)
         self.records = Records(self._database)
 
     @property
     def writable(self) -> bool:
-        """It is."""
+        """Always True."""
         return True
 
     def timelines(self) -> Sequence[TimelineInfo]:
@@ -105,7 +105,7 @@ class MemoryJournal:
 
     def info(self, key: TimelineKey) -> TimelineInfo:
         """Return one timeline; BranchError if there is none of that key."""
-        # Who reads states asks for little else: twice for each node.
+        # Hot path: reading states calls this twice for each node.
         timeline = self._timelines.get(key)
         return self._timeline(key).info if timeline is None else timeline.info
 
@@ -124,24 +124,24 @@ class MemoryJournal:
         timeline.extend(entries, head)
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
-        """Yield entries number start to stop - 1, oldest first."""
+        """Yield the entries with indexes start to stop - 1, oldest first."""
         return iter(self._timeline(key).entries[start:stop])
 
     def entries_until(self, key: TimelineKey, tick: int) -> int:
-        """How many entries lie at `tick` or before."""
+        """Return the number of entries at `tick` or earlier."""
         return bisect_right(self._timeline(key).entries, tick, key=attrgetter("tick"))
 
     def filtered(
         self, key: TimelineKey, start: int, stop: int, what: EntryFilter
     ) -> Iterator[tuple[int, Entry]]:
-        """Yield those of entries start to stop - 1 that are looked for, with their numbers."""
+        """Yield the entries from start to stop - 1 that match a filter, with their indexes."""
         timeline = self._timeline(key)
         numbers = timeline.found[what]
         low, high = bisect_left(numbers, start), bisect_left(numbers, stop)
         return iter([(number, timeline.entries[number]) for number in numbers[low:high]])
 
     def events_until(self, key: TimelineKey, entries: int) -> int:
-        """How many events the first `entries` entries have."""
+        """Return the number of events in the first `entries` entries."""
         timeline = self._timeline(key)
         before = bisect_left(timeline.found[EntryFilter.EVENTS], entries)
         return timeline.events[before - 1] if before else 0
@@ -157,7 +157,7 @@ class MemoryJournal:
         return agents
 
     def rename(self, key: TimelineKey, name: str) -> None:
-        """Give a timeline's branch another name; timelines based on it follow."""
+        """Rename a timeline's branch; timelines based on it refer to the new name."""
         renamed, new_key = self._timeline(key), TimelineKey(key.path, name)
         if new_key in self._timelines:
             raise branch_taken(new_key)
@@ -165,7 +165,7 @@ class MemoryJournal:
         for timeline in self._based_on(key):
             base = timeline.info.base
             timeline.info = replace(timeline.info, base=base and replace(base, timeline=new_key))
-        # They stay in order of creation.
+        # The mapping is built again, so that timelines stay in order of creation.
         self._timelines = {each.info.key: each for each in self._timelines.values()}
         self.records.follow_rename(key.path, key.branch, name)
 
@@ -184,7 +184,7 @@ class MemoryJournal:
         timeline.info = replace(timeline.info, description=description)
 
     def put_checkpoint(self, key: TimelineKey, name: str, entries: int, body: bytes) -> None:
-        """Keep bytes that stand for the first `entries` entries; InputError if too few."""
+        """Store a checkpoint for the first `entries` entries; InputError if there are fewer."""
         timeline = self._timeline(key)
         check_place(timeline.info, entries)
         timeline.checkpoints[name, entries] = body
@@ -192,24 +192,24 @@ class MemoryJournal:
     def nearest_checkpoint(
         self, key: TimelineKey, name: str, entries: int
     ) -> tuple[int, bytes] | None:
-        """Return the last checkpoint of that name at or before entry `entries`, with its place."""
+        """Return the last checkpoint of that name at or before entry `entries`, and its place."""
         kept = self._timeline(key).checkpoints
         places = [at for kind, at in kept if kind == name and at <= entries]
         return (max(places), kept[name, max(places)]) if places else None
 
     def put_body_state(self, key: TimelineKey, entries: int, tick: int, state: bytes) -> None:
-        """Keep the internal state of a timeline's body at a moment; InputError if too few."""
+        """Store the internal state of a timeline's body; InputError if there are fewer entries."""
         timeline = self._timeline(key)
         check_place(timeline.info, entries)
         timeline.body_states[entries, tick] = state
 
     def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
-        """Return the internal state that was kept for a moment; None if none was."""
+        """Return the internal state stored for exactly this moment; None if there is none."""
         return self._timeline(key).body_states.get((entries, tick))
 
     @contextmanager
     def together(self) -> Iterator[None]:
-        """Do all that is done inside or, if it raises, none of it."""
+        """Make the calls inside the block atomic: if the block raises, undo all of them."""
         before = {key: timeline.copy() for key, timeline in self._timelines.items()}
         try:
             with self._database.transaction():
@@ -221,7 +221,7 @@ class MemoryJournal:
             raise
 
     def close(self) -> None:
-        """Nothing is held open."""
+        """Do nothing: the journal holds no open file."""
 
     def _timeline(self, key: TimelineKey) -> _Timeline:
         timeline = self._timelines.get(key)

@@ -1,4 +1,4 @@
-"""What a run keeps besides its timelines: what ran, with which results."""
+"""Records of a run besides its timelines: its start, programs and model requests."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -24,20 +24,21 @@ __all__ = [
 ]
 
 Senses = Literal["world", "percepts"]
-"""What programs read: everything there is, or what their agents perceive or remember."""
+"""What programs can read: the whole world, or what their agents perceive or remember."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunRecord:
-    """What a run was started with.
+    """Settings that a run was started with.
 
     Attributes:
         scenario: Name of the scenario.
-        text: The scenario file, whole.
+        text: Full text of the scenario file.
         condition: Name of the condition; empty if the scenario has none.
         seed: Seed of every random number.
-        versions: Program to version, of everything that ran when it began.
-        setting: What the nest needs to be made again, in its own format.
+        versions: Versions of the programs at the start of the run, by program name.
+        setting: Bytes from which a resumed run builds its nest again; the nest defines their
+            format.
         templates: Texts of the prompt templates that the scenario names, by these names.
     """
 
@@ -52,27 +53,28 @@ class RunRecord:
 
 @dataclass(frozen=True, slots=True)
 class ProgramRecord:
-    """An agent program and how it ended.
+    """An agent program and its result.
 
     Attributes:
         path: Belief path of the simulator it ran in.
         branch: Branch it ran on.
         agent: Agent that ran it.
-        code: Its text.
-        tick: Tick it began at.
-        ok: Whether it ended without an error.
-        error: The error's message; None if it ended well.
-        ticks: How many ticks it took.
-        group: Programs that ran at the same time in one call share a number.
-        lines: Lines of its text that ran, from 1, rising.
-        log: What it wrote to its console.
-        unfinished: What was still going on when it ended, in words.
-        entries: How many entries its timeline had when it began.
-        timeout_ticks: Ticks after which it would have been stopped.
-        step: Number of the script's step that it is part of, from 0; None: it is in no script.
-        kept: Whether what it did was recorded; not if the world's process ended under it.
-        senses: What it read; files of earlier versions, which do not say it, are read as `world`.
-        past: What it had done when it was cut, from where it went on; unset if it began anew.
+        code: Source text of the program.
+        tick: Tick at which it began.
+        ok: True if it ended without an error.
+        error: Error message; None if there was no error.
+        ticks: Number of ticks it took.
+        group: Number shared by all programs that ran at the same time in one call.
+        lines: Numbers of the source lines that ran, from 1, in rising order.
+        log: Lines it wrote to its console.
+        unfinished: Descriptions of the actions that were still going on when it ended.
+        entries: Number of entries in its timeline when it began.
+        timeout_ticks: Number of ticks after which it would have been stopped.
+        step: Index of its step in the scenario's script, from 0; None if it is not part of a
+            script.
+        kept: True if its effects were recorded; False if the world's process died under it.
+        senses: What it could read. Older files do not say; they are read as `world`.
+        past: What it had done before it was interrupted, if it was resumed; otherwise unset.
     """
 
     path: BeliefPath
@@ -97,24 +99,24 @@ class ProgramRecord:
 
 @dataclass(frozen=True, slots=True)
 class PromptRecord:
-    """One request to a model and what came of it.
+    """One request to a model and its result.
 
     Attributes:
-        path: Belief path it was made from.
-        timeline: The timeline that this belief was on: its own or that of a simulator it follows.
+        path: Belief path from which the request was made.
+        timeline: Timeline of this belief: its own, or the timeline of a simulator it follows.
         tick: Tick of that timeline.
         model: Name of the model.
-        attempt: 1 for the first request of a conversation, 2 for the one after a fault.
-        messages: What the model received: role and text of each message.
-        sampling: How the answer was to be drawn.
-        answer: The text it gave; None if it gave none.
-        error: Why it gave none; None if it gave one.
-        requests: Requests that reached a provider.
-        input_tokens: Tokens sent.
-        output_tokens: Tokens received.
-        cost: US dollars; None where a price is not known.
-        cached: Whether the answer had been kept from another time.
-        detail: Further facts of the caller.
+        attempt: 1 for the first request of a conversation, 2 for the request after a fault.
+        messages: Role and text of each message that the model received.
+        sampling: Sampling parameters.
+        answer: Text of the answer; None if there was none.
+        error: Error message if there was no answer, otherwise None.
+        requests: Number of requests that reached a provider.
+        input_tokens: Number of tokens sent.
+        output_tokens: Number of tokens received.
+        cost: Cost in US dollars; None if a price is unknown.
+        cached: True if the answer came from the cache.
+        detail: Further facts from the caller.
     """
 
     path: BeliefPath
@@ -135,7 +137,7 @@ class PromptRecord:
 
     @property
     def branch(self) -> str:
-        """The branch its simulator was on; `follow` in follow mode."""
+        """Branch of the simulator that asked; `follow` in follow mode."""
         return self.timeline.branch if self.path == self.timeline.path else FOLLOW
 
 
@@ -147,12 +149,12 @@ _TABLES: Mapping[type, str] = {ProgramRecord: "program", PromptRecord: "prompt"}
 
 
 def path_to(path: BeliefPath) -> str:
-    """Return a belief path as a run file holds it: a JSON array."""
+    """Return a belief path as run files store it: a JSON array."""
     return msgspec.json.encode(path).decode()
 
 
 def path_from(text: str) -> BeliefPath:
-    """Return the belief path of a column; StoreError if it holds none."""
+    """Parse a stored belief path; StoreError if the text is none."""
     try:
         return msgspec.json.decode(text, type=BeliefPath)
     except msgspec.MsgspecError as fault:
@@ -160,87 +162,88 @@ def path_from(text: str) -> BeliefPath:
 
 
 class Records:
-    """What ran in a run: set once or appended, durable when the call returns.
+    """Programs, model requests and settings of a run, stored in tables.
 
-    Every call may raise StoreError, as those of the journal.
+    A record is durable when the call that wrote it returns. Every call may raise StoreError, as the
+    calls of the journal may.
     """
 
     def __init__(self, database: Database) -> None:
         self._database = database
 
     def set_run(self, run: RunRecord) -> None:
-        """Set what the run was started with."""
+        """Store the settings that the run was started with."""
         self.put_state("run", codec.encode(run))
 
     def run(self) -> RunRecord:
-        """What the run was started with; StoreError if that was never set."""
+        """Return the settings that the run was started with; StoreError if there are none."""
         body = self.state("run")
         if body is None:
             raise NotBegunError(
-                f"{self._database.path} does not say what was run; "
-                "the run was stopped while it began: start it again"
+                f"{self._database.path} has no record of what was run: "
+                "the run was stopped while it began; start it again"
             )
         return codec.decode(body, RunRecord)
 
     def add_versions(self, versions: Mapping[str, str]) -> None:
-        """Note what runs from now on, if it is not what ran before."""
+        """Record the versions in use from now on, if they differ from the last known ones."""
         known = self.versions()
         now = {**known[-1], **versions}
         if now != known[-1]:
             self.put_state("versions", codec.encode([*known[1:], now]))
 
     def versions(self) -> tuple[Mapping[str, str], ...]:
-        """Return the program to version, when the run began and whenever it went on with others."""
+        """Return the versions at the start of the run, then those after each change."""
         later = self.state("versions")
         return (self.run().versions, *([] if later is None else codec.decode(later, _VERSIONS)))
 
     def put_state(self, name: str, value: bytes) -> None:
-        """Keep bytes under a name, in place of those before: counters, random states."""
+        """Store bytes under a name and replace the old ones: counters, random states."""
         with self._database.transaction():
             self._database.write("INSERT OR REPLACE INTO meta", name=name, value=value)
 
     def state(self, name: str) -> bytes | None:
-        """Return the bytes last put under a name; None if there are none."""
+        """Return the bytes last stored under a name; None if there are none."""
         where, what = "meta WHERE name = ?", f"state {name!r}"
         found = self._database.sound_rows("name, value", where, (name,), what)
         return next((bytes(value) for _, value in found), None)
 
     def select(self, path: BeliefPath, branch: str) -> None:
-        """Note which branch a simulator is on."""
+        """Record the branch that a simulator is on."""
         with self._database.transaction():
             into = "INSERT OR REPLACE INTO selected"
             self._database.write(into, path=path_to(path), branch=branch)
 
     def selected(self) -> dict[BeliefPath, str]:
-        """Return the branch each simulator is on, of those `select` named, in order of paths."""
+        """Return the recorded branch of each simulator, in order of paths."""
         in_order, what = "selected ORDER BY path", "the selected branches"
         found = self._database.sound_rows("path, branch", in_order, (), what)
         return {path_from(path): branch for path, branch in found}
 
     def add_program(self, program: ProgramRecord) -> None:
-        """Append a program that has ended."""
+        """Append the record of a program that has ended."""
         self._add(program, TimelineKey(program.path, program.branch))
 
     def next_group(self) -> int:
-        """Return a number for programs that run at the same time, which none before has had."""
-        # The sequence outlives deleted rows.
+        """Return an unused group number for programs that run at the same time."""
+        # SQLite's sequence also counts deleted rows, so no number is given out twice.
         row = self._database.row("SELECT seq FROM sqlite_sequence WHERE name = 'program'")
         return 1 if row is None else int(row[0]) + 1
 
     def programs(self) -> Sequence[ProgramRecord]:
-        """Return all programs, in order of their end."""
+        """Return the records of all programs, in the order in which they ended."""
         return self._all(ProgramRecord)
 
     def add_prompt(self, prompt: PromptRecord) -> None:
-        """Append a request to a model with what came of it."""
+        """Append the record of a request to a model."""
         self._add(prompt, prompt.timeline)
 
     def prompts(self) -> Sequence[PromptRecord]:
-        """Return all requests to models, in order."""
+        """Return the records of all requests to models, in order."""
         return self._all(PromptRecord)
 
     def follow_rename(self, path: BeliefPath, branch: str, name: str) -> None:
-        """Let all that names a branch name it anew; the caller opens the transaction."""
+        """Update all records that name a renamed branch; the caller opens the transaction."""
         if self.selected().get(path) == branch:
             self.select(path, name)
         text = path_to(path)
@@ -252,13 +255,13 @@ class Records:
                 )
 
     def forget_branch(self, path: BeliefPath, branch: str) -> None:
-        """Remove what belongs to a deleted branch; the caller opens the transaction."""
+        """Remove all records of a deleted branch; the caller opens the transaction."""
         where = (path_to(path), branch)
         for table in ("selected", *_TABLES.values()):
             self._database.execute(f"DELETE FROM {table} WHERE path = ? AND branch = ?", where)
 
     def _add(self, record: ProgramRecord | PromptRecord, key: TimelineKey) -> None:
-        """Append a record, to be renamed and deleted with a timeline."""
+        """Append a record that is renamed and deleted together with its timeline."""
         body = codec.encode(record)
         with self._database.transaction():
             self._database.write(
@@ -270,7 +273,7 @@ class Records:
 
     def _all(self, kind: type[Record]) -> tuple[Record, ...]:
         rows = self._rows(_TABLES[kind], "", ())
-        # The column is right where the branch was renamed after the record was written.
+        # Renaming a branch changes the column only; the body still has the old name.
         return tuple(
             _with_branch(codec.decode(body, kind), branch) for _, (_, branch, body) in rows
         )
@@ -284,11 +287,11 @@ class Records:
 
 
 class RunJournal(Journal, Protocol):
-    """A journal that keeps what ran together with its timelines."""
+    """A journal that stores the records of a run together with its timelines."""
 
     @property
     def records(self) -> Records:
-        """What ran; it follows timelines that are renamed or deleted."""
+        """Records of the run; they change with timelines that are renamed or deleted."""
 
 
 def _with_branch(record: Record, branch: str) -> Record:

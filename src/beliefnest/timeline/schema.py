@@ -1,7 +1,7 @@
-"""What a run file consists of.
+"""Schema of a run file.
 
-Every row carries `seal`, a checksum of its other columns, because SQLite itself does not
-notice a flipped bit inside a value.
+Every row has a column `seal`, a checksum of its other columns, because SQLite does not notice a
+flipped bit inside a value.
 """
 
 import sqlite3
@@ -19,15 +19,15 @@ __all__ = [
 ]
 
 APPLICATION_ID = 0x42656C4E
-"""Marks an SQLite file as a run ("BelN")."""
+"""SQLite application id that marks a file as a run ("BelN")."""
 
 SCHEMA_VERSION = 3
 
 SMALL_TABLES = ("timeline", "meta", "selected", "program", "prompt")
 """Tables whose structure is checked whenever a file is opened; the others can be large."""
 
-# What goes on in a timeline's body after its first `entries` entries, at a tick, and cannot be
-# perceived, compressed. No cache: nothing else holds it.
+# Compressed internal state of a timeline's body, which cannot be perceived: after the first
+# `entries` entries, at tick `tick`. This is not a cache: the state cannot be computed again.
 BODY_STATE = """CREATE TABLE body_state (
         timeline INTEGER NOT NULL,
         entries INTEGER NOT NULL,
@@ -63,10 +63,10 @@ RECORDS = (
         seal INTEGER NOT NULL
     )""",
 )
-"""Tables of what is kept besides timelines."""
+"""SQL statements of the tables for all records besides timelines."""
 
 STATEMENTS = (
-    # A path is a JSON array of agent names. `packed` of the entries lie in compressed chunks.
+    # A path is a JSON array of agent names. The first `packed` entries are in compressed chunks.
     """CREATE TABLE timeline (
         id INTEGER PRIMARY KEY AUTOINCREMENT,
         path TEXT NOT NULL,
@@ -83,9 +83,11 @@ STATEMENTS = (
         UNIQUE (path, branch)
     )""",
     "CREATE INDEX timeline_by_base ON timeline (base)",
-    # A chunk: entries `first` to `first + count - 1` of a timeline; see codec.join. How many events
-    # they have, how many of them change more than agents, and, where they are compressed, what is
-    # known of every agent after them. Files of every version have the names piece and seal.
+    # A chunk holds the entries `first` to `first + count - 1` of a timeline, joined by codec.join.
+    # `events` is the number of their events. `changes` is the number of entries that change more
+    # than agents. In compressed chunks `agents` holds the last state of every agent up to the end
+    # of the chunk. The names piece and seal are older than the word chunk; they stay as they are,
+    # so that files of all versions have the same names.
     """CREATE TABLE piece (
         id INTEGER PRIMARY KEY,
         timeline INTEGER NOT NULL,
@@ -104,8 +106,8 @@ STATEMENTS = (
     "CREATE INDEX piece_by_tick ON piece (timeline, last_tick, first)",
     "CREATE INDEX piece_with_events ON piece (timeline, first, events) WHERE events > 0",
     "CREATE INDEX piece_with_changes ON piece (timeline, first) WHERE changes > 0",
-    # What stands for the first `entries` entries of a timeline, compressed; a cache. Whose, says
-    # `name`.
+    # Cached checkpoints, compressed: each replaces the first `entries` entries of a timeline for
+    # the reader that `name` identifies.
     """CREATE TABLE keyframe (
         id INTEGER PRIMARY KEY,
         timeline INTEGER NOT NULL,
@@ -121,9 +123,9 @@ STATEMENTS = (
 
 
 def expected_schema(statements: Iterable[str]) -> frozenset[tuple[object, ...]]:
-    """What statements define: kind, name, table and text, as `sqlite_master` lists them.
+    """Return the kind, name, table and text of each object that statements define.
 
-    Tables that SQLite makes of its own accord are in it.
+    The rows are those of `sqlite_master`, including the tables that SQLite adds itself.
     """
     with closing(sqlite3.connect(":memory:")) as connection:
         for statement in statements:

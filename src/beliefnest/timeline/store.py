@@ -1,7 +1,7 @@
-"""A journal in one SQLite file per run.
+"""Journal in one SQLite file per run.
 
-Entries lie in chunks (`timeline/chunks.py`), so that every call is durable when it returns and
-a past entry is reached by unpacking one chunk.
+Entries are stored in chunks (`timeline/chunks.py`): every call is durable when it returns, and
+reading a past entry unpacks one chunk.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -60,15 +60,16 @@ _COLUMNS = ", ".join(_TimelineRow._fields)
 
 
 class SqliteJournal:
-    """A `Journal` whose calls are kept in a file once they return.
+    """A `Journal` in a run file; what a call wrote is durable when it returns.
 
-    Made by `create_file`, `open` or `read`; to be closed, or used as a context manager. Every call
-    may raise StoreError: the disk is full, the file is damaged, closed, or open for reading.
+    Create one with `create_file`, `open` or `read`; close it, or use it as a context manager. Every
+    call may raise StoreError: the disk is full, or the file is damaged, closed, or open for reading
+    only.
 
     Attributes:
-        path: The file.
-        writable: Whether it was opened to go on with it.
-        records: What ran.
+        path: Path of the file.
+        writable: True if the file was opened for writing.
+        records: Records of the run besides its timelines.
     """
 
     def __init__(self, database: Database) -> None:
@@ -79,29 +80,29 @@ class SqliteJournal:
 
     @classmethod
     def create_file(cls, path: Path | str) -> "SqliteJournal":
-        """Begin a run file.
+        """Create a run file.
 
         Raises:
-            StoreError: There is a file of that name, or it cannot be made or written.
+            StoreError: The file exists already, or it cannot be created or written.
         """
         return cls(Database.create(Path(path)))
 
     @classmethod
     def open(cls, path: Path | str) -> "SqliteJournal":
-        """Go on with a run file.
+        """Open a run file for writing, to continue the run.
 
         Raises:
-            StoreError: There is none, it is foreign, newer, damaged, read-only, or has
-                another writer.
+            StoreError: The file is missing, no run file, of a newer format, damaged or read-only,
+                or another writer has it open.
         """
         return cls._sound(Database.open(Path(path), _OLDER))
 
     @classmethod
     def read(cls, path: Path | str) -> "SqliteJournal":
-        """Look at a run file, also while another process writes it.
+        """Open a run file for reading; another process may write it at the same time.
 
         Raises:
-            StoreError: There is none, or it is foreign, newer or damaged.
+            StoreError: The file is missing, no run file, of a newer format or damaged.
         """
         return cls._sound(Database.read(Path(path), _OLDER))
 
@@ -119,11 +120,11 @@ class SqliteJournal:
         self.close()
 
     def together(self) -> AbstractContextManager[None]:
-        """Return all calls made inside are kept together or, if one raises, not at all."""
+        """Make the calls inside the block atomic: if one raises, nothing of them is stored."""
         return self._database.transaction()
 
     def unchanging(self) -> AbstractContextManager[None]:
-        """Return all that is read inside is of one moment, whatever a writer does meanwhile."""
+        """Read one state of the file throughout the block, whatever a writer does meanwhile."""
         return self._database.unchanging()
 
     def timelines(self) -> Sequence[TimelineInfo]:
@@ -140,7 +141,10 @@ class SqliteJournal:
         if row.base is not None:
             base = next(self._timeline_rows("WHERE id = ?", row.base), None)
             if base is None:
-                raise StoreError(f"{self.path} is damaged: {key} is based on nothing")
+                raise StoreError(
+                    f"{self.path} is damaged; restore it from a copy "
+                    f"(the base of branch {key.branch!r} of {path_text(key.path)} is missing)"
+                )
         return _info(row, base)
 
     def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
@@ -181,13 +185,13 @@ class SqliteJournal:
             self._write(row._replace(head=head, entries=row.entries + len(encoded), packed=packed))
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
-        """Yield entries number start to stop - 1, oldest first."""
+        """Yield the entries with indexes start to stop - 1, oldest first."""
         row = self._row(key)
         found = self._chunks.raw(row.id, start, min(stop, row.entries), lambda: self._missing(key))
         return map(codec.decode_entry, found)
 
     def entries_until(self, key: TimelineKey, tick: int) -> int:
-        """How many entries lie at `tick` or before."""
+        """Return the number of entries at `tick` or earlier."""
         row = self._row(key)
         found = self._chunks.entries_until(row.id, tick)
         return row.entries if found is None else found
@@ -195,12 +199,12 @@ class SqliteJournal:
     def filtered(
         self, key: TimelineKey, start: int, stop: int, what: EntryFilter
     ) -> Iterator[tuple[int, Entry]]:
-        """Yield those of entries start to stop - 1 that are looked for, with their numbers."""
+        """Yield the entries from start to stop - 1 that match a filter, with their indexes."""
         row = self._row(key)
         return self._chunks.filtered(row.id, start, min(stop, row.entries), what)
 
     def events_until(self, key: TimelineKey, entries: int) -> int:
-        """How many events the first `entries` entries have."""
+        """Return the number of events in the first `entries` entries."""
         with self._database.unchanging():
             return self._chunks.events_until(self._row(key).id, entries)
 
@@ -210,7 +214,7 @@ class SqliteJournal:
             return self._chunks.agents_after(self._row(key).id, entries)
 
     def rename(self, key: TimelineKey, name: str) -> None:
-        """Give a timeline's branch another name; what names it follows."""
+        """Rename a timeline's branch in all tables that name it."""
         with self._database.transaction():
             row = self._row(key)
             if self._found(TimelineKey(key.path, name)) is not None:
@@ -240,7 +244,7 @@ class SqliteJournal:
             self._write(self._row(key)._replace(description=description))
 
     def put_checkpoint(self, key: TimelineKey, name: str, entries: int, body: bytes) -> None:
-        """Keep bytes that stand for the first `entries` entries; InputError if too few."""
+        """Store a checkpoint for the first `entries` entries; InputError if there are fewer."""
         packed = self._chunks.compressed(body)
         with self._database.transaction():
             row = self._row(key)
@@ -256,7 +260,7 @@ class SqliteJournal:
     def nearest_checkpoint(
         self, key: TimelineKey, name: str, entries: int
     ) -> tuple[int, bytes] | None:
-        """Return the last checkpoint of that name at or before entry `entries`, with its place."""
+        """Return the last checkpoint of that name at or before entry `entries`, and its place."""
         found = self._database.sound_rows(
             "timeline, name, entries, body",
             "keyframe WHERE timeline = ? AND name = ? AND entries <= ? "
@@ -267,7 +271,7 @@ class SqliteJournal:
         return next(((place, self._chunks.decompressed(body)) for *_, place, body in found), None)
 
     def put_body_state(self, key: TimelineKey, entries: int, tick: int, state: bytes) -> None:
-        """Keep the internal state of a timeline's body at a moment; InputError if too few."""
+        """Store the internal state of a timeline's body; InputError if there are fewer entries."""
         with self._database.transaction():
             row = self._row(key)
             check_place(_info(row, None), entries)
@@ -280,7 +284,7 @@ class SqliteJournal:
             )
 
     def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
-        """Return the internal state that was kept for a moment; None if none was."""
+        """Return the internal state stored for exactly this moment; None if there is none."""
         found = self._database.sound_rows(
             "timeline, entries, tick, state",
             "body_state WHERE timeline = ? AND entries = ? AND tick = ?",
@@ -290,7 +294,7 @@ class SqliteJournal:
         return next((self._chunks.decompressed(state) for *_, state in found), None)
 
     def close(self) -> None:
-        """Close the file and let another writer have it; closing twice is allowed."""
+        """Close the file and release its lock; closing twice is allowed."""
         self._database.close()
 
     def _timeline_rows(self, where: str, *values: object) -> Iterator[_TimelineRow]:
@@ -312,7 +316,8 @@ class SqliteJournal:
         return branch_missing(key, (other.branch for other in beside))
 
     def _next_id(self) -> int:
-        # The sequence outlives deleted rows, so that a reader never takes one timeline for another.
+        # SQLite's sequence also counts deleted rows. An id is never used twice, so that a reader
+        # never takes one timeline for another.
         row = self._database.row("SELECT seq FROM sqlite_sequence WHERE name = 'timeline'")
         return 1 if row is None else row[0] + 1
 

@@ -1,6 +1,6 @@
-"""The tables of an export: their columns, and their rows from what a journal holds.
+"""Tables of an export: their columns, and functions from journal entries to rows.
 
-Pure functions from entries to rows; docs/export.md describes the columns for readers.
+All functions are pure. docs/export.md describes the columns for readers.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -35,22 +35,22 @@ __all__ = [
 ]
 
 Column = Literal["text", "integer", "number", "boolean", "object"]
-"""Type of a column's values; every value may also be null. An object is a JSON object or array."""
+"""Type of a column's values. Every value may also be null. An object is a JSON object or array."""
 
 Row = tuple[str, dict[str, Any]]
-"""Name of a table, and values by column."""
+"""Name of a table, and the values of one row by column."""
 
 
 @dataclass(frozen=True, slots=True)
 class BeliefRow:
-    """A belief at one tick.
+    """State of one belief at one tick.
 
     Attributes:
-        path: Whose belief.
-        timeline: The timeline it was on.
+        path: Path of the belief.
+        timeline: Timeline it was on.
         tick: Tick of that timeline.
-        state: What it held, as plain data.
-        blocks: Blocks that changed since the row before, as plain data.
+        state: State as plain data.
+        blocks: Blocks that changed since the previous row of this belief, as plain data.
     """
 
     path: BeliefPath
@@ -179,13 +179,13 @@ TABLES: Mapping[str, Mapping[str, Column]] = MappingProxyType(
         "beliefs": {**_ON_TIMELINE, "state": "object", "blocks": "object"},
     }
 )
-"""Table to column to type, in the order in which they are written."""
+"""Types of the columns by table and column, in output order."""
 
 IF_ANY = frozenset({"signs", "rounds", "goals"})
 """Tables that are written only if they have a row."""
 
 FIRST_ENTRY = -1
-"""Number under which the first state of a timeline is listed."""
+"""Entry number of the rows that describe the first state of a timeline."""
 
 
 def timeline_row(info: TimelineInfo) -> Row:
@@ -204,7 +204,7 @@ def timeline_row(info: TimelineInfo) -> Row:
 
 
 def entry_rows(key: TimelineKey, number: int, entry: Entry, registry: Registry) -> Iterator[Row]:
-    """Yield the rows of one entry; UnknownNameError if a block state is none of the registry's."""
+    """Yield the rows of one entry; UnknownNameError if the registry lacks a block state."""
     place = _place(key, number, entry.tick)
     edited = None if isinstance(entry, Frame) else path_text(entry.path)
     yield from _block_rows(place, entry.blocks.items(), registry, edited)
@@ -226,7 +226,7 @@ def entry_rows(key: TimelineKey, number: int, entry: Entry, registry: Registry) 
 
 
 def snapshot_rows(key: TimelineKey, snapshot: Snapshot, registry: Registry) -> Iterator[Row]:
-    """Yield the rows of a timeline's first state; of the blocks, those that are not air."""
+    """Yield the rows of a timeline's first state; air has no rows."""
     place = _place(key, FIRST_ENTRY, snapshot.tick)
     low = snapshot.box.low
     cells = (
@@ -248,13 +248,13 @@ def run_row(run: RunRecord, versions: Sequence[Mapping[str, str]]) -> Row:
 
 
 def program_row(program: ProgramRecord) -> Row:
-    """Return the row of a program that ran."""
+    """Return the row of a program."""
     path, detail = path_text(program.path), _program_detail(program)
     return _row("programs", program, path=path, call=program.group, detail=detail)
 
 
 def _program_detail(program: ProgramRecord) -> dict[str, str]:
-    """What is known of a program besides, as texts."""
+    """Return further facts about a program, as texts."""
     return {
         **({} if program.step is None else {"step": str(program.step)}),
         "timeout_ticks": str(program.timeout_ticks),
@@ -278,7 +278,7 @@ def belief_row(row: BeliefRow) -> Row:
 
 
 def _row(table: str, record: object, **others: object) -> Row:
-    """Return a row of `others` and, in the other columns, what the record has under their names."""
+    """Return a row with the values of `others`; the record's attributes fill the other columns."""
     columns = TABLES[table]
     return table, {
         name: others[name] if name in others else getattr(record, name) for name in columns

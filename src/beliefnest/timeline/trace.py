@@ -1,7 +1,8 @@
-"""Histories of other programs: a JSONL file of poses, blocks and events becomes entries.
+"""Reader of traces: JSONL files with the histories that other programs recorded.
 
-The first line is the state things begin in, every other line what one tick changed; see
-docs/export.md. All bad lines are found and reported together.
+The first line holds the initial state. Each other line holds the changes of one tick: poses,
+blocks, events. See docs/export.md for the format. The reader finds all bad lines and reports them
+together.
 """
 
 import math
@@ -49,7 +50,7 @@ from beliefnest.world.values import (
 __all__ = ["BadLine", "Trace", "load_trace", "read_trace", "record_trace"]
 
 _LONGEST_LINE = 2**26
-"""Bytes."""
+"""Greatest length of a line in bytes."""
 
 _AGENT_SLOTS = AGENT_SLOTS + WORN_SLOTS
 _AT_CONTAINERS = frozenset(
@@ -62,7 +63,7 @@ _AT_CONTAINERS = frozenset(
 """Kinds of events that happen at a container."""
 
 _TOLD = 10
-"""Bad lines an error message quotes."""
+"""Number of bad lines that an error message quotes."""
 
 
 class _AgentLine(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
@@ -141,7 +142,7 @@ class _TickLine(msgspec.Struct, forbid_unknown_fields=True):
 
 @dataclass(frozen=True, slots=True)
 class BadLine:
-    """A line of a trace that cannot be used: its number, from 1, and why."""
+    """An unusable line of a trace: its number, from 1, and the fault."""
 
     line: int
     fault: str
@@ -149,15 +150,15 @@ class BadLine:
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """A history that another program recorded.
+    """History that another program recorded.
 
     Attributes:
-        first: The state it begins in.
-        agents: Names of all agents, those who come later included.
-        perception: What agents can perceive.
-        static_blocks: Names of blocks that everybody knows from the start.
-        unique: Items of which everybody knows that there is one.
-        entries: What changed, in order of ticks.
+        first: Initial state.
+        agents: Names of all agents, including those that appear later.
+        perception: Perception options of the agents.
+        static_blocks: Names of blocks that all agents know from the start.
+        unique: Items of which, by common knowledge, only one exists.
+        entries: Changes, in order of ticks.
         bad: Lines that were left out.
     """
 
@@ -171,7 +172,7 @@ class Trace:
 
 
 def load_trace(path: Path, registry: Registry) -> Trace:
-    """Return the history in a file, all of whose lines are good.
+    """Read a trace file; every line must be good.
 
     Raises:
         InputError: The file cannot be read or has bad lines; the message names them.
@@ -191,10 +192,10 @@ def load_trace(path: Path, registry: Registry) -> Trace:
 
 
 def read_trace(lines: Iterable[bytes], registry: Registry) -> Trace:
-    """Return the history in lines of JSON; bad ones are left out and listed.
+    """Read a trace from lines of JSON; leave bad lines out and list them.
 
     Raises:
-        InputError: The first line is bad, so that nothing after it can be judged.
+        InputError: The first line is bad; the others cannot be checked without it.
     """
     numbered = ((n, line) for n, line in enumerate(lines, start=1) if line.strip())
     number, first_line = next(numbered, (1, b""))
@@ -221,14 +222,14 @@ def read_trace(lines: Iterable[bytes], registry: Registry) -> Trace:
 
 
 def record_trace(trace: Trace, journal: Journal, key: TimelineKey) -> None:
-    """Put a trace into a journal as a new timeline; BranchError if there is one of that key."""
+    """Append a trace to a journal as a new timeline; BranchError if the key is in use."""
     start = trace.first.tick
     journal.create(key, None, start)
     journal.append(key, trace.entries, trace.entries[-1].tick if trace.entries else start)
 
 
 class _Reader:
-    """Turns lines into frames; remembers what a line leaves out."""
+    """Converter from lines to frames; keeps the current state for fields that a line omits."""
 
     def __init__(self, line: _FirstLine, registry: Registry) -> None:
         self._registry = registry
@@ -236,7 +237,9 @@ class _Reader:
         self.names = tuple(line.agents)
         _check(box_fault(self._box), _tick_fault(line.tick), *map(agent_name_fault, self.names))
         if len(self.names) > MOST_AGENTS:
-            raise InputError(f"there are {len(self.names)} agents; at most {MOST_AGENTS} can be")
+            raise InputError(
+                f"there are {len(self.names)} agents; at most {MOST_AGENTS} are allowed"
+            )
         self.perception = line.perception.value(registry)
         for name in line.static_blocks:
             registry.state_ids(name)
@@ -269,9 +272,11 @@ class _Reader:
         )
 
     def frame(self, line: _TickLine) -> Frame:
-        """Return the frame of a line; nothing is remembered of a line that raises."""
+        """Return the frame of a line; a line that raises leaves the state unchanged."""
         if line.tick <= self._tick:
-            raise InputError(f"tick {line.tick} does not come after tick {self._tick}")
+            raise InputError(
+                f"tick {line.tick} is not later than tick {self._tick}; sort the lines by tick"
+            )
         _check(_tick_fault(line.tick))
         agents = self._changed_agents(line.agents)
         blocks = self._blocks(line.blocks)
@@ -332,18 +337,20 @@ class _Reader:
         for name, count in items.items():
             self._registry.item_stack(name)
             if count < 1:
-                raise InputError(f"{count} of {name!r}; counts are positive")
+                raise InputError(f"{count} of item {name!r}; counts must be positive")
         _check(items_fault(items, self._registry, slots, holder))
         return dict(items)
 
     def _entities(self, lines: Mapping[int, _ItemLine | None]) -> dict[int, DroppedItem | None]:
         for number in lines:
             if not 0 <= number <= LATEST_TICK:
-                raise InputError(f"item {number} has no number from 0 to {LATEST_TICK}")
+                raise InputError(
+                    f"item number {number} is out of range; numbers go from 0 to {LATEST_TICK}"
+                )
         return {n: None if item is None else self._item(item) for n, item in lines.items()}
 
     def _item(self, line: _ItemLine) -> DroppedItem:
-        self._items({line.name: line.count}, 1, "what lies there")
+        self._items({line.name: line.count}, 1, "a dropped item")
         self._inside(line.position)
         return DroppedItem(line.name, line.count, line.position)
 
@@ -354,24 +361,26 @@ class _Reader:
 
     def _agent(self, name: str, line: _AgentLine | None) -> AgentState | None:
         if name not in self.names:
-            raise InputError(f"agent {name!r} is not among those of the first line")
+            raise InputError(f"unknown agent {name!r}; list every agent in the first line")
         if line is None:
             return None
         given = {k: v for k, v in msgspec.structs.asdict(line).items() if v is not None}
         before = self._agents.get(name)
         if before is None and line.position is None:
-            raise InputError(f"agent {name!r} comes without a position")
+            raise InputError(f"agent {name!r} appears without a position; give one")
         if line.position is not None:
             self._inside(line.position)
         numbers = (line.yaw, line.pitch, line.health, line.food)
         if not all(math.isfinite(number) for number in numbers if number is not None):
-            raise InputError(f"agent {name!r} has a yaw, pitch, health or food that is no number")
+            raise InputError(
+                f"agent {name!r} has a yaw, pitch, health or food that is not a finite number"
+            )
         self._items(line.inventory or {}, _AGENT_SLOTS, f"agent {name!r}")
         for slot, item in (line.equipment or {}).items():
             self._registry.item_stack(item)
             if slot not in EQUIPMENT_SLOTS:
                 slots = ", ".join(EQUIPMENT_SLOTS)
-                raise InputError(f"there is no slot {slot!r}; there are {slots}")
+                raise InputError(f"agent {name!r} has an unknown slot {slot!r}; slots are {slots}")
         return AgentState(**given) if before is None else replace(before, **given)
 
     def _inside(self, point: Point) -> None:
@@ -406,7 +415,7 @@ class _Reader:
 
 
 def _lines(file: BinaryIO) -> Iterator[bytes]:
-    """Yield the lines of a file, none of which goes on for ever."""
+    """Yield the lines of a file; InputError if one is too long."""
     while line := file.readline(_LONGEST_LINE + 1):
         if len(line) > _LONGEST_LINE:
             raise InputError(f"a line is longer than {_LONGEST_LINE:,} bytes")
@@ -421,7 +430,7 @@ def _check(*faults: str | None) -> None:
 
 def _tick_fault(tick: int) -> str | None:
     if not 0 <= tick <= LATEST_TICK:
-        return f"tick {tick} is none; ticks are from 0 to {LATEST_TICK}"
+        return f"tick {tick} is out of range; ticks go from 0 to {LATEST_TICK}"
     return None
 
 

@@ -1,4 +1,4 @@
-"""Facts of Minecraft in files that are written when the package is built."""
+"""Reader of files with facts of Minecraft, which the build of the package writes."""
 
 from pathlib import Path
 from typing import TypeVar
@@ -13,7 +13,7 @@ _BUNDLE = Path(__file__).parents[1] / "_bundle"
 
 
 class Bundled(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What every such file says of itself: its format and the version it is about."""
+    """Header of each such file: its format and its Minecraft version."""
 
     format: int
     minecraft: str
@@ -23,16 +23,16 @@ FileT = TypeVar("FileT", bound=Bundled)
 
 
 def read_bundled(kind: str, version: str, form: type[FileT], file_format: int) -> FileT:
-    """Return the facts of one kind about one Minecraft version.
+    """Read the file of one kind for one Minecraft version.
 
     Args:
-        kind: What the file is called before its version.
-        version: Of Minecraft.
-        form: Its content.
-        file_format: The one that is read.
+        kind: Kind of facts, which is the first part of the file's name.
+        version: Minecraft version.
+        form: Type of the content.
+        file_format: Expected format number.
 
     Raises:
-        BodyError: There is no such file, or it is damaged or of another build.
+        BodyError: The file is missing, damaged or from another build.
     """
     path = _BUNDLE / f"{kind}-{version}.msgpack"
     try:

@@ -1,7 +1,7 @@
-"""Claims: statements with a structure that an utterance may carry beside its text.
+"""Claims: structured statements that an utterance may carry beside its text.
 
-An utterance's event keeps them as plain data under `claims` in its detail, so that whatever
-stores, sends or exports events does so with claims as well.
+The event of an utterance holds them as plain data under `claims` in its detail. They are
+therefore stored, sent and exported together with the event.
 """
 
 import math
@@ -28,13 +28,13 @@ __all__ = [
 
 
 class ClaimKind(StrEnum):
-    """What a claim is about (semantics, section 8).
+    """Kinds of claims (semantics, section 8).
 
     Attributes:
-        LOCATED: That a container holds an item.
-        ABSENT: That a container does not hold an item.
-        POSITION: Where an agent is.
-        BLOCK: Which block is at a place, and in which state.
+        LOCATED: A container holds an item.
+        ABSENT: A container does not hold an item.
+        POSITION: An agent is at a place.
+        BLOCK: A block of a given state is at a place.
     """
 
     LOCATED = "located"
@@ -45,15 +45,15 @@ class ClaimKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """A statement about the world; made with `located`, `absent`, `position` and `block`.
+    """A statement about the world, created with `located`, `absent`, `position` or `block`.
 
     Attributes:
-        kind: What it states.
-        place: The container of `located` and `absent` and the block of `block`, a block
-            position; where the agent's feet are for `position`, a point.
-        item: The item of `located` and `absent`, without `minecraft:`.
-        agent: The agent of `position`.
-        state: The block of `block`: its name, and the properties that are stated.
+        kind: Kind of statement.
+        place: Block position of the container (`located`, `absent`) or of the block (`block`);
+            position of the agent's feet, a point (`position`).
+        item: Item of `located` and `absent`, without `minecraft:`.
+        agent: Agent of `position`.
+        state: Block of `block`: its name and the stated properties.
     """
 
     kind: ClaimKind
@@ -64,33 +64,33 @@ class Claim:
 
     @staticmethod
     def located(item: str, container: Position) -> "Claim":
-        """Say that the diamond is in that container.
+        """Claim that an item is in a container.
 
         Args:
             item: Name of an item.
             container: Position of the container's block.
 
         Raises:
-            InputError: It is no position.
+            InputError: The position is invalid.
             UnknownNameError: There is no such item.
         """
         return Claim(ClaimKind.LOCATED, _block_position(container), item=_item(item))
 
     @staticmethod
     def absent(item: str, container: Position) -> "Claim":
-        """Say that it is not in that container; arguments and errors as for `located`."""
+        """Claim that an item is not in a container; arguments and errors as for `located`."""
         return Claim(ClaimKind.ABSENT, _block_position(container), item=_item(item))
 
     @staticmethod
     def position(agent: str, place: Point) -> "Claim":
-        """Say that the seller is there.
+        """Claim that an agent is at a place.
 
         Args:
             agent: Name of an agent.
             place: Middle of its feet, in blocks.
 
         Raises:
-            InputError: It is no point, or no name.
+            InputError: The place is not a point, or the name is empty.
         """
         if not isinstance(agent, str) or not agent:
             raise InputError(f"a claim about an agent names {agent!r}; give an agent's name")
@@ -98,15 +98,15 @@ class Claim:
 
     @staticmethod
     def block(place: Position, state: str) -> "Claim":
-        """Say that the door is open.
+        """Claim that a block has a state, such as an open door.
 
         Args:
             place: Position of the block.
-            state: A block, `name` or `name[property=value,...]`; properties that are not
-                named are not spoken of.
+            state: A block, `name` or `name[property=value,...]`; the claim says nothing about
+                the other properties.
 
         Raises:
-            InputError: It is no position, or no block's text.
+            InputError: The position or the text of the block is invalid.
             UnknownNameError: There is no such block, property or value.
         """
         if not isinstance(state, str):
@@ -115,36 +115,36 @@ class Claim:
 
     @property
     def cell(self) -> Position:
-        """The block position that its place lies in."""
+        """Position of the block that contains the claim's place."""
         x, y, z = (math.floor(value) for value in self.place)
         return (x, y, z)
 
     def plain(self) -> dict[str, Any]:
-        """As plain data: `kind`, `place`, and `item`, `agent` or `state`."""
+        """Return plain data: `kind`, `place`, and `item`, `agent` or `state`."""
         given = {"item": self.item, "agent": self.agent, "state": self.state}
         stated = {key: value for key, value in given.items() if value is not None}
         return {"kind": self.kind.value, **stated, "place": self.place}
 
     def check(self, box: Box, agents: Collection[str]) -> None:
-        """See that it speaks of what there is.
+        """Check that the claim is about this world.
 
         Raises:
-            InputError: Its place lies outside the box, or its agent is none of `agents`.
+            InputError: The place is outside the box, or the agent is not in `agents`.
         """
         if self.cell not in box:
             raise InputError(
-                f"the claim {self} speaks of {self.place}, outside the box {box.low}..{box.high}"
+                f"the claim '{self}' is about {self.place}, outside the box {box.low}..{box.high}"
             )
         if self.agent is not None and self.agent not in agents:
             raise InputError(
-                f"the claim {self} names no agent of this world; there are {sorted(agents)}"
+                f"the claim '{self}' names an unknown agent; agents are {sorted(agents)}"
             )
 
     def __str__(self) -> str:
         return self.about(f"({', '.join(f'{value:g}' for value in self.place)})")
 
     def about(self, where: str) -> str:
-        """It in words, with a name for its place."""
+        """Return the claim in words, with the given name for its place."""
         match self.kind:
             case ClaimKind.LOCATED:
                 return f"{self.item} is in {where}"
@@ -157,7 +157,7 @@ class Claim:
 
 
 class _Plain(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A claim as it is written; what its values are `Claim` checks, in words of its own."""
+    """A claim as plain data; `Claim` checks the values, for clearer messages."""
 
     kind: Literal["located", "absent", "position", "block"]
     place: Any = None
@@ -182,10 +182,10 @@ class _Plain(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def claims_from_plain(plain: object) -> tuple[Claim, ...]:
-    """Return claims from plain data, a list of what `Claim.plain` gives.
+    """Convert a list of plain data, as of `Claim.plain`, to claims.
 
     Raises:
-        InputError: It is of another form; the message says which claim and where.
+        InputError: The data have another form; the message names the claim and the fault.
         UnknownNameError: There is no such item or block.
     """
     if not isinstance(plain, list | tuple):
@@ -206,19 +206,20 @@ def _claim(number: int, plain: object) -> Claim:
 
 
 def claims_of(event: Event) -> tuple[Claim, ...]:
-    """Return the claims that an event carries; none for most."""
+    """Return the claims of an event; most events have none."""
     plain = event.detail.get("claims")
     return claims_from_plain(plain) if plain else ()
 
 
 def claims_written(frame: Frame, place: Position) -> tuple[Claim, ...]:
-    """What is claimed on a sign that was written on in a frame; nothing on any other block."""
+    """Return the claims on a sign that was written in a frame; none for other blocks."""
     block = frame.blocks[place]
     if not isinstance(block, Sign):
         return ()
     for event in reversed(frame.events):
         if event.kind is EventKind.BLOCK_UPDATE and event.detail.get("position") == place:
-            # A sign that is turned keeps its text.
+            # Turning a sign also updates its block but keeps its text. The event's claims count
+            # only if they come with the text that is there now.
             is_told = event.detail.get("text", block.text) == block.text
             return claims_of(event) if is_told else ()
     return ()
@@ -227,10 +228,10 @@ def claims_written(frame: Frame, place: Position) -> tuple[Claim, ...]:
 def with_claims(
     detail: Mapping[str, Any], claims: Iterable[Claim], box: Box, agents: Collection[str]
 ) -> dict[str, Any]:
-    """Return an utterance's detail with claims in it; as it is where there are none.
+    """Return an event's detail with claims added, if there are any.
 
     Raises:
-        InputError: They are no list, one is no claim, or does not fit the world.
+        InputError: `claims` is not a list of claims, or a claim is not about this world.
     """
     told: object = claims
     if isinstance(told, str) or not isinstance(told, Iterable):

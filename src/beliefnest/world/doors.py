@@ -1,4 +1,4 @@
-"""Doors, trapdoors, fence gates and switches: which blocks are, and what using a door does."""
+"""Doors, trapdoors, fence gates and switches: which blocks they are, and their use."""
 
 from collections.abc import Callable
 
@@ -15,48 +15,48 @@ _SWITCHES = ("lever", "_button")
 
 
 def is_door(name: str) -> bool:
-    """Return True if the block of that name opens and shuts: a door, a trapdoor or a fence gate."""
+    """Return True if a block name is that of a door, a trapdoor or a fence gate."""
     return name.endswith(_KINDS)
 
 
 def is_doorway(name: str) -> bool:
-    """Whether one walks through the block of that name where it is open: a door or a fence gate."""
+    """Return True if agents can walk through the block when it is open: door or fence gate."""
     return name.endswith(_WAYS)
 
 
 def is_switch(name: str) -> bool:
-    """Return True if the block of that name is switched by hand: a lever or a button."""
+    """Return True if a block name is that of a lever or a button."""
     return name.endswith(_SWITCHES)
 
 
 def moves_by_hand(name: str) -> bool:
-    """Return True if the door, trapdoor or gate of that name is not moved by power alone."""
+    """Return True if a door, trapdoor or gate can be moved by hand, not only by redstone power."""
     return is_door(name) and not name.startswith(_BY_POWER)
 
 
 def passage(registry: Registry, state: int) -> tuple[int, int]:
-    """Along which of x and z a door or gate is gone through: (1, 0) or (0, 1)."""
+    """Return the horizontal direction through a door or gate: (1, 0) along x, (0, 1) along z."""
     return (0, 1) if registry.properties(state)["facing"] in ("north", "south") else (1, 0)
 
 
 def is_open(registry: Registry, state: int) -> bool | None:
-    """Return True if a door, trapdoor or gate stands open; None: the block is none."""
+    """Return True if a door, trapdoor or gate is open; None if the block is none of them."""
     return registry.properties(state)["open"] == "true" if is_door(registry.name(state)) else None
 
 
 def used_door(
     registry: Registry, state_at: Callable[[Position], int], place: Position, *, opens: bool
 ) -> dict[Position, int]:
-    """Return the new states of a door that is used by hand; it is where the first of them is.
+    """Return the new block states after a door was used; the first is the door's position.
 
     Args:
         registry: Names and properties of states.
-        state_at: Block state at a position; air outside the world.
-        place: Where the door is, either of its halves.
-        opens: Whether it is opened or shut.
+        state_at: Function that returns the block state at a position; air outside the world.
+        place: Position of the door; either half.
+        opens: True to open the door, False to shut it.
 
     Raises:
-        WorldError: There is no door, it is so already, or it moves by power alone.
+        WorldError: There is no door, it has this state already, or only power moves it.
     """
     text = registry.text(state_at(place))
     name = registry.name(state_at(place))
@@ -64,7 +64,7 @@ def used_door(
     if stands_open is None:
         raise WorldError(f"there is no door, trapdoor or gate at {place}, but {text}")
     if not moves_by_hand(name):
-        raise WorldError(f"the {name} at {place} is not moved by hand; set_block() changes it")
+        raise WorldError(f"the {name} at {place} cannot be moved by hand; use set_block()")
     if stands_open is opens:
         raise WorldError(f"the {name} at {place} is {'open' if opens else 'shut'} already")
     parts = [place]

@@ -1,7 +1,7 @@
-"""Frames and snapshots: the facts one simulator reports.
+"""Frames and snapshots: the facts that one simulator reports.
 
-A frame is what changed in one simulator in one tick; a snapshot is everything there is
-at one tick. Both say what is, never what anyone believes.
+A frame holds the changes of one simulator in one tick. A snapshot holds its whole state at one
+tick. Both hold facts, never beliefs.
 """
 
 from collections.abc import Mapping
@@ -36,16 +36,16 @@ _NOTHING: Mapping[object, object] = {}
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """What changed in one simulator during one tick.
+    """Changes of one simulator during one tick.
 
     Attributes:
-        tick: The tick that ended; frames of one timeline have rising ticks.
-        agents: Agents whose state changed, with their new state; None: left the world.
-        blocks: Positions whose block changed, or what is written on it, with the new block.
-        containers: Containers whose content changed, with all they hold now; None where
-            there is no container any more.
-        items: Item entities that changed; None: gone.
-        events: What happened, in order.
+        tick: The tick that ended; ticks of frames rise along a timeline.
+        agents: New states of the agents that changed; None if an agent left the world.
+        blocks: New blocks at the positions where the block or its text changed.
+        containers: Full new contents of the containers that changed; None if the container is
+            gone.
+        items: New states of the dropped items that changed; None if an item is gone.
+        events: Events, in order.
     """
 
     tick: int
@@ -56,7 +56,8 @@ class Frame:
     events: tuple[Event, ...] = ()
 
     def __post_init__(self) -> None:
-        # Runs have very many frames, and most change little: nothings are one and the same.
+        # A run has very many frames, most of them nearly empty. Sharing one empty mapping saves
+        # memory.
         for name in ("agents", "blocks", "containers", "items"):
             if not getattr(self, name):
                 object.__setattr__(self, name, _NOTHING)
@@ -69,14 +70,20 @@ class Frame:
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """All of one simulator at one tick; the grid is not to be written to.
+    """State of one simulator at one tick; its grid must not be changed.
 
-    `signs` has the texts of those that are written on, `sign_claims` what is claimed on them, as
-    plain data (see `world.claims`).
-
-    `internal_state` is what goes on in it besides and nobody can perceive, as the speed of who
-    falls or the heat of a furnace: bytes that only the simulator's world reads. Empty: nothing is
-    under way.
+    Attributes:
+        tick: The tick.
+        box: Region of the scenario.
+        blocks: Grid of block states.
+        containers: Contents of containers.
+        agents: States of agents.
+        items: Dropped items by entity number.
+        internal_state: State that nobody can perceive, such as the speed of a falling agent or
+            the heat of a furnace. Only the simulator's world can read these bytes; empty if
+            there is none.
+        signs: Texts of the signs that have text.
+        sign_claims: Claims on signs, as plain data (see `world.claims`).
     """
 
     tick: int

@@ -1,8 +1,9 @@
-"""What comes of switching, breaking and putting blocks by hand, in a world without a server.
+"""Rules for using, breaking and placing blocks by hand in the scripted world.
 
-Drops and times are those of the embedded world: `bodies/node/handling.js` writes them from its
-rules into a file when the package is built. What that world decides by chance, or by how somebody
-stands, is refused here, and so is what would move something else.
+Drops and times are the same as in the embedded world: `bodies/node/handling.js` writes its rules
+into a file when the package is built. The functions refuse acts whose result is random or
+depends on the pose of the agent in the embedded world. They also refuse acts that would move
+other blocks.
 """
 
 import functools
@@ -33,7 +34,7 @@ _LAMP = "redstone_lamp"
 _NEEDS_HOLDER = ("lever", "torch", "ladder", "_button", "_carpet", "_sign", "_plate", "rail")
 
 StateAt = Callable[[Position], int]
-"""Block state at a position; air outside the world."""
+"""Function that returns the block state at a position; air outside the world."""
 
 
 class _Breaking(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -48,42 +49,42 @@ class _File(Bundled, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True, eq=False)
 class Handling:
-    """What comes of using and breaking the blocks of one Minecraft version by hand."""
+    """Results of using and breaking the blocks of one Minecraft version by hand."""
 
     _breaking: Mapping[str, _Breaking]
     _pressed: Mapping[str, int]
 
     @staticmethod
     def load(version: str = "1.20.4") -> "Handling":
-        """That of a Minecraft version, read once per process.
+        """Return the rules of a Minecraft version; each is read once per process.
 
         Raises:
-            BodyError: The package was not built, or its file is damaged.
+            BodyError: The package was not built, or the file of the rules is damaged.
         """
         return _load(version)
 
     def pressed_ticks(self, name: str) -> int:
-        """Return ticks after which a pressed button comes out again; 0: the block is no button."""
+        """Return the ticks after which a pressed button comes out; 0 if the block is no button."""
         return self._pressed.get(name, 0)
 
     def is_pressed(self, registry: Registry, state: int) -> bool:
-        """Return True if a block is a button that is pressed."""
+        """Return True if a block is a pressed button."""
         if not self.pressed_ticks(registry.name(state)):
             return False
         return registry.properties(state)["powered"] == "true"
 
     def drops(self, name: str, tools: Iterable[str]) -> Items:
-        """What a block drops that is broken by somebody who has these tools.
+        """Return the items that a block drops when it is broken with one of the given tools.
 
         Raises:
-            WorldError: It cannot be broken, or what it drops is left to chance, or is nothing
-                without a tool that is not there.
+            WorldError: The block cannot be broken, its drops are random, or it needs another
+                tool.
         """
         how = self._breaking.get(name)
         if how is None:
             raise WorldError(
-                f"a {name} is not mined in the scripted world: it cannot be, has several parts, "
-                'or drops what chance decides; open the nest with world="embedded" for that'
+                f"a {name} cannot be mined in the scripted world: it is unbreakable, has several "
+                'parts, or has random drops; open the nest with world="embedded" for that'
             )
         if how.tools and not set(how.tools) & set(tools):
             raise WorldError(f"{name} needs one of these tools: {', '.join(how.tools)}")
@@ -91,10 +92,10 @@ class Handling:
 
 
 def switched_lever(registry: Registry, state_at: StateAt, place: Position, *, powered: bool) -> int:
-    """Return the new state of a lever that is brought into another one.
+    """Return the state of a lever after it was switched.
 
     Raises:
-        WorldError: There is no lever, it is so already, or it would move something.
+        WorldError: There is no lever, it has this state already, or it would move something.
     """
     text = registry.text(state_at(place))
     if registry.name(state_at(place)) != "lever":
@@ -108,10 +109,10 @@ def switched_lever(registry: Registry, state_at: StateAt, place: Position, *, po
 def pressed_button(
     registry: Registry, state_at: StateAt, place: Position, *, powered: bool = True
 ) -> int:
-    """Return the new state of a button that is pressed, or comes out again.
+    """Return the state of a button after it was pressed or came out again.
 
     Raises:
-        WorldError: There is no button, it is so already, or it would move something.
+        WorldError: There is no button, it has this state already, or it would move something.
     """
     state = state_at(place)
     if not registry.name(state).endswith("_button"):
@@ -125,27 +126,27 @@ def pressed_button(
 def put_block(
     registry: Registry, state_at: StateAt, place: Position, name: str, bodies: Iterable[Point]
 ) -> int:
-    """Return the state of a block that is put somewhere.
+    """Return the state of a block that an agent places.
 
     Args:
         registry: Names and shapes.
-        state_at: Block state at a position.
-        place: Where it is put.
-        name: The item, which is called as its block.
-        bodies: Where somebody's feet are.
+        state_at: Function that returns the block state at a position.
+        place: Position for the block.
+        name: Name of the item, which is also the name of the block.
+        bodies: Positions of the feet of all agents.
 
     Raises:
-        WorldError: It is no such block, there is something, or nothing to put it against.
+        WorldError: There is no such block, the place is taken, or no block supports it.
     """
     if not registry.has_block(name) or len(registry.state_ids(name)) != 1:
         raise WorldError(
-            f"{name} is not put in the scripted world: it is no block, or stands as whoever puts "
-            'it does; open the nest with world="embedded" for that'
+            f"{name} cannot be put in the scripted world: it is no block, or its state depends on "
+            'the pose of the agent; open the nest with world="embedded" for that'
         )
     if not free_to_put(registry, state_at, place):
         raise WorldError(
-            f"{name} cannot be put at {place}: {registry.text(state_at(place))} is there, or there "
-            "is no solid block beside it"
+            f"{name} cannot be put at {place}: {registry.text(state_at(place))} is there, or no "
+            "solid block is beside it"
         )
     state = registry.state_id(name)
     if any(_overlaps(box, place, feet) for box in registry.boxes(state) for feet in bodies):
@@ -154,7 +155,7 @@ def put_block(
 
 
 def free_to_put(registry: Registry, state_at: StateAt, place: Position) -> bool:
-    """Return True if a place is free, and there is a block beside it to put something against."""
+    """Return True if a place is air and has a solid block beside it to place something against."""
     if state_at(place) not in registry.airs:
         return False
     around = (state_at(_beside(place, side)) for side in _SIDES)
@@ -162,19 +163,22 @@ def free_to_put(registry: Registry, state_at: StateAt, place: Position) -> bool:
 
 
 def check_holds_nothing(registry: Registry, state_at: StateAt, place: Position) -> None:
-    """Raise WorldError if something beside a block may come off with it."""
+    """Raise WorldError if a neighbour of a block may come off together with it."""
     for side in _SIDES:
         other = _beside(place, side)
         name = registry.name(state_at(other))
         if name.endswith(_NEEDS_HOLDER):
             raise WorldError(
-                f"the block at {place} is not mined in the scripted world: the {name} at {other} "
-                'may come off with it; open the nest with world="embedded" for that'
+                f"the block at {place} cannot be mined in the scripted world: the {name} at "
+                f'{other} may come off with it; open the nest with world="embedded" for that'
             )
 
 
 def _check_moves_nothing(registry: Registry, state_at: StateAt, place: Position) -> None:
-    """A switch moves what is beside it and beside the block that it is fixed to."""
+    """Raise WorldError if a switch could move something.
+
+    A switch acts on its neighbours and on the neighbours of the block that it is fixed to.
+    """
     near = [_beside(place, side) for side in _SIDES]
     near += [_beside(other, side) for other in near for side in _SIDES]
     for other in near:

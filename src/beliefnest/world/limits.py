@@ -1,6 +1,7 @@
-"""Bounds of size and distance for what comes from outside: those of Minecraft, or of memory.
+"""Limits of sizes and distances for outside input, set by Minecraft or by memory.
 
-Each function says what is wrong, None if nothing is; whoever calls it knows where that stands.
+Each `..._fault` function returns a description of the fault, or None. The caller adds the place
+in its input.
 """
 
 import math
@@ -30,18 +31,18 @@ __all__ = [
 ]
 
 FARTHEST = 30_000_000
-"""Greatest coordinate either way, in blocks, as in Minecraft."""
+"""Greatest absolute coordinate in blocks, as in Minecraft."""
 
 LATEST_TICK = 2**53
-"""Ticks are exact numbers on either side of the channel."""
+"""Latest tick. JavaScript and Python both represent whole numbers up to it exactly."""
 
 MOST_AGENTS = 200
 
 AGENT_SLOTS = 36
-"""Slots of an inventory, without what is worn and the off hand."""
+"""Slots of an inventory, without worn items and the off hand."""
 
 WORN_SLOTS = 5
-"""Slots for what is worn, and the off hand."""
+"""Slots of worn items and the off hand."""
 
 _MOST_BLOCKS = 8_000_000
 _LONGEST_SIDE = 4096
@@ -52,10 +53,10 @@ _CHEST_SLOTS = 27
 
 
 def checked_seed(seed: object, name: str = "seed") -> int:
-    """Return a seed as it is recorded, numbers of NumPy as Python's.
+    """Return a valid seed as a Python number; NumPy numbers are converted.
 
     Raises:
-        InputError: It is no whole number of 64 bits; the message calls it `name`.
+        InputError: The seed is not a whole number of 64 bits; the message calls it `name`.
     """
     try:
         number = operator.index(seed)  # type: ignore[arg-type] # whatever a caller gives
@@ -67,7 +68,7 @@ def checked_seed(seed: object, name: str = "seed") -> int:
 
 
 def agent_name_fault(name: object) -> str | None:
-    """What is wrong with the name of an agent."""
+    """Return the fault of an agent name, or None."""
     if not isinstance(name, str) or not _AGENT_NAME.fullmatch(name):
         return f"{str(name)[:50]!r} is no agent name; use 1 to 16 letters, digits and _"
     if name == "__proto__":
@@ -76,7 +77,7 @@ def agent_name_fault(name: object) -> str | None:
 
 
 def box_fault(box: Box) -> str | None:
-    """What is wrong with a box, given by its lower and its upper corner."""
+    """Return the fault of a box, or None."""
     for corner in (box.low, box.high):
         if fault := point_fault(corner):
             return fault
@@ -92,27 +93,27 @@ def box_fault(box: Box) -> str | None:
 
 
 def point_fault(point: Sequence[float]) -> str | None:
-    """What is wrong with a point or a block position."""
+    """Return the fault of a point or a block position, or None."""
     if not all(math.isfinite(value) and abs(value) <= FARTHEST for value in point):
-        return f"{_short(point)} is nowhere; coordinates are numbers from -{FARTHEST} to {FARTHEST}"
+        return f"{_short(point)} is no position; coordinates go from -{FARTHEST} to {FARTHEST}"
     return None
 
 
 def container_slots(name: str) -> int:
-    """Slots of a container block."""
+    """Return the number of slots of a container block."""
     return _FURNACE_SLOTS if name in _FURNACES else _CHEST_SLOTS
 
 
 def items_fault(
     items: Mapping[str, int], registry: Registry, slots: int, holder: str
 ) -> str | None:
-    """What is wrong with items of known names that somebody or something holds.
+    """Return the fault of the items in an inventory or a container, or None.
 
     Args:
-        items: Name to count.
-        registry: Knows how many fit into a slot.
-        slots: There are so many.
-        holder: What has the slots, for the message.
+        items: Known item names to counts.
+        registry: Stack sizes of the items.
+        slots: Number of slots of the holder.
+        holder: Name of the holder for the message.
     """
     needed = 0
     for name, count in items.items():
@@ -125,10 +126,12 @@ def items_fault(
 
 
 def snapshot_fault(snapshot: Snapshot, registry: Registry) -> str | None:
-    """What is wrong with a state of the world, whoever made it."""
+    """Return the first fault of a snapshot, or None."""
     faults = [box_fault(snapshot.box)]
     if not 0 <= snapshot.tick <= LATEST_TICK:
-        faults.append(f"tick {_short(snapshot.tick)} is none; ticks are from 0 to {LATEST_TICK}")
+        faults.append(
+            f"tick {_short(snapshot.tick)} is out of range; ticks go from 0 to {LATEST_TICK}"
+        )
     if len(snapshot.agents) > MOST_AGENTS:
         faults.append(
             f"there are {len(snapshot.agents)} agents; at most {MOST_AGENTS} are possible"
@@ -172,7 +175,7 @@ def _sign_fault(snapshot: Snapshot, place: Position, text: str, registry: Regist
 
 
 def _short(value: object) -> str:
-    # Whole numbers beyond what Python writes are shown by their size.
+    # Python refuses to write very large whole numbers, so show their size.
     if isinstance(value, int) and value.bit_length() > 200:
         return f"a number of {value.bit_length()} bits"
     return str(value) if not isinstance(value, Sequence) else f"({', '.join(map(_short, value))})"

@@ -1,4 +1,4 @@
-"""What claims that are read out of free text can speak of, and who reads them."""
+"""Input of readers that extract claims from free text."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -11,16 +11,17 @@ __all__ = ["ClaimsFrom", "Nameable"]
 
 @dataclass(frozen=True, slots=True)
 class Nameable:
-    """What a speaker may name.
+    """Things that a speaker may name.
 
     Attributes:
-        box: The part of space there is; no claim speaks of a place outside it.
-        agents: All agents, the speaker among them, in order of names.
-        items: Items there are, in order of names; lies may be about others as well.
-        containers: Their positions, and what people call them, else the block's name.
-        doors: Doors, trapdoors, gates, levers and buttons: their positions and block texts.
-        places: What people call other places.
-        called: What people call items, where that is another name than the item's.
+        box: Region of the scenario; claims outside it are invalid.
+        agents: All agents, including the speaker, in order of names.
+        items: Items of the scenario, in order of names; lies may name others as well.
+        containers: Names of the containers by position: what people call them, else the block's
+            name.
+        doors: Block state texts of doors, trapdoors, gates, levers and buttons by position.
+        places: Positions of other named places.
+        called: Names that people use for items, if they differ from the item's name.
     """
 
     box: Box
@@ -33,4 +34,5 @@ class Nameable:
 
 
 ClaimsFrom = Callable[[str, str, Nameable], Iterable[Claim]]
-"""Given the text of an utterance, its speaker and what can be named: what the text claims."""
+"""Function that extracts claims from an utterance. Arguments: its text, its speaker, and the
+things that can be named."""

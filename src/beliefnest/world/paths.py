@@ -15,28 +15,30 @@ __all__ = [
 ]
 
 BeliefPath = tuple[str, ...]
-"""Agent names, the outermost believer first; empty: the real world."""
+"""Agent names, the outermost believer first. The empty path is the real world."""
 
 AND_BELOW = "**"
-"""At the end of a path: the node and everything below it; alone: every belief."""
+"""Last part of a path pattern. It means the node and everything below it; alone it means every
+belief."""
 
 _LONGEST_TOLD = 100
 
 _DEEPEST = 50
-"""Names in a path: each is a state of its own, computed with all before it."""
+"""Greatest number of names in a path. Each name adds a state, which is computed from those
+before it."""
 
 
 def parse_path(text: str, agents: Collection[str]) -> BeliefPath:
     """Return the agent names of a path, normalised.
 
     Raises:
-        PathError: The text is no path, names an agent that there is not, or is too deep.
+        PathError: The text is not a path, names an unknown agent, or is too deep.
     """
     return _parsed(text, text, agents)
 
 
 def _parsed(text: str, written: str, agents: Collection[str]) -> BeliefPath:
-    """Return the agent names of a path that is a part of what messages show."""
+    """Parse a path; `written` is the text that messages quote."""
     if not isinstance(text, str) or not text.startswith("/"):
         raise PathError(f"{_short(written)} is no belief path; write '/' or '/agent/agent'")
     if text == "/":
@@ -52,7 +54,7 @@ def _parsed(text: str, written: str, agents: Collection[str]) -> BeliefPath:
 
 
 def parse_pattern(text: str, agents: Collection[str]) -> BeliefPath:
-    """Return a path that may end in `/**`, which then is the last of the names.
+    """Parse a path that may end in `/**`; the result then ends in `**`.
 
     Raises:
         PathError: As for `parse_path`.
@@ -62,16 +64,16 @@ def parse_pattern(text: str, agents: Collection[str]) -> BeliefPath:
     above = text.removesuffix(f"/{AND_BELOW}")
     if above == text or AND_BELOW in above.split("/"):
         raise PathError(
-            f"{_short(text)} is no belief path: '/{AND_BELOW}' stands at the end of one alone"
+            f"{_short(text)} is no belief path: '/{AND_BELOW}' may only stand at its end, once"
         )
     return (*_parsed(above or "/", text, agents), AND_BELOW)
 
 
 def normalised(names: Iterable[str]) -> BeliefPath:
-    """Return the path with equal neighbours collapsed: an agent knows its own beliefs.
+    """Collapse equal neighbours, because an agent knows its own beliefs.
 
     Raises:
-        PathError: It is too deep.
+        PathError: The path is too deep.
     """
     path: list[str] = []
     for name in names:
@@ -79,17 +81,17 @@ def normalised(names: Iterable[str]) -> BeliefPath:
             path.append(name)
     if len(path) > _DEEPEST:
         short = _short(path_text(path))
-        raise PathError(f"{short} is {len(path)} beliefs deep; {_DEEPEST} are possible")
+        raise PathError(f"{short} is {len(path)} beliefs deep; at most {_DEEPEST} are possible")
     return tuple(path)
 
 
 def path_text(path: Iterable[str]) -> str:
-    """Return the text of a path."""
+    """Return a path as text."""
     return "/" + "/".join(path)
 
 
 def paths_below(root: BeliefPath, depth: int, agents: Iterable[str]) -> list[BeliefPath]:
-    """Return a path and all below it, down to `depth` more agents, shallow ones first."""
+    """Return a path and all paths with up to `depth` more agents, short ones first."""
     names = tuple(agents)
     found = level = [root]
     for _ in range(depth):
@@ -99,6 +101,6 @@ def paths_below(root: BeliefPath, depth: int, agents: Iterable[str]) -> list[Bel
 
 
 def _short(text: object) -> str:
-    """Return a text in a message, its beginning if it is long."""
+    """Return the text for a message, shortened if it is long."""
     written = repr(text)
     return written if len(written) <= _LONGEST_TOLD else f"{written[:_LONGEST_TOLD]}..."

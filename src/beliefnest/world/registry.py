@@ -1,8 +1,8 @@
-"""What Minecraft knows of its blocks and items: names, state ids, collision shapes.
+"""Registry of Minecraft's blocks and items: names, state ids, collision shapes.
 
-The facts are minecraft-data's (MIT); `bodies/node/registry.js` writes them into one file
-when the package is built. Block states are written `name` or `name[a=b,c=d]`; a
-`minecraft:` before the name is accepted and never given back.
+The data are from minecraft-data (MIT). `bodies/node/registry.js` writes them into one file when
+the package is built. The text of a block state is `name` or `name[a=b,c=d]`. A prefix
+`minecraft:` is accepted in input and never written.
 """
 
 import difflib
@@ -25,15 +25,15 @@ from beliefnest.world.bundled import Bundled, read_bundled
 __all__ = ["AIR", "CONTAINER_NAMES", "BoxBounds", "Registry", "parse_state"]
 
 AIR = 0
-"""State id of air; the protocol has kept it in every version."""
+"""State id of air; it is the same in every version of the protocol."""
 
 CONTAINER_NAMES = frozenset(
     {"chest", "trapped_chest", "barrel", "furnace", "blast_furnace", "smoker"}
 )
-"""Blocks whose contents the simulators follow."""
+"""Blocks whose contents are part of the world state."""
 
 BoxBounds = tuple[float, float, float, float, float, float]
-"""A box in blocks from the block's lower corner: x0, y0, z0, x1, y1, z1."""
+"""A box in blocks, relative to the block's lower corner: x0, y0, z0, x1, y1, z1."""
 
 _FORMAT = 1
 _STATE_TEXT = re.compile(r"(?:minecraft:)?([a-z0-9_]+)(?:\[([^\[\]]*)\])?")
@@ -61,7 +61,7 @@ class _RegistryFile(Bundled, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True, slots=True)
 class _Block:
-    """One block: its states count through its properties, the last one fastest."""
+    """One block; its state ids enumerate the property values, the last property fastest."""
 
     name: str
     first_state: int
@@ -69,7 +69,7 @@ class _Block:
     properties: tuple[tuple[str, tuple[str, ...]], ...]
 
     def state_id(self, chosen: Mapping[str, str]) -> int:
-        """Return the state id with the chosen values; the others are those of the default state."""
+        """Return the state id with the chosen values; other properties keep their defaults."""
         offset = 0
         for (name, values), default in zip(self.properties, self.default_values, strict=True):
             value = chosen.get(name, default)
@@ -82,7 +82,7 @@ class _Block:
         return self.first_state + offset
 
     def values(self, state_id: int) -> tuple[str, ...]:
-        """Return values of the properties in a state, in the order of `properties`."""
+        """Return the property values of a state, in the order of `properties`."""
         offset = state_id - self.first_state
         found: list[str] = []
         for _, values in reversed(self.properties):
@@ -99,13 +99,13 @@ class Registry:
         version: Minecraft version, as `1.20.4`.
         states: Number of block states; ids are 0 to states - 1.
         airs: State ids of air, cave air and void air.
-        default_transparent: bool (states,): glass of every kind, barrier, ice, and
-            states without collision box.
-        state_shape: int32 (states,): number of each state's collision shape.
-        shape_start: int32 (shapes + 1,): shape k's boxes are rows shape_start[k] to
+        default_transparent: bool (states,): glass of every kind, barrier, ice, and states
+            without collision box.
+        state_shape: int32 (states,): index of each state's collision shape.
+        shape_start: int32 (shapes + 1,): the boxes of shape k are rows shape_start[k] to
             shape_start[k + 1] - 1 of `shape_boxes`.
-        shape_boxes: float64 (n, 6): boxes as `BoxBounds`. They may reach out of the
-            block: a fence is 1.5 high.
+        shape_boxes: float64 (n, 6): boxes as `BoxBounds`. They may reach out of the block: a
+            fence is 1.5 high.
     """
 
     version: str
@@ -122,7 +122,7 @@ class Registry:
 
     @staticmethod
     def load(version: str = "1.20.4") -> "Registry":
-        """Return the registry of a Minecraft version, read once per process.
+        """Return the registry of a Minecraft version; each is read once per process.
 
         Raises:
             BodyError: The package was not built, or its registry file is damaged.
@@ -151,10 +151,10 @@ class Registry:
         return block.state_id(chosen)
 
     def text(self, state_id: int) -> str:
-        """Return the canonical text of a state: `name`, or `name[a=b,c=d]` sorted by property name.
+        """Return the canonical text of a state: `name` or `name[a=b,c=d]`, sorted by property.
 
         Raises:
-            UnknownNameError: No such state id.
+            UnknownNameError: There is no such state id.
         """
         properties = self.properties(state_id)
         if not properties:
@@ -171,20 +171,20 @@ class Registry:
         return self._block_of(state_id).name
 
     def properties(self, state_id: int) -> dict[str, str]:
-        """Return the property name to value, in the order in which the version lists them.
+        """Return the values of a state's properties by name, in the order of the version.
 
         Raises:
-            UnknownNameError: No such state id.
+            UnknownNameError: There is no such state id.
         """
         block = self._block_of(state_id)
         names = (name for name, _ in block.properties)
         return dict(zip(names, block.values(state_id), strict=True))
 
     def boxes(self, state_id: int) -> tuple[BoxBounds, ...]:
-        """Return the collision boxes of a state, in blocks from the block's lower corner.
+        """Return the collision boxes of a state, in blocks relative to the block's lower corner.
 
         Raises:
-            UnknownNameError: No such state id.
+            UnknownNameError: There is no such state id.
         """
         self._block_of(state_id)
         shape = self.state_shape[state_id]
@@ -203,15 +203,15 @@ class Registry:
 
     @property
     def containers(self) -> frozenset[str]:
-        """Names of the blocks whose contents the simulators follow."""
+        """Names of the blocks whose contents are part of the world state."""
         return CONTAINER_NAMES & self._blocks.keys()
 
     def is_container(self, name: str) -> bool:
-        """Return True if the simulators follow the contents of the block of that name."""
+        """Return True if the contents of the block are part of the world state."""
         return _bare(name) in CONTAINER_NAMES
 
     def has_block(self, name: str) -> bool:
-        """Return True if there is a block of that name (a name without properties)."""
+        """Return True if there is a block of that name, given without properties."""
         return _bare(name) in self._blocks
 
     @property
@@ -229,10 +229,10 @@ class Registry:
         return _bare(name) in self._items
 
     def item_stack(self, name: str) -> int:
-        """How many of an item fit in one slot.
+        """Return the number of items that fit in one slot.
 
         Raises:
-            UnknownNameError: No such item.
+            UnknownNameError: There is no such item.
         """
         bare = _bare(name)
         if bare not in self._items:
@@ -267,7 +267,7 @@ def _nearest(name: str, names: Iterable[str]) -> str:
 
 
 def parse_state(text: str) -> tuple[str, dict[str, str]]:
-    """Return the name and chosen properties of a block state text; InputError if it is none."""
+    """Parse a block state text into name and chosen properties; InputError if it is invalid."""
     match = _STATE_TEXT.fullmatch(text.strip())
     if match is None:
         raise InputError(f"{text!r} is not a block; write name or name[property=value,...]")
@@ -328,7 +328,7 @@ def _state_shapes(file: _RegistryFile) -> npt.NDArray[np.int32]:
         shapes[entry.first_state : entry.last_state + 1] = entry.shapes
     if (shapes < 0).any():
         raise BodyError(
-            f"the registry of Minecraft {file.minecraft} leaves out block state "
+            f"the registry of Minecraft {file.minecraft} lacks block state "
             f"{int(np.argmin(shapes))}: build the package anew with `pip install .`"
         )
     return shapes

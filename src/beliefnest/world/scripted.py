@@ -1,8 +1,8 @@
-"""The world without Minecraft: no physics, exactly the moves that a script makes.
+"""Scripted world: a world without Minecraft and physics that does exactly what it is told.
 
-It serves tests, imported traces and studies that need only beliefs. Every act takes one
-tick, unless several are put into one with `tick()`. An impossible act raises WorldError
-and changes nothing.
+It serves tests, imported traces and studies that need only beliefs. Every act takes one tick;
+`tick()` combines several acts into one tick. An impossible act raises WorldError and changes
+nothing.
 """
 
 import math
@@ -53,25 +53,25 @@ from beliefnest.world.values import (
 __all__ = ["Listener", "ScriptedWorld"]
 
 Listener = Callable[[Frame], None]
-"""Takes a frame for every tick, empty ones included."""
+"""Callback that receives a frame for every tick, empty frames included."""
 
 
 class ScriptedWorld(ScriptedState):
-    """A world that is told what happens.
+    """World whose moves are calls of its methods.
 
     Args:
         box: Two inclusive corners of block positions.
         blocks: Block state texts by position; the rest is air.
         agents: Feet positions by agent name.
         inventories: Items by agent name.
-        containers: Contents by position; where `blocks` has none, a chest is put there.
-        equipment: By agent name, slot (`EQUIPMENT_SLOTS`) to item name.
+        containers: Contents by position; a chest is added if `blocks` has no block there.
+        equipment: Item names by slot (`EQUIPMENT_SLOTS`), by agent name.
         tick: The first tick.
-        signs: Texts by position, of blocks that are signs.
-        sign_claims: What the texts claim, by position.
+        signs: Texts of signs by position; `blocks` must have a sign there.
+        sign_claims: Claims of the texts by position.
 
     Raises:
-        WorldError: Something lies outside the box, or is no block, item or agent name.
+        WorldError: A position is outside the box, or a block, item or agent name is invalid.
     """
 
     def __init__(
@@ -114,13 +114,13 @@ class ScriptedWorld(ScriptedState):
 
     @classmethod
     def from_snapshot(cls, snapshot: Snapshot) -> "ScriptedWorld":
-        """Return a world that is as a snapshot says."""
+        """Return a world with the state of a snapshot."""
         world = cls((snapshot.box.low, snapshot.box.high), tick=snapshot.tick)
         world.set_state(snapshot)
         return world
 
     def again(self) -> "ScriptedWorld":
-        """Another world that is as this one is now; nobody listens to it."""
+        """Return a copy of this world, without its listeners."""
         other = copy(self)
         other._listeners, other._pending = [], None
         other._facts = self._facts.copied()
@@ -128,24 +128,24 @@ class ScriptedWorld(ScriptedState):
 
     @property
     def now(self) -> int:
-        """The latest tick."""
+        """Latest tick."""
         return self._tick
 
     @property
     def under_way(self) -> bytes:
-        """What goes on and nobody can perceive, as a snapshot has it: buttons that come out."""
+        """Internal state for snapshots, which nobody can perceive: pressed buttons."""
         return self._facts.under_way(self._tick)
 
     def listen(self, listener: Listener) -> None:
-        """Hand every further frame to `listener`."""
+        """Call `listener` with every further frame."""
         self._listeners.append(listener)
 
     def unlisten(self, listener: Listener) -> None:
-        """Stop handing frames to `listener`."""
+        """Stop calling `listener`."""
         self._listeners.remove(listener)
 
     def snapshot(self) -> Snapshot:
-        """Return all there is now."""
+        """Return the current state."""
         facts = self._facts
         return Snapshot(
             self._tick,
@@ -160,7 +160,7 @@ class ScriptedWorld(ScriptedState):
         )
 
     def set_state(self, snapshot: Snapshot) -> None:
-        """Be as the snapshot says; no frame is sent."""
+        """Set the state to that of a snapshot, without a frame."""
         if snapshot.box != self._box:
             raise WorldError(f"a snapshot of {snapshot.box} does not fit into {self._box}")
         self._tick = snapshot.tick
@@ -176,18 +176,18 @@ class ScriptedWorld(ScriptedState):
 
     @contextmanager
     def tick(self) -> Iterator[None]:
-        """Put the acts of a `with` block into one tick; all of them happen, or none."""
+        """Combine the acts of a `with` block into one tick; all of them happen, or none."""
         if self._pending is not None:
-            raise WorldError(f"tick {self._tick + 1} is being made already; do not nest tick()")
+            raise WorldError(f"tick {self._tick + 1} has begun already; do not nest tick()")
         with self._new_tick():
             yield
 
     def step(self, ticks: int = 1) -> None:
-        """Let ticks pass in which nothing happens."""
+        """Let ticks without acts pass."""
         if self._pending is not None:
-            raise WorldError("step() is a tick of its own; it cannot stand inside tick()")
+            raise WorldError("step() takes ticks of its own; call it outside tick()")
         if ticks < 0:
-            raise WorldError(f"{ticks} ticks cannot pass; give 0 or more")
+            raise WorldError(f"step() got {ticks} ticks; give 0 or more")
         for _ in range(ticks):
             with self.tick():
                 pass
@@ -195,7 +195,7 @@ class ScriptedWorld(ScriptedState):
     def place_agent(
         self, name: str, position: Point, yaw: float | None = None, pitch: float | None = None
     ) -> None:
-        """Put an agent somewhere; feet position in blocks, angles in Mineflayer's radians."""
+        """Move an agent to a feet position in blocks; angles are Mineflayer's radians."""
         with self._act() as pending:
             agent = self._agent(name)
             angles = [agent.yaw if yaw is None else yaw, agent.pitch if pitch is None else pitch]
@@ -206,7 +206,7 @@ class ScriptedWorld(ScriptedState):
             pending.agents.add(name)
 
     def set_block(self, position: Position, block: str, actor: str | None = None) -> None:
-        """Replace a block; a container that goes takes its content with it."""
+        """Replace a block; the content of a removed container is lost."""
         with self._act() as pending:
             place = self._inside(position)
             if actor is not None:
@@ -216,7 +216,7 @@ class ScriptedWorld(ScriptedState):
                 self._change(pending, place, state, actor)
 
     def use_door(self, name: str, position: Position, *, open: bool) -> None:
-        """An agent opens or shuts a wooden door (both halves), trapdoor or fence gate."""
+        """Let an agent open or shut a wooden door (both halves), trapdoor or fence gate."""
         with self._act() as pending:
             self._agent(name)
             place = self._inside(position)
@@ -227,7 +227,7 @@ class ScriptedWorld(ScriptedState):
             pending.events.append(Event(EventKind.USE_DOOR, name, detail))
 
     def use_lever(self, name: str, position: Position, *, powered: bool) -> None:
-        """An agent brings a lever into a state; it powers nothing."""
+        """Let an agent switch a lever on or off; levers power nothing here."""
         with self._act() as pending:
             self._agent(name)
             place = self._inside(position)
@@ -237,7 +237,7 @@ class ScriptedWorld(ScriptedState):
             pending.events.append(Event(EventKind.USE_LEVER, name, detail))
 
     def press_button(self, name: str, position: Position) -> None:
-        """An agent presses a button, which comes out again by itself; it powers nothing."""
+        """Let an agent press a button, which comes out again later; buttons power nothing here."""
         with self._act() as pending:
             self._agent(name)
             place = self._inside(position)
@@ -248,7 +248,7 @@ class ScriptedWorld(ScriptedState):
             pending.events.append(Event(EventKind.PRESS_BUTTON, name, {"position": place}))
 
     def mine(self, name: str, position: Position) -> None:
-        """An agent breaks a block and takes what it drops."""
+        """Let an agent break a block and take its drops."""
         with self._act() as pending:
             agent = self._agent(name)
             place = self._inside(position)
@@ -263,7 +263,7 @@ class ScriptedWorld(ScriptedState):
             pending.events.append(Event(EventKind.MINE_BLOCK, name, detail))
 
     def put(self, name: str, item: str, position: Position) -> None:
-        """An agent puts a block of its inventory somewhere."""
+        """Let an agent place a block from its inventory."""
         with self._act() as pending:
             agent = self._agent(name)
             place = self._inside(position)
@@ -280,13 +280,13 @@ class ScriptedWorld(ScriptedState):
     def write_sign(
         self, name: str, position: Position, text: str, claims: Iterable[Claim] = ()
     ) -> None:
-        """Let an agent write on a sign, over what is there; whoever sees the sign sees the text.
+        """Let an agent replace the text on a sign; every agent that sees the sign sees the text.
 
         Args:
-            name: The agent.
+            name: Name of the agent.
             position: Position of the sign.
-            text: Up to 4 lines.
-            claims: What the text claims, for those who read it.
+            text: New text, up to 4 lines.
+            claims: Claims of the text, for its readers.
         """
         with self._act() as pending:
             self._agent(name)
@@ -299,33 +299,33 @@ class ScriptedWorld(ScriptedState):
             pending.events.append(Event(EventKind.BLOCK_UPDATE, name, detail))
 
     def arrive(self, name: str, destination: Point) -> None:
-        """An agent that was on its way somewhere is there; who sees it knows where it was going."""
+        """Let an agent reach its destination; agents that see it learn where it was going."""
         with self._act() as pending:
             self._agent(name)
             x, y, z = (float(value) for value in destination)
             pending.events.append(Event(EventKind.MOVE_TO, name, {"destination": (x, y, z)}))
 
     def deposit(self, name: str, position: Position, items: Items) -> None:
-        """An agent puts items of its inventory into a container."""
+        """Let an agent put items from its inventory into a container."""
         self._transfer(name, position, items, EventKind.DEPOSIT_ITEM_INTO_CHEST)
 
     def withdraw(self, name: str, position: Position, items: Items) -> None:
-        """An agent takes items out of a container."""
+        """Let an agent take items out of a container."""
         self._transfer(name, position, items, EventKind.GET_ITEM_FROM_CHEST)
 
     def open(self, name: str, position: Position) -> None:
-        """An agent looks into a container; others see that it does."""
+        """Let an agent look into a container; other agents see the act, not the content."""
         with self._act() as pending:
             self._agent(name)
             place = self._container(position)
             pending.events.append(Event(EventKind.OPEN_CONTAINER, name, {"position": place}))
 
     def say(self, name: str, text: str, claims: Iterable[Claim] = ()) -> None:
-        """An agent speaks; what it says has the structure of `claims`."""
+        """Let an agent speak aloud; `claims` are the structured statements of the text."""
         self._utter(EventKind.CHAT, name, text, claims)
 
     def whisper(self, name: str, other: str, text: str, claims: Iterable[Claim] = ()) -> None:
-        """An agent speaks to one other agent; nobody else perceives that. Claims as in `say`."""
+        """Let an agent speak to one other agent, unnoticed by all others. Claims as in `say`."""
         with self._act() as pending:
             if name == other:
                 raise WorldError(f"{name} cannot whisper to itself")
@@ -335,11 +335,11 @@ class ScriptedWorld(ScriptedState):
             pending.events.append(Event(EventKind.CHAT, name, detail))
 
     def think(self, name: str, text: str) -> None:
-        """An agent thinks; only it perceives that."""
+        """Let an agent think; only the agent itself perceives it."""
         self._utter(EventKind.THINK, name, text)
 
     def give(self, giver: str, receiver: str, items: Items) -> None:
-        """An agent hands items over to another."""
+        """Let an agent give items to another agent."""
         with self._act() as pending:
             if giver == receiver:
                 raise WorldError(f"{giver} cannot give items to itself")
@@ -387,7 +387,7 @@ class ScriptedWorld(ScriptedState):
             pending.events.append(Event(kind, name, detail))
 
     def _claiming(self, detail: dict[str, Any], claims: Iterable[Claim]) -> dict[str, Any]:
-        """Return an utterance's detail with its claims, which speak of what there is here."""
+        """Return an utterance's detail with its claims; WorldError if they do not fit."""
         try:
             return with_claims(detail, claims, self._box, self._facts.agents)
         except InputError as fault:
@@ -395,7 +395,7 @@ class ScriptedWorld(ScriptedState):
 
     @contextmanager
     def _act(self) -> Iterator[Pending]:
-        """One act: a tick of its own, or a part of the one being made."""
+        """Yield the changes of the current tick, or those of a new tick for a single act."""
         if self._pending is not None:
             yield self._pending
             return
@@ -412,14 +412,14 @@ class ScriptedWorld(ScriptedState):
             self._pending = None
             self._finish(pending)
         except BaseException:
-            # A tick that a listener cannot take has not happened either.
+            # A listener's error undoes the tick as well.
             self._facts, self._tick = pending.saved, before
             raise
         finally:
             self._pending = None
 
     def _release(self, pending: Pending) -> None:
-        """Let the buttons come out whose time is over with the tick that is being made."""
+        """Release the buttons that are due in the current tick."""
         pressed = self._facts.pressed
         for place in sorted(at for at, due in pressed.items() if due <= self._tick + 1):
             del pressed[place]

@@ -1,4 +1,4 @@
-"""Parts of the scripted world: what is the case, what a tick changes, checks of arguments."""
+"""Parts of the scripted world: its facts, the changes of a tick, argument checks."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -37,7 +37,7 @@ __all__ = [
 
 @dataclass
 class WorldFacts:
-    """What is the case; copied before a tick so that a failed one leaves no trace."""
+    """State of a scripted world; it is copied before each tick, to undo a failed one."""
 
     blocks: BlockGrid
     containers: dict[Position, dict[str, int]]
@@ -46,10 +46,10 @@ class WorldFacts:
     signs: dict[Position, str] = field(default_factory=dict)
     sign_claims: dict[Position, PlainClaims] = field(default_factory=dict)
     pressed: dict[Position, int] = field(default_factory=dict)
-    """Buttons that come out again, each with the tick at which it does."""
+    """Pressed buttons, each with the tick at which it comes out again."""
 
     def copied(self) -> "WorldFacts":
-        """Return the same facts; a tick that changes blocks changes a copy of them."""
+        """Return a copy; the grid of blocks is shared, because ticks replace it before a change."""
         return WorldFacts(
             self.blocks,
             dict(self.containers),
@@ -61,13 +61,16 @@ class WorldFacts:
         )
 
     def under_way(self, tick: int) -> bytes:
-        """What goes on at a tick and nobody can perceive; `pressed_from` reads it."""
+        """Encode the internal state at a tick: the ticks left of pressed buttons.
+
+        Nobody can perceive this state. `pressed_from` decodes it.
+        """
         left = [(*place, due - tick) for place, due in sorted(self.pressed.items())]
         return msgspec.msgpack.encode(left) if left else b""
 
 
 def pressed_from(state: bytes, tick: int) -> dict[Position, int]:
-    """Buttons that come out again, and when, from what went on at a tick."""
+    """Decode pressed buttons, with the ticks at which they come out again."""
     if not state:
         return {}
     left = msgspec.msgpack.decode(state, type=list[tuple[int, int, int, int]])
@@ -75,7 +78,7 @@ def pressed_from(state: bytes, tick: int) -> dict[Position, int]:
 
 
 class Pending:
-    """What the tick being made changes."""
+    """Changes of the current tick."""
 
     def __init__(self, facts: WorldFacts) -> None:
         self.saved = facts.copied()
@@ -87,10 +90,12 @@ class Pending:
 
 
 def checked_box(box: tuple[Position, Position]) -> Box:
-    """Return the box between two corners; WorldError if it is none."""
+    """Return the box between two corners; WorldError if they are invalid."""
     low, high = (tuple(int(value) for value in corner) for corner in box)
     if len(low) != 3 or len(high) != 3 or any(a > b for a, b in zip(low, high, strict=True)):
-        raise WorldError(f"the box {box} is none; give its lower and its upper corner")
+        raise WorldError(
+            f"{box} is no box; give its lower and its upper corner, three numbers each"
+        )
     made = Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
     if fault := box_fault(made):
         raise WorldError(fault)
@@ -98,21 +103,21 @@ def checked_box(box: tuple[Position, Position]) -> Box:
 
 
 def checked_name(name: str) -> str:
-    """Return an agent name; WorldError if it is none."""
+    """Return a valid agent name; WorldError if it is invalid."""
     if fault := agent_name_fault(name):
         raise WorldError(fault)
     return name
 
 
 def checked_utterance(text: str) -> str:
-    """Return a text that can be said at once; WorldError if it cannot."""
+    """Return a text that can be said at once; WorldError if it cannot be said."""
     if fault := fault_of(str(text)):
         raise WorldError(fault)
     return str(text)
 
 
 def sum_of(items: Items, change: Items) -> dict[str, int]:
-    """Return items with others beside them."""
+    """Add items to items."""
     return {
         name: items.get(name, 0) + change.get(name, 0)
         for name in [*items, *(change.keys() - items.keys())]
@@ -120,7 +125,7 @@ def sum_of(items: Items, change: Items) -> dict[str, int]:
 
 
 def rest_of(items: Items, change: Items, who: str) -> dict[str, int]:
-    """Return items without some of them; WorldError if they are not there."""
+    """Subtract items from items; WorldError if there are too few."""
     for name, count in change.items():
         if items.get(name, 0) < count:
             raise WorldError(f"{who} has {items.get(name, 0)} {name}, not {count}")
@@ -129,8 +134,8 @@ def rest_of(items: Items, change: Items, who: str) -> dict[str, int]:
 
 
 def whole_position(position: Position) -> Position:
-    """Return a block position; WorldError if it is none."""
-    # The longer test for numbers that are no ints.
+    """Return a block position of ints; WorldError if the position is invalid."""
+    # Most positions are ints: test the type first, because it is cheaper.
     if len(position) != 3 or any(type(p) is not int and p != math.floor(p) for p in position):
         raise WorldError(f"{position!r} is no block position; give three whole numbers")
     x, y, z = (int(p) for p in position)
@@ -138,10 +143,14 @@ def whole_position(position: Position) -> Position:
 
 
 def checked_equipment(worn: Mapping[str, str], check: Callable[[Items], object]) -> dict[str, str]:
-    """Items by slot; WorldError if there is no such slot, and what `check` of items raises."""
+    """Return a valid mapping from slots to items.
+
+    Raises:
+        WorldError: There is no such slot, or `check` refuses an item.
+    """
     for slot, item in worn.items():
         if slot not in EQUIPMENT_SLOTS:
             there = ", ".join(EQUIPMENT_SLOTS)
-            raise WorldError(f"there is no slot {slot!r}; there are {there}")
+            raise WorldError(f"unknown slot {slot!r}; slots are {there}")
         check({item: 1})
     return dict(worn)

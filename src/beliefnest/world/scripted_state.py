@@ -1,4 +1,4 @@
-"""What is the case in a scripted world, and the checks of what is asked about it."""
+"""State of a scripted world, with checks of the arguments of queries and changes."""
 
 import math
 from collections.abc import Mapping
@@ -29,13 +29,13 @@ __all__ = ["ScriptedState"]
 
 
 class ScriptedState:
-    """The facts of a scripted world, read and changed piece by piece.
+    """Facts of a scripted world, with access to single parts.
 
     Args:
         box: Two inclusive corners of block positions.
 
     Raises:
-        WorldError: The box is none.
+        WorldError: The box is invalid.
     """
 
     def __init__(self, box: tuple[Position, Position]) -> None:
@@ -46,25 +46,25 @@ class ScriptedState:
 
     @property
     def box(self) -> Box:
-        """The part of space there is."""
+        """Region of the world."""
         return self._box
 
     @property
     def agents(self) -> Mapping[str, AgentState]:
-        """What is the case about all agents."""
+        """States of all agents by name."""
         return dict(self._facts.agents)
 
     def agent(self, name: str) -> AgentState:
-        """What is the case about an agent; WorldError: it is not there."""
+        """Return the state of an agent; WorldError if there is none of that name."""
         return self._agent(name)
 
     @property
     def containers(self) -> Mapping[Position, Items]:
-        """What all containers hold; not to be written to."""
+        """Contents of all containers; must not be changed."""
         return self._facts.containers
 
     def contents(self, position: Position) -> Items:
-        """What a container holds.
+        """Return the contents of a container.
 
         Raises:
             WorldError: There is no container at the position.
@@ -73,17 +73,17 @@ class ScriptedState:
 
     @property
     def blocks(self) -> BlockGrid:
-        """Block state ids of the box; what was handed out does not change later."""
+        """Block state ids of the box; later ticks do not change a grid that was handed out."""
         self._handed_out = True
         return self._facts.blocks
 
     @property
     def signs(self) -> Mapping[Position, str]:
-        """What is written on signs."""
+        """Texts of signs by position."""
         return dict(self._facts.signs)
 
     def _change(self, pending: Pending, place: Position, state: int, actor: str | None) -> None:
-        """Replace a block by another one, in the tick that is being made."""
+        """Replace a block in the current tick."""
         if self._handed_out or not pending.changed:
             self._facts.blocks = self._facts.blocks.copy()
             pending.changed, self._handed_out = True, False
@@ -94,7 +94,7 @@ class ScriptedState:
         pending.blocks[place] = self._block(place)
         detail: dict[str, Any] = {"position": place, "block": self._registry.text(state)}
         if place in self._facts.sign_claims:
-            # A sign that is turned claims what it claimed.
+            # A sign that was turned keeps its claims.
             detail["claims"] = self._facts.sign_claims[place]
         pending.events.append(Event(EventKind.BLOCK_UPDATE, actor, detail))
 
@@ -103,7 +103,7 @@ class ScriptedState:
         return int(self._facts.blocks[self._box.index(place)]) if place in self._box else AIR
 
     def _block(self, place: Position) -> Block:
-        """Return the block at a position, with what is written on it."""
+        """Return the block at a position, with its text if it is a sign."""
         state = self._state_at(place)
         return Sign(state, self._facts.signs[place]) if place in self._facts.signs else state
 
@@ -111,15 +111,15 @@ class ScriptedState:
         try:
             block = written(self._registry, self._state_at(place), text)
         except InputError as fault:
-            raise WorldError(f"nothing is written at {place}: {fault}") from None
+            raise WorldError(f"the text at {place} cannot be written: {fault}") from None
         self._wipe(place)
         if isinstance(block, Sign):
             self._facts.signs[place] = block.text
 
     def _claim_on(self, place: Position, claims: PlainClaims) -> None:
-        """Let what is written on a sign claim something."""
+        """Set the claims of the text on a sign."""
         if claims and place not in self._facts.signs:
-            raise WorldError(f"nothing is written at {place} that could claim anything")
+            raise WorldError(f"there is no text at {place}, so it cannot carry claims; write one")
         if claims:
             self._facts.sign_claims[place] = claims
 
@@ -159,7 +159,7 @@ class ScriptedState:
 
     def _agent(self, name: str) -> AgentState:
         if name not in self._facts.agents:
-            raise WorldError(f"no agent {name!r}; there are {sorted(self._facts.agents)}")
+            raise WorldError(f"no agent {name!r}; agents are {sorted(self._facts.agents)}")
         return self._facts.agents[name]
 
     def _container(self, position: Position) -> Position:
@@ -197,11 +197,11 @@ class ScriptedState:
             if not self._registry.has_item(name):
                 raise WorldError(f"there is no item {name!r}")
             if not isinstance(count, int) or isinstance(count, bool) or count <= 0:
-                raise WorldError(f"{count!r} {name} cannot be; give a whole number above 0")
+                raise WorldError(f"count {count!r} of {name!r}; give a whole number above 0")
         return dict(items)
 
     def _fitting(self, who: str, held: Items, moved: Items, slots: int) -> dict[str, int]:
-        """What somebody or something holds with what is moved there."""
+        """Return the items of a holder after a transfer; WorldError if they do not fit."""
         items = sum_of(held, moved)
         if fault := items_fault(items, self._registry, slots, who):
             raise WorldError(f"{moved} cannot be moved: they would {fault}")

@@ -1,7 +1,7 @@
-"""Signs: which blocks are some, and what can be written on them.
+"""Signs: which blocks are signs, and which texts fit on them.
 
-The text is that of a sign's front. It is part of its block wherever blocks are told of: as a
-`Sign` among block states, so that whoever sees the block sees the text.
+The text is on the front of the sign. It is part of the block, as a `Sign` among block states, so
+that every agent that sees the block sees the text.
 """
 
 from beliefnest.errors import InputError
@@ -22,22 +22,22 @@ __all__ = [
 ]
 
 MOST_LINES = 4
-"""Lines of a sign, as in Minecraft."""
+"""Number of lines of a sign, as in Minecraft."""
 
 LONGEST_LINE = 45
-"""Characters of a line, as Mineflayer writes them."""
+"""Greatest number of characters in a line, as in Mineflayer."""
 
 
 def is_sign(name: str) -> bool:
-    """Return True if the block of that name is a sign: one that stands, hangs, or is on a wall."""
+    """Return True if a block name is that of a standing, hanging or wall sign."""
     return name.endswith("_sign")
 
 
 def sign_fault(text: str) -> str | None:
-    """What is wrong with a text for a sign; None: nothing.
+    """Return the fault of a text for a sign, or None.
 
-    It has at most `MOST_LINES` lines, split by line breaks, each of which can be said (`fault_of`)
-    and has at most `LONGEST_LINE` characters.
+    A valid text has at most `MOST_LINES` lines. Each line has at most `LONGEST_LINE` characters
+    and is a valid utterance (`fault_of`).
     """
     lines = text.split("\n")
     if len(lines) > MOST_LINES:
@@ -51,25 +51,25 @@ def sign_fault(text: str) -> str | None:
 
 
 def sign_words(text: str) -> str:
-    """What is written on a sign, on one line: its lines with `/` between them."""
+    """Return the text of a sign on one line, with `/` between its lines."""
     return escaped(" / ".join(text.rstrip("\n").split("\n")))
 
 
 def block_words(registry: Registry, block: Block) -> str | None:
-    """Return a block as people read it, with what is written on it; None: unknown."""
+    """Return a block as text for people, with the text of a sign; None if it is unknown."""
     if isinstance(block, Sign):
         return f'{registry.text(block.state)} that says "{sign_words(block.text)}"'
     return None if block < 0 else registry.text(block)
 
 
 def written(registry: Registry, state: int, text: str) -> Block:
-    """Return a block with a text on it; without text it is a block state like any other.
+    """Return a sign with a text; with an empty text, a plain block state.
 
     Raises:
-        InputError: The block is no sign, or the text does not fit on one.
+        InputError: The block is not a sign, or the text does not fit.
     """
     if state < 0 or not is_sign(registry.name(state)):
-        there = "not known" if state < 0 else registry.name(state)
+        there = "unknown" if state < 0 else registry.name(state)
         raise InputError(f"the block is {there}, which is no sign; give a block like oak_sign")
     if fault := sign_fault(text):
         raise InputError(fault)
@@ -78,10 +78,10 @@ def written(registry: Registry, state: int, text: str) -> Block:
 
 
 def plain_state(block: Block) -> int:
-    """Return the block state id of a block, whatever is written on it; -1: unknown."""
+    """Return the block state id of a block or a sign; -1 is unknown."""
     return block.state if isinstance(block, Sign) else block
 
 
 def text_of(block: Block) -> str:
-    """What is written on a block; empty if nothing is."""
+    """Return the text on a block; empty if there is none."""
     return block.text if isinstance(block, Sign) else ""

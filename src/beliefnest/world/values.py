@@ -1,8 +1,8 @@
-"""Frozen values every room speaks: positions, agents, containers, events, frames.
+"""Immutable values that all packages share: positions, agents, items, events.
 
-Coordinates are scenario coordinates: blocks are named by their lower corner (integers),
-agents by the middle of their feet (floats), y is up. Angles are Mineflayer's radians:
-yaw 0 looks along -z, pi/2 along -x; pitch is positive upwards. Time is counted in ticks
+Coordinates are scenario coordinates. A block's position is its lower corner (integers), an
+agent's position is the middle of its feet (floats), and y points up. Angles are Mineflayer's
+radians: yaw 0 looks along -z, pi/2 along -x; pitch is positive upwards. Time is counted in ticks
 of 50 ms.
 """
 
@@ -36,25 +36,25 @@ __all__ = [
 TICKS_PER_SECOND = 20
 EYE_HEIGHT = 1.62
 HALF_WIDTH = 0.3
-"""How far an agent's body reaches to each side of its feet, in blocks."""
+"""Distance from the middle of an agent to each side of its body, in blocks."""
 BODY_CENTRE_HEIGHT = 0.9
-"""Height of an agent's middle above its feet, in blocks."""
+"""Height of the middle of an agent's body above its feet, in blocks."""
 
 AGENT_SAMPLE_HEIGHTS = (EYE_HEIGHT, BODY_CENTRE_HEIGHT, 0.05)
-"""Heights above the feet of the points by which an agent is seen, in blocks."""
+"""Heights above the feet of the points at which others see an agent, in blocks."""
 EQUIPMENT_SLOTS = ("head", "chest", "legs", "feet", "main_hand", "off_hand")
 
 Position = tuple[int, int, int]
 """A block position, in scenario coordinates."""
 
 Point = tuple[float, float, float]
-"""A point in space, in blocks, scenario coordinates."""
+"""A point in space, in blocks and scenario coordinates."""
 
 Placements = Mapping[str | Position, tuple[Point, Point] | tuple[str | None, str]]
 """Differences between a belief and its body.
 
-Agent to (from where, to where) in feet positions; position of a block to (the believed block or
-None, the block in the body).
+Agents map to a pair of feet positions: believed and actual. Block positions map to a pair of
+blocks: the believed block or None, and the actual one.
 """
 
 Items = Mapping[str, int]
@@ -62,19 +62,19 @@ Items = Mapping[str, int]
 
 
 class Sign(NamedTuple):
-    """A sign that is written on: its block state id, and the text of its front, never empty."""
+    """A sign with text: its block state id and the text of its front, never empty."""
 
     state: int
     text: str
 
 
 Block = int | Sign
-"""A block state id, or a sign with what is written on it; -1 is unknown."""
+"""A block state id, or a sign with its text; -1 is unknown."""
 
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """The part of space a scenario plays in: two inclusive corners of block positions."""
+    """Region of a scenario: two inclusive corners of block positions."""
 
     low: Position
     high: Position
@@ -90,7 +90,7 @@ class Box:
         return x0 <= x <= x1 and y0 <= y <= y1 and z0 <= z <= z1
 
     def check(self, position: Position) -> None:
-        """Raise PositionError for a position outside the box."""
+        """Raise PositionError if a position is outside the box."""
         if position not in self:
             raise PositionError(f"position {position} is outside the box {self.low}..{self.high}")
 
@@ -111,7 +111,7 @@ class Box:
 
 
 class EventKind(StrEnum):
-    """What can happen during a tick (semantics, section 1)."""
+    """Kinds of events (semantics, section 1)."""
 
     CHAT = "chat"
     THINK = "think"
@@ -134,21 +134,20 @@ class EventKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something that happened during one tick.
+    """An event during one tick.
 
     Attributes:
-        kind: What happened.
-        actor: The agent who did it; None for a block update nobody is named for.
-        detail: The part a witness sees. By kind: `text` (chat, think; block_update: what was
-            written on a sign), `to` (chat that is whispered to one agent; absent where it is
-            said aloud), `claims` (chat that makes some: plain data, see `world.claims`),
-            `claims_from` (who read these out of the text; absent where the speaker gave
-            them), `position` of a block
-            (mine_block, place_block, use_lever, press_button, use_door, containers,
-            block_update), `block` (a block state text), `items` (name -> count),
-            `other` (an agent), `powered` (use_lever),
-            `open` (use_door: doors, trapdoors and gates; a door is where its lower half is),
-            `name` (emote), `destination` (move_to, a point).
+        kind: Kind of event.
+        actor: Agent that acted; None for a block update without a known actor.
+        detail: The part of the event that witnesses perceive. Keys by kind: `text` (chat, think;
+            block_update: new text of a sign), `to` (chat whispered to one agent; absent if it is
+            said aloud), `claims` (chat with claims: plain data, see `world.claims`),
+            `claims_from` (reader that extracted the claims from the text; absent if the speaker
+            gave them), `position` of a block (mine_block, place_block, use_lever, press_button,
+            use_door, containers, block_update), `block` (a block state text), `items` (name ->
+            count), `other` (an agent), `powered` (use_lever), `open` (use_door: doors, trapdoors
+            and gates; the position of a door is its lower half), `name` (emote), `destination`
+            (move_to, a point).
     """
 
     kind: EventKind
@@ -158,15 +157,15 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class AgentState:
-    """Pose and possessions of one agent, as they are (not as anyone believes them).
+    """Actual pose and possessions of one agent (not anyone's belief about them).
 
     Attributes:
         position: Middle of the feet, blocks.
         yaw: Radians, Mineflayer's convention.
         pitch: Radians, positive upwards.
-        on_ground: Whether the agent stands on something.
+        on_ground: True if the agent stands on something.
         equipment: Slot of `EQUIPMENT_SLOTS` to item name; an absent slot is empty.
-        inventory: Item name to count, what is worn or held included.
+        inventory: Item name to count, including worn and held items.
         health: Half hearts, 0 to 20.
         food: Half drumsticks, 0 to 20.
     """
@@ -181,7 +180,7 @@ class AgentState:
     food: float = 20.0
 
     def moved(self, position: Point, yaw: float, pitch: float) -> "AgentState":
-        """Return the agent elsewhere, as `dataclasses.replace` makes it in a third of the time."""
+        """Return the agent at another pose; three times as fast as `dataclasses.replace`."""
         return AgentState(
             position,
             yaw,
@@ -196,7 +195,7 @@ class AgentState:
 
 @dataclass(frozen=True, slots=True)
 class DroppedItem:
-    """An item entity lying in the world."""
+    """An item entity in the world."""
 
     name: str
     count: int
