@@ -57,6 +57,13 @@ def _unreadable(path: Path) -> None:
     path.symlink_to(path)
 
 
+FILMS = json.dumps(
+    {
+        "worlds": [{"size": [3, 1], "spot1": [1, 1], "spot2": [3, 1], "possible_spot2": ["L"]}],
+        "scenarios": [{"id": 1, "true_spot2": "L", "path_xy": [[2, 1]], "ends_with_eat": False}],
+    }
+)
+
 DAMAGES: dict[str, Callable[[Path], object]] = {
     **{
         name: lambda path, content=content: path.write_bytes(content)
@@ -90,6 +97,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         Path("template.jinja").write_text("{{ task }}")
         Path("place.schem").write_bytes(b"\x1f\x8b")
         Path("stories.json").write_text("[]")
+        Path("films.json").write_text(FILMS)
         yield folder
     finally:
         os.chdir(before)
@@ -139,6 +147,7 @@ CASES: dict[str, tuple[str, list[str]]] = {
     "place": ("place.schem", ["capture", "place.schem", "-o", "place.yaml"]),
     "stories": ("stories.json", ["suite", "stories", "--data", "stories.json"]),
     "hi-tom": ("stories.json", ["suite", "hi-tom", "--data", "stories.json"]),
+    "films": ("films.json", ["suite", "food-trucks", "--data", "films.json", "--out", "films"]),
 }
 """The file that is damaged, and a command that reads it."""
 
@@ -264,7 +273,10 @@ def _limited(size: int) -> None:
 @pytest.mark.parametrize(
     ("case", "size"),
     [
-        *((case, 0) for case in ("run", "study", "play", "export", "import", "show", "new")),
+        *(
+            (case, 0)
+            for case in ("run", "study", "play", "export", "import", "show", "new", "films")
+        ),
         *((case, 40_000) for case in ("run", "study")),
     ],
 )
@@ -278,6 +290,7 @@ def test_a_full_disk_is_told_in_one_line(made: Path, tmp_path: Path, case: str, 
         "export": ["export", "run", "--out", "out"],
         "import": ["import", "trace.jsonl", "--out", "out.bn"],
         "show": ["show", "run", "--html", "out.html"],
+        "films": ["suite", "food-trucks", "--data", "films.json", "--out", "out"],
         "new": ["new", "mine"],
     }
     done = subprocess.run(
@@ -353,6 +366,9 @@ ODD = ["", "x", "-1", HUGE, "nan", "\0", "../../nothing", "\u202e", "[" * 9000, 
         ["suite", "?", "--data", "stories.json"],
         ["suite", "stories", "--data", "?"],
         ["suite", "hi-tom", "--data", "stories.json", "--rows", "?"],
+        ["suite", "food-trucks", "--data", "films.json", "--rows", "?"],
+        ["suite", "food-trucks", "--data", "?"],
+        ["suite", "stories", "--data", "stories.json", "--out", "?"],
         ["capture", "?", "-o", "new.yaml"],
         ["new", "?"],
         ["replay", "?"],

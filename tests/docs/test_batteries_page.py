@@ -11,7 +11,7 @@ PAGE = (DOCS / "batteries.md").read_text(encoding="utf-8")
 
 
 def test_the_stories_of_the_page_are_answered_as_they_say(tmp_path: Path) -> None:
-    (stories,) = re.findall(r"```json\n(.*?)```", PAGE, re.DOTALL)
+    (stories,) = re.findall(r'```json\n(\{"name.*?)```', PAGE, re.DOTALL)
     path = tmp_path / "stories.jsonl"
     path.write_text(stories, encoding="utf-8")
     assert run_command_line(["suite", "stories", "--data", str(path)]) == 0

@@ -381,21 +381,25 @@ def list_installed(json: Json = False) -> None:
 
 @app.command()
 def suite(
-    name: Annotated[str, typer.Argument(help="Name of the suite: hi-tom, stories.")],
-    data: Annotated[Path, typer.Option(help="File of stories, questions and answers.")],
+    name: Annotated[str, typer.Argument(help="Name of the suite: hi-tom, stories, food-trucks.")],
+    data: Annotated[Path, typer.Option(help="File of stories and questions, or of films.")],
     world: Annotated[str, typer.Option(help="World in which the stories play.")] = "scripted",
     rows: Annotated[str | None, typer.Option(help="Rows to answer, as in 1-20,35.")] = None,
-    limit: Annotated[int | None, typer.Option(help="Most stories to play.")] = None,
+    limit: Annotated[int | None, typer.Option(help="Most stories or films to play.")] = None,
     seed: Annotated[int, typer.Option(help="Seed of all random numbers.")] = 0,
     claims_from: Annotated[
         str | None, typer.Option(help="Model that extracts claims from utterances.")
     ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the figure and tables of films.")
+    ] = None,
     json: Json = False,
 ) -> int:
-    """Answer a file of questions about stories from nests; print how many answers are right."""
+    """Answer a file of questions from nests; compare with its answers, or with people."""
     from beliefnest.cli.suite import SuiteOptions, run_suite
 
-    return run_suite(SuiteOptions(name, data, world, rows, limit, seed, json, claims_from))
+    options = SuiteOptions(name, data, world, rows, limit, seed, json, claims_from, out)
+    return run_suite(options)
 
 
 @app.command()

@@ -15,6 +15,7 @@ from rich.table import Table
 
 from beliefnest.bodies.worlds import check_world
 from beliefnest.cli.console import print_table, progress_on, stdout
+from beliefnest.cli.films import FILMS, FilmOptions, run_films
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.scenarios.stories.data import StoryItems, read_items
 from beliefnest.scenarios.stories.own import read_own
@@ -31,7 +32,7 @@ if TYPE_CHECKING:  # Importing models takes long, and few suites use one.
 
 __all__ = ["SUITES", "SuiteOptions", "run_suite"]
 
-SUITES = ("hi-tom", "stories")
+SUITES = ("hi-tom", "stories", FILMS)
 """Names of the suites."""
 
 _ROWS = re.compile(r"(?P<first>[0-9]{1,7})(?:\s*-\s*(?P<last>[0-9]{1,7}))?")
@@ -46,7 +47,7 @@ class SuiteOptions:
 
     Attributes:
         name: Name of the suite.
-        data: File of stories, questions and answers.
+        data: File of stories, questions and answers, or of films.
         world: Name of the world.
         rows: Numbers of the rows to answer, as in `1-20,35`; None: all.
         limit: Greatest number of stories to play; None: all.
@@ -54,6 +55,7 @@ class SuiteOptions:
         as_json: Print one JSON object instead of a table.
         claims_from: Name of a model that extracts claims from utterances; None: use the claims
             that the stories state beside the words.
+        out: Folder for figures and tables of films; None: a new one.
     """
 
     name: str
@@ -64,6 +66,7 @@ class SuiteOptions:
     seed: int
     as_json: bool
     claims_from: str | None = None
+    out: Path | None = None
 
 
 def run_suite(options: SuiteOptions) -> int:
@@ -81,6 +84,10 @@ def run_suite(options: SuiteOptions) -> int:
         raise InputError(f"--limit is {options.limit}; give 1 or more stories")
     check_world(options.world, servers=False)
     rows = None if options.rows is None else parse_rows(options.rows)
+    if options.name == FILMS:
+        return run_films(_film_options(options, rows))
+    if options.out is not None:
+        raise InputError(f"--out is for films; the suite {options.name} writes no files")
     read = read_items if options.name == "hi-tom" else read_own
     stories = read(options.data, rows)[: options.limit]
     if not stories:
@@ -93,6 +100,16 @@ def run_suite(options: SuiteOptions) -> int:
     else:
         _print(options, stories, judged)
     return 0 if all(each.ok for each in judged) else 1
+
+
+def _film_options(options: SuiteOptions, rows: frozenset[int] | None) -> FilmOptions:
+    if options.world != "scripted":
+        raise InputError(f"--world is {options.world}; films are acted out in the scripted world")
+    if options.claims_from is not None:
+        raise InputError("--claims-from is for stories; nobody says anything in films")
+    return FilmOptions(
+        options.data, rows, options.limit, options.seed, options.as_json, options.out
+    )
 
 
 def parse_rows(text: str) -> frozenset[int]:

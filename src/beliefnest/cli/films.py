@@ -1,0 +1,340 @@
+"""`beliefnest suite food-trucks`: films acted out and judged, beside the judgments of people."""
+
+import json
+import math
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from rich import box
+from rich.table import Table
+
+from beliefnest.cli.console import print_table, progress_on, stdout
+from beliefnest.errors import InputError, MissingExtraError
+from beliefnest.pictures.scatter import Point, ScatterPanel, ScatterRow, scatter_figure
+from beliefnest.scenarios.films.agreement import PUBLISHED, Agreement, agreement, interval
+from beliefnest.scenarios.films.film import ABOUT, About, Film
+from beliefnest.scenarios.films.judging import LESIONS, Judgment, Lesion, judge
+from beliefnest.scenarios.films.reading import read_films
+from beliefnest.studies.plainframe import Typed, write_typed
+
+__all__ = ["FILMS", "FilmOptions", "run_films"]
+
+FILMS = "food-trucks"
+"""Name of the suite."""
+
+_MODELS: tuple[Lesion | None, ...] = (None, *LESIONS)
+_WORDS: Mapping[Lesion | None, str] = {
+    None: "inverse planning",
+    "true_belief": "true belief",
+    "no_cost": "no cost",
+}
+_SINGULAR: Mapping[About, str] = {
+    "desires": "desire",
+    "beliefs": "belief",
+    "locations": "location",
+}
+_AXES: Mapping[About, tuple[str, str]] = {
+    "desires": ("model: expected utility", "people: rating"),
+    "beliefs": ("model: expected credence", "people: credence"),
+    "locations": ("model: probability", "people: probability"),
+}
+_REPORTS = 10
+"""Lines of progress where there is no terminal."""
+
+
+@dataclass(frozen=True, slots=True)
+class FilmOptions:
+    """What was asked for on the command line.
+
+    Attributes:
+        data: File of films.
+        rows: Ids of the films to judge; None: all.
+        limit: Judge no more films than this; None: all.
+        seed: Drives the bootstrap.
+        as_json: Whether to print one JSON object instead of tables.
+        out: Folder of the figure and the tables; None: a new one in `suites`.
+    """
+
+    data: Path
+    rows: frozenset[int] | None
+    limit: int | None
+    seed: int
+    as_json: bool
+    out: Path | None
+
+
+def run_films(options: FilmOptions) -> int:
+    """Act the films out, judge, print and write files.
+
+    Raises:
+        BeliefNestError: The input is wrong, or a file cannot be written.
+    """
+    films, parameters = read_films(options.data)
+    if options.rows is not None:
+        films = [film for film in films if film.name in {str(row) for row in options.rows}]
+    films = films[: options.limit]
+    if not films:
+        raise InputError(f"{options.data} holds none of the films asked for")
+    folder = _folder(options.out)
+    judged: dict[Lesion | None, list[Judgment]] = {}
+    step = max(1, len(films) // _REPORTS)
+    with progress_on(FILMS) as on_progress:
+        for lesion in _MODELS:
+            judged[lesion] = []
+            for number, film in enumerate(films):
+                if number % step == 0:
+                    on_progress(f"{_WORDS[lesion]}, film {film.name}", number, len(films))
+                judged[lesion].append(judge(film, parameters, lesion))
+        on_progress("all films judged", len(films), len(films))
+    report = _report(options, judged)
+    report["files"] = _write(folder, options, judged)
+    if options.as_json:
+        sys.stdout.write(json.dumps(report, indent=2) + "\n")
+    else:
+        _print(options, judged, report)
+    return 0
+
+
+def _folder(out: Path | None) -> Path:
+    folder = out or Path("suites", f"{FILMS}-{datetime.now().astimezone():%Y%m%d-%H%M%S}")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"the folder {folder} cannot be made: {error.strerror}") from None
+    return folder
+
+
+def _report(
+    options: FilmOptions, judged: Mapping[Lesion | None, Sequence[Judgment]]
+) -> dict[str, Any]:
+    films = [judgment.film for judgment in judged[None]]
+    groups = list(dict.fromkeys(film.group for film in films if film.group))
+    return {
+        "suite": FILMS,
+        "data": str(options.data),
+        "seed": options.seed,
+        "films": len(films),
+        "scored": sum(film.scored for film in films),
+        "correlations": {
+            _key(lesion): _correlations(judged[lesion], lesion, options.seed) for lesion in _MODELS
+        },
+        "groups": {
+            group: {
+                "films": sum(film.scored for film in films if film.group == group),
+                "correlations": _correlations(
+                    [each for each in judged[None] if each.film.group == group], None, options.seed
+                ),
+            }
+            for group in groups
+        },
+        "impossible": {
+            judgment.film.name: judgment.impossible
+            for judgment in judged[None]
+            if judgment.impossible is not None
+        },
+        "judgments": [_judgment(judgment) for judgment in judged[None]],
+    }
+
+
+def _key(lesion: Lesion | None) -> str:
+    return lesion or "model"
+
+
+def _correlations(
+    judgments: Sequence[Judgment], lesion: Lesion | None, seed: int
+) -> dict[str, Any]:
+    """Return the coefficients of all that people judged, with intervals."""
+    found: dict[str, Any] = {}
+    for about in ABOUT:
+        pairs = agreement(judgments, about)
+        if not len(pairs.model):
+            continue
+        found[about] = {
+            "r": None if math.isnan(pairs.r) else pairs.r,
+            "interval": interval(pairs, seed),
+            "judgments": len(pairs.model),
+            "published": PUBLISHED[lesion].get(about),
+        }
+    return found
+
+
+def _judgment(judgment: Judgment) -> dict[str, Any]:
+    film = judgment.film
+    return {
+        "film": film.name,
+        "group": film.group or None,
+        "scored": film.scored,
+        "model": judgment.model,
+        "people": film.people,
+    }
+
+
+def _write(
+    folder: Path, options: FilmOptions, judged: Mapping[Lesion | None, Sequence[Judgment]]
+) -> list[str]:
+    """Write figure and tables; the figure where people judged, tables where pandas is there."""
+    written = []
+    rows = _scatter_rows(judged, options.seed)
+    if rows:
+        figure = scatter_figure(rows, f"Model and people, {options.data.name}")
+        for ending in ("svg", "pdf", "png"):
+            file = folder / f"scatter.{ending}"
+            figure.save(file)
+            written.append(str(file))
+    tables = [folder / "judgments.csv", folder / "judgments.parquet"]
+    try:
+        write_typed(_columns(judged), *tables)
+    except MissingExtraError as error:
+        sys.stderr.write(f"no judgments.csv and judgments.parquet: {error}\n")
+    except OSError as error:
+        raise InputError(f"{folder} cannot be written: {error.strerror or error}") from None
+    else:
+        written += map(str, tables)
+    return written
+
+
+def _columns(judged: Mapping[Lesion | None, Sequence[Judgment]]) -> dict[str, Typed]:
+    """Return a row for each judgment of each model, with that of people beside it."""
+    rows: list[tuple[object, ...]] = []
+    for lesion, judgments in judged.items():
+        for judgment in judgments:
+            film = judgment.film
+            for about, means in judgment.model.items():
+                people, errors = film.people.get(about, {}), film.errors.get(about, {})
+                rows += [
+                    (
+                        *(film.name, film.group or None, film.scored, _key(lesion)),
+                        *(_SINGULAR[about], name, value, people.get(name), errors.get(name)),
+                        judgment.impossible,
+                    )
+                    for name, value in means.items()
+                ]
+    kinds = {
+        **dict.fromkeys(("film", "group"), "string"),
+        "scored": "bool",
+        **dict.fromkeys(("variant", "about", "name"), "string"),
+        **dict.fromkeys(("model", "people", "people_se"), "float64"),
+        "impossible": "string",
+    }
+    columns = zip(*rows, strict=True)
+    return {
+        name: Typed(values, kind)
+        for (name, kind), values in zip(kinds.items(), columns, strict=True)
+    }
+
+
+def _scatter_rows(
+    judged: Mapping[Lesion | None, Sequence[Judgment]], seed: int
+) -> list[ScatterRow]:
+    rows = []
+    for about in ABOUT:
+        pairs = {lesion: agreement(judged[lesion], about) for lesion in _MODELS}
+        if len(pairs[None].model):
+            across, up = _AXES[about]
+            panels = [
+                ScatterPanel(f"{about}: {_WORDS[lesion]}", _coefficient(each, seed), _points(each))
+                for lesion, each in pairs.items()
+            ]
+            rows.append(ScatterRow(across, up, panels))
+    return rows
+
+
+def _points(pairs: Agreement) -> list[Point]:
+    columns = (pairs.model.tolist(), pairs.people.tolist(), pairs.names, pairs.errors.tolist())
+    return [
+        Point(x, y, name, 0.0 if math.isnan(error) else error)
+        for x, y, name, error in zip(*columns, strict=True)
+    ]
+
+
+def _coefficient(pairs: Agreement, seed: int) -> str:
+    ends = interval(pairs, seed)
+    r = None if math.isnan(pairs.r) else pairs.r
+    told = [f"r = {_r_text(r)}", f"n = {len(pairs.names)}"]
+    if ends is not None:
+        told.insert(1, f"95 % {_interval_text(ends)}")
+    return ", ".join(told).replace("-", "\u2212")
+
+
+def _print(
+    options: FilmOptions,
+    judged: Mapping[Lesion | None, Sequence[Judgment]],
+    report: Mapping[str, Any],
+) -> None:
+    console = stdout()
+    title = f"{FILMS}: {report['films']} films, {report['scored']} of them scored"
+    if report["correlations"]["model"]:
+        table = _table(title, "model")
+        for lesion in _MODELS:
+            _add(table, _WORDS[lesion], report["correlations"][_key(lesion)])
+        print_table(console, table)
+        if report["groups"]:
+            table = _table("inverse planning, by group of films", "group", published=False)
+            for group, found in report["groups"].items():
+                told = f"{group} ({found['films']} films)"
+                _add(table, told, found["correlations"], published=False)
+            print_table(console, table)
+    else:
+        console.print(f"{title}; people judged none of them", markup=False)
+    alone = [each for each in judged[None] if not each.film.people]
+    if alone:
+        print_table(console, _alone(alone))
+    for name, step in report["impossible"].items():
+        console.print(f"film {name} is left out: {step}", markup=False, soft_wrap=True)
+    console.print(f"files: {', '.join(report['files'])}", markup=False, soft_wrap=True)
+
+
+def _table(title: str, heading: str, *, published: bool = True) -> Table:
+    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAVY)
+    table.add_column(heading)
+    table.add_column("judgments of")
+    for name in ("n", "r", "95 % interval"):
+        table.add_column(name, justify="right")
+    if published:
+        table.add_column("published, experiment 1", justify="right")
+    return table
+
+
+def _add(table: Table, name: str, found: Mapping[str, Any], *, published: bool = True) -> None:
+    for about, each in found.items():
+        cells = [name, about, str(each["judgments"]), _r_text(each["r"])]
+        cells.append(_interval_text(each["interval"]) if each["interval"] else "")
+        if published:
+            cells.append("" if each["published"] is None else str(each["published"]))
+        table.add_row(*cells)
+
+
+def _alone(judgments: Sequence[Judgment]) -> Table:
+    """Return the model's judgments of films that people did not judge."""
+    table = Table(title="films without judgments of people", title_justify="left")
+    table.box = box.SIMPLE_HEAVY
+    table.add_column("film")
+    shown: list[About] = [a for a in ABOUT if any(a in each.model for each in judgments)]
+    for about in shown:
+        table.add_column(about)
+    for each in judgments:
+        cells = [_means(each, about) for about in shown]
+        table.add_row(_film_text(each.film), *cells)
+    return table
+
+
+def _film_text(film: Film) -> str:
+    return film.name if film.scored else f"{film.name} (not scored)"
+
+
+def _means(judgment: Judgment, about: About) -> str:
+    digits = 1 if about == "desires" else 3
+    means = judgment.model.get(about, {})
+    return ", ".join(f"{name} {value:.{digits}f}" for name, value in means.items())
+
+
+def _r_text(r: float | None) -> str:
+    return "none" if r is None else f"{r:.3f}"
+
+
+def _interval_text(ends: tuple[float, float]) -> str:
+    return f"{ends[0]:.3f} to {ends[1]:.3f}"

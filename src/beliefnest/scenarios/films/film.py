@@ -1,0 +1,108 @@
+"""One film: a floor, what may stand where, the path of an agent, and judgments of people."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+__all__ = ["ABOUT", "NOTHING", "About", "Cell", "Film", "FilmParameters"]
+
+Cell = tuple[int, int]
+"""Coordinates x, y from 1, y upwards."""
+
+About = Literal["desires", "beliefs", "locations"]
+ABOUT: tuple[About, ...] = ("desires", "beliefs", "locations")
+"""Kinds of judgments: wanted goals, initial beliefs, and what stands where in fact."""
+
+NOTHING = "none"
+"""Name of what a place without a goal holds."""
+
+
+@dataclass(frozen=True)
+class FilmParameters:
+    """Parameters of the model; the defaults are the published ones.
+
+    Attributes:
+        rewards: Utilities to consider for each goal.
+        rewards_by_goal: Utilities to consider for some goals, instead of `rewards`.
+        discount: As for `MindModel`.
+        step_cost: Of moving and of acting on a goal.
+        stay_cost: As for `MindModel`.
+        rationality: As for `MindModel`.
+        grid: Steps of the grid of credences.
+        smoothing: Of the grid of credences.
+    """
+
+    rewards: tuple[float, ...] = (-20, 0, 20, 40, 60, 80, 100)
+    rewards_by_goal: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    discount: float = 0.99
+    step_cost: float = 1.0
+    stay_cost: float = 0.0
+    rationality: float = 2.5
+    grid: int = 6
+    smoothing: float = 0.075
+
+    def rewards_of(self, goal: str) -> tuple[float, ...]:
+        """Return the utilities to consider for a goal."""
+        return self.rewards_by_goal.get(goal, self.rewards)
+
+
+@dataclass(frozen=True)
+class Film:
+    """One film.
+
+    Attributes:
+        name: Its number in the file.
+        size: Cells of the floor along x and y.
+        walls: Cells that cannot be entered or seen through.
+        places: Cells at which something may be, by name.
+        known: Goal at each place that is not in doubt; None: nothing.
+        alternatives: By name, the goal at each place in doubt; None: nothing.
+        actual: Alternatives that the observer holds possible; one: it knows what is the case.
+        goals: Names of the goals.
+        path: Cells, one for each tick.
+        ended: Whether the agent acts on the goal at the end of its path.
+        scored: Whether it counts.
+        people: Mean judgments of people, by what they are about, then by goal or alternative.
+        errors: Standard errors of these means, where the file has them.
+        group: What it is about; empty: the file does not say.
+    """
+
+    name: str
+    size: tuple[int, int]
+    walls: frozenset[Cell]
+    places: Mapping[str, Cell]
+    known: Mapping[str, str | None]
+    alternatives: Mapping[str, Mapping[str, str | None]]
+    actual: tuple[str, ...]
+    goals: tuple[str, ...]
+    path: tuple[Cell, ...]
+    ended: bool
+    scored: bool = True
+    people: Mapping[About, Mapping[str, float]] = field(default_factory=dict)
+    errors: Mapping[About, Mapping[str, float]] = field(default_factory=dict)
+    group: str = ""
+
+    @property
+    def observer_doubts(self) -> bool:
+        """Whether the observer does not know which alternative is the case."""
+        return len(self.actual) > 1
+
+    @property
+    def events(self) -> Mapping[str, frozenset[str]]:
+        """What beliefs and locations may be about: names, with the alternatives that they mean.
+
+        These are the alternatives and, where several places are in doubt, `PLACE=GOAL`.
+        """
+        found = {name: frozenset([name]) for name in self.alternatives}
+        doubted = next(iter(self.alternatives.values()), {})
+        if len(doubted) > 1:
+            for name, held in self.alternatives.items():
+                for place, goal in held.items():
+                    event = event_name(place, goal)
+                    found[event] = found.get(event, frozenset()) | {name}
+        return found
+
+
+def event_name(place: str, goal: str | None) -> str:
+    """Return the name of the event that a place holds a goal; None: nothing."""
+    return f"{place}={goal or NOTHING}"
