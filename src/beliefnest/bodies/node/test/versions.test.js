@@ -58,7 +58,7 @@ test('whether agents may use blocks is tried with a gate, whatever number its st
   const region = { box: { contains: () => true }, toServer: ([x, y, z]) => ({ x, y, z }) }
   const scene = { region, mapping, at: () => ({ name: 'air', properties: { open: true } }) }
   const typed = []
-  const operator = { type: command => typed.push(command), until: async condition => condition(), settled: async () => {}, settling: { settled: async () => true } }
+  const operator = { type: command => typed.push(command), until: async condition => condition(), settled: async () => {}, hasSettled: async () => true }
   const bot = { entity: { position: new Vec3(0.5, 1, 0.5) }, _client: { write () {} } }
   const commands = commandsFor(region, state => mapping.textForServer(state), theirs.version)
   await new Setup(scene, operator, commands, theirs).requireUse(bot)
