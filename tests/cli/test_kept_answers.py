@@ -69,7 +69,7 @@ def test_what_is_not_kept_needs_the_model(
     run += ["--world", "scripted", "--out"]
     assert run_command_line([*run, "begun"]) == 3
     told = capsys.readouterr().err
-    assert "no answer of compatible:m to this prompt is kept" in told
+    assert "the cache has no answer of compatible:m to this prompt" in told
     assert "set COMPATIBLE_BASE_URL" in told
     assert run_command_line([*run, "new"]) == 3
     assert "kept" not in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""Language models: one protocol, adapters to providers, and what a run puts around them."""
+"""Language models: a common protocol, adapters to providers, cache, limits, recording."""
 
 from beliefnest.llm.asking import (
     Check,

@@ -1,4 +1,4 @@
-"""From a prompt to a program that passes a check, with the faults sent back."""
+"""Requests for a program, repeated with an error report until the program passes a check."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,21 +18,21 @@ __all__ = [
 ]
 
 Check = Callable[[str], str | None]
-"""Given a program, what is wrong with it, for the model to read; None: nothing."""
+"""Function that returns the fault of a program in words for the model, or None."""
 
 Prompt = str | Callable[[str | None, str | None], str]
-"""A prompt, or how to render it with the code and the error of the round before."""
+"""A prompt, or a function that renders it from the code and the error of the previous round."""
 
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """One round.
+    """One round: a request and its answer.
 
     Attributes:
-        messages: What was asked.
-        answer: What came back.
-        program: The program in it; None if there was none.
-        complaint: What was wrong; None: nothing.
+        messages: Messages of the request.
+        answer: The answer.
+        program: Program in the answer; None if there is none.
+        complaint: Fault of the answer; None if there is none.
     """
 
     messages: tuple[Message, ...]
@@ -46,8 +46,8 @@ class ProgramAnswer:
     """A program that passed the check.
 
     Attributes:
-        program: JavaScript.
-        attempts: All rounds, the last one good.
+        program: JavaScript source.
+        attempts: All rounds; the last one is good.
     """
 
     program: str
@@ -55,12 +55,12 @@ class ProgramAnswer:
 
     @property
     def usage(self) -> Usage:
-        """What all rounds took."""
+        """Resources that all rounds used."""
         return sum((attempt.answer.usage for attempt in self.attempts), Usage())
 
 
 class NoUsableProgramError(ModelError):
-    """No round gave a program that passed.
+    """No round gave a program that passed the check.
 
     Attributes:
         attempts: All rounds.
@@ -83,14 +83,15 @@ def ask_for_program(
     """Ask a model for a program until one passes a check.
 
     Args:
-        model: The model to ask.
-        prompt: A text: faults are then sent back as further messages of one conversation.
-            Or a function of the code and the error of the round before (None at first):
-            each round is then a conversation of its own, as with the paper's template.
-        check: What is wrong with a program.
-        attempts: Rounds at most, at least 1.
-        system: A message before the prompt, such as how to answer.
-        sampling: How answers are drawn.
+        model: Model to ask.
+        prompt: Text of the prompt, or a function. With a text, faults are sent back as further
+            messages of one conversation. A function receives the code and the error of the
+            previous round (None at first), and each round is a new conversation, as with the
+            paper's template.
+        check: Check of a program.
+        attempts: Greatest number of rounds, at least 1.
+        system: Message before the prompt, such as instructions for the answer.
+        sampling: Sampling parameters.
 
     Raises:
         InputError: `attempts` is below 1.
@@ -114,7 +115,7 @@ def ask_for_program(
 
 
 def _judge(text: str, check: Check) -> tuple[str | None, str | None]:
-    """Return the program of an answer, and what is wrong."""
+    """Return the program of an answer and its fault."""
     try:
         program = extract_program(text)
     except NoProgramError as error:

@@ -1,4 +1,4 @@
-"""What a run may spend on a model."""
+"""Limits on the tokens and the cost of a run."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -15,12 +15,13 @@ _TOKENS = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class RunLimits:
-    """What all answers of a run together may take; None: no limit.
+    """Limits on the sum of all answers of a run; None means no limit.
 
     Attributes:
-        tokens: Sent and received. The default guards against costs: it leaves out answers that
-            cost nothing, as those of a server of one's own. Any other number counts all answers.
-        cost: US dollars. Answers whose price is not known are held by `tokens` alone.
+        tokens: Greatest number of tokens sent and received. The default value protects against
+            costs and therefore ignores answers that cost nothing, such as those of your own
+            server. Any other value counts all answers.
+        cost: Greatest cost in US dollars. Answers without a known price count for `tokens` only.
     """
 
     tokens: int | None = _TOKENS
@@ -34,12 +35,12 @@ class RunLimits:
 
 @dataclass
 class RunSpending:
-    """What a run has spent so far, over all its models.
+    """Tokens and cost that a run has used so far, over all its models.
 
     Attributes:
-        limits: What it may spend.
-        spent: What it has spent; the cost counts known prices only.
-        free: Tokens in it of answers that cost nothing.
+        limits: Limits of the run.
+        spent: Sum over all answers; its cost includes known prices only.
+        free: Tokens among them that cost nothing.
     """
 
     limits: RunLimits = field(default_factory=RunLimits)
@@ -47,7 +48,7 @@ class RunSpending:
     free: int = 0
 
     def check(self) -> None:
-        """Refuse a further request when nothing is left.
+        """Refuse a further request if a limit is reached.
 
         Raises:
             ModelError: A limit is reached.
@@ -66,31 +67,31 @@ class RunSpending:
             )
 
     def add(self, usage: Usage) -> None:
-        """Count what an answer took."""
+        """Add the usage of an answer."""
         priced = Usage(usage.requests, usage.input_tokens, usage.output_tokens, usage.cost or 0.0)
         self.spent = self.spent + priced
         self.free += tokens_of_free(usage)
 
 
 def tokens_of_free(usage: Usage) -> int:
-    """Return the tokens of an answer that cost nothing; 0 for one that did, or may have."""
+    """Return the tokens of an answer that cost nothing; 0 if it cost something, or may have."""
     return usage.tokens if usage.cost == 0 else 0
 
 
 @dataclass(frozen=True)
 class MeteredModel:
-    """A model whose answers are counted against a budget; asked only while some is left."""
+    """Model wrapper that counts answers against a budget and stops when it is used up."""
 
     model: Model
     budget: RunSpending
 
     @property
     def name(self) -> str:
-        """Name of the model that is asked."""
+        """Name of the wrapped model."""
         return self.model.name
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """Ask, if the budget allows.
+        """Ask the model if the budget allows it.
 
         Raises:
             ModelError: A limit of the run is reached, or the model failed.

@@ -1,4 +1,4 @@
-"""Answers kept in a folder by exact request, so that a run can be repeated without the model."""
+"""Cache of answers in a folder, so that a run can be repeated without the model."""
 
 import tempfile
 from collections.abc import Sequence
@@ -16,17 +16,17 @@ from beliefnest.llm.messages import Answer, Message, Model, Sampling
 __all__ = ["CacheMode", "CachedModel"]
 
 CacheMode = Literal["read", "write", "off"]
-"""`read`: use what is there, ask and keep what is not; `write`: ask always and keep;
-`off`: neither."""
+"""Mode of the cache. `read`: use cached answers, ask for the others and store them. `write`:
+always ask, and store the answers. `off`: neither use nor store answers."""
 
 
 @dataclass(frozen=True)
 class CachedModel:
-    """A model whose answers are kept in a folder, one file a request.
+    """Model wrapper with a cache folder, one file per request.
 
     Attributes:
-        model: Asked for what the folder does not hold.
-        folder: Made when the first answer is kept.
+        model: Model for requests that are not in the cache.
+        folder: Folder of the cache; created with the first answer.
         mode: `read` or `write`.
     """
 
@@ -36,15 +36,15 @@ class CachedModel:
 
     @property
     def name(self) -> str:
-        """Name of the model that is asked."""
+        """Name of the wrapped model."""
         return self.model.name
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """Return the kept answer, or the model's.
+        """Return the cached answer or ask the model.
 
         Raises:
-            ModelError: The model failed, or a file of the folder is damaged or cannot be
-                read or written.
+            ModelError: The model failed, or a file of the cache is damaged or cannot be read or
+                written.
         """
         path = self.folder / f"{request_key(self.name, messages, sampling)}.json"
         if self.mode == "read":
@@ -64,17 +64,17 @@ def _read(path: Path) -> Exchange | None:
     except FileNotFoundError:
         return None
     except msgspec.MsgspecError as error:
-        raise ModelError(f"the kept answer {path} is damaged ({error}): delete it") from None
+        raise ModelError(f"the cached answer {path} is damaged ({error}): delete it") from None
     except OSError as error:
-        raise ModelError(f"the kept answer {path} cannot be read: {error}") from None
+        raise ModelError(f"the cached answer {path} cannot be read: {error}") from None
 
 
 def _write(path: Path, exchange: Exchange) -> None:
-    """Write whole or not at all: a run may be killed at any time, and others may be reading."""
+    """Write the file atomically: a run may be killed, and others may be reading."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
             file.write(encode_exchange(exchange))
         Path(file.name).replace(path)
     except OSError as error:
-        raise ModelError(f"the answer cannot be kept in {path}: {error}") from None
+        raise ModelError(f"the answer cannot be stored in {path}: {error}") from None

@@ -1,4 +1,4 @@
-"""Time as the models' limits and pauses see it; tests pass their own."""
+"""Clock for the time limits and pauses of models; tests pass their own."""
 
 import time
 from typing import Protocol
@@ -7,22 +7,22 @@ __all__ = ["Clock", "SystemClock"]
 
 
 class Clock(Protocol):
-    """A clock that can be waited on."""
+    """A clock that can also wait."""
 
     def now(self) -> float:
-        """Return seconds since some fixed moment."""
+        """Return seconds since a fixed moment."""
 
     def wait(self, seconds: float) -> None:
-        """Let time pass."""
+        """Wait for a number of seconds."""
 
 
 class SystemClock:
-    """The machine's clock."""
+    """Clock of the machine."""
 
     def now(self) -> float:
-        """Return seconds since some fixed moment."""
+        """Return seconds since a fixed moment."""
         return time.monotonic()
 
     def wait(self, seconds: float) -> None:
-        """Block for so many seconds."""
+        """Block for a number of seconds."""
         time.sleep(seconds)

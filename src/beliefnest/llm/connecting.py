@@ -1,7 +1,7 @@
-"""The HTTP client that models are asked through: what a server sends is counted, byte by byte.
+"""HTTP client for models, which limits the bytes of every response.
 
-A line of a stream, a comment in it or the text of an error is no part of an answer, so that no
-limit of answers would meet it, and yet it has to be held in memory.
+Limits on the length of answers are not enough: events of a stream, comments in it and texts of
+errors are not part of an answer, but must be held in memory.
 """
 
 from collections.abc import AsyncIterator
@@ -18,32 +18,34 @@ _SECONDS_TO_CONNECT = 5.0
 
 
 class TooManyBytesError(ModelError):
-    """A server sends more than an answer can take."""
+    """A server sent more bytes than any answer needs."""
 
 
 def bounded_client(
     seconds: float, longest: int, user: tuple[str, str] | None = None
 ) -> "httpx2.AsyncClient":
-    """Return a client that gives up a response of more than `longest` bytes; the caller closes it.
+    """Return a client that aborts responses of more than `longest` bytes; the caller closes it.
 
     Args:
-        seconds: What one step of a request may take.
-        longest: Bytes of a response, as they are sent. Responses are asked for uncompressed, and
-            compressed ones refused: a few bytes of them may stand for any number.
-        user: User and password for the server, if it wants any.
+        seconds: Timeout of one step of a request.
+        longest: Greatest number of bytes of a response. The client asks for uncompressed
+            responses and refuses others: a few compressed bytes can expand to any number.
+        user: User and password for the server, if it needs them.
     """
     import httpx2
 
     async def bound(response: httpx2.Response) -> None:
         coding = response.headers.get("content-encoding", "identity")
         if coding != "identity":
-            raise TooManyBytesError(f"the answer is compressed ({coding:.20}), which was not asked")
+            raise TooManyBytesError(
+                f"the answer is compressed ({coding:.20}), which was not requested"
+            )
         stream = response.stream
         if isinstance(stream, httpx2.AsyncByteStream):
             response.stream = Bounded(stream)
 
     class Bounded(httpx2.AsyncByteStream):
-        """A stream that is counted."""
+        """Stream that counts its bytes."""
 
         def __init__(self, inner: httpx2.AsyncByteStream) -> None:
             self._inner = inner

@@ -1,4 +1,4 @@
-"""One question and its answer as stored: in the cache and in recordings."""
+"""Stored form of a request and its answer, for the cache and for recordings."""
 
 import hashlib
 from collections.abc import Sequence
@@ -12,14 +12,14 @@ __all__ = ["Exchange", "decode_exchange", "encode_exchange", "request_key"]
 
 
 class Exchange(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What was asked of which model, and what it answered; never a key.
+    """A request to a model and its answer; it never contains a key.
 
     Attributes:
         model: Name of the model, as `PROVIDER:MODEL`.
-        messages: What was asked.
-        sampling: How the answer was drawn.
-        text: The answer.
-        usage: What it took.
+        messages: Messages of the request.
+        sampling: Sampling parameters.
+        text: Text of the answer.
+        usage: Resources that the answer used.
     """
 
     model: str
@@ -30,18 +30,18 @@ class Exchange(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def request_key(model: str, messages: Sequence[Message], sampling: Sampling) -> str:
-    """Return a name for exactly this request: the same text, model and sampling, nothing else."""
+    """Return a hash of a request; it changes with any change of text, model or sampling."""
     request = msgspec.json.encode([model, list(messages), sampling])
     return hashlib.sha256(request).hexdigest()
 
 
 def encode_exchange(exchange: Exchange) -> bytes:
-    """Return an exchange as one line of JSON, without the line's end."""
+    """Encode an exchange as one line of JSON without the line end."""
     return msgspec.json.encode(exchange)
 
 
 def decode_exchange(line: bytes) -> Exchange:
-    """Return an exchange from its line.
+    """Decode an exchange from its line.
 
     Raises:
         msgspec.MsgspecError: The line is not an exchange.

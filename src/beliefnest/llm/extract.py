@@ -1,4 +1,4 @@
-"""The program in a model's answer."""
+"""Extraction of the program from a model's answer."""
 
 import re
 
@@ -17,14 +17,14 @@ _CODE_END = re.compile(r"[;})]\s*(?://[^\n]*)?\Z")
 
 
 class NoProgramError(ModelError):
-    """An answer holds no program."""
+    """An answer contains no program."""
 
 
 def extract_program(answer: str) -> str:
-    """Return the program in an answer: what its fenced block holds, or all of it if that is code.
+    """Return the program in an answer: the content of a fenced block, or a bare program.
 
-    Of several blocks the last one that is marked as JavaScript counts, or else the last
-    without a mark: models that correct themselves do so at the end.
+    If there are several blocks, take the last one marked as JavaScript, else the last one
+    without a mark: models that correct themselves write the correction last.
 
     Raises:
         NoProgramError: There is no program, or its block is not closed.
@@ -41,10 +41,10 @@ def extract_program(answer: str) -> str:
 
 
 def _blocks(answer: str) -> list[tuple[str, str]]:
-    """Language and content of every fenced block.
+    """Return the language and the content of every fenced block.
 
     Raises:
-        NoProgramError: The last block is not closed, so that what it holds is cut off.
+        NoProgramError: The last block is not closed, so its content is incomplete.
     """
     blocks: list[tuple[str, str]] = []
     opening: re.Match[str] | None = None

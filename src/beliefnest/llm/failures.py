@@ -1,4 +1,4 @@
-"""How a model's failures are told: short, without secrets, with what to do."""
+"""Errors of models: short messages without secrets that say what to do."""
 
 from beliefnest.errors import ModelError
 from beliefnest.llm.messages import Usage
@@ -10,10 +10,10 @@ _LONGEST_EXCERPT = 300
 
 
 class TransientModelError(ModelError):
-    """A failure that may pass: a rate limit, an overloaded server, a dropped connection.
+    """A temporary failure: a rate limit, an overloaded server, a lost connection.
 
     Attributes:
-        retry_after: Seconds the provider asked to wait; None if it named none.
+        retry_after: Seconds that the provider asked to wait; None if it named none.
     """
 
     def __init__(self, message: str, retry_after: float | None = None) -> None:
@@ -22,10 +22,10 @@ class TransientModelError(ModelError):
 
 
 class UnusableAnswerError(ModelError):
-    """An answer came, and cannot be used: refused, empty, cut off or too long.
+    """An answer that cannot be used: refused, empty, cut off or too long.
 
     Attributes:
-        usage: What it took all the same.
+        usage: Resources that it used nevertheless.
     """
 
     def __init__(self, message: str, usage: Usage) -> None:

@@ -1,4 +1,4 @@
-"""Claims that a model reads out of what somebody said."""
+"""Model-based reader that extracts claims from utterances."""
 
 import re
 from collections.abc import Callable, Iterable, Sequence
@@ -19,7 +19,7 @@ __all__ = ["ClaimsFromModel", "claims_from_model"]
 
 _FENCED = re.compile(r"\s*```(?:json)?[ \t]*\n(.*)\n[ \t]*```\s*", re.DOTALL)
 _MOST = 8
-"""Claims in one utterance; more is no reading of it."""
+"""Greatest number of claims in one utterance. An answer with more is not a sensible reading."""
 
 _SYSTEM = """\
 You read what somebody in a block world has said, and list what it states as fact about the world.
@@ -46,12 +46,13 @@ def _as_it_is(model: Model) -> Model:
 
 @dataclass(frozen=True, slots=True)
 class ClaimsFromModel:
-    """Asks a model what a text claims; made by `claims_from_model`.
+    """Reader that asks a model which claims a text makes; see `claims_from_model`.
 
     Attributes:
-        model: Who is asked.
-        sampling: How its answers are drawn.
-        wrap: Put around the model for each text; what it is given refuses nonsense.
+        model: Model to ask.
+        sampling: Sampling parameters.
+        wrap: Wrapper applied to the model for each text; the model it receives already refuses
+            invalid answers.
     """
 
     model: Model
@@ -64,15 +65,14 @@ class ClaimsFromModel:
         return self.model.name
 
     def through(self, wrap: Callable[[Model], Model]) -> "ClaimsFromModel":
-        """Return the same, asking through what `wrap` puts around the model."""
+        """Return a copy that asks through the given wrapper."""
         return replace(self, wrap=wrap)
 
     def __call__(self, text: str, speaker: str, nameable: Nameable) -> tuple[Claim, ...]:
-        """What the text claims.
+        """Return the claims of a text.
 
         Raises:
-            ModelError: The model failed, or answered something else than claims about
-                this world.
+            ModelError: The model failed, or its answer is not a list of claims about this world.
         """
         model = self.wrap(_Strict(self.model, nameable))
         question = (
@@ -83,21 +83,21 @@ class ClaimsFromModel:
 
 
 def claims_from_model(model: Model, sampling: Sampling | None = None) -> ClaimsFromModel:
-    """Return a hook for `Nest(..., claims_from=...)` that asks a model.
+    """Return a reader for `Nest(..., claims_from=...)` that asks a model.
 
-    What it is asked and answers is kept in the run (`nest.prompts()`). Where it fails or
-    answers nonsense, that is kept instead, and the text claims nothing.
+    The run records the requests and answers (`nest.prompts()`). If the model fails or gives an
+    invalid answer, the run records the error and the text has no claims.
 
     Args:
-        model: As `open_model` gives, with its limits and cache.
-        sampling: How answers are drawn; None: the likeliest.
+        model: Model with limits and cache, as of `open_model`.
+        sampling: Sampling parameters; None asks for the likeliest answer.
     """
     return ClaimsFromModel(model, sampling or Sampling())
 
 
 @dataclass(frozen=True, slots=True)
 class _Strict:
-    """A model all of whose answers are claims about a world."""
+    """Model wrapper that raises if an answer is not a list of claims about this world."""
 
     model: Model
     nameable: Nameable
@@ -149,6 +149,6 @@ def _question(text: str, speaker: str, nameable: Nameable) -> str:
         "Coordinates": f"from {at(nameable.box.low)} to {at(nameable.box.high)}",
     }
     lists = "\n\n".join(f"{title}:\n{body}" for title, body in parts.items())
-    # As JSON, so that nothing that is said can pass for a part of the question.
+    # Quote the utterance as JSON, so that it cannot imitate a part of the question.
     said = msgspec.json.encode(text).decode()
     return f"{lists}\n\n{speaker} said:\n{said}"

@@ -1,4 +1,4 @@
-"""What is said to a language model and what it answers."""
+"""Messages to a language model, and its answers."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -15,8 +15,8 @@ Role = Literal["system", "user", "assistant"]
 class Message:
     """One message of a conversation.
 
-    Hidden characters of its text are written out, whoever wrote it: a model reads what a person
-    would see.
+    Hidden characters of the text are escaped, whoever wrote it: a model reads the text that a
+    person would see.
     """
 
     role: Role
@@ -28,12 +28,12 @@ class Message:
 
 @dataclass(frozen=True, slots=True)
 class Sampling:
-    """How an answer is drawn; None leaves it to the provider.
+    """Sampling parameters; None leaves the choice to the provider.
 
     Attributes:
-        temperature: 0 for the likeliest answer.
-        seed: For providers that can repeat an answer.
-        max_output_tokens: Longest answer.
+        temperature: Sampling temperature; 0 asks for the likeliest answer.
+        seed: Seed, for providers that can repeat an answer.
+        max_output_tokens: Greatest length of an answer.
     """
 
     temperature: float | None = 0.0
@@ -43,13 +43,13 @@ class Sampling:
 
 @dataclass(frozen=True, slots=True)
 class Usage:
-    """What requests took.
+    """Resources that requests used.
 
     Attributes:
         requests: Number of requests that reached a provider.
-        input_tokens: Tokens sent.
-        output_tokens: Tokens received.
-        cost: US dollars; None where a price is not known.
+        input_tokens: Number of tokens sent.
+        output_tokens: Number of tokens received.
+        cost: Cost in US dollars; None if a price is unknown.
     """
 
     requests: int = 0
@@ -59,7 +59,7 @@ class Usage:
 
     @property
     def tokens(self) -> int:
-        """Tokens sent and received."""
+        """Number of tokens sent and received."""
         return self.input_tokens + self.output_tokens
 
     def __add__(self, other: "Usage") -> "Usage":
@@ -74,12 +74,12 @@ class Usage:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What a model answered.
+    """A model's answer.
 
     Attributes:
-        text: The whole text.
-        usage: What this answer took.
-        cached: Whether it comes from a cache, and no request was made.
+        text: Full text.
+        usage: Resources that this answer used.
+        cached: True if the answer comes from a cache without a request.
     """
 
     text: str
@@ -92,12 +92,12 @@ class Model(Protocol):
 
     @property
     def name(self) -> str:
-        """The name that `resolve_model` gives this model for; recorded in runs."""
+        """Name under which `resolve_model` finds this model; runs record it."""
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
         """Answer a conversation.
 
         Raises:
-            ModelError: The model is not available, refused, gave no text, or a limit of
-                the run was reached.
+            ModelError: The model is not available, refused or gave no text, or the run reached a
+                limit.
         """

@@ -1,4 +1,4 @@
-"""The providers of chat models: where they are, and which variables hold their keys."""
+"""Providers of chat models: their addresses, and the variables that hold their keys."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -20,13 +20,13 @@ class Provider:
     """A provider of chat models.
 
     Attributes:
-        name: What stands before the colon in `PROVIDER:MODEL`.
-        protocol: What its servers speak.
-        key_variables: Variables of the environment that may hold the key, in order.
-        url_variable: Variable that may hold the base URL.
-        default_url: Base URL without that variable; None: there is none.
-        needs_key: Whether it refuses to answer without a key.
-        free: Whether it runs on the user's own machine and costs nothing.
+        name: Part before the colon in `PROVIDER:MODEL`.
+        protocol: Protocol of its servers.
+        key_variables: Environment variables that may hold the key, in order.
+        url_variable: Environment variable that may hold the base URL.
+        default_url: Base URL if this variable is not set; None if there is no default.
+        needs_key: True if the provider answers only with a key.
+        free: True if it runs on the user's own machine and costs nothing.
     """
 
     name: str
@@ -40,13 +40,13 @@ class Provider:
 
 @dataclass(frozen=True)
 class Endpoint:
-    """Where a provider is spoken to and with which key.
+    """Server and key of a provider.
 
     Attributes:
         provider: The provider.
-        url: Base URL, perhaps with a password in it; `place` is what may be shown.
-        key: Never printed; None where none is needed.
-        key_variable: The variable the key came from, for messages.
+        url: Base URL, which may contain a password; show `place` instead.
+        key: Key, never printed; None if none is needed.
+        key_variable: Variable that held the key, for messages.
     """
 
     provider: Provider
@@ -56,21 +56,21 @@ class Endpoint:
 
     @cached_property
     def place(self) -> str:
-        """The base URL without user, password or key."""
+        """Base URL without user, password or key."""
         return without_password(self.url)
 
     @property
     def address(self) -> str:
-        """The base URL without user and password, to be asked with `user`.
+        """Base URL without user and password, to be requested with `user`.
 
-        Libraries write the address that they ask into logs and errors.
+        Libraries write this address into logs and errors.
         """
         parts = urlsplit(self.url)
         return urlunsplit(parts._replace(netloc=parts.netloc.rpartition("@")[2]))
 
     @property
     def user(self) -> tuple[str, str] | None:
-        """User and password that the base URL holds; None: none."""
+        """User and password in the base URL; None if there are none."""
         parts = urlsplit(self.url)
         if not parts.username and not parts.password:
             return None
@@ -78,25 +78,26 @@ class Endpoint:
 
     @cached_property
     def secrets(self) -> Secrets:
-        """What nothing that is shown or kept may hold."""
+        """Secrets that must not appear in any output or file."""
         return Secrets([self.key.value or "", *secrets_in(self.url)])
 
     def cost(self, listed: float | None) -> float | None:
-        """US dollars that an answer costs, None where that is not known.
+        """Return the cost of an answer in US dollars; None if it is unknown.
 
         Args:
-            listed: What the library's price list says; None: the model is not on it.
+            listed: Price by the library's list; None if the list lacks the model.
         """
         if self.provider.free:
             return 0.0
-        # A provider's name says that what is asked may be handed on to it.
+        # A local server may be a proxy: if the model is on the price list, the request may be
+        # forwarded to its provider, and the listed price applies.
         is_own = self.provider.default_url is None and _is_near(self.url)
         return 0.0 if listed is None and is_own else listed
 
 
 @dataclass(frozen=True, slots=True, repr=False)
 class _Key:
-    """A key that does not show in a representation."""
+    """A key that its representation does not show."""
 
     value: str | None
 
@@ -165,16 +166,16 @@ PROVIDERS: Mapping[str, Provider] = {
         ),
     )
 }
-"""Name to provider; `compatible` is any other server that speaks OpenAI's protocol."""
+"""Providers by name; `compatible` is any other server with OpenAI's protocol."""
 
 
 def _is_near(url: str) -> bool:
-    """Return True if a server is on this machine, or has an address of a private network."""
+    """Return True if a server is on this machine or has an address of a private network."""
     host = urlsplit(url).hostname or ""
     try:
         return host == "localhost" or ip_address(host).is_private
     except ValueError:
-        # A name, which may lead anywhere.
+        # A host name can belong to any address.
         return False
 
 
@@ -187,10 +188,10 @@ def _is_address(url: str) -> bool:
 
 
 def endpoint(provider: Provider, environment: Mapping[str, str]) -> Endpoint:
-    """Where a provider is, and the key, from the environment.
+    """Return the address and the key of a provider from the environment.
 
     Raises:
-        ModelError: A key or a URL is needed and not in the environment.
+        ModelError: The environment lacks a key or a URL that is needed.
     """
     url = environment.get(provider.url_variable) or provider.default_url
     if not url:
@@ -206,7 +207,7 @@ def endpoint(provider: Provider, environment: Mapping[str, str]) -> Endpoint:
     for variable in provider.key_variables:
         if environment.get(variable):
             return Endpoint(provider, url, _Key(environment[variable]), variable)
-    # A server at an address of the user's own may do without a key.
+    # Servers at an address that the user chose may not need a key.
     if provider.needs_key and not environment.get(provider.url_variable):
         raise ModelError(
             f"{provider.name} needs a key: set {' or '.join(provider.key_variables)}, "

@@ -1,4 +1,4 @@
-"""Models that give answers from a file: written by hand, or recorded in an earlier run."""
+"""Models whose answers come from a file: written by hand, or recorded in an earlier run."""
 
 from collections import defaultdict, deque
 from collections.abc import Mapping, Sequence
@@ -20,11 +20,11 @@ _Question = tuple[Message, ...]
 
 @dataclass
 class ScriptedModel:
-    """Gives the answers of a script in their order, whatever is asked.
+    """Model that gives the answers of a script in order, whatever the request is.
 
     Attributes:
         name: `scripted:FILE`.
-        answers: What is left of the script.
+        answers: Remaining answers.
     """
 
     name: str
@@ -34,7 +34,7 @@ class ScriptedModel:
         """Return the next answer.
 
         Raises:
-            ModelError: The script has ended.
+            ModelError: There are no more answers.
         """
         if not self.answers:
             raise ModelError(f"{self.name} has no answer left; add one to the file")
@@ -43,23 +43,23 @@ class ScriptedModel:
 
 @dataclass
 class ReplayModel:
-    """Gives the recorded answers to the same questions.
+    """Model that gives the recorded answers to the same requests.
 
-    A question that was asked several times gets its answers in the order of the recording.
+    A request that was recorded several times gets its answers in the order of the recording.
 
     Attributes:
         name: `replay:FILE`.
-        recorded: Question to the answers that are left.
+        recorded: Remaining answers by request.
     """
 
     name: str
     recorded: Mapping[_Question, deque[Exchange]]
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """Return the next recorded answer to this question.
+        """Return the next recorded answer to this request.
 
         Raises:
-            ModelError: The recording has none (left).
+            ModelError: The recording has none, or none left.
         """
         left = self.recorded.get(tuple(messages))
         if not left:
@@ -75,18 +75,18 @@ class ReplayModel:
 
 @dataclass(frozen=True)
 class FileRecordingModel:
-    """A model whose exchanges are appended to a file, one JSON object a line."""
+    """Model wrapper that appends exchanges to a file, one JSON object per line."""
 
     model: Model
     file: Path
 
     @property
     def name(self) -> str:
-        """Name of the model that is asked."""
+        """Name of the wrapped model."""
         return self.model.name
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """Ask and record.
+        """Ask the model and record the exchange.
 
         Raises:
             ModelError: The model failed, or the file cannot be written.
@@ -103,7 +103,7 @@ class FileRecordingModel:
 
 
 def load_script(name: str, path: Path) -> ScriptedModel:
-    """Return a scripted model from a JSON file: a list of answers.
+    """Load a scripted model from a JSON file: a list of answers.
 
     Raises:
         ModelError: The file cannot be read or is not a list of texts.
@@ -116,7 +116,7 @@ def load_script(name: str, path: Path) -> ScriptedModel:
 
 
 def load_replay(name: str, path: Path) -> ReplayModel:
-    """Return a replaying model from the file that a `FileRecordingModel` wrote.
+    """Load a replaying model from the file of a `FileRecordingModel`.
 
     Raises:
         ModelError: The file cannot be read, or a line is not an exchange.

@@ -1,4 +1,4 @@
-"""Chat models behind a network, through pydantic-ai."""
+"""Chat models of providers, asked over the network through pydantic-ai."""
 
 import math
 import warnings
@@ -24,25 +24,27 @@ if TYPE_CHECKING:  # Extras, imported when a provider is asked.
 __all__ = ["AnswerLimits", "RemoteModel"]
 
 _CHARACTERS_PER_TOKEN = 4
-"""For servers that do not say what they counted; a low guess would let a limit slip."""
+"""Characters per token, to estimate usage if a server does not report it. A low estimate would
+let a run exceed its limits."""
 
 _BYTES_PER_CHARACTER = 512
-"""What a stream may send for each character of an answer: a piece may hold a single letter."""
+"""Greatest number of bytes of a stream for each character of the answer. An event of the stream
+may hold a single letter."""
 
 _BYTES_BESIDES = 2**20
-"""What a stream may send besides."""
+"""Greatest number of further bytes of a stream."""
 
 _MOST_TOKENS = 10**9
-"""What a server may say it counted; with more a guess is used instead."""
+"""Greatest plausible token count. If a server reports more, usage is estimated instead."""
 
 
 @dataclass(frozen=True, slots=True)
 class AnswerLimits:
-    """What one answer may take.
+    """Limits on one answer.
 
     Attributes:
-        seconds: From the request to the last character.
-        characters: Longest text, thinking included.
+        seconds: Greatest time from the request to the last character.
+        characters: Greatest length of the text, including thinking.
     """
 
     seconds: float = 120.0
@@ -51,13 +53,13 @@ class AnswerLimits:
 
 @dataclass(frozen=True)
 class RemoteModel:
-    """A model of a provider. Connects when it is asked, and only then.
+    """A model of a provider; it connects only when it is asked.
 
     Attributes:
-        endpoint: Where it is.
-        model: The provider's name for it.
-        limits: What one answer may take.
-        clock: Measures `limits.seconds` while text arrives.
+        endpoint: Server and key.
+        model: The provider's name of the model.
+        limits: Limits on one answer.
+        clock: Clock for `limits.seconds` while text arrives.
     """
 
     endpoint: Endpoint
@@ -74,8 +76,8 @@ class RemoteModel:
         """Ask the provider once.
 
         Raises:
-            TransientModelError: It may answer later.
-            ModelError: It will not answer this, or the answer exceeds a limit.
+            TransientModelError: The failure is temporary.
+            ModelError: The failure is permanent, or the answer exceeds a limit.
         """
         secrets = self.endpoint.secrets
         try:
@@ -86,7 +88,7 @@ class RemoteModel:
         return replace(answer, text=secrets.masked_answer(answer.text))
 
     def _answered(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """Ask once; what comes back may hold secrets."""
+        """Ask once; the result and the error may still contain secrets."""
         _require_library()
         from pydantic_ai.exceptions import AgentRunError, UserError
 
@@ -121,7 +123,7 @@ class RemoteModel:
         end = self.clock.now() + seconds
         longest = _BYTES_BESIDES + _BYTES_PER_CHARACTER * self.limits.characters
         try:
-            # A stream without an event would never reach the clock.
+            # asyncio's timeout ends a stream that sends no event: the loop below would never run.
             async with (
                 asyncio.timeout(seconds),
                 bounded_client(seconds, longest, self.endpoint.user) as client,
@@ -137,7 +139,7 @@ class RemoteModel:
             raise UnusableAnswerError(_too_slow(self), _guessed_usage(self, messages, 0)) from None
 
     def _hold_limits(self, messages: Sequence[Message], received: int, end: float) -> None:
-        """Give up an answer that is too long, or later than `end` on the clock."""
+        """Raise an error if an answer is too long, or if the clock has passed `end`."""
         if received > self.limits.characters:
             raise UnusableAnswerError(
                 f"{self.name} wrote more than {self.limits.characters:,} characters "
@@ -160,9 +162,9 @@ def _require_library() -> None:
 
 @contextmanager
 def _quiet_about_counts() -> Iterator[None]:
-    """Without the library's warnings of counts that cannot be: `_usage` guesses them then.
+    """Silence the library's warnings about invalid token counts, which `_usage` replaces.
 
-    Where warnings are errors, each would end an answer that is sound.
+    If the user turns warnings into errors, they would abort a valid answer.
     """
     from pydantic_ai.exceptions import UsageExtractionFailedWarning
 
@@ -173,7 +175,7 @@ def _quiet_about_counts() -> Iterator[None]:
 
 
 def _run(ask: Callable[[], Coroutine[Any, Any, Answer]]) -> Answer:
-    """Run a coroutine to its end, also where an event loop runs already (notebooks)."""
+    """Run a coroutine to its end, even if an event loop is running already (notebooks)."""
     import asyncio
     import concurrent.futures
 
@@ -207,7 +209,7 @@ def _chat_model(endpoint: Endpoint, model: str, client: "httpx2.AsyncClient") ->
             from pydantic_ai.models.openai import OpenAIChatModel
             from pydantic_ai.providers.openai import OpenAIProvider
 
-            # Chat completions and not the newer responses: only these take a seed.
+            # Use the chat completions API: the newer responses API does not accept a seed.
             openai = OpenAIProvider(api_key=key or "none", base_url=url, http_client=client)
             return OpenAIChatModel(model, provider=openai)
         case "compatible":
@@ -222,7 +224,7 @@ def _chat_model(endpoint: Endpoint, model: str, client: "httpx2.AsyncClient") ->
 
 
 def _settings(sampling: Sampling, seconds: float) -> "ModelSettings":
-    # Retrying is done by `retrying`, on the project's clock.
+    # The library must not retry: `RetryingModel` does it, with the project's clock.
     settings: ModelSettings = {"max_retries": 0, "request_timeout": seconds}
     if sampling.temperature is not None:
         settings["temperature"] = sampling.temperature
@@ -258,7 +260,7 @@ def _history(messages: Sequence[Message]) -> "list[ModelMessage]":
 
 
 def _length(event: object) -> int:
-    """Characters of text or thinking that an event of a stream adds."""
+    """Return the number of characters that an event of a stream adds to text or thinking."""
     from pydantic_ai.messages import (
         PartDeltaEvent,
         PartStartEvent,
@@ -296,7 +298,7 @@ def _answer(model: RemoteModel, messages: Sequence[Message], response: "ModelRes
         )
     if not is_well_formed(text):
         raise UnusableAnswerError(
-            f"{model.name} gave an answer with half a character in it; ask again",
+            f"{model.name} gave an answer with half a surrogate pair in it; ask again",
             usage,
         )
     if not text.strip():
@@ -309,7 +311,7 @@ def _answer(model: RemoteModel, messages: Sequence[Message], response: "ModelRes
 def _usage(model: RemoteModel, messages: Sequence[Message], response: "ModelResponse") -> Usage:
     counted = response.usage
     tokens = (counted.input_tokens, counted.output_tokens)
-    # The library hands on what the server said, whatever that is.
+    # The library passes on the server's counts without validation.
     if not any(tokens) or not all(_is_count(each) for each in tokens):
         return _guessed_usage(model, messages, len(response.text or ""))
     cost = model.endpoint.cost(_cost(response))
@@ -331,7 +333,7 @@ def _guessed_tokens(characters: int) -> int:
 
 
 def _cost(response: "ModelResponse") -> float | None:
-    """US dollars by the library's price list; None for a model that is not on it."""
+    """Return the price in US dollars by the library's list; None for unknown models."""
     try:
         price = float(response.cost().total_price)
         return price if math.isfinite(price) and price >= 0 else None
@@ -351,7 +353,7 @@ def _clean(model: RemoteModel, text: str) -> str:
 
 
 def _is_nobody_there(error: BaseException | None) -> bool:
-    """Return True if the cause of all was that no connection could be made."""
+    """Return True if the original cause of an error is a failed connection."""
     import httpx2
 
     while error is not None:
@@ -362,7 +364,10 @@ def _is_nobody_there(error: BaseException | None) -> bool:
 
 
 def _refuse(model: RemoteModel, error: Exception) -> NoReturn:
-    """Raise the project's error for one of the library's, without its cause: it holds headers."""
+    """Raise the project's error for an error of the library.
+
+    The cause is dropped, because it holds request headers.
+    """
     from pydantic_ai import exceptions as library
 
     where = f"{model.name} at {model.endpoint.place}"
@@ -391,7 +396,7 @@ def _refuse(model: RemoteModel, error: Exception) -> NoReturn:
         case library.ModelAPIError():
             message = f"{where} rejected the request ({said})"
         case library.UnexpectedModelBehavior():
-            message = f"{where} gave no usable answer ({said}); it has to stream what it answers"
+            message = f"{where} gave no usable answer ({said}); the server must stream its answers"
         case _:
             message = f"{where} gave no usable answer ({said})"
     raise ModelError(message) from None

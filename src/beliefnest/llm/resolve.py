@@ -1,4 +1,4 @@
-"""From the name of a model to the model, and with it all that a run puts around it."""
+"""Lookup of models by name, with retries, limits, cache and recording around them."""
 
 import difflib
 from collections.abc import Mapping, Sequence
@@ -28,16 +28,16 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Connection:
-    """What a run puts around a model.
+    """Settings for the wrappers around a model.
 
     Attributes:
-        budget: What the run may spend, and has spent.
-        answer_limits: What one answer may take.
-        retries: How often a request is made again.
-        cache: Folder of kept answers; None: none are kept or used.
-        cache_mode: How the folder is used.
-        record: File to append every exchange to; None: none.
-        clock: Time for limits and pauses.
+        budget: Limits of the run and its usage so far.
+        answer_limits: Limits on one answer.
+        retries: Policy for repeated requests.
+        cache: Folder of the cache; None for no cache.
+        cache_mode: Mode of the cache.
+        record: File to which every exchange is appended; None for no recording.
+        clock: Clock for limits and pauses.
     """
 
     budget: RunSpending = field(default_factory=RunSpending)
@@ -50,14 +50,14 @@ class Connection:
 
     @property
     def holds_answers(self) -> bool:
-        """True if any kept answer may be used."""
+        """True if the cache is readable and has any answer."""
         if self.cache is None or self.cache_mode != "read":
             return False
         return next(self.cache.glob("*.json"), None) is not None
 
 
 def model_names() -> tuple[str, ...]:
-    """Return the forms of names that `resolve_model` takes."""
+    """Return the forms of names that `resolve_model` accepts."""
     remote = (f"{name}:MODEL" for name in PROVIDERS)
     return ("offline", "replay:FILE", "scripted:FILE", *remote)
 
@@ -69,17 +69,17 @@ def resolve_model(
     limits: AnswerLimits | None = None,
     clock: Clock | None = None,
 ) -> Model:
-    """Return the model of a name: one request an answer, nothing around it.
+    """Return the bare model of a name; each answer takes one request.
 
     Args:
         name: `offline`, `replay:FILE`, `scripted:FILE` or `PROVIDER:MODEL`.
-        environment: Holds keys and base URLs; the process's environment, as a rule.
-        limits: What one answer of a provider may take.
-        clock: Measures the limits.
+        environment: Variables with keys and base URLs, usually those of the process.
+        limits: Limits on one answer of a provider.
+        clock: Clock for these limits.
 
     Raises:
         UnknownNameError: There is no such kind of model.
-        InputError: Nothing stands behind the colon.
+        InputError: The part after the colon is missing.
         ModelError: A key, a URL or a file is missing.
     """
     if name == "offline":
@@ -88,7 +88,7 @@ def resolve_model(
     if kind not in ("replay", "scripted", *PROVIDERS):
         raise UnknownNameError(f"no model {name!r}{_nearest(kind)}")
     if not rest:
-        raise InputError(f"{name!r} is not complete; write {kind}:{_placeholder(kind)}")
+        raise InputError(f"{name!r} is incomplete; write {kind}:{_placeholder(kind)}")
     if kind == "replay":
         return load_replay(name, Path(rest))
     if kind == "scripted":
@@ -103,23 +103,23 @@ def resolve_model(
 
 @dataclass(frozen=True)
 class _Unreachable:
-    """A model that lacks a key or an address; kept answers may stand in for all it is asked."""
+    """Model without key or address, which fails when a request is not in the cache."""
 
     name: str
     why: str
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """Refuse; ModelError says what is missing."""
-        raise ModelError(f"no answer of {self.name} to this prompt is kept, and {self.why}")
+        """Raise ModelError with the missing key or address."""
+        raise ModelError(f"the cache has no answer of {self.name} to this prompt, and {self.why}")
 
 
 def check_model(name: str, environment: Mapping[str, str], connection: Connection) -> None:
-    """Refuse a model that cannot answer, before anything is played.
+    """Refuse a model that cannot answer, before a run begins.
 
-    A model without a key or an address passes where answers are kept; see `open_model`.
+    A model without key or address is accepted if the cache has answers; see `open_model`.
 
     Raises:
-        BeliefNestError: There is no such model, as `resolve_model` says.
+        BeliefNestError: As of `resolve_model`.
     """
     _resolved(name, environment, connection)
 
@@ -136,19 +136,19 @@ def _resolved(name: str, environment: Mapping[str, str], connection: Connection)
 
 
 def is_of_provider(name: str) -> bool:
-    """Whether a model is a provider's, which may answer the same question in several ways."""
+    """Return True if a model is a provider's, so that its answers can vary."""
     return name.partition(":")[0] in PROVIDERS
 
 
 def open_model(name: str, environment: Mapping[str, str], connection: Connection) -> Model:
     """Return the model of a name with retries, limits, cache and recording around it.
 
-    A kept answer costs nothing and is recorded like any other; only models of providers
-    are retried, metered and kept. Where answers are kept, a model may lack its key and address:
-    it fails only when it is asked what none of them answers.
+    A cached answer costs nothing and is recorded like any other. Only models of providers are
+    retried, metered and cached. If the cache has answers, a model may lack its key and address;
+    it then fails only when a request is not in the cache.
 
     Raises:
-        BeliefNestError: There is no such model, as `resolve_model` says.
+        BeliefNestError: As of `resolve_model`.
     """
     model = _resolved(name, environment, connection)
     if is_of_provider(name):

@@ -1,4 +1,4 @@
-"""A model that is asked again when a failure may pass."""
+"""Model wrapper that repeats a request after a temporary failure."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,12 +13,12 @@ __all__ = ["RetryPolicy", "RetryingModel"]
 
 @dataclass(frozen=True, slots=True)
 class RetryPolicy:
-    """How often and when a request is made again.
+    """Number and timing of repeated requests.
 
     Attributes:
-        attempts: Requests in all.
-        first_wait: Seconds before the second request; doubles each time.
-        longest_wait: Seconds; a provider that asks for more is not waited for.
+        attempts: Greatest number of requests in all.
+        first_wait: Seconds before the second request; doubles with each further request.
+        longest_wait: Longest wait in seconds. If a provider asks for more, the request fails.
     """
 
     attempts: int = 5
@@ -26,14 +26,14 @@ class RetryPolicy:
     longest_wait: float = 60.0
 
     def wait_before(self, attempt: int, retry_after: float | None) -> float:
-        """Return seconds to wait before request number `attempt`, which counts from 1."""
+        """Return the seconds to wait before request number `attempt`, counted from 1."""
         backoff = min(self.first_wait * 2.0 ** (attempt - 2), self.longest_wait)
         return max(backoff, retry_after or 0.0)
 
 
 @dataclass(frozen=True)
 class RetryingModel:
-    """Asks another model again after rate limits, server faults and dropped connections."""
+    """Model that repeats requests after rate limits, server faults and lost connections."""
 
     model: Model
     policy: RetryPolicy
@@ -41,14 +41,14 @@ class RetryingModel:
 
     @property
     def name(self) -> str:
-        """Name of the model that is asked."""
+        """Name of the wrapped model."""
         return self.model.name
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """Ask until there is an answer or the policy ends.
+        """Ask until there is an answer or the policy gives up.
 
         Raises:
-            ModelError: The model failed for good, or once more than the policy allows.
+            ModelError: The failure is permanent, or all attempts failed.
         """
         attempt = 1
         while True:

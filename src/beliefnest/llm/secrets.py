@@ -1,8 +1,8 @@
-"""Keys and passwords of a model's server, and how they are kept out of all that is shown or kept.
+"""Masking of keys and passwords of a model's server in all output and all files.
 
 A server may repeat a key in an answer or an error, as it was sent or encoded. `Secrets.masked`
-replaces each of these forms. A model of a provider passes all that comes from its server through
-it (`llm/remote.py`), so that recordings, caches, tables and pages never hold a secret.
+replaces each of these forms. Models of providers mask everything that comes from their server
+(`llm/remote.py`), so that recordings, caches, tables and pages never hold a secret.
 """
 
 import base64
@@ -17,7 +17,8 @@ __all__ = ["MASK", "Secrets", "secrets_in", "without_password"]
 MASK = "***"
 
 _SHORTEST_IN_ANSWERS = 6
-"""Characters of a secret that is masked in answers too: shorter ones are in many words."""
+"""Shortest secret that is masked in answers too, in characters. Shorter ones are parts of many
+words."""
 
 _BASE64 = "[A-Za-z0-9+/_-]"
 
@@ -25,10 +26,10 @@ _SECRET_PARAMETER = re.compile(r"key|token|secret|pass|pwd|auth|sig|cred|code", 
 
 
 class Secrets:
-    """Texts that nothing may show.
+    """Texts that must not be shown.
 
     Args:
-        values: The texts; empty ones are left out.
+        values: The texts; empty ones are ignored.
     """
 
     def __init__(self, values: Iterable[str]) -> None:
@@ -40,16 +41,16 @@ class Secrets:
         return "<secrets>"
 
     def masked(self, text: str) -> str:
-        """Return a message with `***` in place of each secret."""
+        """Return a message with each secret replaced by `***`."""
         return _replaced(self._everywhere, text)
 
     def masked_answer(self, text: str) -> str:
-        """Return an answer with `***` in place of each secret of at least 6 characters."""
+        """Return an answer with each secret of at least 6 characters replaced by `***`."""
         return _replaced(self._in_answers, text)
 
 
 def secrets_in(url: str) -> list[str]:
-    """Return the secrets in a URL: its password, or else its user name, and keys in its query."""
+    """Return the secrets of a URL: its password or else user name, and keys in its query."""
     parts = urlsplit(url)
     query = (value for name, value in parse_qsl(parts.query) if _SECRET_PARAMETER.search(name))
     found = [parts.password or parts.username or "", *query]
@@ -57,7 +58,7 @@ def secrets_in(url: str) -> list[str]:
 
 
 def without_password(url: str) -> str:
-    """Return a URL as it may be shown: without user, password and the keys in its query."""
+    """Return a URL without user, password and the keys in its query, so that it can be shown."""
     parts = urlsplit(url)
     query = Secrets(secrets_in(url)).masked(parts.query)
     return urlunsplit(parts._replace(netloc=parts.netloc.rpartition("@")[2], query=query))
@@ -69,13 +70,13 @@ def _replaced(pattern: "re.Pattern[str] | None", text: str) -> str:
 
 def _pattern(secrets: Iterable[str]) -> "re.Pattern[str] | None":
     forms = {form for secret in secrets for form in _forms(secret)}
-    # The longest first: a secret may begin as another one does.
+    # Try the longest first: one secret may be the beginning of another.
     ordered = sorted(forms, key=lambda form: (-len(form), form))
     return re.compile("|".join(ordered)) if ordered else None
 
 
 def _forms(secret: str) -> Iterator[str]:
-    """Yield regular expressions of all forms in which a server may repeat a secret."""
+    """Yield regular expressions for all forms in which a server may repeat a secret."""
     escapes = (json.dumps(secret)[1:-1], repr(secret)[1:-1], html.escape(secret))
     for plain in (secret, *escapes):
         yield re.escape(plain)
@@ -91,7 +92,11 @@ def _forms(secret: str) -> Iterator[str]:
 
 
 def _base64_core(content: bytes, before: int) -> str:
-    """Return what base64 always makes of bytes that stand after `before` others, modulo 3."""
+    """Return the part of a base64 text that depends only on `content`.
+
+    Base64 encodes three bytes as four characters. The characters at the ends also depend on the
+    neighbouring bytes and are left out. `before` is the number of preceding bytes modulo 3.
+    """
     encoded = base64.b64encode(bytes(before) + content).decode()
     whole = (before + len(content)) * 8 // 6
     return encoded[-(-before * 8 // 6) : whole]

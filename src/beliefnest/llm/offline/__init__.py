@@ -1,4 +1,4 @@
-"""The offline model."""
+"""Offline model, a deterministic stand-in for a language model."""
 
 from beliefnest.llm.offline.model import OfflineModel
 

@@ -1,9 +1,13 @@
-"""From what a prompt says to an answer to its question.
+"""Answers of the offline model to questions, from the contents of a prompt.
 
-Where an item is: in the chest that is said to hold it, by the name of a place there if it has one.
-Where a player is: where it is seen, else said to be, else was last seen; by the name of the nearest
-place within a few blocks. What a sign says: that of the place that is named, or the only one
-that is known. Anything else, and what the prompt does not tell, is not known.
+The rules:
+
+* Question about an item: the chest that holds it by the prompt; the answer is the name of a
+  place there, if it has one.
+* Question about a player: where the player is seen, else is said to be, else was last seen; the
+  answer is the name of the nearest place within a few blocks.
+* Question about a sign: its text. The sign is the one at the named place, or the only known one.
+* Any other question, or missing information: the answer is that it is not known.
 """
 
 import math
@@ -21,12 +25,12 @@ _NOT_KNOWN = "I do not know"
 
 
 def answer_question(question: str, text: str, reading: Reading) -> str:
-    """Return an answer in the form that is asked for.
+    """Return an answer in the requested form.
 
     Args:
-        question: What is asked.
-        text: The whole prompt, for its options.
-        reading: What the prompt says.
+        question: Text of the question.
+        text: Full prompt, which may list options.
+        reading: Contents of the prompt.
     """
     if "sign" in singular(question):
         names, reason = _sign(question, reading)
@@ -43,7 +47,7 @@ def answer_question(question: str, text: str, reading: Reading) -> str:
 
 
 def _sign(question: str, reading: Reading) -> tuple[list[str], str]:
-    """What a sign says, and where it stands; nothing if it is not told which, or what."""
+    """Return the text of the sign in question and the reason; no text if it is unclear."""
     near = place_named_last(question, reading.places)
     signs = [at for at in reading.signs if near is None or math.dist(at, near) <= _NEAR]
     if len(signs) != 1:
@@ -70,7 +74,7 @@ def _found(question: str, reading: Reading) -> tuple[Point, str] | None:
 
 
 def _names(place: Point, reading: Reading) -> list[str]:
-    """What a place is called, the nearest name first; its numbers at last."""
+    """Return the names of a place, the nearest first, and its coordinates last."""
     far = {name: math.dist(place, there) for name, there in reading.places.items()}
     near = sorted((name for name in far if far[name] <= _NEAR), key=lambda name: far[name])
     exact = [name for name in near if far[name] == 0]

@@ -1,4 +1,4 @@
-"""The programs of the offline model, as text in the form language models answer in."""
+"""Programs of the offline model, in the form in which language models answer."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -34,12 +34,12 @@ def _number(value: float) -> str:
 
 
 def go_to(point: Point) -> str:
-    """Go to a position."""
+    """Return code that goes to a position."""
     return f"await goToPosition(bot, {vector(point)});"
 
 
 def take_items(takings: Sequence[tuple[Point, Mapping[str, int]]]) -> str:
-    """Take items out of chests, one chest after the other."""
+    """Return code that takes items out of chests, one chest after the other."""
     return "\n".join(
         f"await goToPosition(bot, {vector(chest)});\n"
         f"await getItemFromChest(bot, {vector(chest)}, {json.dumps(dict(items))});"
@@ -48,12 +48,12 @@ def take_items(takings: Sequence[tuple[Point, Mapping[str, int]]]) -> str:
 
 
 def give_item(player: str, item: str, count: int) -> str:
-    """Hand items to a player."""
+    """Return code that hands items to a player."""
     return f"await giveItemToOther(bot, {json.dumps(player)}, {json.dumps(item)}, {count});"
 
 
 def search_chests(chests: Sequence[Point], names: Sequence[str], count: int) -> str:
-    """Open chests one after the other until one holds an item of one of the names."""
+    """Return code that opens chests in order until one holds an item of one of the names."""
     return f"""\
 const names = {json.dumps(list(names))};
 for (const position of [{", ".join(vector(chest) for chest in chests)}]) {{
@@ -70,7 +70,7 @@ for (const position of [{", ".join(vector(chest) for chest in chests)}]) {{
 
 
 def look_for_player(name: str, places: Sequence[Point]) -> str:
-    """Go through places, then in the four directions, until a player is in sight."""
+    """Return code that searches places, then the four directions, for a player."""
     return f"""\
 const seen = () => bot.players[{json.dumps(name)}]?.entity;
 for (const position of [{", ".join(vector(place) for place in places)}]) {{
@@ -87,5 +87,5 @@ else {wonder(f"I cannot find {name}.")}"""
 
 
 def wonder(thought: str) -> str:
-    """Think something and do nothing."""
+    """Return code that thinks a thought and does nothing else."""
     return f"await think(bot, {json.dumps(thought)});"

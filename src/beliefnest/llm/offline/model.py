@@ -1,4 +1,4 @@
-"""The offline model: answers from the prompt's text alone, without network or key."""
+"""Offline model: answers from the prompt's text alone, without network or key."""
 
 import re
 from collections.abc import Sequence
@@ -17,17 +17,17 @@ _QUESTION = re.compile(r"^Question: *(.+)$", re.MULTILINE)
 class OfflineModel:
     """A deterministic stand-in for a language model.
 
-    It reads the same messages as a language model would and nothing else, understands the
-    sections of the paper's prompt and a few kinds of task (see `planning`), and answers in
-    the same form.
+    It reads the same messages as a language model and nothing else. It understands the sections
+    of the paper's prompt and a few kinds of tasks (see `planning`), and answers in the same
+    form.
     """
 
     name = "offline"
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """A program for the task in the messages, or an answer if there is a question instead.
+        """Return a program for the task in the messages, or an answer to their question.
 
-        The sampling changes nothing.
+        The sampling parameters are ignored.
         """
         text = "\n".join(message.text for message in messages if message.role != "assistant")
         reading = read_prompt(text)

@@ -1,4 +1,4 @@
-"""Which of several known names a phrase of a task means."""
+"""Resolution of phrases in a task to known names."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -12,7 +12,7 @@ _ARTICLES = frozenset({"a", "an", "the"})
 
 
 def singular(phrase: str) -> tuple[str, ...]:
-    """Return the words of a phrase without the ending of a plural."""
+    """Return the words of a phrase without plural endings."""
     return tuple(
         word[:-1] if word.endswith("s") and not word.endswith("ss") else word
         for word in words(phrase)
@@ -20,9 +20,10 @@ def singular(phrase: str) -> tuple[str, ...]:
 
 
 def match_item(phrase: str, names: Iterable[str]) -> str | None:
-    """Return the item a phrase means: the same words, or else the last of an item's words.
+    """Return the item that a phrase means.
 
-    "iron ingots" means `iron_ingot`; "pickaxe" means `iron_pickaxe` if nothing else ends so.
+    That is the item with the same words, or else the only item that ends with them: "iron
+    ingots" means `iron_ingot`; "pickaxe" means `iron_pickaxe` if no other item ends so.
     """
     known = sorted(set(names))
     wanted = singular(phrase)
@@ -34,9 +35,11 @@ def match_item(phrase: str, names: Iterable[str]) -> str | None:
 
 
 def match_name(phrase: str, names: Iterable[str]) -> str | None:
-    """Return the name a phrase means: the same words, or else the only one that shares them.
+    """Return the name that a phrase means.
 
-    "ice cream seller" means `ice_cream_seller`, `IceCreamSeller` or `seller`.
+    That is the name with the same words, or else the only name whose words contain or are
+    contained in the phrase: "ice cream seller" means `ice_cream_seller`, `IceCreamSeller` or
+    `seller`.
     """
     known = sorted(set(names))
     wanted = [word for word in words(phrase) if word not in _ARTICLES] or list(words(phrase))
@@ -52,13 +55,13 @@ def _within(one: set[str], other: set[str]) -> bool:
 
 
 def place_named_last(text: str, places: Mapping[str, Point]) -> Point | None:
-    """Where a sentence says that someone will be: the place or position it names last.
+    """Return the place or position that a sentence names last as someone's destination.
 
-    A place behind "from", "leave" or "not" is not where someone will be.
+    Places after "from", "leave" or "not" are skipped.
     """
     found: list[tuple[int, Point]] = []
     for name, point in places.items():
-        # "A" as a name is not "a" as an article.
+        # Match short names with their case: the name "A" is not the article "a".
         flags = re.IGNORECASE if len(name) > 2 else re.NOFLAG
         for match in re.finditer(rf"\b{re.escape(name)}\b", text, flags):
             if not _speaks_of_leaving(words(text[: match.start()])):
@@ -68,6 +71,6 @@ def place_named_last(text: str, places: Mapping[str, Point]) -> Point | None:
 
 
 def _speaks_of_leaving(before: Sequence[str]) -> bool:
-    """Return True if the words before a place, articles and "to" aside, end in leaving it."""
+    """Return True if the words before a place mean leaving it; articles and "to" are ignored."""
     rest = [word for word in before if word not in _ARTICLES | {"to", "at", "in", "go", "going"}]
     return bool(rest) and rest[-1] in _NOT_THERE

@@ -1,21 +1,19 @@
-"""From what a prompt says to a program for its task.
+"""Planner of the offline model: a program for the task of a prompt.
 
-Of a task of several sentences the first that is understood counts.
+If a task has several sentences, the planner takes the first one that it understands.
 
-Get N ITEM [from ...]: of the chests that are said to hold enough of it, the nearest; if none
-holds enough, those that hold most of it first, until there is enough. If no chest is said to
-hold it, all known chests are opened, nearest first. Chests at the same distance keep the order
-of the prompt; without a known position so do all.
+* Get N ITEM [from ...]: take the item from the nearest chest that holds enough by the prompt. If
+  no chest holds enough, take it from several chests, the fullest first. If no known chest holds
+  it, open all known chests, the nearest first. Chests at equal distance keep the order of the
+  prompt, as do all chests if the own position is unknown.
+* Go to X, where X is a position, a place or a player. A player is where it is seen; else at the
+  place named last in the newest message that it said or that names it; else where the history
+  last has it. Else the program searches the known places in the order of the prompt, then the
+  four directions.
+* Help X: get the item that X wants and give it to X. The wish of X is its task, if the prompt
+  tells it ("X's task: Get ..."), else the last thing that X said it wants, needs or looks for.
 
-Go to X: a position; a place of that name; a player: where it is seen, else the place named
-last in the newest message that it said or that names it, else where the history last has it,
-else it is looked for, in the known places in the order of the prompt and then in the four
-directions.
-
-Help X: get what X is after and give it to X. What X is after is its task, if the prompt tells
-it ("X's task: Get ..."), else what X said last that it wants, needs or looks for.
-
-Anything else is thought about and nothing is done.
+For any other task the program only thinks a thought.
 """
 
 import math
@@ -56,7 +54,7 @@ _COUNTS = {
 
 @dataclass(frozen=True, slots=True)
 class _Wanted:
-    """So many of an item: words of a task."""
+    """Count, item and source as a task words them."""
 
     count: int
     phrase: str
@@ -116,7 +114,7 @@ def _item_in(chests: Sequence[Point], wanted: _Wanted, reading: Reading) -> str 
 
 
 def _help(phrase: str, reading: Reading) -> str | None:
-    """Return a program to get a player what it is after; None if the phrase names no player."""
+    """Return a program that gets a player its wish; None if the phrase names no player."""
     player = match_name(phrase, reading.players)
     if player is None:
         return None
@@ -139,7 +137,7 @@ def _help(phrase: str, reading: Reading) -> str | None:
 
 
 def _wish(player: str, reading: Reading) -> _Wanted | None:
-    """What a player is after, by its task or its own words."""
+    """Return the wish of a player, from its task or its own words."""
     told = reading.others_tasks.get(player)
     if told is not None:
         return _wanted(told.rstrip(".!? "))
@@ -151,7 +149,7 @@ def _wish(player: str, reading: Reading) -> _Wanted | None:
 
 
 def _chests_meant(source: str | None, reading: Reading) -> list[Point]:
-    """Return all known chests, or the one whose position the task gives."""
+    """Return the chest whose position the task gives, or all known chests."""
     given = points_in(source or "")
     meant = [chest for chest in reading.chests if chest in given]
     return meant or list(reading.chests)
@@ -166,7 +164,7 @@ def _nearest_first(points: Sequence[Point], here: Point | None) -> list[Point]:
 def _takings(
     count: int, item: str, chests: Sequence[Point], reading: Reading
 ) -> list[tuple[Point, dict[str, int]]]:
-    """How many to take from which chests, in order."""
+    """Return the chests to take from, in order, with the items to take."""
     holding = {chest: reading.chests[chest].get(item, 0) for chest in chests}
     enough = [chest for chest in chests if holding[chest] >= count]
     if enough:
@@ -182,7 +180,7 @@ def _takings(
 
 
 def _go(phrase: str, reading: Reading) -> str | None:
-    """Return a program to go where a phrase says; None if it names nothing that is known."""
+    """Return a program that goes to the place or player of a phrase; None if it is unknown."""
     given = points_in(phrase)
     if given:
         return javascript.go_to(given[-1])
@@ -199,14 +197,14 @@ def _go(phrase: str, reading: Reading) -> str | None:
 
 
 def believed_place(player: str, reading: Reading) -> Point | None:
-    """Where a player is seen, else said to be, else was last seen."""
+    """Return where a player is seen, else is said to be, else was last seen."""
     return (
         reading.players[player] or _said_to_be_at(player, reading) or reading.sightings.get(player)
     )
 
 
 def _said_to_be_at(player: str, reading: Reading) -> Point | None:
-    """Return the place named last in the newest message a player said or that names the player."""
+    """Return the last place in the newest message that a player said or that names the player."""
     for heard in reversed(reading.chat):
         if heard.speaker == player or set(words(player)) <= set(words(heard.text)):
             where = place_named_last(heard.text, reading.places)

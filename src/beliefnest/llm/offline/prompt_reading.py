@@ -1,4 +1,4 @@
-"""What a prompt in the paper's form or of our own default says, read from its text alone."""
+"""Parser of prompts, in the paper's form or that of the default templates."""
 
 import ast
 import json
@@ -32,7 +32,7 @@ _PLACE_IN_SENTENCE = re.compile(rf"\b([A-Z]\w*(?: [A-Z]\w*)*) is at ({_POINT.pat
 
 @dataclass(frozen=True, slots=True)
 class Utterance:
-    """Something heard: who said what."""
+    """Speaker and text of something heard."""
 
     speaker: str
     text: str
@@ -40,19 +40,18 @@ class Utterance:
 
 @dataclass(frozen=True)
 class Reading:
-    """What a prompt says.
+    """Contents of a prompt.
 
     Attributes:
         task: The sentence after `Task:`; empty if there is none.
-        position: Where the one who is asked stands; None if not told.
-        chests: Position of a chest to the items that are known to be in it, in the
-            order of the prompt.
-        players: Name of another player to its position; None: cannot be seen.
-        chat: What was heard, in the order of the prompt.
-        places: Name of a place to its position.
-        sightings: Name of a player to where the history last has it, or going.
-        others_tasks: Name of a player to the task it is said to have.
-        signs: Position of a sign to what is written on it, its lines split by ` / `.
+        position: Position of the agent; None if the prompt lacks it.
+        chests: Known items by position of a chest, in the order of the prompt.
+        players: Positions of the other players by name; None if a player cannot be seen.
+        chat: Utterances heard, in the order of the prompt.
+        places: Positions of places by name.
+        sightings: Last positions or destinations of players in the history, by name.
+        others_tasks: Tasks of other players by name, as the prompt tells them.
+        signs: Texts of signs by position, with ` / ` between lines.
     """
 
     task: str
@@ -67,7 +66,7 @@ class Reading:
 
 
 def words(text: str) -> tuple[str, ...]:
-    """Return the words of a name or sentence in lower case; `_` and `-` part words."""
+    """Return the words of a name or sentence in lower case; `_` and `-` separate words."""
     return tuple(re.findall(r"[a-z0-9']+", re.sub(r"[_-]", " ", text.lower())))
 
 
@@ -77,7 +76,7 @@ def points_in(text: str) -> list[Point]:
 
 
 def read_prompt(text: str) -> Reading:
-    """Read a prompt; sections that are missing or not understood read as unknown."""
+    """Parse a prompt; missing or unclear sections are read as unknown."""
     sections = _sections(text)
     here = points_in("\n".join(sections.get("Position", [])))
     return Reading(
@@ -94,7 +93,7 @@ def read_prompt(text: str) -> Reading:
 
 
 def _sections(text: str) -> dict[str, list[str]]:
-    """Return the heading to the lines below it; the last section of a name counts."""
+    """Return the lines below each heading; the last section of a name counts."""
     sections: dict[str, list[str]] = {}
     lines: list[str] = []
     for line in text.splitlines():
@@ -117,7 +116,7 @@ def _ends_section(line: str, stripped: str) -> bool:
 
 
 def _task(text: str) -> str:
-    """Return the last task of the text: its line and what follows up to an empty line."""
+    """Return the last task of the text: its line and the lines up to an empty line."""
     lines = text.splitlines()
     starts = [index for index, line in enumerate(lines) if _TASK.match(line)]
     if not starts:
@@ -152,7 +151,7 @@ def _signs(lines: Sequence[str]) -> dict[Point, str]:
 
 
 def _items(text: str) -> dict[str, int]:
-    """Return items written as `{'diamond': 1}`; an entry that is not of that kind is left out."""
+    """Parse items written as `{'diamond': 1}`; entries of other types are left out."""
     try:
         value = ast.literal_eval(text)
     except (ValueError, SyntaxError):
@@ -192,7 +191,7 @@ def _chat(lines: Sequence[str]) -> list[Utterance]:
 
 
 def _places(lines: Sequence[str], text: str) -> dict[str, Point]:
-    """Places of the section of that name, then of sentences such as `Home is at (1, 2, 3)`."""
+    """Return places from sentences such as `Home is at (1, 2, 3)`, then from their section."""
     places: dict[str, Point] = {}
     if " is at " in text:
         for name, where, *_ in _PLACE_IN_SENTENCE.findall(text):
